@@ -1,0 +1,80 @@
+# Mascarin. Two commands set up and go, each making its own environment in .venv:
+#
+#   make demo   build, run a study on measured data, print where the result is
+#   make test   build, run formatting, lints, types and every test
+#
+# Both need Python 3.11 or later, cargo and make, and nothing else.
+
+PYTHON ?= python3
+MARKS ?= not browser
+PYTEST_FLAGS ?=
+
+ifeq ($(OS),Windows_NT)
+BIN := .venv/Scripts
+else
+BIN := .venv/bin
+endif
+
+PY := $(BIN)/python
+ENVIRONMENT := .venv/stamp-environment
+BUILT := .venv/stamp-built
+RUST_SOURCES := Cargo.toml Cargo.lock $(wildcard rust-toolchain.toml) \
+	$(shell find crates -name '*.rs' -o -name Cargo.toml)
+
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+export PIP_NO_INPUT := 1
+# The same interpreter for every cargo call, so that the binding is not rebuilt between them.
+export PYO3_PYTHON := $(CURDIR)/$(PY)
+
+.PHONY: help demo test build check-tools check-rust check-python pytest
+.DELETE_ON_ERROR:
+
+help:
+	@echo "make demo   build, run a study on measured data, print where the result is"
+	@echo "make test   build, run formatting, lints, types and every test"
+
+demo: $(BUILT)
+	$(BIN)/mascarin study wall-bench -o demo
+
+test: check-rust check-python pytest
+
+build: $(BUILT)
+
+check-tools:
+	@command -v "$(PYTHON)" >/dev/null 2>&1 || { \
+		echo "error: '$(PYTHON)' not found. Mascarin needs Python 3.11 or later:" \
+			"install it, or say where it is: make PYTHON=/path/to/python3" >&2; exit 1; }
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+		echo "error: '$(PYTHON)' is $$("$(PYTHON)" -V 2>&1). Mascarin needs Python 3.11 or later:" \
+			"install it, or say where it is: make PYTHON=/path/to/python3" >&2; exit 1; }
+	@"$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null || { \
+		echo "error: '$(PYTHON)' cannot make virtual environments (its modules venv and ensurepip are missing)." \
+			"On Debian and Ubuntu: install the package python3-venv" >&2; exit 1; }
+	@command -v cargo >/dev/null 2>&1 || { \
+		echo "error: 'cargo' not found. Mascarin's engine is built with Rust 1.85 or later:" \
+			"see rustup.rs or your system's packages" >&2; exit 1; }
+
+$(ENVIRONMENT): constraints.txt | check-tools
+	@test -x $(PY) || "$(PYTHON)" -m venv .venv
+	$(PY) -m pip install --quiet --requirement constraints.txt
+	@touch $@
+
+$(BUILT): $(ENVIRONMENT) pyproject.toml $(RUST_SOURCES)
+	PIP_CONSTRAINT=constraints.txt VIRTUAL_ENV="$(CURDIR)/.venv" $(PY) -m maturin develop --release --quiet
+	@touch $@
+
+check-rust: $(ENVIRONMENT)
+	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || { \
+		echo "error: cargo has no 'fmt' or no 'clippy'. With rustup: rustup component add rustfmt clippy" >&2; exit 1; }
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
+	cargo test --workspace --release --locked --quiet
+
+check-python: $(BUILT)
+	$(PY) -m ruff check --quiet .
+	$(PY) -m ruff format --check --quiet .
+	$(PY) -m mypy
+	$(PY) -m mypy.stubtest --mypy-config-file pyproject.toml mascarin._engine
+
+pytest: $(BUILT) check-rust check-python
+	$(PY) -m pytest -m "$(MARKS)" $(PYTEST_FLAGS)
