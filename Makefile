@@ -6,8 +6,7 @@
 # Both need Python 3.11 or later, cargo and make, and nothing else.
 
 PYTHON ?= python3
-MARKS ?= not browser
-PYTEST_FLAGS ?=
+PYTEST_FLAGS ?= --numprocesses=auto --dist=loadfile
 
 ifeq ($(OS),Windows_NT)
 BIN := .venv/Scripts
@@ -77,4 +76,4 @@ check-python: $(BUILT)
 	$(PY) -m mypy.stubtest --mypy-config-file pyproject.toml mascarin._engine
 
 pytest: $(BUILT) check-rust check-python
-	$(PY) -m pytest -m "$(MARKS)" $(PYTEST_FLAGS)
+	$(PY) -m pytest $(PYTEST_FLAGS)

@@ -1,0 +1,169 @@
+"""The command line: which commands there are, and what their exit codes mean.
+
+A command is a plain function in `mascarin.commands`; one line of `COMMANDS` registers it. Its
+module is imported only when the command is called, so that ``mascarin --help`` stays quick.
+Data go to standard output, everything else to standard error.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+import warnings
+from collections.abc import Sequence
+from typing import Final, NamedTuple, TextIO
+
+from cyclopts import App, CycloptsError, Group
+
+from mascarin import __version__
+from mascarin.errors import InputError, MascarinError, SolverError
+
+EXIT_OK: Final = 0
+EXIT_CRITERION: Final = 1
+EXIT_INPUT: Final = InputError.exit_code
+EXIT_SOLVER: Final = SolverError.exit_code
+EXIT_DEFECT: Final = 70  # a defect of Mascarin itself, so that it is never read as an answer
+EXIT_INTERRUPTED: Final = 130
+
+
+class Command(NamedTuple):
+    """One command: its name, the function behind it as ``module:function``, one line of help."""
+
+    name: str
+    function: str
+    help: str
+
+
+GROUPS: Final[dict[str, tuple[Command, ...]]] = {
+    "Describe": (
+        Command(
+            "schema", "mascarin.commands.model:schema", "Print the JSON Schema of a building description."
+        ),
+        Command(
+            "check", "mascarin.commands.model:check", "Check a building description and say what it holds."
+        ),
+        Command("parameters", "mascarin.commands.model:parameters", "List every parameter of a building."),
+        Command("cite", "mascarin.commands.model:cite", "List the sources that a building rests on."),
+    ),
+}
+"""Every command, by the group it is listed under."""
+
+_EPILOGUE: Final = (
+    "Exit codes: 0 done, 1 a criterion is not met, 2 something given cannot be used, "
+    "3 the solver failed, 130 interrupted. "
+    "With --debug (or MASCARIN_DEBUG=1) an error shows where it came from."
+)
+
+
+def build_app() -> App:
+    """The command line as cyclopts sees it."""
+    app = App(
+        name="mascarin",
+        help="Simulate buildings with phase-change materials, and prove the model on measurements.",
+        help_epilogue=_EPILOGUE,
+        help_format="plaintext",
+        version=__version__,
+        print_error=False,
+        exit_on_error=False,
+        suppress_keyboard_interrupt=False,
+        result_action="return_value",
+    )
+    app["--help"].group = app["--version"].group = Group("Options", sort_key=len(GROUPS))
+    for order, (title, commands) in enumerate(GROUPS.items()):
+        group = Group(title, sort_key=order)
+        for command in commands:
+            app.command(command.function, name=command.name, help=command.help, group=group)
+    return app
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after ``mascarin``; those of this process if not given.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    debug = _take_debug(words)
+    with warnings.catch_warnings():
+        if not debug:
+            warnings.showwarning = _show_warning
+        try:
+            code = build_app()(words)
+            sys.stdout.flush()
+        except BrokenPipeError:
+            return _reader_gone()
+        except KeyboardInterrupt:
+            _say("interrupted")
+            return EXIT_INTERRUPTED
+        except Exception as error:
+            if debug:
+                traceback.print_exc()
+            return _report(error)
+    return code if isinstance(code, int) else EXIT_OK
+
+
+def _take_debug(words: list[str]) -> bool:
+    """Take ``--debug`` out of `words`: every command understands it."""
+    own = words[: words.index("--")] if "--" in words else words
+    if "--debug" in own:
+        words.remove("--debug")
+        return True
+    return os.environ.get("MASCARIN_DEBUG", "") not in ("", "0")
+
+
+def _report(error: Exception) -> int:
+    """Say what went wrong; the exit code that goes with it."""
+    if isinstance(error, CycloptsError):
+        command = " ".join(("mascarin", *(error.command_chain or ())))
+        _say(f"error: {_usage_text(error)}\nSee: {command} --help")
+        return EXIT_INPUT
+    if isinstance(error, MascarinError):
+        _say(f"error: {error}")
+        return error.exit_code
+    if isinstance(error, OSError) and error.filename is not None:
+        _say(f"error: cannot use '{error.filename}': {error.strerror}")
+        return EXIT_INPUT
+    _say(
+        f"error: a defect in Mascarin {__version__}: {type(error).__name__}: {error}\n"
+        "Please report it: the command, its input files, and what it prints with --debug."
+    )
+    return EXIT_DEFECT
+
+
+def _usage_text(error: CycloptsError) -> str:
+    return " ".join(str(error).split())
+
+
+def _reader_gone() -> int:
+    """Whoever read our output (``| head``) has had enough: not an error, and nothing more to say."""
+    # Python flushes standard output once more when it ends; give it somewhere to go.
+    sink = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(sink, sys.stdout.fileno())
+    return EXIT_OK
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    _say(f"warning: {message}")
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,157 @@
+"""Progress of long work on stderr, with the time that remains."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Final, Self, TextIO
+
+SILENT_FOR: Final = 2.0
+"""Work shorter than this shows nothing. [s]"""
+
+_REDRAW_EVERY: Final = 0.1  # s, on a terminal
+_LINE_EVERY: Final = 5.0  # s, in a log
+_BAR: Final = 24  # characters
+
+
+class Progress:
+    """How far a piece of work is, for a person watching.
+
+    On a terminal one line is drawn over and over and is wiped at the end; elsewhere (a log, a
+    pipe) a plain line appears every few seconds. Nothing is shown for work shorter than
+    `SILENT_FOR`. An instance is also a callable ``progress(done, total)``.
+
+    Parameters
+    ----------
+    label : str
+        What is being done, a few words.
+    stream : text stream, optional
+        Where to write; standard error as it is when the work starts.
+    clock : callable, optional
+        Monotonic clock. [s]
+
+    Examples
+    --------
+    >>> with Progress("members") as progress:
+    ...     for k in range(100):
+    ...         progress.update(k + 1, 100)
+    """
+
+    def __init__(
+        self,
+        label: str,
+        *,
+        stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._label = label
+        self._stream = sys.stderr if stream is None else stream
+        self._clock = clock
+        self._terminal = _is_terminal(self._stream)
+        self._lock = threading.Lock()
+        self._started = clock()
+        self._shown_at: float | None = None
+        self._width = 0
+        self._first: tuple[float, float] | None = None  # (time, done) of the first call
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __call__(self, done: float, total: float) -> None:
+        """The same as `update`."""
+        self.update(done, total)
+
+    def update(self, done: float, total: float, note: str = "") -> None:
+        """Say how far the work is; cheap enough to be called often, from any thread.
+
+        Parameters
+        ----------
+        done, total : float
+            Work done and work in all, in any common unit. The first call may be above zero
+            (work found done by an earlier run): the remaining time counts only what is done here.
+        note : str, optional
+            A few words shown behind the numbers, such as the best cost so far.
+        """
+        with self._lock:
+            now = self._clock()
+            if self._first is None:
+                self._first = (self._started if done == 0 else now, done)
+            if now - self._started < SILENT_FOR:
+                return
+            every = _REDRAW_EVERY if self._terminal else _LINE_EVERY
+            if self._shown_at is not None and now - self._shown_at < every:
+                return
+            self._shown_at = now
+            self._show(self._text(now, done, total, note))
+
+    def close(self) -> None:
+        """Wipe the line from the terminal."""
+        with self._lock:
+            if self._terminal and self._width:
+                self._write("\r" + " " * self._width + "\r")
+                self._width = 0
+
+    def _text(self, now: float, done: float, total: float, note: str) -> str:
+        share = min(max(done / total, 0.0), 1.0) if total > 0 else 0.0
+        parts = [self._label]
+        if self._terminal:
+            filled = int(share * _BAR)
+            parts.append("[" + "#" * filled + "-" * (_BAR - filled) + "]")
+        parts.append(f"{100 * share:.0f} %")
+        remaining = self._remaining(now, done, total)
+        if remaining is not None:
+            parts.append(f"{duration(remaining)} left")
+        if note:
+            parts.append(note)
+        return "  ".join(parts)
+
+    def _remaining(self, now: float, done: float, total: float) -> float | None:
+        since, before = self._first or (now, done)
+        if done <= before or now <= since:
+            return None
+        return (total - done) * (now - since) / (done - before)
+
+    def _show(self, text: str) -> None:
+        if not self._terminal:
+            self._write(text + "\n")
+            return
+        self._write("\r" + text.ljust(self._width))
+        self._width = len(text)
+
+    def _write(self, text: str) -> None:
+        # Nobody's run is lost because the terminal went away.
+        with contextlib.suppress(OSError, ValueError):
+            self._stream.write(text)
+            self._stream.flush()
+
+
+def duration(seconds: float) -> str:
+    """Duration as ``42 s``, ``3:05 min`` or ``2:10 h``.
+
+    Parameters
+    ----------
+    seconds : float
+        Duration. [s]
+    """
+    whole = round(max(seconds, 0.0))
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60}:{whole % 60:02d} min"
+    return f"{whole // 3600}:{whole % 3600 // 60:02d} h"
+
+
+def _is_terminal(stream: TextIO) -> bool:
+    try:
+        return stream.isatty()
+    except (AttributeError, ValueError):
+        return False
