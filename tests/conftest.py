@@ -1,18 +1,32 @@
 from __future__ import annotations
 
 import os
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
 
 import pytest
 
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
 ROOT = Path(__file__).resolve().parent.parent
 
+os.environ["MPLBACKEND"] = "Agg"  # no window opens in a test
 
-def unavailable(reason: str) -> None:
+
+def unavailable(reason: str) -> NoReturn:
     """Skip the test; under continuous integration, where nothing may be missing, fail it."""
     if os.environ.get("CI"):
-        pytest.fail(f"{reason} (CI is set: nothing may be skipped for missing data)", pytrace=False)
+        pytest.fail(f"{reason} (CI is set: nothing may be skipped for what is missing)", pytrace=False)
     pytest.skip(reason)
+
+
+@pytest.fixture(scope="session")
+def repository() -> Path:
+    """Root of the repository."""
+    return ROOT
 
 
 @pytest.fixture(scope="session")
@@ -24,7 +38,19 @@ def data_dir() -> Path:
     return folder
 
 
-@pytest.fixture(scope="session")
-def repository() -> Path:
-    """Root of the repository."""
-    return ROOT
+@pytest.fixture
+def page() -> Iterator[Page]:
+    """An empty page in a headless Chromium that reaches nothing but local files."""
+    from playwright.sync_api import sync_playwright
+
+    program = os.environ.get("MASCARIN_BROWSER") or shutil.which("chromium")
+    if program is None:
+        unavailable("no Chromium: set MASCARIN_BROWSER to the program")
+    flags = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-sync"]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=flags)
+        try:
+            context = browser.new_context(offline=True)
+            yield context.new_page()
+        finally:
+            browser.close()

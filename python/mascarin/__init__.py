@@ -34,14 +34,15 @@ _HOME: Final = {
 
 __all__ = ["Climate", "Study", "__version__", "calibrate", "load", "simulate", "state_space", "sweep"]
 
+if not TYPE_CHECKING:  # a type checker sees the imports above, and so finds a misspelt name
 
-def __getattr__(name: str) -> object:
-    """Public name, imported from its room on first use."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'mascarin' has no attribute '{name}'")
-    value = getattr(importlib.import_module(_HOME[name]), name)
-    globals()[name] = value
-    return value
+    def __getattr__(name: str) -> object:
+        """Public name, imported from its room on first use."""
+        if name not in _HOME:
+            raise AttributeError(f"module 'mascarin' has no attribute '{name}'")
+        value = getattr(importlib.import_module(_HOME[name]), name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

@@ -7,6 +7,7 @@ Data go to standard output, everything else to standard error.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import traceback
@@ -144,9 +145,10 @@ def _usage_text(error: CycloptsError) -> str:
 
 def _reader_gone() -> int:
     """Whoever read our output (``| head``) has had enough: not an error, and nothing more to say."""
-    # Python flushes standard output once more when it ends; give it somewhere to go.
-    sink = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(sink, sys.stdout.fileno())
+    # Python flushes standard output once more when it ends: give it somewhere to go. Where standard
+    # output is no real file there is nothing to flush.
+    with contextlib.suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return EXIT_OK
 
 

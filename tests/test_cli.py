@@ -1,0 +1,166 @@
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+import warnings
+
+import pytest
+
+from mascarin import __version__, cli
+from mascarin.errors import CriterionFailed, InputError, SolverError
+
+COMMANDS = [command for group in cli.GROUPS.values() for command in group]
+
+
+def raising(monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
+    """Put an app in place whose every call raises `error`."""
+
+    def app(_words: list[str]) -> None:
+        raise error
+
+    monkeypatch.setattr(cli, "build_app", lambda: app)
+
+
+def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--help"]) == 0
+    out, err = capsys.readouterr()
+    for command in COMMANDS:
+        assert f" {command.name} " in out
+    assert "Exit codes" in out
+    assert err == ""
+
+
+def test_without_a_command_the_help_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main([]) == 0
+    assert "Usage: mascarin" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda c: c.name)
+def test_every_command_has_help(command: cli.Command, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main([command.name, "--help"]) == 0
+    out = capsys.readouterr().out
+    assert f"mascarin {command.name}" in out
+    assert " ".join(command.help.split()[:3]) in " ".join(out.split())
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--version"]) == 0
+    assert capsys.readouterr().out == f"{__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["chek"], "check"),
+        (["check"], "mascarin check --help"),
+        (["check", "--no-such-option", "x"], "--no-such-option"),
+    ],
+)
+def test_a_wrong_call_is_bad_input(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(words) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("error: ")
+    assert said in err
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (CriterionFailed("rmse 0.4 K"), 1),
+        (InputError("building.yaml:3: zones.room.volume"), 2),
+        (SolverError("roof, step 12"), 3),
+    ],
+)
+def test_known_errors_are_said_as_they_stand(
+    error: Exception, code: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    raising(monkeypatch, error)
+    assert cli.main(["x"]) == code
+    assert capsys.readouterr() == ("", f"error: {error}\n")
+
+
+def test_a_file_that_cannot_be_read_is_bad_input(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    raising(monkeypatch, FileNotFoundError(2, "No such file or directory", "site.epw"))
+    assert cli.main(["x"]) == 2
+    assert "'site.epw': No such file" in capsys.readouterr().err
+
+
+def test_an_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    raising(monkeypatch, KeyboardInterrupt())
+    assert cli.main(["x"]) == 130
+    assert capsys.readouterr().err == "interrupted\n"
+
+
+@pytest.mark.parametrize(("words", "traced"), [(["x"], False), (["x", "--debug"], True)])
+def test_a_defect_is_never_an_answer(
+    words: list[str],
+    traced: bool,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.delenv("MASCARIN_DEBUG", raising=False)
+    raising(monkeypatch, ZeroDivisionError("division by zero"))
+    assert cli.main(words) == cli.EXIT_DEFECT
+    err = capsys.readouterr().err
+    assert "ZeroDivisionError: division by zero" in err
+    assert "report" in err
+    assert ("Traceback" in err) is traced
+
+
+def test_debug_by_environment(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("MASCARIN_DEBUG", "1")
+    raising(monkeypatch, ZeroDivisionError())
+    assert cli.main(["x"]) == cli.EXIT_DEFECT
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_debug_after_two_dashes_is_an_argument() -> None:
+    words = ["check", "--", "--debug"]
+    assert cli._take_debug(words) is False
+    assert words == ["check", "--", "--debug"]
+
+
+def test_the_code_a_command_returns_is_the_exit_code(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cli, "build_app", lambda: lambda _words: 1)
+    assert cli.main([]) == 1
+
+
+def test_warnings_are_said_in_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def app(_words: list[str]) -> None:
+        warnings.simplefilter("always")
+        warnings.warn("the step is long", UserWarning, stacklevel=1)
+
+    monkeypatch.delenv("MASCARIN_DEBUG", raising=False)
+    monkeypatch.setattr(cli, "build_app", lambda: app)
+    assert cli.main([]) == 0
+    assert capsys.readouterr() == ("", "warning: the step is long\n")
+
+
+def test_a_reader_that_stops_reading_is_no_error() -> None:
+    script = (
+        "import sys; from mascarin import cli\n"
+        "cli.build_app = lambda: lambda words: print('x' * 200_000)\n"
+        "sys.exit(cli.main([]))"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.read(10)
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait() == 0
+
+
+def test_output_without_a_file_behind_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Under a notebook standard output has no file number; a closed reader must not become a defect."""
+    raising(monkeypatch, BrokenPipeError())
+    monkeypatch.setattr(sys, "stdout", io.StringIO())
+    assert cli.main([]) == 0

@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import mascarin
+
+HEAVY = ["matplotlib", "numpy", "pandas", "pvlib", "pydantic", "scipy", "xarray"]
+
+
+def loaded_after(code: str) -> list[str]:
+    """Heavy modules that are loaded once `code` has run in a fresh interpreter."""
+    script = f"{code}\nimport json, sys\nprint(json.dumps([m for m in {HEAVY!r} if m in sys.modules]))"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    found: list[str] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def test_import_is_light() -> None:
+    assert loaded_after("import mascarin") == []
+
+
+@pytest.mark.parametrize("words", [["--help"], ["--version"]])
+def test_command_line_starts_light(words: list[str]) -> None:
+    assert loaded_after(f"import mascarin.cli; assert mascarin.cli.main({words!r}) == 0") == []
+
+
+@pytest.mark.parametrize("name", sorted(set(mascarin.__all__) - {"__version__"}))
+def test_every_public_name_is_there_and_documented(name: str) -> None:
+    value = getattr(mascarin, name)
+    assert callable(value)
+    assert value.__doc__
+    assert name in dir(mascarin)
+
+
+def test_functions_win_over_modules_of_the_same_name() -> None:
+    code = (
+        "import mascarin, mascarin.sweep, mascarin.state_space\n"
+        "assert all(type(f).__name__ == 'function' for f in (mascarin.sweep, mascarin.state_space))"
+    )
+    loaded_after(code)
+
+
+def test_unknown_name() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = mascarin.nothing  # type: ignore[attr-defined]
+
+
+def test_public_names_are_typed(repository: Path) -> None:
+    text = (repository / "python" / "mascarin" / "__init__.py").read_text(encoding="utf-8")
+    for name in set(mascarin.__all__) - {"__version__"}:
+        assert f"import {name} as {name}" in text

@@ -1,0 +1,75 @@
+from __future__ import annotations
+
+import ast
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+from packaging.version import Version
+
+import mascarin
+
+# Where the name to import is not the name to install.
+IMPORT_NAMES = {"ruamel.yaml": "ruamel"}
+# Not imported by us: the time zones of systems without their own, and the NetCDF engine behind xarray.
+USED_BY_NAME = {"tzdata", "h5netcdf"}
+
+
+@pytest.fixture(scope="module")
+def project(repository: Path) -> dict[str, Any]:
+    table = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))
+    section: dict[str, Any] = table["project"]
+    return section
+
+
+@pytest.fixture(scope="module")
+def pinned(repository: Path) -> dict[str, Version]:
+    lines = (repository / "constraints.txt").read_text(encoding="utf-8").split()
+    pairs = [line.split("==") for line in lines]
+    return {canonicalize_name(name): Version(version) for name, version in pairs}
+
+
+def test_versions_agree(project: dict[str, Any], repository: Path) -> None:
+    cargo = tomllib.loads((repository / "Cargo.toml").read_text(encoding="utf-8"))
+    citation = (repository / "CITATION.cff").read_text(encoding="utf-8")
+    assert project["version"] == mascarin.__version__
+    assert cargo["workspace"]["package"]["version"] == mascarin.__version__
+    assert f"\nversion: {mascarin.__version__}\n" in citation
+    assert mascarin.__version__ in (repository / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_every_dependency_is_pinned_within_its_bounds(
+    project: dict[str, Any], pinned: dict[str, Version]
+) -> None:
+    extras = [text for texts in project["optional-dependencies"].values() for text in texts]
+    for text in [*project["dependencies"], *extras]:
+        requirement = Requirement(text)
+        version = pinned[canonicalize_name(requirement.name)]
+        assert requirement.specifier.contains(version), f"{text}: pinned at {version}"
+
+
+def test_constraints_hold_versions_only(repository: Path) -> None:
+    for line in (repository / "constraints.txt").read_text(encoding="utf-8").splitlines():
+        assert re.fullmatch(r"[A-Za-z0-9._-]+==[A-Za-z0-9.]+", line), line
+
+
+def test_every_dependency_is_used(project: dict[str, Any], repository: Path) -> None:
+    imported: set[str] = set()
+    for path in (repository / "python" / "mascarin").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                imported |= {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module:
+                imported.add(node.module.split(".")[0])
+    declared = {Requirement(text).name for text in project["dependencies"]} - USED_BY_NAME
+    assert {IMPORT_NAMES.get(name, name) for name in declared} <= imported
+
+
+def test_nothing_is_built_for_one_processor_only(repository: Path) -> None:
+    """The same bits on every machine: no target-cpu in any build file."""
+    files = [repository / "Cargo.toml", repository / "Makefile", *repository.glob(".cargo/*")]
+    assert not [f for f in files if re.search(r"target-cpu\s*=", f.read_text(encoding="utf-8"))]
