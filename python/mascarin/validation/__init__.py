@@ -1,0 +1,1 @@
+"""Comparison of simulations with measurements: metrics, criteria, residual analysis, reference cases."""

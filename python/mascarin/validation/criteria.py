@@ -1,0 +1,225 @@
+"""Limits that a comparison must keep, and whether it does.
+
+A criterion is written as a plain mapping, for example::
+
+    {metric: max_error_percent, limit: 10}
+    {metric: max_error, limit: 1, sensors: room, name: "room air within 1 degC"}
+    {metric: rmse, limit: 0.15, sensors: [interface], periods: blind}
+
+The size of the metric is compared, so that a bias of -3 does not pass a limit of 2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from mascarin.errors import InputError, did_you_mean
+from mascarin.validation.metrics import Metrics
+
+MetricName = Literal[
+    "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent", "max_error_percent"
+]
+
+
+class Criterion(BaseModel):
+    """One limit on one metric, for some or all sensors and periods."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    metric: MetricName = Field(description="What is limited; percentages refer to the measured range.")
+    limit: float = Field(
+        gt=0.0,
+        allow_inf_nan=False,
+        description="Largest size of the metric, itself allowed. [unit of the metric]",
+    )
+    sensors: tuple[str, ...] | None = Field(
+        default=None, min_length=1, description="Sensors it applies to; every sensor when absent."
+    )
+    periods: tuple[str, ...] | None = Field(
+        default=None, min_length=1, description="Periods it applies to; every period when absent."
+    )
+    name: str | None = Field(default=None, description="A name for the report.")
+
+    @field_validator("sensors", "periods", mode="before")
+    @classmethod
+    def _listed(cls, value: object) -> object:
+        """A single name stands for a list of one."""
+        return [value] if isinstance(value, str) else value
+
+    def describe(self, unit: str) -> str:
+        """The criterion in words.
+
+        Parameters
+        ----------
+        unit : str
+            Unit of the sensor; percentages keep their own.
+        """
+        if self.name is not None:
+            return self.name
+        words = self.metric.removesuffix("_percent").replace("_", " ")
+        of_range = " of the measured range" if self.metric.endswith("_percent") else ""
+        return f"|{words}| <= {self.limit:g} {metric_unit(self.metric, unit)}{of_range}"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether one sensor kept one criterion over one period.
+
+    Attributes
+    ----------
+    name : str
+        The criterion in words.
+    sensor, period, metric : str
+        What was looked at.
+    value : float
+        The metric, with its sign; NaN when there was nothing to compare. [unit]
+    limit : float
+        Largest size allowed. [unit]
+    unit : str
+        Unit of value and limit.
+    passed : bool
+        Whether the size of the value is at most the limit; False when there was nothing to compare.
+    """
+
+    name: str
+    sensor: str
+    period: str
+    metric: str
+    value: float
+    limit: float
+    unit: str
+    passed: bool
+
+    def to_dict(self) -> dict[str, str | float | bool | None]:
+        """The verdict for a JSON file; a value that could not be computed is None."""
+        return {
+            "name": self.name,
+            "sensor": self.sensor,
+            "period": self.period,
+            "metric": self.metric,
+            "value": self.value if math.isfinite(self.value) else None,
+            "limit": self.limit,
+            "unit": self.unit,
+            "passed": self.passed,
+        }
+
+
+def parse_criteria(items: Iterable[Mapping[str, Any]], *, where: str = "criteria") -> tuple[Criterion, ...]:
+    """Criteria from plain mappings.
+
+    Parameters
+    ----------
+    items : iterable of mapping
+        One mapping per criterion, see `Criterion`.
+    where : str
+        Place named in errors, such as ``study.yaml:31: criteria``.
+
+    Returns
+    -------
+    tuple of Criterion
+
+    Raises
+    ------
+    InputError
+        For an unknown key or metric, a missing or non-positive limit.
+    """
+    found = []
+    for k, item in enumerate(items):
+        try:
+            found.append(Criterion.model_validate(dict(item)))
+        except ValidationError as error:
+            raise InputError(_explain(error, f"{where}[{k}]")) from error
+    return tuple(found)
+
+
+def judge(
+    criteria: Sequence[Criterion], metrics: Mapping[str, Mapping[str, Metrics]], *, where: str = "criteria"
+) -> list[Verdict]:
+    """Apply criteria to the metrics of a comparison.
+
+    Parameters
+    ----------
+    criteria : sequence of Criterion
+        The limits.
+    metrics : mapping of sensor to mapping of period to Metrics
+        What `mascarin.validation.metrics.compare` found.
+    where : str
+        Place named in errors.
+
+    Returns
+    -------
+    list of Verdict
+        By criterion, then sensor, then period.
+
+    Raises
+    ------
+    InputError
+        When a criterion names a sensor or period that was not compared.
+    """
+    verdicts: list[Verdict] = []
+    # A sensor may lack a period that another has; a name that none has is a mistake.
+    every = {period: None for periods in metrics.values() for period in periods}
+    for k, criterion in enumerate(criteria):
+        sensors = _selected(criterion.sensors, metrics, f"{where}[{k}]: sensor")
+        periods = _selected(criterion.periods, every, f"{where}[{k}]: period")
+        verdicts += [
+            _verdict(criterion, sensor, period, metrics[sensor][period])
+            for sensor in sensors
+            for period in periods
+            if period in metrics[sensor]
+        ]
+    return verdicts
+
+
+def metric_unit(metric: str, unit: str) -> str:
+    """Unit of a metric of a sensor that measures in `unit`."""
+    return "%" if metric.endswith("_percent") else unit
+
+
+def _verdict(criterion: Criterion, sensor: str, period: str, found: Metrics) -> Verdict:
+    value = float(getattr(found, criterion.metric))
+    return Verdict(
+        name=criterion.describe(found.unit),
+        sensor=sensor,
+        period=period,
+        metric=criterion.metric,
+        value=value,
+        limit=criterion.limit,
+        unit=metric_unit(criterion.metric, found.unit),
+        passed=abs(value) <= criterion.limit,
+    )
+
+
+def _selected(wanted: tuple[str, ...] | None, known: Mapping[str, object], where: str) -> list[str]:
+    """The names a criterion applies to, each known."""
+    if wanted is None:
+        return list(known)
+    for name in wanted:
+        if name not in known:
+            msg = f"{where} '{name}' was not compared. {did_you_mean(name, known)}"
+            raise InputError(msg)
+    return list(wanted)
+
+
+def _explain(error: ValidationError, where: str) -> str:
+    """What is wrong with a mapping, one line per fault."""
+    lines = []
+    for fault in error.errors():
+        path = ".".join(str(part) for part in fault["loc"])
+        found = fault["input"]
+        if fault["type"] == "extra_forbidden":
+            hint = did_you_mean(path, Criterion.model_fields)
+            lines.append(f"{where}.{path}: unknown key. {hint}".rstrip())
+        elif fault["type"] == "missing":
+            lines.append(f"{where}.{path}: missing; a criterion needs 'metric' and 'limit'")
+        elif fault["type"] == "literal_error":
+            hint = did_you_mean(str(found), MetricName.__args__)  # type: ignore[attr-defined]
+            lines.append(f"{where}.{path}: '{found}' is not a metric. {hint}".rstrip())
+        else:
+            lines.append(f"{where}.{path}: {fault['msg']}, found {found!r}")
+    return "\n".join(lines)

@@ -1,0 +1,84 @@
+from __future__ import annotations
+
+import pytest
+from pydantic import ValidationError
+
+from mascarin.errors import InputError
+from mascarin.validation.criteria import Criterion, judge, parse_criteria
+from mascarin.validation.metrics import Metrics, compare
+
+MEASURED = [20.0, 25.0, 30.0]
+
+
+def _metrics() -> dict[str, dict[str, Metrics]]:
+    return {
+        "room": {"identification": compare(MEASURED, [20.0, 24.2, 30.0])},
+        "sheet": {
+            "identification": compare(MEASURED, [20.0, 26.9, 30.0]),
+            "blind": compare(MEASURED, [20.0, 22.5, 30.0]),
+        },
+    }
+
+
+def test_the_criteria_of_the_reference_study() -> None:
+    criteria = parse_criteria(
+        [
+            {"metric": "max_error_percent", "limit": 10},
+            {"metric": "max_error", "limit": 2, "sensors": ["sheet"]},
+            {"metric": "max_error", "limit": 1, "sensors": "room"},
+        ]
+    )
+    verdicts = judge(criteria, _metrics())
+    found = {(v.sensor, v.period, v.metric): v.passed for v in verdicts}
+    assert found == {
+        ("room", "identification", "max_error_percent"): True,
+        ("sheet", "identification", "max_error_percent"): False,
+        ("sheet", "blind", "max_error_percent"): False,
+        ("sheet", "identification", "max_error"): True,
+        ("sheet", "blind", "max_error"): False,
+        ("room", "identification", "max_error"): True,
+    }
+    blind = next(v for v in verdicts if v.period == "blind" and v.metric == "max_error")
+    assert blind.value == pytest.approx(-2.5)  # its size counts, its sign is kept
+    assert (blind.name, blind.unit) == ("|max error| <= 2 degC", "degC")
+    assert verdicts[0].unit == "%"
+
+
+def test_a_value_on_the_limit_passes() -> None:
+    criterion = Criterion(metric="max_error", limit=2.0)
+    metrics = {"a": {"p": compare([20.0, 30.0], [20.0, 32.0])}}
+    assert judge([criterion], metrics)[0].passed
+
+
+def test_a_criterion_with_nothing_to_compare_is_not_met() -> None:
+    verdict = judge([Criterion(metric="rmse", limit=1.0)], {"a": {"p": compare([float("nan")], [1.0])}})[0]
+    assert not verdict.passed
+    assert verdict.to_dict()["value"] is None
+
+
+def test_criteria_are_frozen() -> None:
+    with pytest.raises(ValidationError):
+        Criterion(metric="rmse", limit=1.0).limit = 2.0  # type: ignore[misc]
+
+
+@pytest.mark.parametrize(
+    ("item", "text"),
+    [
+        ({"metric": "max_error", "limits": 2}, "unknown key. Did you mean 'limit'"),
+        ({"metric": "max_eror", "limit": 2}, "not a metric. Did you mean 'max_error'"),
+        ({"metric": "max_error"}, "limit: missing"),
+        ({"metric": "max_error", "limit": -1}, r"criteria\[0\].limit"),
+        ({"metric": "max_error", "limit": float("nan")}, r"criteria\[0\].limit"),
+        ({"metric": "max_error", "limit": 1, "sensors": []}, r"criteria\[0\].sensors"),
+    ],
+)
+def test_criteria_that_cannot_be_meant_are_refused(item: dict[str, object], text: str) -> None:
+    with pytest.raises(InputError, match=text):
+        parse_criteria([item])
+
+
+def test_unknown_sensors_and_periods_are_named() -> None:
+    with pytest.raises(InputError, match=r"sensor 'rooom' was not compared. Did you mean 'room'"):
+        judge(parse_criteria([{"metric": "sd", "limit": 1, "sensors": "rooom"}]), _metrics())
+    with pytest.raises(InputError, match=r"period 'blnd'.*'blind'"):
+        judge(parse_criteria([{"metric": "sd", "limit": 1, "periods": "blnd"}]), _metrics())
