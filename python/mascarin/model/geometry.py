@@ -551,7 +551,7 @@ def _parallel(between: Array, e: Array, sign: float, length_p: float, length_q: 
 def _skew(p0: Array, p1: Array, q0: Array, length_q: float, e: Array, f: Array) -> float:
     """Double integral of ln r over two edges that are not parallel.
 
-    Along the first edge the antiderivative of ln sqrt(x^2 + d^2) is elementary, d being the distance of a point
+    Along the first edge the antiderivative of ln sqrt(x^2 + d^2) is elementary; d is the distance of a point
     of the second edge from the line of the first. Along the second edge the result is smooth but for weak
     (x ln x) singularities near the points closest to the ends of the first edge and to its line: it is split
     there.
