@@ -1,0 +1,257 @@
+"""The building as it crosses the border into the engine.
+
+The layout is that of ``crates/engine/src/description.rs``: references are indices, every number is the id
+of a leaf in ``parameters``.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from mascarin.model.convection import Convection, Power
+from mascarin.model.envelope import Side, Surface
+from mascarin.model.material import Material, PhaseChangeMaterial, Phases, TanhLaw
+from mascarin.model.mesh import choose
+from mascarin.model.number import Interval, Number
+from mascarin.model.rules import face_names
+from mascarin.model.settling import enclosure, faces_of
+from mascarin.model.site import Site
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from mascarin.model.building import Building
+    from mascarin.model.envelope import Construction
+
+Json = dict[str, Any]
+#: Id of the leaf at a path.
+Ids = Callable[[str], int]
+
+
+@dataclass(frozen=True)
+class EngineDescription:
+    """What the engine needs to know.
+
+    Attributes
+    ----------
+    json : str
+        The description.
+    paths : list of str
+        Path of each parameter, by id.
+    values : ndarray, shape (P,)
+        Nominal value of each parameter. [unit of each]
+    channels : list of str
+        Measured columns that the forcing holds after the climate's channels.
+    notes : tuple of str
+        Warnings about the mesh.
+    """
+
+    json: str
+    paths: list[str]
+    values: npt.NDArray[np.float64]
+    channels: list[str]
+    notes: tuple[str, ...]
+
+
+def describe(building: Building, step_seconds: float, ranges: Mapping[str, Interval]) -> EngineDescription:
+    """Describe a building to the engine; see :meth:`Building.to_engine`."""
+    import numpy as np
+
+    mesh = choose(building, step_seconds, ranges)
+    leaves = [parameter for parameter in building.parameters() if not parameter.structural]
+    ids = {leaf.path: index for index, leaf in enumerate(leaves)}
+    columns = channels(building)
+    description = {
+        "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
+        "site": _site(building.site, _below(ids, "site")),
+        "materials": _each(building.materials, "materials", ids, _material),
+        "constructions": _each(
+            building.constructions, "constructions", ids, partial(_construction, building, mesh.nodes)
+        ),
+        "zones": _each(building.zones, "zones", ids, partial(_zone, building)),
+        "surfaces": _each(building.surfaces, "surfaces", ids, partial(_surface, building, columns)),
+        "sensors": _each(building.sensors, "sensors", ids, partial(_sensor, building)),
+        "channels": columns,
+    }
+    return EngineDescription(
+        json=json.dumps(description, allow_nan=False),
+        paths=[leaf.path for leaf in leaves],
+        values=np.array([leaf.value for leaf in leaves], dtype=np.float64),
+        channels=columns,
+        notes=mesh.warnings,
+    )
+
+
+def channels(building: Building) -> list[str]:
+    """Measured columns that a building refers to, in the order of the description."""
+    sides = [side for surface in building.surfaces.values() for side in surface.sides]
+    columns = [column for side in sides for column in (side.measured, side.irradiance)]
+    return list(dict.fromkeys(column for column in columns if column is not None))
+
+
+def _below(ids: Mapping[str, int], path: str) -> Ids:
+    """Ids of the leaves below a path."""
+    return lambda key: ids[f"{path}.{key}"]
+
+
+def _each(
+    parts: Mapping[str, Any], section: str, ids: Mapping[str, int], write: Callable[..., Json]
+) -> list[Json]:
+    return [write(name, part, _below(ids, f"{section}.{name}")) for name, part in parts.items()]
+
+
+def _fields(part: Any, ids: Ids, prefix: str = "") -> Json:
+    """Write a part whose fields bear the names of the border: its kind and the ids of its numbers."""
+    numbers = (key for key in type(part).model_fields if isinstance(getattr(part, key), Number))
+    kind = {"kind": part.kind} if hasattr(part, "kind") else {}
+    return kind | {key: ids(f"{prefix}{key}") for key in numbers}
+
+
+def _site(site: Site, ids: Ids) -> Json:
+    return {
+        "altitude": ids("altitude"),
+        "ground_reflectance": ids("ground_reflectance"),
+        "wind": _fields(site.wind, ids, "wind."),
+        "sky": _fields(site.sky, ids, "sky."),
+        "cloud": [ids("cloud.c1"), ids("cloud.c2"), ids("cloud.c3")],
+        "diffuse": site.diffuse,
+    }
+
+
+def _material(_: str, material: Material, ids: Ids) -> Json:
+    if not isinstance(material, PhaseChangeMaterial):
+        return _fields(material, ids)
+    properties = {
+        key: [ids(f"{key}.solid"), ids(f"{key}.liquid")]
+        if isinstance(getattr(material, key), Phases)
+        else [ids(key)] * 2
+        for key in ("conductivity", "density", "specific_heat")
+    }
+    return {"kind": "pcm", **properties, "law": _law(material, ids)}
+
+
+def _law(material: PhaseChangeMaterial, ids: Ids) -> Json:
+    law = material.law
+    if not isinstance(law, TanhLaw):
+        return _fields(law, ids, "law.") | {
+            "kind": "tabulated",
+            "temperatures": list(map(float, law.temperatures)),
+            "enthalpies": list(map(float, law.enthalpies)),
+            "melting_range": list(law.melting),
+        }
+    return _fields(law, ids, "law.") | {
+        "kind": "tanh_width" if law.width is not None else "tanh_gamma",
+        "latent_heat": ids("latent_heat"),
+        "melting_temperature": ids("melting_temperature"),
+    }
+
+
+def _construction(
+    building: Building, nodes: Mapping[tuple[str, str], int], name: str, construction: Construction, ids: Ids
+) -> Json:
+    materials = list(building.materials)
+    layers = []
+    for layer in construction.layers:
+        thickness = None if layer.thickness is None else ids(f"layers.{layer.name}.thickness")
+        material = materials.index(layer.material)
+        layers.append(
+            {
+                "name": layer.name,
+                "material": material,
+                "thickness": thickness,
+                "nodes": nodes[name, layer.name],
+            }
+        )
+    return {"name": name, "layers": layers}
+
+
+def _zone(building: Building, name: str, zone: Any, ids: Ids) -> Json:
+    return {
+        "name": name,
+        "volume": ids("volume"),
+        "capacity_factor": ids("capacity_factor"),
+        "infiltration": _fields(zone.infiltration, ids, "infiltration."),
+        "longwave": _fields(zone.longwave, ids, "longwave."),
+        "view_weights": view_weights(building, name),
+    }
+
+
+def view_weights(building: Building, zone: str) -> list[list[float]]:
+    """Exchange areas A_i F_ij between the faces of a zone [m2]; empty where nothing tells them.
+
+    Raises
+    ------
+    InputError
+        If the vertices enclose no convex zone.
+    """
+    faces = faces_of(zone, building.surfaces)
+    given = building.zones[zone].view_factors
+    if given is not None:
+        names = face_names(faces)
+        areas = [float(building.surfaces[surface].area or 0.0) for surface, _ in faces]
+        one_way = [
+            [a * given[row].get(column, 0.0) for column in names] for a, row in zip(areas, names, strict=True)
+        ]
+        both_ways = zip(one_way, zip(*one_way, strict=True), strict=True)
+        # Reciprocity: A_i F_ij = A_j F_ji, as far as the rounding of the given factors allows.
+        return [[0.5 * (there + back) for there, back in zip(*pair, strict=True)] for pair in both_ways]
+    polygons = enclosure(zone, building.surfaces)
+    if polygons is None:
+        return []
+    from mascarin.model.geometry import net_areas, view_factors
+
+    weights: list[list[float]] = (net_areas(polygons)[:, None] * view_factors(polygons)).tolist()
+    return weights
+
+
+def _surface(building: Building, columns: list[str], name: str, surface: Surface, ids: Ids) -> Json:
+    zones = list(building.zones)
+    return {
+        "name": name,
+        "construction": list(building.constructions).index(surface.construction),
+        "area": ids("area"),
+        "tilt": ids("tilt"),
+        "azimuth": ids("azimuth"),
+        "outside": _side(surface.outside, zones, columns, lambda key: ids(f"outside.{key}")),
+        "inside": _side(surface.inside, zones, columns, lambda key: ids(f"inside.{key}")),
+    }
+
+
+def _side(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
+    written = _fields(side, ids) | {"facing": _facing(side, zones, columns, ids)}
+    if side.convection is not None:
+        written["convection"] = _convection(side.convection, ids)
+    if side.longwave is not None:
+        written["longwave"] = _fields(side.longwave, ids, "longwave.")
+    if side.irradiance is not None:
+        written["irradiance"] = columns.index(side.irradiance)
+    return written
+
+
+def _facing(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
+    if side.zone is not None:
+        return {"kind": "zone", "zone": zones.index(side.zone)}
+    if side.measured is not None:
+        return {"kind": "measured", "channel": columns.index(side.measured)}
+    if side.ground is not None:
+        return {"kind": "ground"} | _fields(side.ground, ids, "ground.")
+    return {"kind": side.faces}
+
+
+def _convection(convection: Convection, ids: Ids) -> Json:
+    if isinstance(convection, Power):
+        return {
+            "kind": "power",
+            "upward": _fields(convection.upward, ids, "convection.upward."),
+            "downward": _fields(convection.downward, ids, "convection.downward."),
+        }
+    return _fields(convection, ids, "convection.")
+
+
+def _sensor(building: Building, name: str, sensor: Any, ids: Ids) -> Json:
+    return {"name": name, "surface": list(building.surfaces).index(sensor.surface), "depth": ids("depth")}

@@ -1,0 +1,271 @@
+"""What can be said about a building before it is run: zones, U values, mesh, time constants, assumptions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from mascarin.model.convection import SOURCES, Constant
+from mascarin.model.material import Resistance, phase
+from mascarin.model.mesh import Mesh, choose
+from mascarin.model.parameters import leaves
+from mascarin.model.settling import enclosure, faces_of
+
+if TYPE_CHECKING:
+    from mascarin.model.building import Building
+    from mascarin.model.envelope import Side, Surface
+    from mascarin.model.material import Material
+
+#: SDIRK2 keeps the maximum principle only for steps below so many times the smallest time constant.
+SDIRK2_BOUND = 2.4
+#: Heat capacity of air at 20 degC and sea level [J/(m3 K)].
+_AIR = 1.204 * 1006.0
+#: Film resistances of ISO 6946:2017, table 7 [m2 K/W]: heat upwards, horizontal, downwards; and outdoors.
+_ISO_UP, _ISO_LEVEL, _ISO_DOWN, _ISO_OUTDOORS = 0.10, 0.13, 0.17, 0.04
+
+
+def check(building: Building, step_seconds: float = 900.0) -> list[str]:
+    """Describe a building in lines of text.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    step_seconds : float
+        Time step of the runs to come. [s]
+
+    Returns
+    -------
+    list of str
+        Zones, surfaces with U values, constructions with their mesh, time constants; then warnings and
+        assumptions, each of which starts with its word.
+    """
+    mesh = choose(building, step_seconds)
+    return [
+        f"{building.name}: {_count(len(building.zones), 'zone')}, "
+        f"{_count(len(building.surfaces), 'surface')}, {_count(len(building.parameters()), 'parameter')}",
+        *_zones(building),
+        *_surfaces(building),
+        *_constructions(building, mesh),
+        *(f"warning: {text}" for text in warnings(building, mesh, step_seconds)),
+        *(f"assumed: {text}" for text in assumptions(building)),
+    ]
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+# --- what there is ------------------------------------------------------------------------------------------
+
+
+def _zones(building: Building) -> Iterator[str]:
+    for name, zone in building.zones.items():
+        surfaces = [building.surfaces[surface] for surface, _ in faces_of(name, building.surfaces)]
+        area = sum(surface.area or 0.0 for surface in surfaces)
+        total = sum((surface.area or 0.0) * u_value(building, surface) for surface in surfaces)
+        air = zone.infiltration.constant * (zone.volume or 0.0) * _AIR / 3600.0
+        yield (
+            f"zone {name}: {zone.volume:g} m3, {_count(len(surfaces), 'face')} of {area:.2f} m2, "
+            f"UA {total:.2f} W/K, infiltration {air:.2f} W/K, {_exchange(building, name)}"
+        )
+
+
+def _exchange(building: Building, zone: str) -> str:
+    longwave = building.zones[zone].longwave.kind
+    if longwave == "none":
+        return "no long-wave exchange"
+    if building.zones[zone].view_factors is not None:
+        return f"long-wave {longwave} with the given view factors"
+    if enclosure(zone, building.surfaces) is not None:
+        return f"long-wave {longwave} with exact view factors"
+    return f"long-wave {longwave} with view factors approximated by areas"
+
+
+def _surfaces(building: Building) -> Iterator[str]:
+    for name, surface in building.surfaces.items():
+        yield (
+            f"surface {name}: {surface.construction}, {surface.area:.2f} m2, tilt {surface.tilt:g}, "
+            f"azimuth {surface.azimuth:g}, {_facing(surface.outside)} -> {_facing(surface.inside)}, "
+            f"U {u_value(building, surface):.3f} W/(m2 K)"
+        )
+
+
+def _facing(side: Side) -> str:
+    return side.zone or (f"measured {side.measured}" if side.measured else side.faces)
+
+
+def _constructions(building: Building, mesh: Mesh) -> Iterator[str]:
+    for name, construction in building.constructions.items():
+        layers = [f"{layer.name} {mesh.nodes[name, layer.name]}" for layer in construction.layers]
+        least = time_constant(building, name, mesh)
+        text = f", smallest time constant {least:.0f} s" if math.isfinite(least) else ""
+        yield f"construction {name}: nodes {', '.join(layers)}{text}"
+
+
+def u_value(building: Building, surface: Surface) -> float:
+    """Thermal transmittance between the two sides, with the film resistances of ISO 6946.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    surface : Surface
+        One of its surfaces.
+
+    Returns
+    -------
+    float
+        U value; infinite where nothing resists. [W/(m2 K)]
+    """
+    layers = building.constructions[surface.construction].layers
+    resistance = sum(_resistance(building.materials[layer.material], layer.thickness) for layer in layers)
+    resistance += sum(_film(side, surface) for side in surface.sides)
+    return 1.0 / resistance if resistance > 0.0 else math.inf
+
+
+def _resistance(material: Material, thickness: float | None) -> float:
+    if isinstance(material, Resistance):
+        return float(material.resistance)
+    return (thickness or 0.0) / phase(material.conductivity, "solid")
+
+
+def _film(side: Side, surface: Surface) -> float:
+    if side.convection is None:
+        return 0.0
+    if side.outdoors:
+        return _ISO_OUTDOORS
+    tilt = float(surface.tilt or 0.0)
+    # Heat is taken to flow outwards, as in the heating season.
+    return _ISO_UP if tilt < 30.0 else _ISO_DOWN if tilt > 150.0 else _ISO_LEVEL
+
+
+def time_constant(building: Building, construction: str, mesh: Mesh) -> float:
+    """Smallest time constant of a construction's nodes: heat capacity over the conductances to both sides.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    construction : str
+        Name of the construction.
+    mesh : Mesh
+        Its nodes.
+
+    Returns
+    -------
+    float
+        Infinite where nothing stores heat. [s]
+    """
+    links: list[float] = [0.0]  # resistance between neighbouring nodes, first and last to the faces
+    capacities: list[float] = []
+    for layer in building.constructions[construction].layers:
+        material, nodes = building.materials[layer.material], mesh.nodes[construction, layer.name]
+        if isinstance(material, Resistance):
+            links[-1] += float(material.resistance)
+            continue
+        thickness = (layer.thickness or 0.0) / nodes
+        half = 0.5 * thickness / phase(material.conductivity, "solid")
+        capacity = phase(material.density, "solid") * phase(material.specific_heat, "solid") * thickness
+        for _ in range(nodes):
+            links[-1] += half
+            capacities.append(capacity)
+            links.append(half)
+    films = _strongest_films(building, construction)
+    links[0], links[-1] = links[0] + films[0], links[-1] + films[1]
+    return min(
+        (
+            capacity / (1.0 / before + 1.0 / after)
+            for capacity, before, after in zip(capacities, links, links[1:], strict=False)
+        ),
+        default=math.inf,
+    )
+
+
+def _strongest_films(building: Building, construction: str) -> tuple[float, float]:
+    """Least film resistance outside and inside over the surfaces of a construction [m2 K/W]."""
+    built = [surface for surface in building.surfaces.values() if surface.construction == construction]
+    outside = [_nominal_film(surface.outside, surface) for surface in built]
+    inside = [_nominal_film(surface.inside, surface) for surface in built]
+    return (min(outside, default=_ISO_OUTDOORS), min(inside, default=_ISO_LEVEL))
+
+
+def _nominal_film(side: Side, surface: Surface) -> float:
+    if isinstance(side.convection, Constant) and side.convection.coefficient > 0.0:
+        return 1.0 / side.convection.coefficient
+    return _film(side, surface)
+
+
+# --- what to watch out for ----------------------------------------------------------------------------------
+
+
+def warnings(building: Building, mesh: Mesh, step_seconds: float) -> Iterator[str]:
+    """What deserves a second look: the mesh, the step, areas and volumes that do not fit together."""
+    yield from mesh.warnings
+    quick = [
+        name
+        for name in building.constructions
+        if step_seconds > SDIRK2_BOUND * time_constant(building, name, mesh)
+    ]
+    if quick:
+        yield (
+            f"a step of {step_seconds:g} s is above {SDIRK2_BOUND} times the smallest time constant of "
+            f"{', '.join(quick)}: after a sudden change SDIRK2 may overshoot there (backward-euler never does)"
+        )
+    yield from _odd_volumes(building)
+    yield from _odd_areas(building)
+
+
+def _odd_volumes(building: Building) -> Iterator[str]:
+    for name, zone in building.zones.items():
+        volume = float(zone.volume or 0.0)
+        area = sum(building.surfaces[surface].area or 0.0 for surface, _ in faces_of(name, building.surfaces))
+        least = (36.0 * math.pi * volume**2) ** (1.0 / 3.0)
+        if area < least:
+            yield (
+                f"zones.{name}: {area:.2f} m2 of faces cannot enclose {volume:g} m3 "
+                f"(a sphere needs {least:.2f} m2): faces are missing, or the volume is too large"
+            )
+        faces = enclosure(name, building.surfaces)
+        if faces is not None:
+            from mascarin.model.geometry import volume as enclosed
+
+            drawn = enclosed(faces)
+            if abs(drawn - volume) > 0.02 * volume:
+                yield f"zones.{name}: {volume:g} m3 are given, the vertices enclose {drawn:.2f} m3"
+
+
+def _odd_areas(building: Building) -> Iterator[str]:
+    from mascarin.model.settling import drawn_areas
+
+    for name, drawn in drawn_areas(building.surfaces).items():
+        area = float(building.surfaces[name].area or 0.0)
+        if abs(area - drawn) > 0.01 * drawn:
+            yield f"surfaces.{name}: {area:.2f} m2 are given, the vertices enclose {drawn:.2f} m2"
+
+
+# --- what rests on what -------------------------------------------------------------------------------------
+
+
+def assumptions(building: Building) -> Iterator[str]:
+    """What nobody measured: numbers marked as assumed, and model choices made for the user."""
+    for path, number, source in leaves(building):
+        if number.assumed:
+            unit = number.quantity.unit if number.quantity else ""
+            yield f"{path} = {number:g} {unit} ({source or 'no source'})"
+    if "sky" not in building.site.model_fields_set:
+        yield "site.sky: martin_berdahl, because none is written"
+    if "diffuse" not in building.site.model_fields_set:
+        yield "site.diffuse: perez, because none is written"
+    for name in building.zones:
+        if "approximated" in _exchange(building, name):
+            yield f"zones.{name}: every face sees every other one by its area, except those in one plane"
+
+
+def sources(building: Building) -> list[str]:
+    """Where the numbers and correlations of a building come from; see :meth:`Building.sources`."""
+    found = dict.fromkeys(source for _, number, source in leaves(building) if source and not number.settled)
+    films = (side.convection for surface in building.surfaces.values() for side in surface.sides)
+    kinds: Mapping[str, None] = dict.fromkeys(film.kind for film in films if film is not None)
+    return [*found, *(SOURCES[kind] for kind in kinds if kind in SOURCES)]

@@ -1,0 +1,355 @@
+"""A number of the description: its value, what is known about it, and the quantity it measures.
+
+Every numeric leaf of a description is a :class:`Number`. The :class:`Quantity` in its type annotation
+is the one place that holds unit, meaning, hard limits and default range; parser, JSON Schema,
+parameter table and documentation all read it from there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from pydantic_core import PydanticCustomError, core_schema
+
+from mascarin.errors import did_you_mean
+
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic.json_schema import JsonSchemaValue
+
+Interval = tuple[float, float]
+
+
+class Number(float):
+    """A float that remembers where it comes from.
+
+    Parameters
+    ----------
+    value : float
+        The value, in the unit of its quantity.
+    range : tuple of float, optional
+        Lowest and highest believable value; none: the default range of the quantity.
+    source : str, optional
+        Where the value comes from.
+    assumed : bool
+        Whether nobody measured or looked it up.
+    settled : bool
+        Whether Mascarin derived it from the rest of the description because the user left it open.
+    quantity : Quantity, optional
+        What the number measures; filled in when the description is validated.
+    """
+
+    __slots__ = ("assumed", "quantity", "range", "settled", "source")
+
+    range: Interval | None
+    source: str | None
+    assumed: bool
+    settled: bool
+    quantity: Quantity | None
+
+    def __new__(
+        cls,
+        value: float,
+        *,
+        range: Interval | None = None,
+        source: str | None = None,
+        assumed: bool = False,
+        settled: bool = False,
+        quantity: Quantity | None = None,
+    ) -> Number:
+        """Attach the notes to the value."""
+        self = super().__new__(cls, value)
+        self.range, self.source, self.assumed = range, source, assumed
+        self.settled, self.quantity = settled, quantity
+        return self
+
+    def of(self, quantity: Quantity) -> Number:
+        """Give the same number as a value of a quantity."""
+        return Number(
+            self,
+            range=self.range,
+            source=self.source,
+            assumed=self.assumed,
+            settled=self.settled,
+            quantity=quantity,
+        )
+
+    @property
+    def believable(self) -> Interval:
+        """Lowest and highest believable value: as written, else by the quantity's default."""
+        if self.range is not None:
+            return self.range
+        if self.quantity is None:
+            return (float(self), float(self))
+        return self.quantity.default_range(self)
+
+
+@dataclass(frozen=True)
+class Percent:
+    """Default range of a quantity: so many percent to each side of the value."""
+
+    percent: float
+    reason: str
+
+    def around(self, value: float) -> Interval:
+        """Lowest and highest value."""
+        half = abs(value) * self.percent / 100.0
+        return (value - half, value + half)
+
+    def schema(self) -> dict[str, Any]:
+        """Give the rule as it stands in the JSON Schema."""
+        return {"relative": self.percent / 100.0, "reason": self.reason}
+
+
+@dataclass(frozen=True)
+class Within:
+    """Default range of a quantity: so much to each side of the value, in its unit."""
+
+    half: float
+    reason: str
+
+    def around(self, value: float) -> Interval:
+        """Lowest and highest value."""
+        return (value - self.half, value + self.half)
+
+    def schema(self) -> dict[str, Any]:
+        """Give the rule as it stands in the JSON Schema."""
+        return {"absolute": self.half, "reason": self.reason}
+
+
+@dataclass(frozen=True)
+class Span:
+    """Default range of a quantity: two fixed ends, widened where the value lies outside."""
+
+    low: float
+    high: float
+    reason: str
+
+    def around(self, value: float) -> Interval:
+        """Lowest and highest value."""
+        return (min(self.low, value), max(self.high, value))
+
+    def schema(self) -> dict[str, Any]:
+        """Give the rule as it stands in the JSON Schema."""
+        return {"low": self.low, "high": self.high, "reason": self.reason}
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """No range: the number shapes the calculation itself, for the stated reason."""
+
+    reason: str
+
+    def around(self, value: float) -> Interval:
+        """Lowest and highest value: the value."""
+        return (value, value)
+
+    def schema(self) -> dict[str, Any]:
+        """Give the rule as it stands in the JSON Schema."""
+        return {"structural": True, "reason": self.reason}
+
+
+Spread = Percent | Within | Span | Fixed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """Hard limits: outside them a value has no meaning."""
+
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+
+    @property
+    def lower(self) -> float:
+        """Lower end, whether or not it belongs to the interval."""
+        return next((x for x in (self.above, self.at_least) if x is not None), -math.inf)
+
+    @property
+    def upper(self) -> float:
+        """Upper end."""
+        return math.inf if self.at_most is None else self.at_most
+
+    def hold(self, value: float) -> bool:
+        """Tell whether a value lies inside."""
+        return self.lower <= value <= self.upper and (self.above is None or value > self.above)
+
+    def clip(self, interval: Interval) -> Interval:
+        """Cut an interval to the limits; an open end is approached to a thousandth of the other end."""
+        low, high = max(interval[0], self.lower), min(interval[1], self.upper)
+        if self.above is not None and low <= self.above:
+            low = self.above + 1e-3 * (high - self.above)
+        return (low, high)
+
+    def __str__(self) -> str:
+        if self.above is None and self.at_least is None and self.at_most is None:
+            return ""
+        parts = [
+            f"above {self.above:g}" if self.above is not None else "",
+            f"at least {self.at_least:g}" if self.at_least is not None else "",
+            f"at most {self.at_most:g}" if self.at_most is not None else "",
+        ]
+        return " and ".join(part for part in parts if part)
+
+    def schema(self) -> dict[str, float]:
+        """Give the limits in the words of JSON Schema."""
+        words = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
+        return {word: value for word, value in words.items() if value is not None}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a number measures; an annotation of :class:`Number` that pydantic understands.
+
+    Parameters
+    ----------
+    unit : str
+        Unit of the value; ``-`` where there is none.
+    description : str
+        What the number is.
+    spread : Percent, Within, Span or Fixed
+        The default range and the physical reason for it.
+    limits : Limits
+        Hard limits.
+    words : mapping of str to float
+        Words that may stand for a number.
+    whole : bool
+        Whether only whole numbers have a meaning.
+    """
+
+    unit: str
+    description: str
+    spread: Spread
+    limits: Limits = field(default=Limits())
+    words: Mapping[str, float] = field(default_factory=dict, hash=False)
+    whole: bool = False
+
+    def default_range(self, value: float) -> Interval:
+        """Range of a value for which the user gave none."""
+        return self.limits.clip(self.spread.around(float(value)))
+
+    def read(self, raw: object) -> Number:
+        """Turn what stands in the description into a number.
+
+        Raises
+        ------
+        PydanticCustomError
+            If it is no number, is not finite or lies outside the hard limits.
+        """
+        if isinstance(raw, Number):
+            number = raw
+        elif isinstance(raw, Mapping):
+            number = self._noted(raw)
+        else:
+            number = self._bare(raw)
+        return self._held(number).of(self)
+
+    def _noted(self, raw: Mapping[Any, Any]) -> Number:
+        known = ("value", "range", "source", "assumed")
+        for key in raw:
+            if key not in known:
+                raise problem(f"key '{key}'", f"{', '.join(known)}", did_you_mean(str(key), known))
+        if "value" not in raw:
+            raise problem("no value", f"value: {self.expectation}", "Write {value: ..., range: [low, high]}.")
+        source, assumed = raw.get("source"), raw.get("assumed", False)
+        if not isinstance(source, str | None):
+            raise problem(f"source: {shown(source)}", "a text", "Put the source in quotes.")
+        if not isinstance(assumed, bool):
+            raise problem(f"assumed: {shown(assumed)}", "true or false", "")
+        value = self._bare(raw["value"])
+        believable = self._range(raw["range"], value) if raw.get("range") is not None else None
+        return Number(value, range=believable, source=source or value.source, assumed=assumed)
+
+    def _range(self, raw: object, value: float) -> Interval:
+        expected = (
+            f"range: [low, high] with low < high around {value:g}, each {str(self.limits) or 'a number'}"
+        )
+        help_ = "Write the lowest and the highest value that can be believed."
+        if not isinstance(raw, list | tuple) or len(raw) != 2:
+            raise problem(f"range: {shown(raw)}", expected, help_)
+        low, high = (self._held(self._bare(end)) for end in raw)
+        if not low < high or not low <= value <= high:
+            raise problem(f"range: [{low:g}, {high:g}]", expected, help_)
+        return (float(low), float(high))
+
+    def _bare(self, raw: object) -> Number:
+        if isinstance(raw, str) and raw in self.words:
+            return Number(self.words[raw], source=f"'{raw}'")
+        if isinstance(raw, bool) or not isinstance(raw, int | float):
+            raise problem(shown(raw), self.expectation, self._advice(raw))
+        return raw if isinstance(raw, Number) else Number(raw)
+
+    def _advice(self, raw: object) -> str:
+        if isinstance(raw, str) and raw[:1].isdigit():
+            return f"Write the bare number; the unit is always {self.unit}."
+        if isinstance(raw, str) and self.words:
+            return did_you_mean(raw, self.words)
+        return "Write a number."
+
+    def _held(self, number: Number) -> Number:
+        if not math.isfinite(number):
+            raise problem(shown(float(number)), self.expectation, "Write a finite number.")
+        if not self.limits.hold(number):
+            raise problem(shown(float(number)), self.expectation, "Check sign and unit.")
+        if self.whole and not float(number).is_integer():
+            raise problem(shown(float(number)), self.expectation, "Round it.")
+        return number
+
+    @property
+    def expectation(self) -> str:
+        """What the description should hold here, as a phrase."""
+        kind = "a whole number" if self.whole else "a number"
+        words = f" or one of {', '.join(self.words)}" if self.words else ""
+        limits = f" {self.limits}" if str(self.limits) else ""
+        return f"{kind}{limits} [{self.unit}]{words} ({self.description})"
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Read the value by :meth:`read`."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Give the plain and the noted form, and the facts about the quantity."""
+        plain: dict[str, Any] = {"type": "integer" if self.whole else "number", **self.limits.schema()}
+        value = {"anyOf": [plain, {"enum": list(self.words)}]} if self.words else plain
+        noted = {
+            "type": "object",
+            "properties": {
+                "value": value,
+                "range": {"type": "array", "items": plain, "minItems": 2, "maxItems": 2},
+                "source": {"type": "string"},
+                "assumed": {"type": "boolean"},
+            },
+            "required": ["value"],
+            "additionalProperties": False,
+        }
+        forms = [plain, noted] if not self.words else [plain, {"enum": list(self.words)}, noted]
+        return {
+            "description": self.description,
+            "anyOf": forms,
+            "unit": self.unit,
+            "default_range": self.spread.schema(),
+        }
+
+
+def problem(found: str, expected: str, help_: str) -> PydanticCustomError:
+    """Build the error that carries what was found, what was expected and what to do about it."""
+    return PydanticCustomError(
+        "input",
+        "found {found}; expected {expected}. {help}",
+        {"found": found, "expected": expected, "help": help_},
+    )
+
+
+def shown(raw: object) -> str:
+    """Render a piece of the description short enough for a message."""
+    if raw is None:
+        return "nothing"
+    text = repr(raw)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,128 @@
+"""The results that a run of a building can give, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+from mascarin.errors import InputError, did_you_mean
+from mascarin.model.material import PhaseChangeMaterial
+
+if TYPE_CHECKING:
+    from mascarin.model.building import Building
+
+Kind = Literal[
+    "air_temperature",
+    "mean_radiant_temperature",
+    "operative_temperature",
+    "globe_temperature",
+    "face_temperature",
+    "face_flux",
+    "interface_temperature",
+    "layer_flux",
+    "liquid_fraction",
+    "layer_enthalpy",
+    "sensor",
+]
+
+_ZONE_KINDS: tuple[Kind, ...] = (
+    "air_temperature",
+    "mean_radiant_temperature",
+    "operative_temperature",
+    "globe_temperature",
+)
+_SIDES = ("outside", "inside")
+
+
+@dataclass(frozen=True)
+class Output:
+    """A result of a run.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    unit : str
+        Its unit.
+    kind : str
+        What it is.
+    zone, surface, sensor : int or None
+        Position of the zone, surface or sensor in the description.
+    side : int or None
+        0 for an outside face, 1 for an inside face.
+    layer : int or None
+        Position of the layer, counted from outside.
+    interface : int or None
+        Number of layers outside the interface, at least 1.
+    aliases : tuple of str
+        Other names.
+    """
+
+    name: str
+    unit: str
+    kind: Kind
+    zone: int | None = None
+    surface: int | None = None
+    side: int | None = None
+    layer: int | None = None
+    interface: int | None = None
+    sensor: int | None = None
+    aliases: tuple[str, ...] = ()
+
+    @property
+    def place(self) -> dict[str, int]:
+        """The positions that belong to this kind, by name."""
+        keys = ("zone", "surface", "side", "layer", "interface", "sensor")
+        return {key: value for key in keys if (value := getattr(self, key)) is not None}
+
+
+def outputs(building: Building) -> list[Output]:
+    """All results of a building: zones, surfaces, sensors, in the order of the description."""
+    found = [
+        Output(f"{name}.{kind}", "degC", kind, zone=index)
+        for index, name in enumerate(building.zones)
+        for kind in _ZONE_KINDS
+    ]
+    for index, name in enumerate(building.surfaces):
+        found += _of_surface(building, index, name)
+    for index, name in enumerate(building.sensors):
+        found.append(Output(f"{name}.temperature", "degC", "sensor", sensor=index))
+    return found
+
+
+def find(building: Building, name: str) -> Output:
+    """One result by its name or alias; see :meth:`Building.output`."""
+    known = {}
+    for output in reversed(building.outputs()):
+        known.update(dict.fromkeys((*output.aliases, output.name), output))
+    if name not in known:
+        raise InputError(
+            f"{name}: found no such output; expected one of the {len(known)} of this building. "
+            f"{did_you_mean(name, known)}".rstrip()
+        )
+    return known[name]
+
+
+def _of_surface(building: Building, index: int, name: str) -> Iterator[Output]:
+    layers = building.constructions[building.surfaces[name].construction].layers
+    for side, word in enumerate(_SIDES):
+        yield Output(f"{name}.{word}_temperature", "degC", "face_temperature", surface=index, side=side)
+    for number, (outer, inner) in enumerate(pairwise(layers), start=1):
+        yield Output(
+            f"{name}.interface_{number}_temperature",
+            "degC",
+            "interface_temperature",
+            surface=index,
+            interface=number,
+            aliases=(f"{name}.{outer.name}_{inner.name}_temperature",),
+        )
+    for side, word in enumerate(_SIDES):
+        yield Output(f"{name}.{word}_flux", "W/m2", "face_flux", surface=index, side=side)
+    for position, layer in enumerate(layers):
+        kinds: list[tuple[str, str, Kind]] = [("flux", "W/m2", "layer_flux")]
+        if isinstance(building.materials[layer.material], PhaseChangeMaterial):
+            kinds += [("liquid_fraction", "-", "liquid_fraction"), ("enthalpy", "J/m3", "layer_enthalpy")]
+        for word, unit, kind in kinds:
+            yield Output(f"{name}.{layer.name}_{word}", unit, kind, surface=index, layer=position)

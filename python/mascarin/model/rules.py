@@ -1,0 +1,197 @@
+"""What must hold between the parts of a building; each rule yields the faults it finds."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from mascarin.errors import did_you_mean
+from mascarin.model.convection import Mowitt, Tarp
+from mascarin.model.envelope import NoLongwave, Side
+from mascarin.model.material import Resistance
+from mascarin.model.part import fault
+from mascarin.model.settling import faces_of
+
+if TYPE_CHECKING:
+    from pydantic_core import InitErrorDetails
+
+    from mascarin.model.building import Building
+
+Faults = Iterator["InitErrorDetails"]
+
+#: Row sums of given view factors may miss one by this much; the engine closes the rest [-].
+VIEW_CLOSURE = 0.05
+
+
+def faults(building: Building) -> Faults:
+    """All faults between the parts of a building."""
+    yield from _something_to_simulate(building)
+    yield from _one_namespace(building)
+    yield from _layers_have_what_they_need(building)
+    yield from _zones_have_faces(building)
+    yield from _emissivities_where_exchange_is(building)
+    yield from _films_suit_their_side(building)
+    yield from _sensors_inside_walls(building)
+    yield from _columns_have_one_meaning(building)
+    yield from _view_factors_close(building)
+
+
+def _something_to_simulate(building: Building) -> Faults:
+    if not building.surfaces:
+        yield fault(
+            ("surfaces",), "no surfaces", "at least one surface", "Describe the walls under 'surfaces:'."
+        )
+
+
+def _one_namespace(building: Building) -> Faults:
+    sections: dict[str, Mapping[str, object]] = {
+        "zones": building.zones,
+        "surfaces": building.surfaces,
+        "sensors": building.sensors,
+    }
+    owner: dict[str, str] = {}
+    for section, named in sections.items():
+        for name in named:
+            if name in owner:
+                yield fault(
+                    (section, name),
+                    f"'{name}' also under '{owner[name]}:'",
+                    "a name that no zone, surface or sensor shares",
+                    "Rename one: results are called by this name.",
+                )
+            owner.setdefault(name, section)
+
+
+def _layers_have_what_they_need(building: Building) -> Faults:
+    for name, construction in building.constructions.items():
+        for index, layer in enumerate(construction.layers):
+            at = ("constructions", name, "layers", index)
+            bare = isinstance(building.materials[layer.material], Resistance)
+            if not bare and layer.thickness is None:
+                yield fault(
+                    (*at, "thickness"), "nothing", "thickness of the layer, above 0 [m]", "Add 'thickness:'."
+                )
+            for key in ("thickness", "nodes"):
+                if bare and getattr(layer, key) is not None:
+                    yield fault(
+                        (*at, key),
+                        f"'{key}' of '{layer.material}'",
+                        "none: the material is a bare resistance",
+                        f"Remove '{key}:', or give the material conductivity, density and specific_heat.",
+                    )
+
+
+def _zones_have_faces(building: Building) -> Faults:
+    for zone in building.zones:
+        if not faces_of(zone, building.surfaces):
+            yield fault(
+                ("zones", zone),
+                "a zone that no surface faces",
+                "at least one side with 'zone: " + zone + "'",
+                "Add a surface that faces it, or remove the zone.",
+            )
+
+
+def _sides(building: Building) -> Iterator[tuple[tuple[str, str, str], Side]]:
+    for name, surface in building.surfaces.items():
+        for which, side in (("outside", surface.outside), ("inside", surface.inside)):
+            yield ("surfaces", name, which), side
+
+
+def _emissivities_where_exchange_is(building: Building) -> Faults:
+    for at, side in _sides(building):
+        if side.zone is None:
+            continue
+        exchange = not isinstance(building.zones[side.zone].longwave, NoLongwave)
+        if exchange and side.emissivity is None:
+            yield fault(
+                (*at, "emissivity"),
+                "nothing",
+                f"long-wave emissivity, above 0 and at most 1 [-]: zone '{side.zone}' exchanges long-wave",
+                f"Add 'emissivity:', or write 'longwave: none' in zone '{side.zone}'.",
+            )
+
+
+def _films_suit_their_side(building: Building) -> Faults:
+    for at, side in _sides(building):
+        if isinstance(side.convection, Tarp | Mowitt) and (side.measured or side.ground):
+            yield fault(
+                (*at, "convection"),
+                f"'{side.convection.kind}' on a side facing {side.faces}",
+                "a film that suits an imposed temperature: a number, linear_wind, alamdari_hammond or power",
+                "Write the film coefficient of that air.",
+            )
+        if isinstance(side.convection, Tarp) and not side.outdoors:
+            for key in ("roughness", "perimeter"):
+                if getattr(side.convection, key) is not None:
+                    yield fault(
+                        (*at, "convection", key),
+                        f"'{key}' on a side facing {side.faces}",
+                        "none: it belongs to the wind's part",
+                        f"Remove '{key}:'.",
+                    )
+
+
+def _sensors_inside_walls(building: Building) -> Faults:
+    for name, sensor in building.sensors.items():
+        layers = building.constructions[building.surfaces[sensor.surface].construction].layers
+        thickness = sum(layer.thickness or 0.0 for layer in layers)
+        if sensor.depth > thickness * (1.0 + 1e-9):
+            yield fault(
+                ("sensors", name, "depth"),
+                f"{sensor.depth:g} m",
+                f"at most {thickness:g} m, the thickness of '{sensor.surface}'",
+                "Depth counts from the outside face.",
+            )
+
+
+def _columns_have_one_meaning(building: Building) -> Faults:
+    temperatures = {side.measured for _, side in _sides(building)} - {None}
+    for at, side in _sides(building):
+        if side.irradiance is not None and side.irradiance in temperatures:
+            yield fault(
+                (*at, "irradiance"),
+                f"'{side.irradiance}', which is a measured temperature elsewhere",
+                "a column of irradiance [W/m2]",
+                "Name the right column.",
+            )
+
+
+def _view_factors_close(building: Building) -> Faults:
+    for zone in building.zones:
+        given = building.zones[zone].view_factors
+        if given is None:
+            continue
+        names = face_names(faces_of(zone, building.surfaces))
+        for row, factors in given.items():
+            at = ("zones", zone, "view_factors", row)
+            if row not in names:
+                yield fault(at, f"'{row}'", "a face of this zone", did_you_mean(row, names))
+            for column in factors:
+                if column not in names:
+                    yield fault(
+                        (*at, column), f"'{column}'", "a face of this zone", did_you_mean(column, names)
+                    )
+            total = sum(factors.values())
+            if abs(total - 1.0) > VIEW_CLOSURE:
+                yield fault(
+                    at,
+                    f"a sum of {total:.3f}",
+                    "view factors from one face that sum to 1",
+                    "Complete the row.",
+                )
+        for name in names:
+            if name not in given:
+                yield fault(
+                    ("zones", zone, "view_factors"),
+                    f"no row '{name}'",
+                    "a row for each face",
+                    f"Add '{name}:'.",
+                )
+
+
+def face_names(faces: list[tuple[str, str]]) -> list[str]:
+    """Names of the faces of a zone: the surface's, with the side where both sides face the zone."""
+    count: Mapping[str, int] = Counter(surface for surface, _ in faces)
+    return [surface if count[surface] == 1 else f"{surface}.{side}" for surface, side in faces]
