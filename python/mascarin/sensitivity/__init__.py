@@ -1,0 +1,1 @@
+"""Which parameters matter, for which output, when and with what certainty."""
