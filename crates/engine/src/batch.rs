@@ -1,0 +1,113 @@
+//! Ensembles: members in lanes, packs of members on threads.
+//!
+//! A member's bits do not depend on its neighbours, the lane width or the number of threads.
+
+use core::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use crate::error::EngineError;
+use crate::forcing::Forcing;
+use crate::march::{march, Options, Watch};
+use crate::plan::Plan;
+use crate::real::{Lanes, Real};
+
+/// Members in one pack.
+const WIDTH: usize = 8;
+
+/// What an ensemble leaves behind, by member.
+#[derive(Debug)]
+pub struct Ensemble {
+    /// Members x rows x probes; NaN for a member that failed.
+    pub records: Vec<f64>,
+    /// Energy closure of each member; NaN for one that failed.
+    pub closure: Vec<f64>,
+    /// Members that failed, with the reason.
+    pub failures: Vec<(usize, EngineError)>,
+}
+
+/// Runs members given as rows of `numbers` (members x parameters).
+///
+/// # Errors
+/// [`EngineError::Interrupted`] and [`EngineError::Input`]; failures of single members are reported in the result.
+pub fn ensemble(
+    plan: &Plan,
+    numbers: &[f64],
+    forcing: &Forcing<'_>,
+    options: &Options,
+    watch: &Watch,
+) -> Result<Ensemble, EngineError> {
+    let width = plan.description.parameters.len();
+    if width == 0 || numbers.len() % width != 0 {
+        return Err(EngineError::Input(format!("member rows must hold {width} parameters")));
+    }
+    let members = numbers.len() / width;
+    let row = options.rows(forcing.steps()) * options.probes.len();
+    let mut result =
+        Ensemble { records: vec![f64::NAN; members * row], closure: vec![f64::NAN; members], failures: Vec::new() };
+    let packs = result.records.par_chunks_mut(row.max(1) * WIDTH).zip(result.closure.par_chunks_mut(WIDTH));
+    let failures: Result<Vec<_>, EngineError> = packs
+        .enumerate()
+        .map(|(pack, (records, closure))| {
+            let first = pack * WIDTH;
+            let members = &numbers[first * width..(first + closure.len()) * width];
+            let target = Target { records, closure, row };
+            let failed = run_pack(plan, members, forcing, options, watch, target)?;
+            Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
+        })
+        .collect();
+    result.failures = failures?.into_iter().flatten().collect();
+    Ok(result)
+}
+
+/// Where a pack writes.
+struct Target<'a> {
+    records: &'a mut [f64],
+    closure: &'a mut [f64],
+    row: usize,
+}
+
+/// Runs a pack in lanes; when a lane fails, its members one by one.
+fn run_pack(
+    plan: &Plan,
+    numbers: &[f64],
+    forcing: &Forcing<'_>,
+    options: &Options,
+    watch: &Watch,
+    target: Target<'_>,
+) -> Result<Vec<(usize, EngineError)>, EngineError> {
+    let width = plan.description.parameters.len();
+    let members = target.closure.len();
+    let lanes: Vec<Lanes<WIDTH>> = (0..width)
+        // A short pack repeats its last member.
+        .map(|p| Lanes(core::array::from_fn(|lane| numbers[lane.min(members - 1) * width + p])))
+        .collect();
+    let mut failures = Vec::new();
+    match march(plan, &lanes, forcing, options, watch) {
+        Ok(run) => {
+            for member in 0..members {
+                let into = &mut target.records[member * target.row..(member + 1) * target.row];
+                for (value, record) in into.iter_mut().zip(&run.records) {
+                    *value = record.lane(member);
+                }
+                target.closure[member] = run.ledger.closure().lane(member);
+            }
+        }
+        Err(EngineError::NotConverged { .. } | EngineError::NotSettled { .. }) => {
+            for member in 0..members {
+                let numbers = &numbers[member * width..(member + 1) * width];
+                match march(plan, numbers, forcing, options, watch) {
+                    Ok(run) => {
+                        target.records[member * target.row..(member + 1) * target.row].copy_from_slice(&run.records);
+                        target.closure[member] = run.ledger.closure();
+                    }
+                    Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
+                    Err(error) => failures.push((member, error)),
+                }
+            }
+        }
+        Err(error) => return Err(error),
+    }
+    watch.done.fetch_add(members, Ordering::Relaxed);
+    Ok(failures)
+}

@@ -1,0 +1,353 @@
+//! A plan with the numbers of one run (or of a pack of members in lanes).
+
+use crate::convection::Film;
+use crate::description::{Facing, Infiltration, Material, OutdoorLongwave, ParamId, Side, ZoneLongwave};
+use crate::forcing::CLIMATE_CHANNELS;
+use crate::parameters::Values;
+use crate::pcm::PcmCoefficients;
+use crate::plan::{FaceId, Plan, WallPlan};
+use crate::radiation::{exchange_areas, Emission};
+use crate::real::Real;
+use crate::solar::Plane;
+
+/// Specific heat of dry air at room temperature [J/(kg K)] (ASHRAE Handbook of Fundamentals, ch. 1).
+pub const AIR_SPECIFIC_HEAT: f64 = 1006.0;
+/// Gas constant of dry air [J/(kg K)].
+const AIR_GAS_CONSTANT: f64 = 287.055;
+
+/// All numbers of a run.
+#[derive(Debug, Clone)]
+pub struct Coefficients<S> {
+    /// One per surface.
+    pub walls: Vec<Wall<S>>,
+    /// Two per surface.
+    pub faces: Vec<Face<S>>,
+    /// Zones.
+    pub zones: Vec<Zone<S>>,
+    /// Solar reflectance of the ground [-].
+    pub ground_reflectance: S,
+    /// Cloud polynomial of the sky.
+    pub cloud: [S; 3],
+    /// Depth of each sensor from the outside face [m].
+    pub sensor_depths: Vec<S>,
+}
+
+/// A finite volume.
+#[derive(Debug, Clone)]
+pub struct Cell<S> {
+    /// Thickness [m].
+    pub thickness: S,
+    /// What it is made of.
+    pub matter: Matter<S>,
+}
+
+/// Constant or phase-changing.
+#[derive(Debug, Clone)]
+pub enum Matter<S> {
+    /// Conductivity [W/(m K)], volumetric heat capacity [J/(m3 K)].
+    Solid { conductivity: S, capacity: S },
+    /// Index into [`Wall::pcm`].
+    Pcm(usize),
+}
+
+/// A wall.
+#[derive(Debug, Clone)]
+pub struct Wall<S> {
+    /// Area [m2].
+    pub area: S,
+    /// Cells, outside to inside.
+    pub cells: Vec<Cell<S>>,
+    /// Massless resistance in each link [m2 K/W].
+    pub extra: Vec<S>,
+    /// Phase-change laws of its layers.
+    pub pcm: Vec<PcmCoefficients<S>>,
+    /// Resistance of each massless layer, zero for the others [m2 K/W].
+    pub layer_resistance: Vec<S>,
+}
+
+/// What drives a face that is not in a zone.
+#[derive(Debug, Clone)]
+pub enum Boundary<S> {
+    /// Outdoor air, sun, sky and ground.
+    Outdoors(Box<Outdoors<S>>),
+    /// A temperature, through the film if there is one.
+    Imposed(Imposed<S>),
+    /// Nothing.
+    Adiabatic,
+    /// A zone: solved in the room block.
+    Zone,
+}
+
+/// Numbers of an outdoor face.
+#[derive(Debug, Clone)]
+pub struct Outdoors<S> {
+    /// Geometry seen by the sun.
+    pub plane: Plane<S>,
+    /// Unit azimuth vector (north, east) of the normal, for the wind.
+    pub heading: [S; 2],
+    /// Wind at the face over wind at the mast [-].
+    pub wind_factor: S,
+    /// Long-wave law; none: the film is combined.
+    pub emission: Option<Emission<S>>,
+}
+
+/// Imposed temperatures.
+#[derive(Debug, Clone)]
+pub enum Imposed<S> {
+    /// Forcing channel.
+    Channel(usize),
+    /// `mean - amplitude cos(2 pi (day - coldest)/365)`.
+    Annual { mean: S, amplitude: S, coldest: S },
+}
+
+/// A face.
+#[derive(Debug, Clone)]
+pub struct Face<S> {
+    /// Film; none: no convection.
+    pub film: Option<Film<S>>,
+    /// Convective area over plane area.
+    pub area_factor: S,
+    /// Upward component of the normal that points into the air.
+    pub upward: S,
+    /// Long-wave emissivity.
+    pub emissivity: S,
+    /// Solar absorptance.
+    pub absorptance: S,
+    /// Forcing channel of a measured irradiance on the plane.
+    pub irradiance: Option<usize>,
+    /// What it faces.
+    pub boundary: Boundary<S>,
+}
+
+/// A zone.
+#[derive(Debug, Clone)]
+pub struct Zone<S> {
+    /// Heat capacity of the air and contents [J/K].
+    pub capacity: S,
+    /// Heat capacity of the zone's air volume [J/K], for air changes.
+    pub air_capacity: S,
+    /// [1/h], [1/(h K)], [1/(h m/s)].
+    pub infiltration: [S; 3],
+    /// Exchange areas between its faces [m2]; empty without separate exchange.
+    pub exchange: Vec<S>,
+    /// Law of emission.
+    pub emission: Emission<S>,
+    /// Areas of its faces [m2].
+    pub areas: Vec<S>,
+}
+
+impl<S: Real> Coefficients<S> {
+    /// Evaluates a plan at a parameter vector.
+    #[must_use]
+    pub fn new(plan: &Plan, numbers: &[S]) -> Self {
+        let values = Values::new(numbers);
+        let description = &plan.description;
+        let walls: Vec<_> = (0..plan.walls.len()).map(|i| Wall::new(plan, i, &values)).collect();
+        let faces: Vec<_> = (0..plan.faces.len()).map(|i| Face::new(plan, i, &values)).collect();
+        let site = &description.site;
+        let density = site.air_density.map_or_else(|| density_at(values.get(site.altitude)), |id| values.get(id));
+        let zones =
+            (0..plan.zones.len()).map(|i| Zone::new(plan, i, &values, &walls, &faces, density)).collect();
+        Self {
+            walls,
+            faces,
+            zones,
+            ground_reflectance: values.get(site.ground_reflectance),
+            cloud: site.cloud.map(|id| values.get(id)),
+            sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),
+        }
+    }
+}
+
+/// Density of dry air [kg/m3] at an altitude [m]: pressure of the standard atmosphere (ICAO Doc 7488) at 15 degC.
+fn density_at<S: Real>(altitude: S) -> S {
+    let pressure = (S::one() - altitude.scale(2.255_77e-5)).powf(S::constant(5.255_88)).scale(101_325.0);
+    pressure.scale(1.0 / (AIR_GAS_CONSTANT * 288.15))
+}
+
+fn radians<S: Real>(degrees: S) -> S {
+    degrees.scale(core::f64::consts::PI / 180.0)
+}
+
+impl<S: Real> Wall<S> {
+    fn new(plan: &Plan, index: usize, values: &Values<'_, S>) -> Self {
+        let description = &plan.description;
+        let surface = &description.surfaces[index];
+        let construction = &description.constructions[surface.construction];
+        let wall: &WallPlan = &plan.walls[index];
+        let mut pcm = Vec::new();
+        let mut cells = Vec::with_capacity(wall.len());
+        let layer_resistance: Vec<S> =
+            construction.layers.iter().map(|layer| resistance(plan, layer.material, values)).collect();
+        for (layer, &(start, end)) in construction.layers.iter().zip(&wall.layer_cells) {
+            let thickness = values.get_or(layer.thickness, 0.0);
+            let matter = match &description.materials[layer.material] {
+                Material::Resistance { .. } => continue,
+                Material::Solid { conductivity, density, specific_heat } => Matter::Solid {
+                    conductivity: values.get(*conductivity),
+                    capacity: values.get(*density) * values.get(*specific_heat),
+                },
+                Material::Pcm { conductivity, density, specific_heat, law } => {
+                    pcm.push(PcmCoefficients::new(values, *conductivity, *density, *specific_heat, law));
+                    Matter::Pcm(pcm.len() - 1)
+                }
+            };
+            #[allow(clippy::cast_precision_loss, reason = "node counts are small")]
+            let share = 1.0 / (end - start) as f64;
+            for _ in start..end {
+                cells.push(Cell { thickness: thickness.scale(share), matter: matter.clone() });
+            }
+        }
+        let extra = wall.link_layers.iter().map(|layers| {
+            layers.iter().fold(S::zero(), |sum, &layer| sum + layer_resistance[layer])
+        });
+        let extra = extra.collect();
+        Self { area: values.get(surface.area), extra, cells, pcm, layer_resistance }
+    }
+}
+
+/// Resistance of a massless material, zero for others [m2 K/W].
+fn resistance<S: Real>(plan: &Plan, material: usize, values: &Values<'_, S>) -> S {
+    match &plan.description.materials[material] {
+        Material::Resistance { resistance } => values.get(*resistance),
+        Material::Solid { .. } | Material::Pcm { .. } => S::zero(),
+    }
+}
+
+impl<S: Real> Face<S> {
+    fn new(plan: &Plan, index: FaceId, values: &Values<'_, S>) -> Self {
+        let surface = &plan.description.surfaces[index / 2];
+        let side = plan.side(index);
+        let tilt = radians(values.get(surface.tilt));
+        let outward = if index % 2 == 0 { S::one() } else { -S::one() };
+        let area = values.get(surface.area);
+        Self {
+            film: side.convection.as_ref().map(|law| Film::new(values, law, area)),
+            area_factor: values.get_or(side.area_factor, 1.0),
+            upward: outward * tilt.cos(),
+            emissivity: values.get_or(side.emissivity, 0.0),
+            absorptance: values.get_or(side.absorptance, 0.0),
+            irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),
+            boundary: boundary(plan, index, side, values),
+        }
+    }
+}
+
+fn boundary<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_, S>) -> Boundary<S> {
+    match side.facing {
+        Facing::Zone { .. } => Boundary::Zone,
+        Facing::Adiabatic => Boundary::Adiabatic,
+        Facing::Measured { channel } => Boundary::Imposed(Imposed::Channel(CLIMATE_CHANNELS + channel)),
+        Facing::Ground { mean, amplitude, coldest_day } => Boundary::Imposed(Imposed::Annual {
+            mean: values.get(mean),
+            amplitude: values.get(amplitude),
+            coldest: values.get(coldest_day),
+        }),
+        Facing::Outdoors => Boundary::Outdoors(Box::new(outdoors(plan, index, side, values))),
+    }
+}
+
+fn outdoors<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
+    let surface = &plan.description.surfaces[index / 2];
+    let (tilt, azimuth) = (radians(values.get(surface.tilt)), radians(values.get(surface.azimuth)));
+    // The inside face of a surface that looks outdoors looks the other way.
+    let outward = if index % 2 == 0 { S::one() } else { -S::one() };
+    let (sin_tilt, cos_tilt) = (tilt.sin(), tilt.cos() * outward);
+    let heading = [azimuth.cos() * outward, azimuth.sin() * outward];
+    let sky_view = side.sky_view.map_or_else(|| (S::one() + cos_tilt).scale(0.5), |id| values.get(id));
+    Outdoors {
+        plane: Plane {
+            normal: [heading[1] * sin_tilt, heading[0] * sin_tilt, cos_tilt],
+            sin_tilt,
+            sky_view,
+            ground_view: (S::one() - cos_tilt).scale(0.5),
+        },
+        heading,
+        wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
+        emission: match side.longwave {
+            OutdoorLongwave::Exact => Some(Emission::Exact),
+            OutdoorLongwave::Linearised { reference } => Some(Emission::Linearised(values.get(reference))),
+            OutdoorLongwave::None => None,
+        },
+    }
+}
+
+/// `(delta_mast/z_mast)^a_mast (z/delta)^a`.
+fn wind_factor<S: Real>(plan: &Plan, height: ParamId, values: &Values<'_, S>) -> S {
+    let wind = &plan.description.site.wind;
+    let get = |id| values.get(id);
+    let mast = (get(wind.mast_layer) / get(wind.mast_height)).powf(get(wind.mast_exponent));
+    // Below a tenth of a metre the profile has no meaning.
+    let height = get(height).max(S::constant(0.1));
+    mast * (height / get(wind.layer)).powf(get(wind.exponent))
+}
+
+impl<S: Real> Zone<S> {
+    fn new(
+        plan: &Plan,
+        index: usize,
+        values: &Values<'_, S>,
+        walls: &[Wall<S>],
+        faces: &[Face<S>],
+        density: S,
+    ) -> Self {
+        let definition = &plan.description.zones[index];
+        let zone_faces = &plan.zones[index].faces;
+        let areas: Vec<S> = zone_faces.iter().map(|&face| walls[face / 2].area).collect();
+        let emissivities: Vec<S> = zone_faces.iter().map(|&face| faces[face].emissivity).collect();
+        let emission = match definition.longwave {
+            ZoneLongwave::Linearised { reference } => Emission::Linearised(values.get(reference)),
+            ZoneLongwave::Radiosity | ZoneLongwave::None => Emission::Exact,
+        };
+        let exchange = if matches!(definition.longwave, ZoneLongwave::None) || zone_faces.len() < 2 {
+            Vec::new()
+        } else {
+            exchange_areas(&areas, &emissivities, &view_weights(plan, index, &areas))
+        };
+        let air_capacity = values.get(definition.volume) * density.scale(AIR_SPECIFIC_HEAT);
+        let Infiltration { constant, temperature, wind } = &definition.infiltration;
+        Self {
+            capacity: air_capacity * values.get(definition.capacity_factor),
+            air_capacity,
+            infiltration: [constant, temperature, wind].map(|id| values.get(*id)),
+            exchange,
+            emission,
+            areas,
+        }
+    }
+}
+
+/// Given weights, or `A_i A_j` between faces that do not lie in parallel planes looking the same way.
+fn view_weights<S: Real>(plan: &Plan, index: usize, areas: &[S]) -> Vec<S> {
+    let faces = &plan.zones[index].faces;
+    let given = &plan.description.zones[index].view_weights;
+    let n = faces.len();
+    let mut weights = Vec::with_capacity(n * n);
+    for i in 0..n {
+        for j in 0..n {
+            let weight = if given.len() == n {
+                // The given weights hold the nominal areas: they follow when an area is varied.
+                S::constant(given[i][j])
+            } else if i != j && !same_plane(plan, faces[i], faces[j]) {
+                areas[i] * areas[j]
+            } else {
+                S::zero()
+            };
+            weights.push(weight);
+        }
+    }
+    weights
+}
+
+/// True when two faces of a zone look the same way at their nominal tilt and azimuth: parts of one plane.
+fn same_plane(plan: &Plan, a: FaceId, b: FaceId) -> bool {
+    let normal = |face: FaceId| {
+        let surface = &plan.description.surfaces[face / 2];
+        let value = |id: ParamId| plan.description.parameters[id.0 as usize].value.to_radians();
+        let (tilt, azimuth) = (value(surface.tilt), value(surface.azimuth));
+        let sign = if face % 2 == 0 { 1.0 } else { -1.0 };
+        [azimuth.sin() * tilt.sin() * sign, azimuth.cos() * tilt.sin() * sign, tilt.cos() * sign]
+    };
+    let dot: f64 = normal(a).iter().zip(normal(b)).map(|(x, y)| x * y).sum();
+    dot > 1.0 - 1e-9
+}

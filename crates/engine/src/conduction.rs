@@ -1,0 +1,275 @@
+//! A wall as finite volumes, eliminated onto its two faces.
+//!
+//! Cells hold enthalpy per volume; links between neighbours carry heat in flux form. One implicit stage is the
+//! tridiagonal system of the cells with the two face temperatures as right-hand sides; one forward sweep gives the heat
+//! that the wall sends into each face as an affine function of both face temperatures.
+
+use crate::coefficients::{Matter, Wall};
+use crate::pcm::{PcmMemory, PcmPoint};
+use crate::real::Real;
+
+/// Heat flux along a link, `left T_left - right T_right + offset` [W/m2], positive towards the inside.
+#[derive(Debug, Clone, Copy)]
+pub struct Link<S> {
+    pub left: S,
+    pub right: S,
+    pub offset: S,
+}
+
+impl<S: Real> Link<S> {
+    /// Flux between two temperatures.
+    pub fn flux(&self, left: S, right: S) -> S {
+        self.left * left - self.right * right + self.offset
+    }
+}
+
+/// Enthalpy of a cell near the current iterate, `offset + capacity T` [J/m3].
+#[derive(Debug, Clone, Copy)]
+pub struct Storage<S> {
+    pub offset: S,
+    pub capacity: S,
+}
+
+impl<S: Real> Storage<S> {
+    /// Enthalpy at a temperature.
+    pub fn at(&self, temperature: S) -> S {
+        self.offset + self.capacity * temperature
+    }
+}
+
+/// The linearised wall of one Newton iteration and its elimination.
+#[derive(Debug, Clone)]
+pub struct Chain<S> {
+    /// Cells + 1 links; the first touches the outside face, the last the inside face.
+    pub links: Vec<Link<S>>,
+    /// Storage law of each cell.
+    pub storage: Vec<Storage<S>>,
+    /// Thickness over stage length [m/s].
+    rate: Vec<S>,
+    inverse: Vec<S>,
+    /// T_i = known + to_outside T_outside + next T_(i+1).
+    known: Vec<S>,
+    to_outside: Vec<S>,
+    next: Vec<S>,
+    /// T_1 = sum of `path_i known_i` + ...: product of `next` up to the cell.
+    path: Vec<S>,
+    /// Response of the first cell to the two faces.
+    first: [S; 2],
+    points: Vec<Option<PcmPoint<S>>>,
+}
+
+/// Heat that the wall sends into its faces, `source_e + sum_o response_eo T_o` [W/m2].
+#[derive(Debug, Clone, Copy)]
+pub struct Condensed<S> {
+    pub source: [S; 2],
+    pub response: [[S; 2]; 2],
+}
+
+/// How storage is linearised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StorageRule {
+    /// Enthalpy and its slope at the iterate: conserves heat.
+    Enthalpy,
+    /// The apparent capacity at the old temperature, as in the paper: does not.
+    ApparentCapacity,
+}
+
+/// Temperatures about which a wall is linearised [degC].
+#[derive(Debug, Clone, Copy)]
+pub struct Iterate<'a, S> {
+    pub cells: &'a [S],
+    pub faces: [S; 2],
+}
+
+/// A wall at the start of the step: temperatures [degC], enthalpies [J/m3], memory.
+#[derive(Debug, Clone, Copy)]
+pub struct Start<'a, S> {
+    pub cells: &'a [S],
+    pub enthalpy: &'a [S],
+    pub memory: &'a [PcmMemory<S>],
+}
+
+/// Resistance of half a cell [m2 K/W] and `-d(resistance)/dT`.
+struct End<S> {
+    resistance: S,
+    gain: S,
+    varies: bool,
+}
+
+impl<S: Real> End<S> {
+    fn face() -> Self {
+        Self { resistance: S::zero(), gain: S::zero(), varies: false }
+    }
+}
+
+impl<S: Real> Chain<S> {
+    /// A chain for a wall, linearised once where its properties are constant.
+    pub fn new(wall: &Wall<S>) -> Self {
+        let n = wall.cells.len();
+        let zeros = vec![S::zero(); n];
+        let none = Link { left: S::zero(), right: S::zero(), offset: S::zero() };
+        let mut chain = Self {
+            links: vec![none; n + 1],
+            storage: vec![Storage { offset: S::zero(), capacity: S::zero() }; n],
+            rate: zeros.clone(),
+            inverse: zeros.clone(),
+            known: zeros.clone(),
+            to_outside: zeros.clone(),
+            next: zeros.clone(),
+            path: zeros,
+            first: [S::zero(); 2],
+            points: vec![None; n],
+        };
+        chain.link_solids(wall);
+        chain
+    }
+
+    /// Links and storage that do not depend on temperature.
+    fn link_solids(&mut self, wall: &Wall<S>) {
+        for (storage, cell) in self.storage.iter_mut().zip(&wall.cells) {
+            if let Matter::Solid { capacity, .. } = cell.matter {
+                storage.capacity = capacity;
+            }
+        }
+        let half = |i: usize| match wall.cells[i].matter {
+            Matter::Solid { conductivity, .. } => Some(wall.cells[i].thickness.scale(0.5) / conductivity),
+            Matter::Pcm(_) => None,
+        };
+        let n = wall.cells.len();
+        for i in 0..=n {
+            let left = if i > 0 { half(i - 1) } else { Some(S::zero()) };
+            let right = if i < n { half(i) } else { Some(S::zero()) };
+            if let (Some(left), Some(right)) = (left, right) {
+                let conductance = S::one() / (left + wall.extra[i] + right);
+                self.links[i] = Link { left: conductance, right: conductance, offset: S::zero() };
+            }
+        }
+    }
+
+    /// Linearises the phase-change cells about an iterate of the cells and the two faces.
+    pub fn linearise(&mut self, wall: &Wall<S>, at: &Iterate<'_, S>, start: &Start<'_, S>, rule: StorageRule) {
+        for (i, cell) in wall.cells.iter().enumerate() {
+            let Matter::Pcm(law) = cell.matter else { continue };
+            let (temperature, memory) = (at.cells[i], &start.memory[i]);
+            let point = wall.pcm[law].at(temperature, memory);
+            self.storage[i] = match rule {
+                StorageRule::Enthalpy => Storage {
+                    offset: point.enthalpy - point.capacity * temperature,
+                    capacity: point.capacity,
+                },
+                StorageRule::ApparentCapacity => {
+                    let capacity = wall.pcm[law].at(start.cells[i], memory).capacity;
+                    Storage { offset: start.enthalpy[i] - capacity * start.cells[i], capacity }
+                }
+            };
+            self.points[i] = Some(point);
+        }
+        for i in 0..self.links.len() {
+            self.linearise_link(wall, i, at);
+        }
+    }
+
+    /// Newton form of `K (T_left - T_right)` with K depending on the temperatures of its cells.
+    fn linearise_link(&mut self, wall: &Wall<S>, i: usize, at: &Iterate<'_, S>) {
+        let n = wall.cells.len();
+        let (left, left_temperature) = if i > 0 { (self.end(wall, i - 1), at.cells[i - 1]) } else { (End::face(), at.faces[0]) };
+        let (right, right_temperature) = if i < n { (self.end(wall, i), at.cells[i]) } else { (End::face(), at.faces[1]) };
+        if !left.varies && !right.varies {
+            return;
+        }
+        let conductance = S::one() / (left.resistance + wall.extra[i] + right.resistance);
+        let square = conductance * conductance * (left_temperature - right_temperature);
+        let (by_left, by_right) = (square * left.gain, square * right.gain);
+        self.links[i] = Link {
+            left: conductance + by_left,
+            right: conductance - by_right,
+            offset: -(by_left * left_temperature + by_right * right_temperature),
+        };
+    }
+
+    /// The half of a cell that a link crosses.
+    fn end(&self, wall: &Wall<S>, cell: usize) -> End<S> {
+        let half = wall.cells[cell].thickness.scale(0.5);
+        match (&wall.cells[cell].matter, &self.points[cell]) {
+            (Matter::Solid { conductivity, .. }, _) => {
+                End { resistance: half / *conductivity, gain: S::zero(), varies: false }
+            }
+            (Matter::Pcm(_), Some(point)) => {
+                let resistance = half / point.conductivity;
+                let gain = resistance / point.conductivity * point.conductivity_slope;
+                End { resistance, gain, varies: true }
+            }
+            (Matter::Pcm(_), None) => End { varies: true, ..End::face() },
+        }
+    }
+
+    /// Eliminates the cells for a stage of effective length `stage` [s]. Called again only when a coefficient changes.
+    pub fn factor(&mut self, wall: &Wall<S>, stage: f64) -> [[S; 2]; 2] {
+        let n = self.storage.len();
+        if n == 0 {
+            let link = self.links[0];
+            return [[-link.left, link.right], [link.left, -link.right]];
+        }
+        let mut path = S::one();
+        let (mut first_outside, mut to_outside) = (S::zero(), S::zero());
+        for i in 0..n {
+            self.rate[i] = wall.cells[i].thickness.scale(1.0 / stage);
+            let (before, after) = (self.links[i], self.links[i + 1]);
+            let mut diagonal = self.storage[i].capacity * self.rate[i] + before.right + after.left;
+            let mut outside = before.left;
+            if i > 0 {
+                diagonal = diagonal - before.left * self.next[i - 1];
+                outside = before.left * to_outside;
+            }
+            self.inverse[i] = S::one() / diagonal;
+            self.next[i] = after.right * self.inverse[i];
+            to_outside = outside * self.inverse[i];
+            self.to_outside[i] = to_outside;
+            self.path[i] = path;
+            first_outside += path * to_outside;
+            path = path * self.next[i];
+        }
+        self.first = [first_outside, path];
+        let (outer, inner) = (self.links[0], self.links[n]);
+        [
+            [outer.right * first_outside - outer.left, outer.right * path],
+            [inner.left * to_outside, inner.left * self.next[n - 1] - inner.right],
+        ]
+    }
+
+    /// The part of the face fluxes that comes from what the cells held: `held` is the right-hand enthalpy [J/m3].
+    pub fn sources(&mut self, held: &[S]) -> [S; 2] {
+        let n = self.storage.len();
+        if n == 0 {
+            return [-self.links[0].offset, self.links[0].offset];
+        }
+        let mut first = S::zero();
+        for i in 0..n {
+            let mut right = (held[i] - self.storage[i].offset) * self.rate[i];
+            right = right + self.links[i].offset - self.links[i + 1].offset;
+            if i > 0 {
+                right += self.links[i].left * self.known[i - 1];
+            }
+            self.known[i] = right * self.inverse[i];
+            first += self.path[i] * self.known[i];
+        }
+        let (outer, inner) = (self.links[0], self.links[n]);
+        [outer.right * first - outer.offset, inner.left * self.known[n - 1] + inner.offset]
+    }
+
+    /// Cell temperatures from the face temperatures.
+    pub fn temperatures(&self, faces: [S; 2], cells: &mut [S]) {
+        let mut next = faces[1];
+        for i in (0..cells.len()).rev() {
+            next = self.known[i] + self.to_outside[i] * faces[0] + self.next[i] * next;
+            cells[i] = next;
+        }
+    }
+
+    /// Flux along link `i` at cell and face temperatures [W/m2], positive towards the inside.
+    pub fn link_flux(&self, i: usize, faces: [S; 2], cells: &[S]) -> S {
+        let left = if i == 0 { faces[0] } else { cells[i - 1] };
+        let right = if i == cells.len() { faces[1] } else { cells[i] };
+        self.links[i].flux(left, right)
+    }
+}

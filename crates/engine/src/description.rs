@@ -1,0 +1,361 @@
+//! The building as it crosses the border from the description language.
+//!
+//! Every number that a user may vary is a [`ParamId`]: an index into
+//! [`Description::parameters`]. The engine never sees a path or a file; it reads
+//! values from a parameter vector, so that the same description serves one run,
+//! an ensemble (one vector per member) and derivatives (a vector of duals).
+//! What is a plain `usize`, `bool` or list here is structural: it shapes the plan.
+
+use serde::Deserialize;
+
+/// Index of a numeric leaf in [`Description::parameters`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[serde(transparent)]
+pub struct ParamId(pub u32);
+
+/// A numeric leaf: its path in the user's description and its nominal value (SI, degC, deg).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    /// Dotted path, e.g. `materials.energain.latent_heat`.
+    pub path: String,
+    /// Nominal value.
+    pub value: f64,
+}
+
+/// A whole building: references between its parts are indices into the lists.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    /// All numeric leaves, in the order of their ids.
+    pub parameters: Vec<Parameter>,
+    /// Where the building stands.
+    pub site: Site,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Constructions.
+    pub constructions: Vec<Construction>,
+    /// Air zones.
+    pub zones: Vec<Zone>,
+    /// Surfaces.
+    pub surfaces: Vec<Surface>,
+    /// Sensors inside walls.
+    #[serde(default)]
+    pub sensors: Vec<Sensor>,
+    /// Names of the forcing channels that follow the climate channels (measured temperatures, irradiances).
+    #[serde(default)]
+    pub channels: Vec<String>,
+}
+
+/// Site constants that act in the engine. (Latitude and longitude act through the sun's path in the forcing.)
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Site {
+    /// Altitude [m]: gives the air density where none is given.
+    pub altitude: ParamId,
+    /// Density of the air that enters and fills the zones [kg/m3]; none: from the altitude.
+    #[serde(default)]
+    pub air_density: Option<ParamId>,
+    /// Solar reflectance of the ground [-].
+    pub ground_reflectance: ParamId,
+    /// How the wind is carried from the mast to a surface.
+    pub wind: WindProfile,
+    /// Model of the sky's long-wave emission.
+    pub sky: Sky,
+    /// Cubic factor of cloud cover N [tenths]: 1 + c1 N + c2 N^2 + c3 N^3 (Clark & Allen 1978).
+    pub cloud: [ParamId; 3],
+    /// Model of the sky's diffuse short-wave radiation.
+    pub diffuse: DiffuseSky,
+}
+
+/// Power-law wind profile (ASHRAE Handbook of Fundamentals, ch. 24):
+/// `V = V_mast (delta_mast/z_mast)^a_mast (z/delta)^a`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WindProfile {
+    /// Height of the anemometer [m].
+    pub mast_height: ParamId,
+    /// Exponent at the mast [-].
+    pub mast_exponent: ParamId,
+    /// Boundary layer thickness at the mast [m].
+    pub mast_layer: ParamId,
+    /// Exponent at the building [-].
+    pub exponent: ParamId,
+    /// Boundary layer thickness at the building [m].
+    pub layer: ParamId,
+}
+
+/// Sky emission models; see `radiation.rs` for equations and sources.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Sky {
+    /// Horizontal infrared of the climate [W/m2] (channel `infrared`), times a scale.
+    Measured { scale: ParamId },
+    /// Emissivity `a + b ln(Tdp/273)`, Tdp in K.
+    ClarkAllen { a: ParamId, b: ParamId },
+    /// Emissivity `a + b (tdp/100) + c (tdp/100)^2`, tdp in degC.
+    MartinBerdahl { a: ParamId, b: ParamId, c: ParamId },
+    /// Emissivity `a + b sqrt(pw)`, pw in hPa.
+    Brunt { a: ParamId, b: ParamId },
+    /// Sky temperature = air temperature - depression [K].
+    Offset { depression: ParamId },
+}
+
+/// Diffuse short-wave models on a tilted plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DiffuseSky {
+    /// Isotropic (Liu & Jordan 1963).
+    Isotropic,
+    /// Hay & Davies (1980).
+    HayDavies,
+    /// Perez et al. (1990), coefficients "all sites composite 1990".
+    Perez,
+}
+
+/// What a layer is made of.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Material {
+    /// Constant properties: W/(m K), kg/m3, J/(kg K).
+    Solid {
+        conductivity: ParamId,
+        density: ParamId,
+        specific_heat: ParamId,
+    },
+    /// No heat capacity, a resistance [m2 K/W]; the layer has no thickness.
+    Resistance { resistance: ParamId },
+    /// Phase-change material; pairs are [solid, liquid].
+    Pcm {
+        conductivity: [ParamId; 2],
+        density: [ParamId; 2],
+        specific_heat: [ParamId; 2],
+        law: PcmLaw,
+    },
+}
+
+/// How enthalpy depends on temperature.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum PcmLaw {
+    /// Liquid fraction `1/2 + 1/2 tanh((T - Tm)/w)`, half-width `w` [K].
+    TanhWidth {
+        latent_heat: ParamId,
+        melting_temperature: ParamId,
+        width: ParamId,
+    },
+    /// The paper's form, `w = 4 delta_t / gamma`.
+    TanhGamma {
+        latent_heat: ParamId,
+        melting_temperature: ParamId,
+        gamma: ParamId,
+        delta_t: ParamId,
+    },
+    /// Monotone C1 interpolation of specific enthalpy [J/kg] over temperature [degC];
+    /// read at `T - temperature_shift`, multiplied by `enthalpy_scale`. `specific_heat`
+    /// of the material is used outside the table. The liquid fraction is 0 below `melting_range[0]`, 1 above
+    /// `melting_range[1]` and follows the enthalpy between.
+    Tabulated {
+        temperatures: Vec<f64>,
+        enthalpies: Vec<f64>,
+        melting_range: [f64; 2],
+        temperature_shift: ParamId,
+        enthalpy_scale: ParamId,
+    },
+}
+
+/// Layers from outside to inside.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Construction {
+    pub name: String,
+    pub layers: Vec<Layer>,
+}
+
+/// One layer of a construction.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Layer {
+    pub name: String,
+    /// Index into [`Description::materials`].
+    pub material: usize,
+    /// Thickness [m]; none for a resistance.
+    #[serde(default)]
+    pub thickness: Option<ParamId>,
+    /// Number of finite volumes; 0 for a resistance.
+    pub nodes: usize,
+}
+
+/// A volume of well-mixed air.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Zone {
+    pub name: String,
+    /// Volume [m3].
+    pub volume: ParamId,
+    /// Heat capacity of air and contents over that of the air alone [-].
+    pub capacity_factor: ParamId,
+    /// Air changes per hour with outdoors: `constant + temperature |dT| + wind V`.
+    pub infiltration: Infiltration,
+    /// Long-wave exchange between the faces of the zone.
+    pub longwave: ZoneLongwave,
+    /// Relative view-factor weights `A_i F_ij` between the zone's faces, in the order of
+    /// [`Description::surfaces`] (outside face before inside face of the same surface). Scaled in the engine so that
+    /// closure and reciprocity hold exactly at the areas of the run. Empty: every face sees every other one
+    /// except those of the same tilt and azimuth.
+    #[serde(default)]
+    pub view_weights: Vec<Vec<f64>>,
+}
+
+/// Outdoor air entering a zone unasked [1/h, 1/(h K), 1/(h m/s)].
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Infiltration {
+    pub constant: ParamId,
+    pub temperature: ParamId,
+    pub wind: ParamId,
+}
+
+/// Long-wave exchange inside a zone.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum ZoneLongwave {
+    /// Exact grey-diffuse exchange (radiosity), T^4.
+    Radiosity,
+    /// The same exchange factors, linearised about a reference temperature [degC].
+    Linearised { reference: ParamId },
+    /// No separate exchange (films are combined coefficients).
+    None,
+}
+
+/// A plane wall between two sides.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Surface {
+    pub name: String,
+    /// Index into [`Description::constructions`].
+    pub construction: usize,
+    /// Area [m2].
+    pub area: ParamId,
+    /// Tilt of the outside normal [deg]: 0 up, 90 vertical, 180 down.
+    pub tilt: ParamId,
+    /// Azimuth of the outside normal [deg], clockwise from north.
+    pub azimuth: ParamId,
+    pub outside: Side,
+    pub inside: Side,
+}
+
+/// One face of a surface and what it sees.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Side {
+    pub facing: Facing,
+    /// Convection (also the film of a `measured` air temperature). None: the face itself takes the imposed
+    /// temperature (`ground`, `measured`), or nothing flows (`adiabatic`).
+    #[serde(default)]
+    pub convection: Option<Convection>,
+    /// Long-wave emissivity [-]. Needed for `outdoors` and `zone`.
+    #[serde(default)]
+    pub emissivity: Option<ParamId>,
+    /// Solar absorptance [-]. Needed for `outdoors` and for a `measured` irradiance.
+    #[serde(default)]
+    pub absorptance: Option<ParamId>,
+    /// Convective area over plane area [-] (corrugated sheets).
+    #[serde(default)]
+    pub area_factor: Option<ParamId>,
+    /// Fraction of the sky seen [-]; none: (1 + cos tilt)/2.
+    #[serde(default)]
+    pub sky_view: Option<ParamId>,
+    /// Height of the face above ground for the wind profile [m]; none: mast wind is used as it is.
+    #[serde(default)]
+    pub height: Option<ParamId>,
+    /// Long-wave exchange with sky, air and ground of an `outdoors` side.
+    #[serde(default)]
+    pub longwave: OutdoorLongwave,
+    /// Name index into [`Description::channels`]: measured irradiance on this plane [W/m2], used as it is.
+    #[serde(default)]
+    pub irradiance: Option<usize>,
+}
+
+/// What a side faces.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Facing {
+    Outdoors,
+    /// Index into [`Description::zones`].
+    Zone { zone: usize },
+    /// Ground temperature [degC]: `mean - amplitude cos(2 pi (day - coldest_day)/365)`.
+    Ground {
+        mean: ParamId,
+        amplitude: ParamId,
+        coldest_day: ParamId,
+    },
+    /// Measured temperature: index into [`Description::channels`].
+    Measured { channel: usize },
+    Adiabatic,
+}
+
+/// Long-wave exchange of an `outdoors` side.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum OutdoorLongwave {
+    /// T^4 with sky, air and ground.
+    #[default]
+    Exact,
+    /// Linearised about a reference temperature [degC].
+    Linearised { reference: ParamId },
+    /// None (the film is a combined coefficient).
+    None,
+}
+
+/// Film coefficients [W/(m2 K)]; equations and sources in `convection.rs`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Convection {
+    Constant { coefficient: ParamId },
+    /// `constant + wind V`.
+    LinearWind { constant: ParamId, wind: ParamId },
+    /// Alamdari & Hammond (1983); `length`: height of a vertical face, 4 A/P of a horizontal one [m].
+    AlamdariHammond { length: ParamId, factor: ParamId },
+    /// The paper's eq. 5 as printed, `length` = H [m].
+    PaperEq5 { length: ParamId, factor: ParamId },
+    /// TARP (Walton 1983). On an outdoor side the forced part is added; roughness and perimeter [m] act there alone.
+    Tarp {
+        factor: ParamId,
+        #[serde(default)]
+        roughness: Option<ParamId>,
+        #[serde(default)]
+        perimeter: Option<ParamId>,
+    },
+    /// MoWiTT (Yazdanian & Klems 1994), times a factor.
+    Mowitt { factor: ParamId },
+    /// `a + b |dT|^n + c V^m` by direction of heat flow.
+    Power {
+        /// Heat flows up, or the face is vertical.
+        upward: PowerLaw,
+        /// Heat flows down.
+        downward: PowerLaw,
+    },
+}
+
+/// Coefficients of [`Convection::Power`].
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PowerLaw {
+    pub a: ParamId,
+    pub b: ParamId,
+    pub n: ParamId,
+    pub c: ParamId,
+    pub m: ParamId,
+}
+
+/// A thermometer in a wall.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sensor {
+    pub name: String,
+    /// Index into [`Description::surfaces`].
+    pub surface: usize,
+    /// Depth from the outside face [m].
+    pub depth: ParamId,
+}

@@ -1,0 +1,47 @@
+//! What can stop a run.
+
+use thiserror::Error;
+
+/// Every way in which the engine refuses or stops.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum EngineError {
+    /// The description cannot be compiled. The description language should have said so before.
+    #[error("the description cannot be compiled: {0}")]
+    Description(String),
+    /// Arrays of the wrong shape, unknown outputs, unusable options.
+    #[error("{0}")]
+    Input(String),
+    /// Newton's iteration did not converge.
+    #[error(
+        "step {step} (stage {stage}) did not converge: {place} still moves by {residual:.3e} K after {iterations} \
+         iterations. Use a shorter step, a wider melting range or more nodes in the layer."
+    )]
+    NotConverged {
+        /// Index of the step from the start of the forcing.
+        step: usize,
+        /// Stage of the scheme, from 1.
+        stage: usize,
+        /// Name of the wall or zone that moves most.
+        place: String,
+        /// Largest change in the last iteration [K].
+        residual: f64,
+        /// Iterations spent.
+        iterations: usize,
+    },
+    /// The repeated first period did not settle.
+    #[error(
+        "the first period was repeated {cycles} times and the state still changes by {residual:.3} K (asked: \
+         {tolerance} K). Give a longer first period, an initial temperature or a larger tolerance."
+    )]
+    NotSettled {
+        /// Repetitions made.
+        cycles: usize,
+        /// Largest change between the last two repetitions [K].
+        residual: f64,
+        /// Largest change accepted [K].
+        tolerance: f64,
+    },
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}

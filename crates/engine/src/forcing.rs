@@ -1,0 +1,92 @@
+//! What drives a building: channels over steps and stages.
+//!
+//! The climate side interpolates; the engine only reads. Channel order is part of the border.
+
+use crate::error::EngineError;
+
+/// Number of climate channels; the description's own channels follow them.
+pub const CLIMATE_CHANNELS: usize = 15;
+
+/// Index of each climate channel.
+pub mod channel {
+    /// Outdoor air temperature [degC].
+    pub const AIR_TEMPERATURE: usize = 0;
+    /// Dew point [degC].
+    pub const DEW_POINT: usize = 1;
+    /// Cloud cover [tenths].
+    pub const CLOUD_COVER: usize = 2;
+    /// Downward horizontal infrared [W/m2]; NaN when the climate has none.
+    pub const INFRARED: usize = 3;
+    /// Wind speed at the mast [m/s].
+    pub const WIND_SPEED: usize = 4;
+    /// Direction the wind blows from [deg, clockwise from north].
+    pub const WIND_DIRECTION: usize = 5;
+    /// Station pressure [Pa]; NaN when unknown.
+    pub const PRESSURE: usize = 6;
+    /// Direct normal irradiance [W/m2].
+    pub const DIRECT_NORMAL: usize = 7;
+    /// Diffuse horizontal irradiance [W/m2].
+    pub const DIFFUSE_HORIZONTAL: usize = 8;
+    /// Global horizontal irradiance [W/m2].
+    pub const GLOBAL_HORIZONTAL: usize = 9;
+    /// Extraterrestrial normal irradiance [W/m2].
+    pub const DIRECT_NORMAL_EXTRA: usize = 10;
+    /// East component of the unit vector to the sun.
+    pub const SUN_EAST: usize = 11;
+    /// North component of the unit vector to the sun.
+    pub const SUN_NORTH: usize = 12;
+    /// Upward component of the unit vector to the sun.
+    pub const SUN_UP: usize = 13;
+    /// Day of the year, 0 on 1 January 00:00 [d].
+    pub const DAY_OF_YEAR: usize = 14;
+}
+
+/// Read-only view of the forcing array (steps x stages x channels).
+#[derive(Debug, Clone, Copy)]
+pub struct Forcing<'a> {
+    values: &'a [f64],
+    stages: usize,
+    channels: usize,
+}
+
+impl<'a> Forcing<'a> {
+    /// Wraps an array in row-major order.
+    ///
+    /// # Errors
+    /// [`EngineError::Input`] when the length is not a multiple of `stages * channels`.
+    pub fn new(values: &'a [f64], stages: usize, channels: usize) -> Result<Self, EngineError> {
+        let row = stages * channels;
+        if row == 0 || values.len() % row != 0 {
+            return Err(EngineError::Input(format!(
+                "forcing has {} values, expected a multiple of {stages} stages x {channels} channels",
+                values.len()
+            )));
+        }
+        Ok(Self { values, stages, channels })
+    }
+
+    /// Number of steps.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.values.len() / (self.stages * self.channels)
+    }
+
+    /// Number of stages in a step.
+    #[must_use]
+    pub fn stages(&self) -> usize {
+        self.stages
+    }
+
+    /// Number of channels.
+    #[must_use]
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// All channels at a stage of a step.
+    #[must_use]
+    pub fn at(&self, step: usize, stage: usize) -> &'a [f64] {
+        let start = (step * self.stages + stage) * self.channels;
+        &self.values[start..start + self.channels]
+    }
+}

@@ -1,0 +1,104 @@
+//! The energy ledger: where heat came from, and whether the books close.
+
+use crate::real::Real;
+
+/// The ways in which heat enters a building.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flow {
+    /// Short-wave radiation absorbed.
+    Solar,
+    /// Convection from outdoor air.
+    Convection,
+    /// Long-wave exchange with sky, outdoor air and ground.
+    Longwave,
+    /// Imposed temperatures: ground and measured.
+    Boundary,
+    /// Outdoor air entering zones.
+    Infiltration,
+}
+
+impl Flow {
+    /// All flows, in the order of the ledger's arrays.
+    pub const ALL: [Self; 5] = [Self::Solar, Self::Convection, Self::Longwave, Self::Boundary, Self::Infiltration];
+
+    /// Name in results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solar => "solar",
+            Self::Convection => "convection",
+            Self::Longwave => "longwave",
+            Self::Boundary => "boundary",
+            Self::Infiltration => "infiltration",
+        }
+    }
+}
+
+/// Heat of one stage [W].
+#[derive(Debug, Clone, Copy)]
+pub struct Power<S> {
+    /// Net heat into the building by flow.
+    pub into: [S; Flow::ALL.len()],
+    /// Sum of magnitudes over faces and flows.
+    pub turnover: S,
+}
+
+impl<S: Real> Power<S> {
+    /// No heat.
+    #[must_use]
+    pub fn none() -> Self {
+        Self { into: [S::zero(); Flow::ALL.len()], turnover: S::zero() }
+    }
+
+    /// Books a flow.
+    pub fn book(&mut self, flow: Flow, power: S) {
+        self.into[flow as usize] += power;
+        self.turnover += power.abs();
+    }
+}
+
+/// Heat of a run [J].
+#[derive(Debug, Clone, Copy)]
+pub struct Ledger<S> {
+    /// Net heat into the building by flow.
+    pub into: [S; Flow::ALL.len()],
+    /// Rise of the heat stored in walls and air.
+    pub stored: S,
+    /// Sum of magnitudes of all flows.
+    pub turnover: S,
+    /// Sum over steps of |stored - into|.
+    pub imbalance: S,
+}
+
+impl<S: Real> Ledger<S> {
+    /// An empty book.
+    #[must_use]
+    pub fn new() -> Self {
+        let zero = S::zero();
+        Self { into: [zero; Flow::ALL.len()], stored: zero, turnover: zero, imbalance: zero }
+    }
+
+    /// Books a step: heat into the building and its magnitude over the step [J], and what was stored.
+    pub fn book(&mut self, energy: &Power<S>, stored: S) {
+        let mut total = S::zero();
+        for (sum, part) in self.into.iter_mut().zip(energy.into) {
+            *sum += part;
+            total += part;
+        }
+        self.stored += stored;
+        self.turnover += energy.turnover;
+        self.imbalance += (stored - total).abs();
+    }
+
+    /// Imbalance over turnover [-], summed over steps so that opposite errors do not cancel.
+    #[must_use]
+    pub fn closure(&self) -> S {
+        self.imbalance / self.turnover.max(S::constant(1e-300))
+    }
+}
+
+impl<S: Real> Default for Ledger<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,25 @@
+//! Mascarin's engine: transient physics of buildings with phase-change materials.
+//!
+//! One way through: a [`description::Description`] is compiled to a [`plan::Plan`], marched with
+//! [`march::march`] (or [`batch::ensemble`]) under a [`forcing::Forcing`], and leaves records and an energy ledger. The
+//! engine knows no file, no date and no Python.
+
+pub mod batch;
+pub mod coefficients;
+pub mod conduction;
+pub mod convection;
+pub mod description;
+pub mod drive;
+pub mod error;
+pub mod forcing;
+pub mod ledger;
+pub mod march;
+pub mod parameters;
+pub mod pcm;
+pub mod plan;
+pub mod probe;
+pub mod radiation;
+pub mod real;
+pub mod solar;
+pub mod state_space;
+pub mod step;

@@ -1,0 +1,170 @@
+//! Time stepping: the start, the recorders and the ledger.
+
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use crate::error::EngineError;
+use crate::forcing::Forcing;
+use crate::ledger::Ledger;
+use crate::plan::Plan;
+use crate::probe::Probe;
+use crate::real::{Mask, Real};
+use crate::step::{Scheme, State, Stepper};
+
+/// How a run is made.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Step [s].
+    pub dt: f64,
+    /// Time-stepping scheme.
+    pub scheme: Scheme,
+    /// Temperature everywhere at the start [degC].
+    pub initial: f64,
+    /// The first period, repeated until the state at its end settles. None: start from `initial`.
+    pub warmup: Option<Warmup>,
+    /// What to record.
+    pub probes: Vec<Probe>,
+    /// First step whose end is recorded; with 0 the initial state is recorded before it.
+    pub record_from: usize,
+    /// Record every so many steps.
+    pub record_every: usize,
+}
+
+/// A repeated first period.
+#[derive(Debug, Clone, Copy)]
+pub struct Warmup {
+    /// Its steps.
+    pub steps: usize,
+    /// Largest change between two repetitions [K].
+    pub tolerance: f64,
+    /// Repetitions before it counts as unsettled.
+    pub max_cycles: usize,
+}
+
+impl Options {
+    /// Number of recorded rows for a forcing of `steps` steps.
+    #[must_use]
+    pub fn rows(&self, steps: usize) -> usize {
+        let from = self.record_from.min(steps);
+        1 + (steps - from) / self.record_every
+    }
+}
+
+/// Shared between a run and whoever waits for it.
+#[derive(Debug, Default)]
+pub struct Watch {
+    /// Set to stop the run.
+    pub stop: AtomicBool,
+    /// Members finished so far.
+    pub done: AtomicUsize,
+}
+
+/// A finished run (or a pack of members).
+#[derive(Debug, Clone)]
+pub struct Run<S> {
+    /// Rows x probes.
+    pub records: Vec<S>,
+    /// Heat since the start of the record's first step.
+    pub ledger: Ledger<S>,
+    /// State at the end.
+    pub state: State<S>,
+    /// Repetitions of the first period.
+    pub cycles: usize,
+    /// Change in the last repetition [K].
+    pub settled: S,
+    /// Newton iterations, all stages.
+    pub iterations: usize,
+}
+
+/// Runs a plan at a parameter vector.
+///
+/// # Errors
+/// [`EngineError::NotConverged`], [`EngineError::NotSettled`], [`EngineError::Interrupted`], [`EngineError::Input`].
+pub fn march<S: Real>(
+    plan: &Plan,
+    numbers: &[S],
+    forcing: &Forcing<'_>,
+    options: &Options,
+    watch: &Watch,
+) -> Result<Run<S>, EngineError> {
+    check(plan, numbers.len(), forcing, options)?;
+    let mut stepper = Stepper::new(plan, numbers, options.scheme);
+    let mut state = stepper.uniform(S::constant(options.initial));
+    let (cycles, settled) = warm_up(&mut stepper, &mut state, forcing, options, watch)?;
+    stepper.balance_faces(&mut state, forcing.at(0, 0))?;
+    let mut records = Vec::with_capacity(options.rows(forcing.steps()) * options.probes.len());
+    let mut ledger = Ledger::new();
+    let mut record = |stepper: &Stepper<'_, S>, state: &State<S>| {
+        records.extend(options.probes.iter().map(|probe| probe.read(plan, stepper, state)));
+    };
+    for step in 0..=forcing.steps() {
+        // Row k is the state at the start of step `record_from + k * record_every`.
+        let due = step >= options.record_from && (step - options.record_from) % options.record_every == 0;
+        if due {
+            record(&stepper, &state);
+        }
+        if step == forcing.steps() {
+            break;
+        }
+        if watch.stop.load(Ordering::Relaxed) {
+            return Err(EngineError::Interrupted);
+        }
+        stepper.step(&mut state, forcing, step, options.dt, &mut ledger)?;
+    }
+    Ok(Run { records, ledger, state, cycles, settled, iterations: stepper.iterations })
+}
+
+/// Repeats the first period until every lane has settled; a settled lane keeps its state.
+fn warm_up<S: Real>(
+    stepper: &mut Stepper<'_, S>,
+    state: &mut State<S>,
+    forcing: &Forcing<'_>,
+    options: &Options,
+    watch: &Watch,
+) -> Result<(usize, S), EngineError> {
+    let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
+    let mut active = S::Mask::splat(true);
+    let mut settled = S::zero();
+    for cycle in 1..=warmup.max_cycles {
+        let before = state.clone();
+        let mut next = state.clone();
+        let mut unused = Ledger::new();
+        for step in 0..warmup.steps {
+            if watch.stop.load(Ordering::Relaxed) {
+                return Err(EngineError::Interrupted);
+            }
+            stepper.step(&mut next, forcing, step, options.dt, &mut unused)?;
+        }
+        let change = next.distance(&before);
+        state.take(active, &next);
+        settled = S::select(active, change, settled);
+        active = active & S::constant(warmup.tolerance).lt(change);
+        if !active.any() {
+            return Ok((cycle, settled));
+        }
+    }
+    let residual = (0..S::LANES).map(|lane| settled.lane(lane)).fold(0.0, f64::max);
+    Err(EngineError::NotSettled { cycles: warmup.max_cycles, residual, tolerance: warmup.tolerance })
+}
+
+fn check(plan: &Plan, numbers: usize, forcing: &Forcing<'_>, options: &Options) -> Result<(), EngineError> {
+    let fail = |text: String| Err(EngineError::Input(text));
+    let stages = options.scheme.weights().len();
+    if numbers != plan.description.parameters.len() {
+        return fail(format!("{numbers} parameter values, expected {}", plan.description.parameters.len()));
+    }
+    if forcing.stages() != stages || forcing.channels() != plan.n_channels() {
+        return fail(format!(
+            "forcing has {} stages and {} channels, expected {stages} and {}",
+            forcing.stages(),
+            forcing.channels(),
+            plan.n_channels()
+        ));
+    }
+    if forcing.steps() == 0 || options.dt <= 0.0 || !options.dt.is_finite() || options.record_every == 0 {
+        return fail("a run needs at least one step of positive length".to_owned());
+    }
+    if options.warmup.is_some_and(|warmup| warmup.steps == 0 || warmup.steps > forcing.steps()) {
+        return fail("the repeated first period is longer than the run".to_owned());
+    }
+    options.probes.iter().try_for_each(|probe| probe.check(plan))
+}

@@ -1,0 +1,263 @@
+//! The building compiled to flat arrays and indices: everything that does not depend on a parameter's value.
+
+use crate::description::{Construction, Convection, Description, Facing, Material, Side, ZoneLongwave};
+use crate::error::EngineError;
+use crate::forcing::CLIMATE_CHANNELS;
+
+/// A face is addressed by `2 * surface + side`, side 0 outside, 1 inside.
+pub type FaceId = usize;
+
+/// A compiled description.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The description it came from.
+    pub description: Description,
+    /// One wall per surface.
+    pub walls: Vec<WallPlan>,
+    /// Two faces per surface.
+    pub faces: Vec<FacePlan>,
+    /// Zones.
+    pub zones: Vec<ZonePlan>,
+    /// Number of finite volumes in all walls.
+    pub n_cells: usize,
+    /// Number of zone faces and zone airs: the size of the dense room block.
+    pub n_dense: usize,
+}
+
+/// A wall as a chain of cells between two faces.
+#[derive(Debug, Clone)]
+pub struct WallPlan {
+    /// Index of its first cell in the flat cell arrays.
+    pub first_cell: usize,
+    /// Layer of each cell.
+    pub cell_layers: Vec<usize>,
+    /// Massless layers in front of each link (`cells + 1` lists).
+    pub link_layers: Vec<Vec<usize>>,
+    /// First and one past the last cell of each layer.
+    pub layer_cells: Vec<(usize, usize)>,
+    /// True when a layer's properties depend on temperature.
+    pub nonlinear: bool,
+}
+
+/// How a face takes part in the solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FaceRole {
+    /// Unknown `row` of the dense block, in contact with a zone.
+    Zone { zone: usize, row: usize },
+    /// Eliminated inside its wall.
+    Local,
+}
+
+/// A face.
+#[derive(Debug, Clone)]
+pub struct FacePlan {
+    /// Surface it belongs to.
+    pub surface: usize,
+    /// 0 outside, 1 inside.
+    pub side: usize,
+    /// Its part in the solution.
+    pub role: FaceRole,
+}
+
+/// A zone.
+#[derive(Debug, Clone)]
+pub struct ZonePlan {
+    /// Its faces, in the order of the surfaces.
+    pub faces: Vec<FaceId>,
+    /// Row of its air in the dense block.
+    pub air_row: usize,
+}
+
+impl Plan {
+    /// Compiles a description.
+    ///
+    /// # Errors
+    /// [`EngineError::Description`] when references or required parts are missing.
+    pub fn new(description: Description) -> Result<Self, EngineError> {
+        check(&description)?;
+        let mut first_cell = 0;
+        let mut walls = Vec::with_capacity(description.surfaces.len());
+        for surface in &description.surfaces {
+            let wall = WallPlan::new(&description, &description.constructions[surface.construction], first_cell);
+            first_cell += wall.cell_layers.len();
+            walls.push(wall);
+        }
+        let (faces, zones, n_dense) = number_unknowns(&description);
+        Ok(Self { description, walls, faces, zones, n_cells: first_cell, n_dense })
+    }
+
+    /// The side that a face stands for.
+    #[must_use]
+    pub fn side(&self, face: FaceId) -> &Side {
+        let surface = &self.description.surfaces[face / 2];
+        if face % 2 == 0 {
+            &surface.outside
+        } else {
+            &surface.inside
+        }
+    }
+
+    /// Row of a zone face in the dense block.
+    ///
+    /// # Panics
+    /// When the face is not in a zone: a fault of the engine.
+    #[must_use]
+    pub fn row(&self, face: FaceId) -> usize {
+        match self.faces[face].role {
+            FaceRole::Zone { row, .. } => row,
+            FaceRole::Local => unreachable!("face {face} is in no zone"),
+        }
+    }
+
+    /// Number of channels that the forcing must have.
+    #[must_use]
+    pub fn n_channels(&self) -> usize {
+        CLIMATE_CHANNELS + self.description.channels.len()
+    }
+
+    /// Name of a face for messages.
+    #[must_use]
+    pub fn face_name(&self, face: FaceId) -> String {
+        let side = if face % 2 == 0 { "outside" } else { "inside" };
+        format!("surface {} ({side} face)", self.description.surfaces[face / 2].name)
+    }
+}
+
+impl WallPlan {
+    fn new(description: &Description, construction: &Construction, first_cell: usize) -> Self {
+        let mut cell_layers = Vec::new();
+        let mut link_layers = vec![Vec::new()];
+        let mut layer_cells = Vec::new();
+        let mut nonlinear = false;
+        for (index, layer) in construction.layers.iter().enumerate() {
+            let start = cell_layers.len();
+            match description.materials[layer.material] {
+                Material::Resistance { .. } => {
+                    if let Some(link) = link_layers.last_mut() {
+                        link.push(index);
+                    }
+                }
+                Material::Solid { .. } | Material::Pcm { .. } => {
+                    nonlinear |= matches!(description.materials[layer.material], Material::Pcm { .. });
+                    for _ in 0..layer.nodes {
+                        cell_layers.push(index);
+                        link_layers.push(Vec::new());
+                    }
+                }
+            }
+            layer_cells.push((start, cell_layers.len()));
+        }
+        Self { first_cell, cell_layers, link_layers, layer_cells, nonlinear }
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.cell_layers.len()
+    }
+
+    /// True for a wall of resistances only.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.cell_layers.is_empty()
+    }
+}
+
+/// Numbers the faces in contact with zones first, then the airs.
+fn number_unknowns(description: &Description) -> (Vec<FacePlan>, Vec<ZonePlan>, usize) {
+    let mut zones: Vec<ZonePlan> =
+        description.zones.iter().map(|_| ZonePlan { faces: Vec::new(), air_row: 0 }).collect();
+    let mut faces = Vec::with_capacity(2 * description.surfaces.len());
+    let mut row = 0;
+    for (surface, definition) in description.surfaces.iter().enumerate() {
+        for (side, part) in [&definition.outside, &definition.inside].into_iter().enumerate() {
+            let role = if let Facing::Zone { zone } = part.facing {
+                zones[zone].faces.push(2 * surface + side);
+                row += 1;
+                FaceRole::Zone { zone, row: row - 1 }
+            } else {
+                FaceRole::Local
+            };
+            faces.push(FacePlan { surface, side, role });
+        }
+    }
+    for zone in &mut zones {
+        zone.air_row = row;
+        row += 1;
+    }
+    (faces, zones, row)
+}
+
+/// Everything that indexing below relies on. The description language checks the same with better words.
+fn check(description: &Description) -> Result<(), EngineError> {
+    let fail = |text: String| Err(EngineError::Description(text));
+    for construction in &description.constructions {
+        if construction.layers.is_empty() {
+            return fail(format!("construction {} has no layers", construction.name));
+        }
+        for layer in &construction.layers {
+            let Some(material) = description.materials.get(layer.material) else {
+                return fail(format!("layer {} of {} has no material", layer.name, construction.name));
+            };
+            let massless = matches!(material, Material::Resistance { .. });
+            if massless != (layer.nodes == 0) || massless == layer.thickness.is_some() {
+                return fail(format!(
+                    "layer {} of {}: a resistance has no thickness and no nodes, every other layer both",
+                    layer.name, construction.name
+                ));
+            }
+        }
+    }
+    for surface in &description.surfaces {
+        if surface.construction >= description.constructions.len() {
+            return fail(format!("surface {} has no construction", surface.name));
+        }
+        for side in [&surface.outside, &surface.inside] {
+            check_side(description, &surface.name, side)?;
+        }
+    }
+    for zone in &description.zones {
+        if !zone.view_weights.is_empty() && zone.view_weights.iter().any(|r| r.len() != zone.view_weights.len()) {
+            return fail(format!("zone {}: view weights are not square", zone.name));
+        }
+    }
+    if description.sensors.iter().any(|sensor| sensor.surface >= description.surfaces.len()) {
+        return fail("a sensor is in no surface".to_owned());
+    }
+    Ok(())
+}
+
+fn check_side(description: &Description, name: &str, side: &Side) -> Result<(), EngineError> {
+    let fail = |text: &str| Err(EngineError::Description(format!("surface {name}: {text}")));
+    let n_channels = description.channels.len();
+    match side.facing {
+        Facing::Zone { zone } if zone >= description.zones.len() => return fail("faces an unknown zone"),
+        Facing::Zone { zone } => {
+            let exchanges = !matches!(description.zones[zone].longwave, ZoneLongwave::None);
+            if side.convection.is_none() || (exchanges && side.emissivity.is_none()) {
+                return fail("a zone side needs convection and emissivity");
+            }
+        }
+        Facing::Outdoors if side.convection.is_none() || side.emissivity.is_none() => {
+            return fail("an outdoor side needs convection and emissivity");
+        }
+        Facing::Outdoors if side.absorptance.is_none() => return fail("an outdoor side needs absorptance"),
+        Facing::Measured { channel } if channel >= n_channels => return fail("unknown channel"),
+        _ => {}
+    }
+    if side.irradiance.is_some_and(|channel| channel >= n_channels) {
+        return fail("unknown irradiance channel");
+    }
+    if side.irradiance.is_some() && side.absorptance.is_none() {
+        return fail("a measured irradiance needs absorptance");
+    }
+    if matches!(side.facing, Facing::Measured { .. } | Facing::Ground { .. })
+        && matches!(side.convection, Some(Convection::Tarp { .. } | Convection::Mowitt { .. }))
+    {
+        return fail("an imposed temperature takes a constant film");
+    }
+    if side.irradiance.is_some() && side.convection.is_none() && !matches!(side.facing, Facing::Adiabatic) {
+        return fail("the sun on a face held at an imposed temperature does nothing");
+    }
+    Ok(())
+}

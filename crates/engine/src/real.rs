@@ -1,0 +1,617 @@
+//! The one number trait of the engine, and the three numbers that implement it.
+//!
+//! Physics is written once over [`Real`] and runs as a plain `f64`, as [`Lanes`] (one
+//! ensemble member per lane) and with forward derivatives ([`Dual`]).
+//!
+//! A member must give the same bits alone and in a lane. Therefore elementary functions
+//! are our own (branch-free, built from `+ - * /` and bit operations, each correctly
+//! rounded by IEEE 754), lanes apply them element by element, nothing is contracted to
+//! fused operations, and code on lane values selects instead of branching.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// A truth value per lane.
+pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// The same answer in every lane.
+    fn splat(value: bool) -> Self;
+    /// True when any lane is true.
+    fn any(self) -> bool;
+    /// Answer of one lane.
+    fn lane(self, lane: usize) -> bool;
+}
+
+impl Mask for bool {
+    #[inline]
+    fn splat(value: bool) -> Self {
+        value
+    }
+    #[inline]
+    fn any(self) -> bool {
+        self
+    }
+    #[inline]
+    fn lane(self, _lane: usize) -> bool {
+        self
+    }
+}
+
+/// A number the physics can be run with.
+pub trait Real:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+{
+    /// Comparison results.
+    type Mask: Mask;
+    /// Number of ensemble members carried.
+    const LANES: usize;
+    /// True when the number carries derivatives (Newton then adds one iteration, so that they converge too).
+    const DERIVATIVES: bool;
+
+    /// The same constant in every lane.
+    fn constant(value: f64) -> Self;
+    /// Value of one lane, without derivatives.
+    fn lane(self, lane: usize) -> f64;
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Exponential; the argument is clamped to \[-708, 709\].
+    #[must_use]
+    fn exp(self) -> Self;
+    /// Natural logarithm of a positive normal number.
+    #[must_use]
+    fn ln(self) -> Self;
+    /// Cube root of a number >= 0.
+    #[must_use]
+    fn cbrt(self) -> Self;
+    /// Sine of an angle in rad.
+    #[must_use]
+    fn sin(self) -> Self;
+    /// Cosine of an angle in rad.
+    #[must_use]
+    fn cos(self) -> Self;
+    /// True where self < other.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is true, else `no`.
+    #[must_use]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// Power of a positive base.
+    #[inline]
+    #[must_use]
+    fn powf(self, exponent: Self) -> Self {
+        (exponent * self.ln()).exp()
+    }
+    /// The smaller one.
+    #[inline]
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        Self::select(other.lt(self), other, self)
+    }
+    /// The larger one.
+    #[inline]
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        Self::select(self.lt(other), other, self)
+    }
+    /// Magnitude.
+    #[inline]
+    #[must_use]
+    fn abs(self) -> Self {
+        Self::select(self.lt(Self::zero()), -self, self)
+    }
+    /// `|self|` rounded off within `radius` of zero, so that its powers keep a finite slope there.
+    #[inline]
+    #[must_use]
+    fn smooth_abs(self, radius: f64) -> Self {
+        (self * self + Self::constant(radius * radius)).sqrt()
+    }
+    /// Zero.
+    #[inline]
+    #[must_use]
+    fn zero() -> Self {
+        Self::constant(0.0)
+    }
+    /// One.
+    #[inline]
+    #[must_use]
+    fn one() -> Self {
+        Self::constant(1.0)
+    }
+    /// Product with a constant.
+    #[inline]
+    #[must_use]
+    fn scale(self, factor: f64) -> Self {
+        self * Self::constant(factor)
+    }
+    /// Fourth power.
+    #[inline]
+    #[must_use]
+    fn pow4(self) -> Self {
+        let square = self * self;
+        square * square
+    }
+}
+
+// ---------------------------------------------------------------- elementary functions
+
+/// e^x by reduction to |r| <= ln2/2 and its Taylor series to r^13 (truncation below 1e-17).
+#[inline]
+fn exp(x: f64) -> f64 {
+    const LOG2_E: f64 = core::f64::consts::LOG2_E;
+    // ln 2 in two parts (Cody & Waite): the first has trailing zeros, so that k * LN2_HIGH is exact.
+    const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
+    const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+    // Adding 1.5 * 2^52 rounds to an integer that can be read from the low bits.
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    let x = if x < -708.0 { -708.0 } else { x };
+    let x = if x > 709.0 { 709.0 } else { x };
+    let shifted = x * LOG2_E + ROUND;
+    let k = shifted - ROUND;
+    let r = (x - k * LN2_HIGH) - k * LN2_LOW;
+    let mut p = 1.0 / 6_227_020_800.0;
+    p = p * r + 1.0 / 479_001_600.0;
+    p = p * r + 1.0 / 39_916_800.0;
+    p = p * r + 1.0 / 3_628_800.0;
+    p = p * r + 1.0 / 362_880.0;
+    p = p * r + 1.0 / 40_320.0;
+    p = p * r + 1.0 / 5_040.0;
+    p = p * r + 1.0 / 720.0;
+    p = p * r + 1.0 / 120.0;
+    p = p * r + 1.0 / 24.0;
+    p = p * r + 1.0 / 6.0;
+    p = p * r + 0.5;
+    p = p * r + 1.0;
+    p = p * r + 1.0;
+    let exponent = shifted.to_bits().wrapping_add(1023) << 52;
+    p * f64::from_bits(exponent)
+}
+
+/// ln x of a positive normal number: x = m 2^e with m in \[sqrt(1/2), sqrt 2), ln m = 2 atanh((m-1)/(m+1)).
+#[inline]
+fn ln(x: f64) -> f64 {
+    const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
+    const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+    // Bits of sqrt(1/2): subtracting them before the shift centres the mantissa.
+    const SQRT_HALF: u64 = 0x3FE6_A09E_667F_3BCD;
+    let bits = x.to_bits();
+    #[allow(clippy::cast_possible_wrap, reason = "exponent arithmetic is meant to wrap")]
+    let e = (bits.wrapping_sub(SQRT_HALF) as i64) >> 52;
+    #[allow(clippy::cast_sign_loss, reason = "exponent arithmetic is meant to wrap")]
+    let m = f64::from_bits(bits.wrapping_sub((e as u64) << 52));
+    #[allow(clippy::cast_precision_loss, reason = "|e| < 1075 is exact")]
+    let e = e as f64;
+    let s = (m - 1.0) / (m + 1.0);
+    let z = s * s;
+    let mut p = 1.0 / 23.0;
+    p = p * z + 1.0 / 21.0;
+    p = p * z + 1.0 / 19.0;
+    p = p * z + 1.0 / 17.0;
+    p = p * z + 1.0 / 15.0;
+    p = p * z + 1.0 / 13.0;
+    p = p * z + 1.0 / 11.0;
+    p = p * z + 1.0 / 9.0;
+    p = p * z + 1.0 / 7.0;
+    p = p * z + 1.0 / 5.0;
+    p = p * z + 1.0 / 3.0;
+    p = p * z;
+    e * LN2_HIGH + (2.0 * s + (2.0 * s * p + e * LN2_LOW))
+}
+
+/// Cube root of x >= 0: exponent divided by three on the bits, then Halley's iteration (cubic convergence).
+#[inline]
+fn cbrt(x: f64) -> f64 {
+    const THIRD_OF_BIAS: u64 = 0x2A9F_7893_0000_0000;
+    let tiny = if x < 1e-290 { 1e-290 } else { x };
+    let mut y = f64::from_bits(tiny.to_bits() / 3 + THIRD_OF_BIAS);
+    for _ in 0..3 {
+        let cube = y * y * y;
+        y = y * ((cube + 2.0 * tiny) / (2.0 * cube + tiny));
+    }
+    if x < 1e-290 {
+        0.0
+    } else {
+        y
+    }
+}
+
+// ---------------------------------------------------------------- f64
+
+impl Real for f64 {
+    type Mask = bool;
+    const LANES: usize = 1;
+    const DERIVATIVES: bool = false;
+
+    #[inline]
+    fn constant(value: f64) -> Self {
+        value
+    }
+    #[inline]
+    fn lane(self, _lane: usize) -> f64 {
+        self
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        exp(self)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        ln(self)
+    }
+    #[inline]
+    fn cbrt(self) -> Self {
+        cbrt(self)
+    }
+    #[inline]
+    fn sin(self) -> Self {
+        f64::sin(self)
+    }
+    #[inline]
+    fn cos(self) -> Self {
+        f64::cos(self)
+    }
+    #[inline]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask {
+            yes
+        } else {
+            no
+        }
+    }
+}
+
+// ---------------------------------------------------------------- lanes
+
+/// `N` members side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct Lanes<const N: usize>(pub [f64; N]);
+
+/// Truth of `N` members.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LaneMask<const N: usize>([bool; N]);
+
+impl<const N: usize> Lanes<N> {
+    #[inline]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Self(core::array::from_fn(|i| f(self.0[i])))
+    }
+    #[inline]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self(core::array::from_fn(|i| f(self.0[i], other.0[i])))
+    }
+}
+
+impl<const N: usize> Add for Lanes<N> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+impl<const N: usize> Sub for Lanes<N> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+impl<const N: usize> Mul for Lanes<N> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+impl<const N: usize> Div for Lanes<N> {
+    type Output = Self;
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+}
+impl<const N: usize> Neg for Lanes<N> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        self.map(|a| -a)
+    }
+}
+impl<const N: usize> AddAssign for Lanes<N> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl<const N: usize> BitAnd for LaneMask<N> {
+    type Output = Self;
+    #[inline]
+    fn bitand(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] & other.0[i]))
+    }
+}
+impl<const N: usize> BitOr for LaneMask<N> {
+    type Output = Self;
+    #[inline]
+    fn bitor(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] | other.0[i]))
+    }
+}
+impl<const N: usize> Not for LaneMask<N> {
+    type Output = Self;
+    #[inline]
+    fn not(self) -> Self {
+        Self(core::array::from_fn(|i| !self.0[i]))
+    }
+}
+impl<const N: usize> Mask for LaneMask<N> {
+    #[inline]
+    fn splat(value: bool) -> Self {
+        Self([value; N])
+    }
+    #[inline]
+    fn any(self) -> bool {
+        self.0.iter().any(|&lane| lane)
+    }
+    #[inline]
+    fn lane(self, lane: usize) -> bool {
+        self.0[lane]
+    }
+}
+
+impl<const N: usize> Real for Lanes<N> {
+    type Mask = LaneMask<N>;
+    const LANES: usize = N;
+    const DERIVATIVES: bool = false;
+
+    #[inline]
+    fn constant(value: f64) -> Self {
+        Self([value; N])
+    }
+    #[inline]
+    fn lane(self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        self.map(exp)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        self.map(ln)
+    }
+    #[inline]
+    fn cbrt(self) -> Self {
+        self.map(cbrt)
+    }
+    #[inline]
+    fn sin(self) -> Self {
+        self.map(f64::sin)
+    }
+    #[inline]
+    fn cos(self) -> Self {
+        self.map(f64::cos)
+    }
+    #[inline]
+    fn lt(self, other: Self) -> LaneMask<N> {
+        LaneMask(core::array::from_fn(|i| self.0[i] < other.0[i]))
+    }
+    #[inline]
+    fn select(mask: LaneMask<N>, yes: Self, no: Self) -> Self {
+        Self(core::array::from_fn(|i| if mask.0[i] { yes.0[i] } else { no.0[i] }))
+    }
+}
+
+// ---------------------------------------------------------------- duals
+
+/// A number with `K` forward derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dual<S, const K: usize> {
+    /// Value.
+    pub value: S,
+    /// Derivatives of the value.
+    pub slope: [S; K],
+}
+
+impl<S: Real, const K: usize> Dual<S, K> {
+    /// A number whose derivatives are all zero.
+    #[inline]
+    pub fn fixed(value: S) -> Self {
+        Self { value, slope: [S::zero(); K] }
+    }
+    /// The variable whose derivative number `which` is one.
+    #[inline]
+    #[must_use]
+    pub fn variable(value: S, which: usize) -> Self {
+        let mut dual = Self::fixed(value);
+        dual.slope[which] = S::one();
+        dual
+    }
+    /// f(self) from the value and slope of f.
+    #[inline]
+    fn chain(self, value: S, slope: S) -> Self {
+        Self { value, slope: self.slope.map(|s| s * slope) }
+    }
+}
+
+impl<S: Real, const K: usize> Add for Dual<S, K> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            slope: core::array::from_fn(|i| self.slope[i] + other.slope[i]),
+        }
+    }
+}
+impl<S: Real, const K: usize> Sub for Dual<S, K> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            slope: core::array::from_fn(|i| self.slope[i] - other.slope[i]),
+        }
+    }
+}
+impl<S: Real, const K: usize> Mul for Dual<S, K> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            slope: core::array::from_fn(|i| self.slope[i] * other.value + self.value * other.slope[i]),
+        }
+    }
+}
+impl<S: Real, const K: usize> Div for Dual<S, K> {
+    type Output = Self;
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self {
+            value,
+            slope: core::array::from_fn(|i| (self.slope[i] - value * other.slope[i]) / other.value),
+        }
+    }
+}
+impl<S: Real, const K: usize> Neg for Dual<S, K> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self { value: -self.value, slope: self.slope.map(|s| -s) }
+    }
+}
+impl<S: Real, const K: usize> AddAssign for Dual<S, K> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<S: Real, const K: usize> Real for Dual<S, K> {
+    type Mask = S::Mask;
+    const LANES: usize = S::LANES;
+    const DERIVATIVES: bool = true;
+
+    #[inline]
+    fn constant(value: f64) -> Self {
+        Self::fixed(S::constant(value))
+    }
+    #[inline]
+    fn lane(self, lane: usize) -> f64 {
+        self.value.lane(lane)
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, S::constant(0.5) / root)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        self.chain(value, value)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), S::one() / self.value)
+    }
+    #[inline]
+    fn cbrt(self) -> Self {
+        let root = self.value.cbrt();
+        self.chain(root, S::one() / (root * root).scale(3.0))
+    }
+    #[inline]
+    fn sin(self) -> Self {
+        self.chain(self.value.sin(), self.value.cos())
+    }
+    #[inline]
+    fn cos(self) -> Self {
+        self.chain(self.value.cos(), -self.value.sin())
+    }
+    #[inline]
+    fn lt(self, other: Self) -> S::Mask {
+        self.value.lt(other.value)
+    }
+    #[inline]
+    fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            value: S::select(mask, yes.value, no.value),
+            slope: core::array::from_fn(|i| S::select(mask, yes.slope[i], no.slope[i])),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: f64, b: f64, tolerance: f64) {
+        assert!((a - b).abs() <= tolerance * b.abs().max(1e-300), "{a} is not {b}");
+    }
+
+    #[test]
+    fn elementary_functions_agree_with_the_standard_library() {
+        let mut x = -700.0;
+        while x < 700.0 {
+            close(exp(x), f64::exp(x), 4e-16);
+            x += 0.377;
+        }
+        let mut x = 1e-280;
+        while x < 1e280 {
+            if (x - 1.0).abs() > 1e-3 {
+                close(ln(x), f64::ln(x), 4e-16);
+            }
+            close(cbrt(x), f64::cbrt(x), 4e-16);
+            x *= 1.37;
+        }
+        assert!((exp(0.0) - 1.0).abs() < f64::EPSILON);
+        assert!(ln(1.0).abs() < f64::EPSILON);
+        assert!(cbrt(0.0).abs() < f64::EPSILON);
+    }
+
+    #[test]
+    fn lanes_give_the_bits_of_the_scalar() {
+        let x = Lanes([0.1, 1.7, 23.4, 350.0]);
+        for lane in 0..4 {
+            let s = x.0[lane];
+            assert_eq!(Real::exp(x).0[lane].to_bits(), Real::exp(s).to_bits());
+            assert_eq!(Real::ln(x).0[lane].to_bits(), Real::ln(s).to_bits());
+            assert_eq!(Real::cbrt(x).0[lane].to_bits(), Real::cbrt(s).to_bits());
+            assert_eq!(x.powf(Lanes([0.89; 4])).0[lane].to_bits(), Real::powf(s, 0.89).to_bits());
+            assert_eq!((x / (x + x * x)).0[lane].to_bits(), (s / (s + s * s)).to_bits());
+        }
+    }
+
+    #[test]
+    fn duals_differentiate() {
+        let x: Dual<f64, 1> = Dual::variable(1.3, 0);
+        let f = |x: Dual<f64, 1>| (x * x).exp() / x.sqrt() + x.ln() * x.cbrt() - x.sin() / x.cos();
+        let value = |x: f64| (x * x).exp() / x.sqrt() + x.ln() * x.cbrt() - x.tan();
+        let step = 1e-6;
+        let difference = (value(1.3 + step) - value(1.3 - step)) / (2.0 * step);
+        close(f(x).value, value(1.3), 1e-14);
+        close(f(x).slope[0], difference, 1e-8);
+    }
+}

@@ -1,0 +1,111 @@
+//! Short-wave radiation on a plane.
+//!
+//! The sun's direction and the horizontal radiation come with the forcing; transposition lives
+//! here so that tilt, azimuth and albedo are parameters like others.
+//!
+//! Sources:
+//! - Hay & Davies (1980), Calculation of the solar radiation incident on an inclined surface.
+//! - Perez, Ineichen, Seals, Michalsky & Stewart (1990), Solar Energy 44(5), doi:10.1016/0038-092X(90)90055-H.
+//! - Kasten & Young (1989), Applied Optics 28(22), doi:10.1364/AO.28.004735 (relative air mass).
+
+use crate::description::DiffuseSky;
+use crate::forcing::channel;
+use crate::real::Real;
+
+/// The sun and its radiation at one instant, independent of any plane.
+#[derive(Debug, Clone, Copy)]
+pub struct Sunlight {
+    /// Unit vector to the sun (east, north, up).
+    pub direction: [f64; 3],
+    /// Beam on a plane normal to it [W/m2]; zero below the horizon.
+    pub direct_normal: f64,
+    /// [W/m2].
+    pub global_horizontal: f64,
+    isotropic: f64,
+    /// Multiplies `max(0, cos incidence)`: circumsolar diffuse [W/m2].
+    circumsolar: f64,
+    /// Multiplies sin(tilt): brightening of the horizon [W/m2].
+    horizon: f64,
+}
+
+/// A plane as the sun sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Plane<S> {
+    /// Outward normal (east, north, up).
+    pub normal: [S; 3],
+    /// Sine of the tilt.
+    pub sin_tilt: S,
+    /// Fraction of the sky seen.
+    pub sky_view: S,
+    /// Fraction of the ground seen, (1 - cos tilt)/2.
+    pub ground_view: S,
+}
+
+impl Sunlight {
+    /// Reads a forcing row and splits the diffuse radiation by the model.
+    #[must_use]
+    pub fn new(row: &[f64], model: DiffuseSky) -> Self {
+        let direction = [row[channel::SUN_EAST], row[channel::SUN_NORTH], row[channel::SUN_UP]];
+        let up = direction[2];
+        let direct_normal = if up > 0.0 { row[channel::DIRECT_NORMAL] } else { 0.0 };
+        let diffuse = row[channel::DIFFUSE_HORIZONTAL];
+        let extra = row[channel::DIRECT_NORMAL_EXTRA];
+        let (circumsolar_share, horizon_share) = match model {
+            DiffuseSky::Isotropic => (0.0, 0.0),
+            DiffuseSky::HayDavies => (if extra > 0.0 { (direct_normal / extra).min(1.0) } else { 0.0 }, 0.0),
+            DiffuseSky::Perez => perez_shares(up, direct_normal, diffuse, extra),
+        };
+        // Both models keep the sun at least 5 deg (Perez) or 1 deg above the horizon in the ratio of cosines.
+        let lowest = if model == DiffuseSky::Perez { 85.0_f64 } else { 89.0 }.to_radians().cos();
+        Self {
+            direction,
+            direct_normal,
+            global_horizontal: row[channel::GLOBAL_HORIZONTAL],
+            isotropic: diffuse * (1.0 - circumsolar_share),
+            circumsolar: diffuse * circumsolar_share / up.max(lowest),
+            horizon: diffuse * horizon_share,
+        }
+    }
+
+    /// Irradiance on a plane [W/m2]: beam, diffuse and reflected from the ground.
+    #[must_use]
+    pub fn on<S: Real>(&self, plane: &Plane<S>, ground_reflectance: S) -> S {
+        let n = &plane.normal;
+        let cosine = n[0].scale(self.direction[0]) + n[1].scale(self.direction[1]) + n[2].scale(self.direction[2]);
+        let facing = cosine.max(S::zero());
+        let beam = facing.scale(self.direct_normal + self.circumsolar);
+        let diffuse = plane.sky_view.scale(self.isotropic) + plane.sin_tilt.scale(self.horizon);
+        let ground = (ground_reflectance * plane.ground_view).scale(self.global_horizontal);
+        beam + diffuse.max(S::zero()) + ground
+    }
+}
+
+/// Perez brightness coefficients F11 F12 F13 F21 F22 F23 by clearness bin ("all sites composite 1990").
+const PEREZ: [[f64; 6]; 8] = [
+    [-0.008, 0.588, -0.062, -0.060, 0.072, -0.022],
+    [0.130, 0.683, -0.151, -0.019, 0.066, -0.029],
+    [0.330, 0.487, -0.221, 0.055, -0.064, -0.026],
+    [0.568, 0.187, -0.295, 0.109, -0.152, -0.014],
+    [0.873, -0.392, -0.362, 0.226, -0.462, 0.001],
+    [1.132, -1.237, -0.412, 0.288, -0.823, 0.056],
+    [1.060, -1.600, -0.359, 0.264, -1.127, 0.131],
+    [0.678, -0.327, -0.250, 0.156, -1.377, 0.251],
+];
+/// Upper edges of the clearness bins.
+const PEREZ_BINS: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
+
+/// Circumsolar and horizon shares of the diffuse radiation.
+fn perez_shares(up: f64, direct: f64, diffuse: f64, extra: f64) -> (f64, f64) {
+    if diffuse <= 0.0 || extra <= 0.0 {
+        return (0.0, 0.0);
+    }
+    let zenith = up.clamp(-1.0, 1.0).acos().min(core::f64::consts::FRAC_PI_2);
+    let cube = 1.041 * zenith.powi(3);
+    let clearness = ((diffuse + direct) / diffuse + cube) / (1.0 + cube);
+    let elevation = 90.0 - zenith.to_degrees();
+    let air_mass = 1.0 / (zenith.cos() + 0.50572 * (elevation + 6.07995).powf(-1.6364));
+    let brightness = diffuse * air_mass / extra;
+    let f = &PEREZ[PEREZ_BINS.iter().filter(|&&edge| clearness >= edge).count()];
+    let circumsolar = (f[0] + f[1] * brightness + f[2] * zenith).max(0.0);
+    (circumsolar, f[3] + f[4] * brightness + f[5] * zenith)
+}

@@ -1,0 +1,324 @@
+//! A linear building as matrices: `dx/dt = A x + B u`, `y = C x + D u`.
+//!
+//! States are cell and air temperatures; faces hold no heat and are eliminated. Only models whose every law is
+//! linear and constant have such a form; the first law that is not is named.
+
+use crate::coefficients::{Boundary, Coefficients};
+use crate::conduction::Chain;
+use crate::convection::Film;
+use crate::description::{Infiltration, Material};
+use crate::error::EngineError;
+use crate::plan::Plan;
+use crate::radiation::Emission;
+
+/// Matrices in row-major order with names for their rows and columns.
+#[derive(Debug, Clone)]
+pub struct StateSpace {
+    pub a: Vec<f64>,
+    pub b: Vec<f64>,
+    pub c: Vec<f64>,
+    pub d: Vec<f64>,
+    pub states: Vec<String>,
+    pub inputs: Vec<String>,
+    pub outputs: Vec<String>,
+}
+
+/// Writes a plan at a parameter vector as matrices.
+///
+/// # Errors
+/// [`EngineError::Input`] naming the first law that is not linear and constant.
+pub fn state_space(plan: &Plan, numbers: &[f64]) -> Result<StateSpace, EngineError> {
+    let coefficients = Coefficients::new(plan, numbers);
+    require_linear(plan, numbers, &coefficients)?;
+    let mut network = Network::new(plan, &coefficients);
+    for wall in 0..plan.walls.len() {
+        network.add_wall(wall);
+    }
+    for face in 0..plan.faces.len() {
+        network.add_boundary(face);
+    }
+    for zone in 0..plan.zones.len() {
+        network.add_zone(zone);
+    }
+    Ok(network.eliminate_faces())
+}
+
+fn require_linear(plan: &Plan, numbers: &[f64], coefficients: &Coefficients<f64>) -> Result<(), EngineError> {
+    let refuse = |what: String, remedy: &str| {
+        Err(EngineError::Input(format!("no state space: {what} is not linear and constant; {remedy}")))
+    };
+    for material in &plan.description.materials {
+        if let Material::Pcm { law: _, conductivity, .. } = material {
+            let path = &plan.description.parameters[conductivity[0].0 as usize].path;
+            let name = path.split('.').nth(1).unwrap_or(path);
+            return refuse(format!("materials.{name} (phase change)"), "replace it by a solid");
+        }
+    }
+    for (index, face) in coefficients.faces.iter().enumerate() {
+        let name = plan.face_name(index);
+        if face.film.as_ref().is_some_and(|film| !matches!(film, Film::Constant(_))) {
+            return refuse(format!("convection at {name}"), "use a constant coefficient");
+        }
+        if let Boundary::Outdoors(outdoors) = &face.boundary {
+            if matches!(outdoors.emission, Some(Emission::Exact)) {
+                return refuse(format!("long-wave exchange at {name}"), "use `longwave: {kind: linearised, ...}`");
+            }
+        }
+    }
+    for (zone, definition) in coefficients.zones.iter().zip(&plan.description.zones) {
+        if !zone.exchange.is_empty() && matches!(zone.emission, Emission::Exact) {
+            return refuse(
+                format!("long-wave exchange in zone {}", definition.name),
+                "use `longwave: {kind: linearised, ...}`",
+            );
+        }
+        let Infiltration { temperature, wind, .. } = &definition.infiltration;
+        if [temperature, wind].iter().any(|id| numbers[id.0 as usize] != 0.0) {
+            return refuse(format!("infiltration of zone {}", definition.name), "keep only its constant part");
+        }
+    }
+    Ok(())
+}
+
+/// Nodes: cells, airs, then faces. Rows are heat balances [W].
+struct Network<'a> {
+    plan: &'a Plan,
+    coefficients: &'a Coefficients<f64>,
+    n_nodes: usize,
+    n_states: usize,
+    conductance: Vec<f64>,
+    capacity: Vec<f64>,
+    drive: Vec<Vec<f64>>,
+    inputs: Vec<String>,
+}
+
+impl<'a> Network<'a> {
+    fn new(plan: &'a Plan, coefficients: &'a Coefficients<f64>) -> Self {
+        let n_states = plan.n_cells + plan.zones.len();
+        let n_nodes = n_states + plan.faces.len();
+        Self {
+            plan,
+            coefficients,
+            n_nodes,
+            n_states,
+            conductance: vec![0.0; n_nodes * n_nodes],
+            capacity: vec![0.0; n_states],
+            drive: vec![Vec::new(); n_nodes],
+            inputs: Vec::new(),
+        }
+    }
+
+    fn face(&self, index: usize) -> usize {
+        self.n_states + index
+    }
+
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.conductance[row * self.n_nodes + column] += value;
+    }
+
+    fn couple(&mut self, a: usize, b: usize, conductance: f64) {
+        self.add(a, a, -conductance);
+        self.add(b, b, -conductance);
+        self.add(a, b, conductance);
+        self.add(b, a, conductance);
+    }
+
+    /// Heat into a node per unit of a named input.
+    fn drive(&mut self, node: usize, input: &str, gain: f64) {
+        let index = self.inputs.iter().position(|name| name == input).unwrap_or_else(|| {
+            self.inputs.push(input.to_owned());
+            self.inputs.len() - 1
+        });
+        let row = &mut self.drive[node];
+        row.resize(row.len().max(index + 1), 0.0);
+        row[index] += gain;
+    }
+
+    fn add_wall(&mut self, index: usize) {
+        let wall = &self.coefficients.walls[index];
+        let first = self.plan.walls[index].first_cell;
+        let chain = Chain::new(wall);
+        let n = wall.cells.len();
+        let node = |i: usize, network: &Self| match i {
+            0 => network.face(2 * index),
+            i if i == n + 1 => network.face(2 * index + 1),
+            i => first + i - 1,
+        };
+        for (i, link) in chain.links.iter().enumerate() {
+            let (left, right) = (node(i, self), node(i + 1, self));
+            self.couple(left, right, wall.area * link.left);
+        }
+        for (i, cell) in wall.cells.iter().enumerate() {
+            self.capacity[first + i] = wall.area * cell.thickness * chain.storage[i].capacity;
+        }
+    }
+
+    fn add_boundary(&mut self, index: usize) {
+        let face = &self.coefficients.faces[index];
+        let area = self.coefficients.walls[index / 2].area;
+        let node = self.face(index);
+        let surface = &self.plan.description.surfaces[index / 2].name;
+        let side = if index % 2 == 0 { "outside" } else { "inside" };
+        let film = match face.film {
+            Some(Film::Constant(h)) => h * face.area_factor * area,
+            _ => 0.0,
+        };
+        if face.irradiance.is_some() || matches!(face.boundary, Boundary::Outdoors(_)) {
+            self.drive(node, &format!("{surface}.{side}_irradiance"), area * face.absorptance);
+        }
+        match &face.boundary {
+            Boundary::Outdoors(outdoors) => {
+                self.add(node, node, -film);
+                self.drive(node, "outdoor_air_temperature", film);
+                if let Some(emission) = &outdoors.emission {
+                    // Linear emission: offset + slope T for face and air alike.
+                    let (offset, slope) = (emission.at(0.0).0, emission.at(0.0).1);
+                    let view = outdoors.plane.sky_view;
+                    let (to_sky, gain) = (view * view.max(0.0).sqrt(), area * face.emissivity);
+                    self.add(node, node, -gain * slope);
+                    self.drive(node, "sky_emission", gain * to_sky);
+                    self.drive(node, "outdoor_air_temperature", gain * (1.0 - to_sky) * slope);
+                    self.drive(node, "one", -gain * to_sky * offset);
+                }
+            }
+            Boundary::Imposed(imposed) => {
+                let input = match imposed {
+                    crate::coefficients::Imposed::Channel(channel) => {
+                        self.plan.description.channels[channel - crate::forcing::CLIMATE_CHANNELS].clone()
+                    }
+                    crate::coefficients::Imposed::Annual { .. } => format!("{surface}.{side}_ground_temperature"),
+                };
+                // A face held at a temperature: a film too strong to matter would spoil the matrix, so the
+                // balance of the face is replaced by T = input.
+                if face.film.is_none() {
+                    for column in 0..self.n_nodes {
+                        self.conductance[node * self.n_nodes + column] = 0.0;
+                    }
+                    self.add(node, node, -1.0);
+                    self.drive(node, &input, 1.0);
+                } else {
+                    self.add(node, node, -film);
+                    self.drive(node, &input, film);
+                }
+            }
+            Boundary::Zone | Boundary::Adiabatic => {}
+        }
+    }
+
+    fn add_zone(&mut self, zone: usize) {
+        let numbers = &self.coefficients.zones[zone];
+        let air = self.plan.n_cells + zone;
+        let faces = &self.plan.zones[zone].faces;
+        self.capacity[air] = numbers.capacity;
+        for (i, &index) in faces.iter().enumerate() {
+            let face = &self.coefficients.faces[index];
+            if let Some(Film::Constant(h)) = face.film {
+                self.couple(self.face(index), air, h * face.area_factor * numbers.areas[i]);
+            }
+            for (j, &other) in faces.iter().enumerate().skip(i + 1) {
+                if let Some(&exchange) = numbers.exchange.get(i * faces.len() + j) {
+                    let slope = numbers.emission.at(0.0).1;
+                    self.couple(self.face(index), self.face(other), exchange * slope);
+                }
+            }
+        }
+        let inflow = numbers.air_capacity * numbers.infiltration[0] / 3600.0;
+        self.add(air, air, -inflow);
+        self.drive(air, "outdoor_air_temperature", inflow);
+    }
+
+    /// Solves the massless faces out and divides by the capacities.
+    fn eliminate_faces(self) -> StateSpace {
+        let (n, f, m) = (self.n_states, self.plan.faces.len(), self.inputs.len());
+        let at = |row: usize, column: usize| self.conductance[row * self.n_nodes + column];
+        let gain = |row: usize, input: usize| self.drive[row].get(input).copied().unwrap_or(0.0);
+        // Faces: -M_ff y = [M_fx | N_f] (x, u).
+        let width = n + m;
+        let mut matrix: Vec<f64> = (0..f * f).map(|k| -at(n + k / f, n + k % f)).collect();
+        let mut response: Vec<f64> = (0..f * width)
+            .map(|k| {
+                let (row, column) = (n + k / width, k % width);
+                if column < n { at(row, column) } else { gain(row, column - n) }
+            })
+            .collect();
+        solve(&mut matrix, &mut response, f, width);
+        let mut rows = vec![0.0; n * width];
+        for i in 0..n {
+            for j in 0..width {
+                let direct = if j < n { at(i, j) } else { gain(i, j - n) };
+                let through: f64 = (0..f).map(|k| at(i, n + k) * response[k * width + j]).sum();
+                rows[i * width + j] = (direct + through) / self.capacity[i];
+            }
+        }
+        let zones = self.plan.zones.len();
+        let mut outputs = vec![0.0; zones * width];
+        for zone in 0..zones {
+            outputs[zone * width + self.plan.n_cells + zone] = 1.0;
+        }
+        outputs.extend(&response);
+        let split = |all: &[f64], first: bool| -> Vec<f64> {
+            all.chunks(width).flat_map(|row| if first { &row[..n] } else { &row[n..] }.to_vec()).collect()
+        };
+        StateSpace {
+            a: split(&rows, true),
+            b: split(&rows, false),
+            c: split(&outputs, true),
+            d: split(&outputs, false),
+            states: state_names(self.plan),
+            outputs: output_names(self.plan),
+            inputs: self.inputs,
+        }
+    }
+}
+
+fn state_names(plan: &Plan) -> Vec<String> {
+    let mut names = Vec::with_capacity(plan.n_cells + plan.zones.len());
+    for (wall, surface) in plan.walls.iter().zip(&plan.description.surfaces) {
+        let layers = &plan.description.constructions[surface.construction].layers;
+        for (i, &layer) in wall.cell_layers.iter().enumerate() {
+            let number = i - wall.layer_cells[layer].0 + 1;
+            names.push(format!("{}.{}_{number}_temperature", surface.name, layers[layer].name));
+        }
+    }
+    names.extend(plan.description.zones.iter().map(|zone| format!("{}.air_temperature", zone.name)));
+    names
+}
+
+fn output_names(plan: &Plan) -> Vec<String> {
+    let airs = plan.description.zones.iter().map(|zone| format!("{}.air_temperature", zone.name));
+    let faces = plan.description.surfaces.iter().flat_map(|surface| {
+        ["outside", "inside"].map(|side| format!("{}.{side}_temperature", surface.name))
+    });
+    airs.chain(faces).collect()
+}
+
+/// Gaussian elimination with row pivoting, `width` right-hand sides in place.
+fn solve(matrix: &mut [f64], right: &mut [f64], n: usize, width: usize) {
+    for k in 0..n {
+        let pivot = (k..n)
+            .max_by(|&a, &b| matrix[a * n + k].abs().total_cmp(&matrix[b * n + k].abs()))
+            .unwrap_or(k);
+        for column in 0..n {
+            matrix.swap(k * n + column, pivot * n + column);
+        }
+        for column in 0..width {
+            right.swap(k * width + column, pivot * width + column);
+        }
+        for i in (0..n).filter(|&i| i != k) {
+            let factor = matrix[i * n + k] / matrix[k * n + k];
+            if factor != 0.0 {
+                for column in k..n {
+                    matrix[i * n + column] -= factor * matrix[k * n + column];
+                }
+                for column in 0..width {
+                    right[i * width + column] -= factor * right[k * width + column];
+                }
+            }
+        }
+    }
+    for i in 0..n {
+        for column in 0..width {
+            right[i * width + column] /= matrix[i * n + i];
+        }
+    }
+}
