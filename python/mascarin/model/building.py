@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any, Self
 from pydantic import Field, ValidationError, model_validator
 
 from mascarin.model.envelope import Construction, Sensor, Surface
+from mascarin.model.leaves import steps
 from mascarin.model.material import Material
+from mascarin.model.names import Name, known_names
 from mascarin.model.number import Interval, Number
-from mascarin.model.parameters import Parameter, parameters, resolve, steps
-from mascarin.model.part import Name, Part, insist, known_names
+from mascarin.model.parameters import Parameter, lookup, parameters, resolve
+from mascarin.model.part import Part, insist, is_number
 from mascarin.model.rules import faults
 from mascarin.model.settling import settle_surfaces, settle_zones
 from mascarin.model.site import Site
@@ -91,7 +93,7 @@ class Building(Part):
         """
         from mascarin.model.reading import explained
 
-        places = {self._place(path): value for path, value in values.items()}
+        places = {self._place(path, value): value for path, value in values.items()}
         structural = any(self._is_structural(path) for path in places)
         plain = _plain(self, keep_settled=not structural)
         for path, value in places.items():
@@ -101,8 +103,15 @@ class Building(Part):
         except ValidationError as error:
             raise explained(error, plain, self.name) from None
 
-    def _place(self, path: str) -> str:
-        if _get(self, path.split(".")) is not None and path not in self._parameters:
+    def _place(self, path: str, value: Any) -> str:
+        """Find what a path means: a number, or a whole part, written so far or not."""
+        number = lookup(self, path, self._parameters)
+        if number is not None and (number == path or is_number(value)):
+            return number
+        *above, key = path.split(".")
+        holder = _get(self, above)
+        fields = type(holder).model_fields if isinstance(holder, Part) else holder
+        if isinstance(fields, Mapping) and key in fields:
             return path
         return self.parameter(path).path
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from mascarin.model.convection import SOURCES, Constant
+from mascarin.model.leaves import leaves
 from mascarin.model.material import Resistance, phase
 from mascarin.model.mesh import Mesh, choose
-from mascarin.model.parameters import leaves
 from mascarin.model.settling import enclosure, faces_of
 
 if TYPE_CHECKING:
@@ -64,7 +64,8 @@ def _zones(building: Building) -> Iterator[str]:
     for name, zone in building.zones.items():
         surfaces = [building.surfaces[surface] for surface, _ in faces_of(name, building.surfaces)]
         area = sum(surface.area or 0.0 for surface in surfaces)
-        total = sum((surface.area or 0.0) * u_value(building, surface) for surface in surfaces)
+        shell = [surface for surface in surfaces if not surface.internal_mass]
+        total = sum((surface.area or 0.0) * u_value(building, surface) for surface in shell)
         air = zone.infiltration.constant * (zone.volume or 0.0) * _AIR / 3600.0
         yield (
             f"zone {name}: {zone.volume:g} m3, {_count(len(surfaces), 'face')} of {area:.2f} m2, "
@@ -211,7 +212,7 @@ def warnings(building: Building, mesh: Mesh, step_seconds: float) -> Iterator[st
     if quick:
         yield (
             f"a step of {step_seconds:g} s is above {SDIRK2_BOUND} times the smallest time constant of "
-            f"{', '.join(quick)}: after a sudden change SDIRK2 may overshoot there (backward-euler never does)"
+            f"{', '.join(quick)}: SDIRK2 may overshoot there after a jump (backward-euler never does)"
         )
     yield from _odd_volumes(building)
     yield from _odd_areas(building)

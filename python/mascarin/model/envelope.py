@@ -5,23 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.model import quantities as q
-from mascarin.model.convection import Convection
+from mascarin.model.convection import Convection, Mowitt, Tarp
+from mascarin.model.names import ConstructionName, MaterialName, Name, SurfaceName, ZoneName
 from mascarin.model.number import Number, problem
-from mascarin.model.part import (
-    ConstructionName,
-    MaterialName,
-    Name,
-    Part,
-    Shorthand,
-    SurfaceName,
-    ZoneName,
-    fault,
-    insist,
-)
+from mascarin.model.part import Part, Shorthand, fault, insist
 
 FACINGS = ("outdoors", "zone", "ground", "measured", "adiabatic")
 
@@ -38,6 +29,8 @@ class Layer(Part):
 
     @model_validator(mode="after")
     def _named(self) -> Layer:
+        if self.name in ("outside", "inside"):
+            raise problem(f"the name '{self.name}'", "a name that no face has", "Results are called by it.")
         if not self.name:
             self._settle(name=self.material)
         return self
@@ -91,8 +84,21 @@ OutdoorLongwave = Annotated[
 ]
 
 
+def _or_temperature(schema: dict[str, Any]) -> None:
+    """Allow the short form of :class:`Ground` in its JSON Schema."""
+    mean = schema["properties"]["mean"]
+    schema["properties"]["temperature"] = mean
+    schema["oneOf"] = [{"required": ["mean"]}, {"required": ["temperature"]}]
+    del schema["required"]
+
+
 class Ground(Part):
-    """Temperature of the ground: ``mean - amplitude cos(2 pi (day - coldest_day)/365)``."""
+    """Temperature of the ground: ``mean - amplitude cos(2 pi (day - coldest_day)/365)``.
+
+    ``temperature`` may be written for ``mean`` where it is the same all year.
+    """
+
+    model_config = ConfigDict(json_schema_extra=_or_temperature)
 
     mean: q.GroundTemperature
     amplitude: q.GroundAmplitude = Number(0.0, source="not written: the same all year")
@@ -223,8 +229,9 @@ class Surface(Part):
         ]
 
     def _direction_acts(self) -> bool:
-        """Tell whether sun or the view between the faces of a zone depend on the azimuth."""
-        sun = any(side.outdoors and side.irradiance is None for side in self.sides)
+        """Tell whether sun, wind or the view between the faces of a zone depend on the azimuth."""
+        windy = isinstance(self.outside.convection, Tarp | Mowitt)
+        sun = windy or any(side.outdoors and side.irradiance is None for side in self.sides)
         seen = any(side.zone is not None for side in self.sides)
         return (sun or seen) and self.tilt is not None and 0.0 < self.tilt < 180.0
 

@@ -5,15 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated, Any, Generic, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
 from mascarin.model import quantities as q
 from mascarin.model.number import Number, problem
 from mascarin.model.part import Part, fault, insist
 
-Q = TypeVar("Q")
+
+def _or_pair(schema: dict[str, Any]) -> None:
+    """Allow the short form of :class:`Phases` in its JSON Schema."""
+    written, properties = dict(schema), schema["properties"]
+    schema.clear()
+    pair = [properties["solid"], properties["liquid"]]
+    schema["anyOf"] = [written, {"type": "array", "prefixItems": pair, "minItems": 2, "items": False}]
 
 
 class Solid(Part):
@@ -34,11 +40,10 @@ class Resistance(Part):
     source: str | None = Field(None, description="Where the value comes from")
 
 
-class Phases(Part, Generic[Q]):
+class Phases(Part):
     """A property of the solid and of the liquid; short form ``[solid, liquid]``."""
 
-    solid: Q
-    liquid: Q
+    model_config = ConfigDict(json_schema_extra=_or_pair)
 
     @model_validator(mode="before")
     @classmethod
@@ -50,20 +55,41 @@ class Phases(Part, Generic[Q]):
         return {"solid": raw[0], "liquid": raw[1]}
 
 
+class PhaseConductivities(Phases):
+    """Thermal conductivity of the solid and of the liquid; short form ``[solid, liquid]``."""
+
+    solid: q.Conductivity
+    liquid: q.Conductivity
+
+
+class PhaseDensities(Phases):
+    """Density of the solid and of the liquid; short form ``[solid, liquid]``."""
+
+    solid: q.Density
+    liquid: q.Density
+
+
+class PhaseSpecificHeats(Phases):
+    """Specific heat of the solid and of the liquid; short form ``[solid, liquid]``."""
+
+    solid: q.SpecificHeat
+    liquid: q.SpecificHeat
+
+
 def _one_or_two(raw: Any) -> str:
     pair = isinstance(raw, list | tuple | Phases) or (isinstance(raw, Mapping) and "value" not in raw)
     return "phases" if pair else "both"
 
 
-_either = Discriminator(_one_or_two)
-PhaseConductivity = Annotated[
-    Annotated[q.Conductivity, Tag("both")] | Annotated[Phases[q.Conductivity], Tag("phases")], _either
+_EITHER = Discriminator(_one_or_two)
+ConductivityByPhase = Annotated[
+    Annotated[q.Conductivity, Tag("both")] | Annotated[PhaseConductivities, Tag("phases")], _EITHER
 ]
-PhaseDensity = Annotated[
-    Annotated[q.Density, Tag("both")] | Annotated[Phases[q.Density], Tag("phases")], _either
+DensityByPhase = Annotated[
+    Annotated[q.Density, Tag("both")] | Annotated[PhaseDensities, Tag("phases")], _EITHER
 ]
-PhaseSpecificHeat = Annotated[
-    Annotated[q.SpecificHeat, Tag("both")] | Annotated[Phases[q.SpecificHeat], Tag("phases")], _either
+SpecificHeatByPhase = Annotated[
+    Annotated[q.SpecificHeat, Tag("both")] | Annotated[PhaseSpecificHeats, Tag("phases")], _EITHER
 ]
 
 
@@ -163,9 +189,9 @@ class PhaseChangeMaterial(Part):
     """A material that melts and freezes; each property may differ between solid and liquid."""
 
     kind: Literal["pcm"]
-    conductivity: PhaseConductivity
-    density: PhaseDensity
-    specific_heat: PhaseSpecificHeat
+    conductivity: ConductivityByPhase
+    density: DensityByPhase
+    specific_heat: SpecificHeatByPhase
     latent_heat: q.LatentHeat | None = None
     melting_temperature: q.MeltingTemperature | None = None
     law: Law
@@ -229,7 +255,7 @@ class PhaseChangeMaterial(Part):
         return solid, liquid
 
 
-def phase(value: Number | Phases[Any], name: str) -> float:
+def phase(value: Number | Phases, name: str) -> float:
     """Value of a property in the solid or the liquid phase."""
     return float(value) if isinstance(value, Number) else float(getattr(value, name))
 

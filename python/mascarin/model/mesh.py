@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mascarin.model.material import PhaseChangeMaterial, Phases, Resistance, TanhLaw
+from mascarin.model.material import PhaseChangeMaterial, Phases, Resistance, TanhLaw, phase
 from mascarin.model.number import Interval
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ class _Worst:
         path, held = f"materials.{material}.{name}", getattr(self.building.materials[material], name)
         if not isinstance(held, Phases):
             return self.ends(path, held)
-        solid, liquid = self.ends(f"{path}.solid", held.solid), self.ends(f"{path}.liquid", held.liquid)
+        solid, liquid = (self.ends(f"{path}.{one}", phase(held, one)) for one in ("solid", "liquid"))
         return (min(solid[0], liquid[0]), max(solid[1], liquid[1]))
 
 

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.model.idle import without_effect
+from mascarin.model.leaves import leaves
 from mascarin.model.number import Fixed, Number
-from mascarin.model.part import Part
 
 if TYPE_CHECKING:
     from mascarin.model.building import Building
@@ -67,30 +68,6 @@ class Parameter:
         return self.reason is None and self.low < self.high
 
 
-Leaf = tuple[str, Number, str]
-
-
-def leaves(part: Any, path: str = "", source: str | None = None) -> Iterator[Leaf]:
-    """Walk over all numbers of a part: path, number, source."""
-    if isinstance(part, Number):
-        yield path, part, part.source or source or ""
-        return
-    if isinstance(part, Part):
-        source = getattr(part, "source", None) or source
-    for key, value in steps(part):
-        yield from leaves(value, f"{path}.{key}" if path else str(key), source)
-
-
-def steps(part: Any) -> Iterator[tuple[str, Any]]:
-    """Name the pieces of a part, one step of a path each; layers go by name, points by position."""
-    if isinstance(part, Part):
-        yield from ((key, getattr(part, key)) for key in type(part).model_fields)
-    elif isinstance(part, Mapping):
-        yield from part.items()
-    elif isinstance(part, tuple):
-        yield from ((getattr(piece, "name", str(index)), piece) for index, piece in enumerate(part))
-
-
 def parameters(building: Building) -> list[Parameter]:
     """All numeric leaves of a building, in the order of the description."""
     idle = without_effect(building)
@@ -128,13 +105,18 @@ def resolve(building: Building, path: str, known: Mapping[str, Any]) -> str:
     InputError
         If nothing goes by that path; the text names the nearest ones.
     """
-    for candidate in (path, *_aliases(building, path)):
-        if candidate in known:
-            return candidate
-    raise InputError(
-        f"{path}: found no such parameter; expected a path as listed by 'mascarin parameters'. "
-        f"{did_you_mean(path, known)}".rstrip()
-    )
+    found = lookup(building, path, known)
+    if found is None:
+        raise InputError(
+            f"{path}: found no such parameter; expected a path as listed by 'mascarin parameters'. "
+            f"{did_you_mean(path, known)}".rstrip()
+        )
+    return found
+
+
+def lookup(building: Building, path: str, known: Mapping[str, Any]) -> str | None:
+    """Find the path that a user means, or nothing."""
+    return next((one for one in (path, *_aliases(building, path)) if one in known), None)
 
 
 def _aliases(building: Building, path: str) -> Iterator[str]:
@@ -151,82 +133,3 @@ def _aliases(building: Building, path: str) -> Iterator[str]:
             yield f"{path}.constant"
         case ["surfaces", _, _, "ground", "temperature"]:
             yield f"{path.removesuffix('temperature')}mean"
-
-
-def without_effect(building: Building) -> dict[str, str]:
-    """Leaves that no result of this building depends on, and why."""
-    return dict(_idle(building))
-
-
-def _idle(building: Building) -> Iterator[tuple[str, str]]:
-    sides = [
-        (f"surfaces.{name}.{which}", side)
-        for name, s in building.surfaces.items()
-        for which, side in (("outside", s.outside), ("inside", s.inside))
-    ]
-    used_constructions = {surface.construction for surface in building.surfaces.values()}
-    used_materials = set()
-    for name, construction in building.constructions.items():
-        if name in used_constructions:
-            used_materials |= {layer.material for layer in construction.layers}
-        else:
-            yield from _all_of(f"constructions.{name}", construction, "no surface is built this way")
-    for name, material in building.materials.items():
-        if name not in used_materials:
-            yield from _all_of(f"materials.{name}", material, "no surface contains this material")
-    yield from _idle_in_site(building, [side for _, side in sides])
-    for path, side in sides:
-        yield from _idle_on_side(path, side)
-    for name, surface in building.surfaces.items():
-        if surface.tilt in (0.0, 180.0):
-            yield f"surfaces.{name}.azimuth", "a horizontal surface has no direction"
-    for name, surface in building.surfaces.items():
-        if surface.azimuth is not None and surface.azimuth.settled and surface.vertices is None:
-            yield f"surfaces.{name}.azimuth", "no sun and no zone see the direction of this surface"
-
-
-def _idle_in_site(building: Building, sides: list[Any]) -> Iterator[tuple[str, str]]:
-    from mascarin.model.envelope import NoLongwave
-
-    site = building.site
-    outdoors = [side for side in sides if side.outdoors]
-    sunlit = [side for side in outdoors if side.irradiance is None]
-    radiating = [side for side in outdoors if not isinstance(side.longwave, NoLongwave)]
-    if not sunlit:
-        yield "site.ground_reflectance", "no side takes its irradiance from the climate"
-    if not radiating:
-        yield from _all_of("site.sky", site.sky, "no side exchanges long-wave with the sky")
-    if not radiating or site.sky.kind in ("measured", "offset"):
-        yield from _all_of("site.cloud", site.cloud, "the emissivity of the sky is not used")
-    if not any(side.height is not None for side in sides):
-        yield from _all_of("site.wind", site.wind, "no side has a height: mast wind is used as it is")
-    elif not any(_windy(side) for side in sides if side.height is not None):
-        yield from _all_of("site.wind", site.wind, "no film on a side with a height depends on wind")
-    if not building.zones:
-        yield "site.altitude", "there is no zone whose air would have a density"
-
-
-def _windy(side: Any) -> bool:
-    film = side.convection
-    if film is None or film.kind in ("constant", "alamdari_hammond", "paper_eq5"):
-        return False
-    return film.kind != "power" or bool(film.upward.c > 0.0 or film.downward.c > 0.0)
-
-
-def _idle_on_side(path: str, side: Any) -> Iterator[tuple[str, str]]:
-    if side.ground is not None and side.ground.amplitude == 0.0:
-        yield f"{path}.ground.coldest_day", "the amplitude is 0"
-    if side.height is not None and not _windy(side):
-        yield f"{path}.height", "the film does not depend on wind"
-    film = side.convection
-    if film is not None and film.kind == "power":
-        for direction in ("upward", "downward"):
-            law = getattr(film, direction)
-            if law.b == 0.0:
-                yield f"{path}.convection.{direction}.n", "b is 0"
-            if law.c == 0.0:
-                yield f"{path}.convection.{direction}.m", "c is 0"
-
-
-def _all_of(path: str, part: Any, reason: str) -> Iterator[tuple[str, str]]:
-    yield from ((leaf, reason) for leaf, _, _ in leaves(part, path))

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn, Self, get_args
+from typing import TYPE_CHECKING, Any, NoReturn, Self, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 
 from mascarin.errors import did_you_mean
@@ -20,9 +18,6 @@ if TYPE_CHECKING:
     from pydantic.json_schema import JsonSchemaValue
 
 Location = tuple[int | str, ...]
-
-#: Names that parts of the description being read may refer to, by section.
-_names: ContextVar[Mapping[str, tuple[str, ...]] | None] = ContextVar("names", default=None)
 
 
 class Part(BaseModel):
@@ -52,27 +47,27 @@ class Part(BaseModel):
 
     @classmethod
     def _in_words(cls, fault: dict[str, Any]) -> PydanticCustomError:
-        context = fault.get("ctx", {})
-        key = str(fault["loc"][-1]) if fault["loc"] else ""
+        context, key, found = fault.get("ctx", {}), str((*fault["loc"], "")[0]), shown(fault["input"])
         match fault["type"]:
             case "input":
                 return problem(context["found"], context["expected"], context["help"])
             case "extra_forbidden":
                 known = [name for name in cls.model_fields if name != "kind"]
                 return problem(f"the key '{key}'", "a key that exists here", did_you_mean(key, known))
-            case "missing":
+            case "missing" if len(fault["loc"]) == 1:
                 return problem("nothing", cls._meaning(key), f"Add '{key}:'.")
+            case "missing" | "too_short" | "too_long":
+                return problem("another number of items", cls._meaning(key), "Count them.")
             case "union_tag_not_found" | "union_tag_invalid":
-                kinds = context.get("expected_tags", "").replace("'", "") or "a kind"
-                return problem(
-                    f"kind: {context.get('tag', 'not given')}",
-                    f"kind: one of {kinds}",
-                    did_you_mean(str(context.get("tag", "")), kinds.split(", ")),
-                )
+                return _choice(f"kind: {context.get('tag', 'not given')}", context.get("expected_tags", ""))
+            case "literal_error":
+                return _choice(found, context["expected"])
             case "model_type" | "model_attributes_type" | "dict_type":
-                return problem(shown(fault["input"]), "a mapping (key: value)", "Write keys, one per line.")
+                return problem(found, "a mapping (key: value)", "Write keys, one per line.")
+            case "tuple_type" | "list_type":
+                return problem(found, f"a list: {cls._meaning(key)}", "Write [a, b, ...].")
             case _:
-                return problem(shown(fault["input"]), _lowered(fault["msg"]), "Correct the value.")
+                return problem(found, _lowered(fault["msg"]), "Correct the value.")
 
     @classmethod
     def _meaning(cls, key: str) -> str:
@@ -141,57 +136,16 @@ def insist(*faults: InitErrorDetails) -> None:
         refuse(*faults)
 
 
+def _choice(found: str, options: str) -> PydanticCustomError:
+    """Build the error of a word that is none of the options."""
+    words = options.replace("'", "").replace(" or ", ", ").split(", ") if options else ["a kind"]
+    help_ = did_you_mean(found.removeprefix("kind: ").strip("'"), words)
+    return problem(found, f"one of {', '.join(words)}" if len(words) > 1 else words[0].lower(), help_)
+
+
 def _lowered(message: str) -> str:
     text = message.removeprefix("Input should be ")
     return text[:1].lower() + text[1:]
-
-
-def _name(text: str) -> str:
-    if not text.replace("-", "_").isidentifier():
-        raise problem(
-            shown(text),
-            "a name of letters, digits, '_' and '-' that starts with a letter",
-            "Dots separate the steps of a parameter path, so names cannot hold them.",
-        )
-    return text
-
-
-#: Name of a part, usable as a step of a parameter path.
-Name = Annotated[str, AfterValidator(_name)]
-
-
-@contextmanager
-def known_names(description: Any) -> Iterator[None]:
-    """Let the parts read inside refer to the sections of this description."""
-    sections = {}
-    for section in ("materials", "constructions", "zones", "surfaces"):
-        named = description.get(section) if isinstance(description, Mapping) else None
-        sections[section] = tuple(map(str, named)) if isinstance(named, Mapping) else ()
-    token = _names.set(sections)
-    try:
-        yield
-    finally:
-        _names.reset(token)
-
-
-def _reference(section: str, singular: str) -> AfterValidator:
-    def check(name: str) -> str:
-        sections = _names.get()
-        if sections is not None and name not in sections[section]:
-            raise problem(
-                f"'{name}'",
-                f"the name of a {singular} under '{section}:'",
-                did_you_mean(name, sections[section]) or f"Add it under '{section}:'.",
-            )
-        return name
-
-    return AfterValidator(check)
-
-
-MaterialName = Annotated[str, _reference("materials", "material")]
-ConstructionName = Annotated[str, _reference("constructions", "construction")]
-ZoneName = Annotated[str, _reference("zones", "zone")]
-SurfaceName = Annotated[str, _reference("surfaces", "surface")]
 
 
 @dataclass(frozen=True)

@@ -134,12 +134,14 @@ class _Document:
     lines: dict[Place, int] = field(default_factory=dict)
     faults: list[tuple[int, str]] = field(default_factory=list)
     values: int = 0
+    scalars: Any = None
 
     def read(self, text: str) -> Any:
         from ruamel.yaml import YAML
         from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
         yaml = YAML(typ="safe", pure=True)
+        self.scalars = yaml.constructor
         try:
             root = yaml.compose(text)
             plain = self._value(root, (), frozenset()) if root is not None else None
@@ -207,19 +209,12 @@ class _Document:
             yield key, self._value(value_node, (*place, key), inside)
 
     def _scalar(self, node: Any, place: Place) -> Any:
-        from ruamel.yaml import YAML
-
         kind = node.tag.removeprefix("tag:yaml.org,2002:")
-        constructor = YAML(typ="safe", pure=True).constructor
         match kind:
             case "null":
                 return None
-            case "bool":
-                return constructor.construct_yaml_bool(node)
-            case "int":
-                return constructor.construct_yaml_int(node)
-            case "float":
-                return constructor.construct_yaml_float(node)
+            case "bool" | "int" | "float":
+                return getattr(self.scalars, f"construct_yaml_{kind}")(node)
             case "str" | "timestamp":
                 return node.value
             case _:

@@ -5,7 +5,20 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from pydantic.json_schema import GenerateJsonSchema
+
 from mascarin.model.building import Building
+from mascarin.model.number import Number
+
+
+class _Schema(GenerateJsonSchema):
+    """JSON Schema with the numbers' defaults and without titles that repeat the keys."""
+
+    def encode_default(self, dft: Any) -> Any:
+        return float(dft) if isinstance(dft, Number) else super().encode_default(dft)
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        return False
 
 
 def json_schema() -> dict[str, Any]:
@@ -16,7 +29,9 @@ def json_schema() -> dict[str, Any]:
     dict
         Numbers carry ``unit`` and ``default_range`` beside the words of JSON Schema.
     """
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | Building.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | Building.model_json_schema(
+        schema_generator=_Schema
+    )
 
 
 def parameter_table(building: Building) -> list[dict[str, Any]]:

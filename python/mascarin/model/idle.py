@@ -1,0 +1,166 @@
+"""Numbers that no result of a building depends on, and why.
+
+A sensitivity analysis leaves them out, and the parameter table says why moving them would change nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from mascarin.model.convection import LinearWind, Mowitt, Power, Tarp
+from mascarin.model.envelope import NoLongwave, Side, Surface
+from mascarin.model.leaves import leaves
+from mascarin.model.settling import faces_of
+
+if TYPE_CHECKING:
+    from mascarin.model.building import Building
+
+Reasons = Iterator[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class _Face:
+    """One side of a surface and the tilt of its own normal [deg]."""
+
+    path: str
+    side: Side
+    tilt: float
+
+    @property
+    def windy(self) -> bool:
+        """Whether its film depends on wind."""
+        film = self.side.convection
+        if not self.side.outdoors:
+            return False
+        if isinstance(film, Power):
+            return film.upward.c > 0.0 or film.downward.c > 0.0
+        return isinstance(film, LinearWind | Tarp | Mowitt)
+
+    @property
+    def sunlit(self) -> bool:
+        """Whether it takes its irradiance from the climate."""
+        return bool(self.side.outdoors) and self.side.irradiance is None
+
+    @property
+    def sees_sky(self) -> bool:
+        """Whether it exchanges long-wave with the sky."""
+        view = (1.0 if self.tilt < 180.0 else 0.0) if self.side.sky_view is None else self.side.sky_view
+        return bool(self.side.outdoors) and not isinstance(self.side.longwave, NoLongwave) and view > 0.0
+
+
+def without_effect(building: Building) -> dict[str, str]:
+    """Paths of the numbers that do not act in this building, each with the reason."""
+    faces = [face for name, surface in building.surfaces.items() for face in _faces(name, surface)]
+    found = dict(_unused(building))
+    found.update(_in_site(building, faces))
+    for face in faces:
+        found.update(_on_side(face))
+    for name, surface in building.surfaces.items():
+        found.update(_in_direction(building, name, surface))
+    found.update(_between_faces(building))
+    return found
+
+
+def _faces(name: str, surface: Surface) -> Iterator[_Face]:
+    tilt = float(surface.tilt or 0.0)
+    yield _Face(f"surfaces.{name}.outside", surface.outside, tilt)
+    yield _Face(f"surfaces.{name}.inside", surface.inside, 180.0 - tilt)
+
+
+def _unused(building: Building) -> Reasons:
+    built = {surface.construction for surface in building.surfaces.values()}
+    contained = {layer.material for name in built for layer in building.constructions[name].layers}
+    for name, construction in building.constructions.items():
+        if name not in built:
+            yield from _all_of(f"constructions.{name}", construction, "no surface is built this way")
+    for name, material in building.materials.items():
+        if name not in contained:
+            yield from _all_of(f"materials.{name}", material, "no surface contains this material")
+
+
+def _in_site(building: Building, faces: list[_Face]) -> Reasons:
+    site = building.site
+    seeing = [face for face in faces if face.sees_sky]
+    if not any(face.sunlit and face.tilt > 0.0 for face in faces):
+        yield "site.ground_reflectance", "no face takes its irradiance from the climate and sees the ground"
+    if not seeing:
+        yield from _all_of("site.sky", site.sky, "no face exchanges long-wave with the sky")
+    if not seeing or site.sky.kind in ("measured", "offset"):
+        yield from _all_of("site.cloud", site.cloud, "no emissivity of the sky is used")
+    if not any(face.windy and face.side.height is not None for face in faces):
+        reason = "no film depends on wind at the height of its face: mast wind is used as it is"
+        yield from _all_of("site.wind", site.wind, reason)
+    if not building.zones:
+        yield "site.altitude", "there is no zone whose air has a density"
+
+
+def _on_side(face: _Face) -> Reasons:
+    side, path = face.side, face.path
+    if side.ground is not None and side.ground.amplitude == 0.0:
+        yield f"{path}.ground.coldest_day", "the amplitude is 0"
+    if not face.windy:
+        yield f"{path}.height", "the film does not depend on wind"
+    if side.outdoors and isinstance(side.longwave, NoLongwave):
+        yield f"{path}.emissivity", "longwave is none"
+        if side.irradiance is not None:
+            yield f"{path}.sky_view", "longwave is none and the irradiance is measured"
+    if isinstance(side.convection, LinearWind) and not side.outdoors:
+        yield f"{path}.convection.wind", "there is no wind on this side"
+    if isinstance(side.convection, Power):
+        yield from _in_power(face, side.convection)
+
+
+def _in_power(face: _Face, film: Power) -> Reasons:
+    for direction, law in (("upward", film.upward), ("downward", film.downward)):
+        path = f"{face.path}.convection.{direction}"
+        # A vertical face always takes the upward law.
+        if direction == "downward" and face.tilt == 90.0:
+            yield from _all_of(path, law, "the face is vertical")
+            continue
+        if law.b == 0.0:
+            yield f"{path}.n", "b is 0"
+        if not face.side.outdoors:
+            yield from ((f"{path}.{key}", "there is no wind on this side") for key in ("c", "m"))
+        elif law.c == 0.0:
+            yield f"{path}.m", "c is 0"
+
+
+def _in_direction(building: Building, name: str, surface: Surface) -> Reasons:
+    """Tilt and azimuth act through sun, sky, wind, buoyancy and the view between faces."""
+    faces = list(_faces(name, surface))
+    seen = any(face.side.zone is not None and not _placed(building, face.side.zone) for face in faces)
+    sunlit = any(face.sunlit for face in faces)
+    if surface.tilt in (0.0, 180.0):
+        yield f"surfaces.{name}.azimuth", "a horizontal surface has no direction"
+    elif not (seen or sunlit or any(isinstance(face.side.convection, Tarp | Mowitt) for face in faces)):
+        yield f"surfaces.{name}.azimuth", "no sun, no wind and no zone see the direction"
+    buoyant = any(getattr(face.side.convection, "kind", "") not in _LEVEL_FILMS for face in faces)
+    skyward = any(face.side.outdoors and face.side.sky_view is None for face in faces)
+    if not (seen or sunlit or skyward or buoyant):
+        yield f"surfaces.{name}.tilt", "no sun, no sky, no buoyancy and no zone see the tilt"
+
+
+#: Films that do not depend on the tilt of their face; "" where there is none.
+_LEVEL_FILMS = ("", "constant", "linear_wind")
+
+
+def _placed(building: Building, zone: str) -> bool:
+    """Tell whether the view factors of a zone do not depend on tilt and azimuth, because they are given."""
+    given = building.zones[zone].view_factors is not None
+    return given or all(building.surfaces[name].vertices for name, _ in faces_of(zone, building.surfaces))
+
+
+def _between_faces(building: Building) -> Reasons:
+    for name, zone in building.zones.items():
+        faces = faces_of(name, building.surfaces)
+        reason = "the zone has no long-wave exchange" if isinstance(zone.longwave, NoLongwave) else ""
+        reason = reason or ("no other face exchanges with it" if len(faces) == 1 else "")
+        if reason:
+            yield from ((f"surfaces.{surface}.{side}.emissivity", reason) for surface, side in faces)
+            yield f"zones.{name}.longwave.reference", reason
+
+
+def _all_of(path: str, part: Any, reason: str) -> Reasons:
+    yield from ((leaf, reason) for leaf, _, _ in leaves(part, path))
