@@ -1,0 +1,52 @@
+"""Compiled part of mascarin: the engine behind numpy arrays."""
+
+from collections.abc import Callable
+from typing import Any, Final, final
+
+import numpy as np
+import numpy.typing as npt
+
+_Array = npt.NDArray[np.float64]
+
+CLIMATE_CHANNELS: Final[int]
+"""Number of climate channels at the head of every forcing row."""
+
+class EngineInputError(Exception):
+    """Arrays, options or descriptions the engine refuses."""
+
+class EngineSolverError(Exception):
+    """A step or a warm-up that did not converge."""
+
+@final
+class Plan:
+    """A building compiled for the engine."""
+
+    def __new__(cls, description: str) -> Plan:
+        """Compile a description (JSON)."""
+
+    @property
+    def n_parameters(self) -> int:
+        """Length of a parameter vector."""
+
+    @property
+    def n_channels(self) -> int:
+        """Channels a forcing must have."""
+
+    @property
+    def n_cells(self) -> int:
+        """Finite volumes in all walls."""
+
+    def simulate(self, values: _Array, forcing: _Array, options: dict[str, Any]) -> dict[str, Any]:
+        """One run: records (rows x probes), ledger [J], counters."""
+
+    def ensemble(
+        self,
+        values: _Array,
+        forcing: _Array,
+        options: dict[str, Any],
+        report: Callable[[int], object] | None = None,
+    ) -> tuple[_Array, _Array, list[tuple[int, str]]]:
+        """Members (rows of values): records (members x rows x probes), closures, failures."""
+
+    def state_space(self, values: _Array) -> dict[str, Any]:
+        """Matrices a, b, c, d and names of states, inputs and outputs of a linear building."""

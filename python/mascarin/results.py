@@ -1,0 +1,242 @@
+"""What a run leaves behind: labelled series, the energy ledger, and where it all came from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Self
+
+from mascarin import __version__
+from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+    import pandas as pd
+    import xarray as xr
+
+    from mascarin.model import Output
+
+    Array = npt.NDArray[np.float64]
+
+FLOWS: Final = ("solar", "convection", "longwave", "boundary", "infiltration")
+"""Ways in which heat enters a building."""
+
+
+@dataclass(frozen=True)
+class EnergyLedger:
+    """Where heat came from over a run, and whether the books close.
+
+    Attributes
+    ----------
+    into : mapping of str to float
+        Net heat into the building by flow. [J]
+    stored : float
+        Rise of the heat stored in walls and air. [J]
+    turnover : float
+        Sum of the magnitudes of all flows. [J]
+    closure : float
+        Sum over steps of |stored - into|, over the turnover. [-]
+    """
+
+    into: Mapping[str, float]
+    stored: float
+    turnover: float
+    closure: float
+
+    @classmethod
+    def read(cls, raw: Mapping[str, Any]) -> Self:
+        """From what the engine returns."""
+        into = {flow: float(raw[flow]) for flow in FLOWS}
+        return cls(into, float(raw["stored"]), float(raw["turnover"]), float(raw["closure"]))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers for JSON."""
+        into = {f"{flow}_joule": value for flow, value in self.into.items()}
+        return {
+            "closure": self.closure,
+            "stored_joule": self.stored,
+            "turnover_joule": self.turnover,
+            **into,
+        }
+
+    def __str__(self) -> str:
+        lines = [f"{flow:<14}{value / 3.6e6:>12.3f} kWh" for flow, value in self.into.items()]
+        return "\n".join(
+            [*lines, f"{'stored':<14}{self.stored / 3.6e6:>12.3f} kWh", f"closure {self.closure:.1e}"]
+        )
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Everything that made a run.
+
+    Attributes
+    ----------
+    building : str
+        Name of the building.
+    building_hash : str
+        SHA-256 of the description the engine got.
+    climate : dict
+        File, hash, period and conversions of the climate.
+    step_seconds : float
+        Time step. [s]
+    scheme : str
+        Time-stepping scheme.
+    start : str
+        How the run was started.
+    changed : mapping of str to float
+        Parameters that differ from the description. [unit of each]
+    newton_iterations : int
+        Newton iterations over all stages.
+    version : str
+        Version of Mascarin.
+    """
+
+    building: str
+    building_hash: str
+    climate: Mapping[str, Any]
+    step_seconds: float
+    scheme: str
+    start: str
+    changed: Mapping[str, float]
+    newton_iterations: int
+    version: str = field(default=__version__)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return {
+            "mascarin_version": self.version,
+            "building": self.building,
+            "building_sha256": self.building_hash,
+            "climate": dict(self.climate),
+            "step_seconds": self.step_seconds,
+            "scheme": self.scheme,
+            "start": self.start,
+            "changed": dict(self.changed),
+            "newton_iterations": self.newton_iterations,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """Series of a run, by output name.
+
+    Attributes
+    ----------
+    outputs : sequence of Output
+        What was recorded.
+    index : pandas.DatetimeIndex
+        Times with their zone, shape (rows,): the state at the start, then at the end of every step.
+    records : ndarray, shape (rows, outputs)
+        Values. [unit of each output]
+    energy : EnergyLedger
+        The energy ledger.
+    provenance : Provenance
+        Version, inputs and options.
+    """
+
+    outputs: Sequence[Output]
+    index: pd.DatetimeIndex
+    records: Array
+    energy: EnergyLedger
+    provenance: Provenance
+
+    def __getitem__(self, name: str) -> xr.DataArray:
+        """One series, labelled with UTC times.
+
+        Raises
+        ------
+        InputError
+            It was not recorded; the text names the nearest ones.
+        """
+        import xarray as xr
+
+        position = self._position(name)
+        output = self.outputs[position]
+        return xr.DataArray(
+            self.records[:, position],
+            coords={"time": self._utc()},
+            dims="time",
+            name=output.name,
+            attrs={"units": output.unit, "long_name": output.name, "timezone": str(self.index.tz)},
+        )
+
+    def __iter__(self) -> Iterator[str]:
+        return (output.name for output in self.outputs)
+
+    def __len__(self) -> int:
+        return len(self.outputs)
+
+    def frame(self) -> pd.DataFrame:
+        """All series as a table in local time, one column an output."""
+        import pandas as pd
+
+        return pd.DataFrame(self.records, index=self.index, columns=[output.name for output in self.outputs])
+
+    def dataset(self) -> xr.Dataset:
+        """All series as an xarray data set, with provenance and ledger among its attributes."""
+        import json
+
+        import xarray as xr
+
+        attributes = {
+            "mascarin_version": self.provenance.version,
+            "provenance": json.dumps(self.provenance.to_dict()),
+            "energy": json.dumps(self.energy.to_dict()),
+            "timezone": str(self.index.tz),
+        }
+        return xr.Dataset({name: self[name] for name in self}, attrs=attributes)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write everything to a NetCDF file.
+
+        Raises
+        ------
+        OSError
+            The file cannot be written.
+        """
+        self.dataset().to_netcdf(path, engine="h5netcdf")
+
+    def plot(self, names: Sequence[str] | None = None) -> Any:
+        """Draw series over local time, one axis a unit.
+
+        Parameters
+        ----------
+        names : sequence of str, optional
+            Default: all.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+        """
+        from matplotlib.figure import Figure
+
+        positions = [self._position(name) for name in (names or list(self))]
+        units = list(dict.fromkeys(self.outputs[p].unit for p in positions))
+        figure = Figure(figsize=(9.0, 2.8 * len(units) + 0.6), layout="constrained")
+        axes = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
+        local = self.index.tz_localize(None)
+        for axis, unit in zip(axes, units, strict=True):
+            for position in positions:
+                if self.outputs[position].unit == unit:
+                    axis.plot(local, self.records[:, position], label=self.outputs[position].name, lw=1.1)
+            axis.set_ylabel(unit)
+            axis.legend(fontsize="small")
+            axis.grid(alpha=0.3)
+        axes[-1].set_xlabel(f"local time ({self.index.tz})")
+        return figure
+
+    def _utc(self) -> pd.DatetimeIndex:
+        return self.index.tz_convert("UTC").tz_localize(None)
+
+    def _position(self, name: str) -> int:
+        for position, output in enumerate(self.outputs):
+            if name == output.name or name in output.aliases:
+                return position
+        known = [output.name for output in self.outputs]
+        raise InputError(
+            f"{name}: not recorded in this run; name it in outputs=. {did_you_mean(name, known)}".rstrip()
+        )

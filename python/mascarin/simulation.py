@@ -1,0 +1,472 @@
+"""A building in a climate over a period: compiled once, run as often as asked."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+
+from mascarin import _engine
+from mascarin.climate.table import seconds_of
+from mascarin.climate.timezones import moment
+from mascarin.errors import InputError, SolverError, did_you_mean
+from mascarin.results import EnergyLedger, Provenance, Results
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.climate import Climate, Measurements
+    from mascarin.model import Building, EngineDescription, Output
+
+    Array = npt.NDArray[np.float64]
+
+Scheme = Literal["sdirk2", "backward-euler", "apparent-capacity"]
+SCHEMES: Final[tuple[Scheme, ...]] = ("sdirk2", "backward-euler", "apparent-capacity")
+
+#: Largest change of any temperature between two repetitions of the first period. [K]
+SETTLED: Final = 0.01
+#: Repetitions before the first period counts as unsettled.
+MAX_CYCLES: Final = 1000
+#: Readings that follow from two others.
+_DERIVED: Final = ("operative_temperature", "globe_temperature")
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A member of an ensemble that did not finish.
+
+    Attributes
+    ----------
+    member : int
+        Its row.
+    reason : str
+        What the engine said.
+    """
+
+    member: int
+    reason: str
+
+
+class Simulation:
+    """A building compiled for a climate, a period and a step.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    climate : Climate
+        Its weather.
+    step : str or float
+        Time step, such as ``15min`` or seconds. [s]
+    start, end : str, datetime or pandas.Timestamp, optional
+        Period; local time of the climate unless an offset is given. Default: the whole climate.
+    outputs : sequence of str, optional
+        What to record. Default: air and face temperatures, interfaces and sensors.
+    scheme : str
+        ``sdirk2`` (default), ``backward-euler``, or ``apparent-capacity``, the paper's, which loses latent heat.
+    initial : ``"repeat"`` or float
+        ``repeat``: the first period is repeated until nothing changes by more than 0.01 K. A number: that
+        temperature everywhere at the start. [degC]
+    first_period : str or float
+        Length of the period that is repeated. [s]
+    measurements : Measurements, optional
+        Where the measured columns are that the building names, unless the climate holds them.
+    ranges : mapping of str to (float, float), optional
+        Ranges that parameters will be varied in: the mesh is chosen for their worst end.
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used, before anything is run.
+    """
+
+    def __init__(
+        self,
+        building: Building,
+        climate: Climate,
+        *,
+        step: str | float = "15min",
+        start: object = None,
+        end: object = None,
+        outputs: Sequence[str] | None = None,
+        scheme: Scheme = "sdirk2",
+        initial: Literal["repeat"] | float = "repeat",
+        first_period: str | float = "1d",
+        measurements: Measurements | None = None,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+    ) -> None:
+        if scheme not in SCHEMES:
+            raise InputError(
+                f"scheme: found '{scheme}', expected one of {', '.join(SCHEMES)}. {did_you_mean(scheme, SCHEMES)}"
+            )
+        self.building = building
+        self.climate = climate
+        self.scheme: Scheme = scheme
+        self.step_seconds = seconds_of(step)
+        self.start, self.end = _period(climate, start, end)
+        self.outputs = _chosen(building, outputs)
+        self._initial = _initial(initial)
+        self._first_period = seconds_of(first_period, "first_period")
+        self._description: EngineDescription = building.to_engine(self.step_seconds, dict(ranges or {}))
+        with _told_apart():
+            self._plan = _engine.Plan(self._description.json)
+        self._forcing = np.ascontiguousarray(
+            climate.forcing(
+                building.site,
+                self.start,
+                self.end,
+                self.step_seconds,
+                scheme,
+                self._description.channels,
+                measurements,
+            )
+        )
+        _finite(self._forcing, self._description.channels, building)
+
+    @property
+    def paths(self) -> list[str]:
+        """Path of each parameter, in the order of a parameter vector."""
+        return self._description.paths
+
+    @property
+    def values(self) -> Array:
+        """Nominal value of each parameter, shape (P,). [unit of each]"""
+        return self._description.values
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Warnings about the mesh."""
+        return self._description.notes
+
+    @cached_property
+    def index(self) -> pd.DatetimeIndex:
+        """Times of the recorded states, shape (rows,): start, then the end of every step."""
+        import pandas as pd
+
+        count = len(self._forcing) + 1
+        return pd.date_range(self.start, periods=count, freq=pd.Timedelta(seconds=self.step_seconds))
+
+    def vector(self, values: Mapping[str, float]) -> Array:
+        """The nominal parameter vector with some values replaced.
+
+        Raises
+        ------
+        InputError
+            Unknown path; the text names the nearest ones.
+        """
+        vector = self.values.copy()
+        for path, value in values.items():
+            vector[self.position(path)] = value
+        return vector
+
+    def position(self, path: str) -> int:
+        """Where a path stands in a parameter vector.
+
+        Raises
+        ------
+        InputError
+            Unknown path, or a structural one, which needs another plan.
+        """
+        parameter = self.building.parameter(path)
+        if parameter.path not in self._positions:
+            raise InputError(
+                f"{path}: is structural ({parameter.reason}); give it in the building, for example with replace()"
+            )
+        return self._positions[parameter.path]
+
+    @cached_property
+    def _positions(self) -> dict[str, int]:
+        return {path: index for index, path in enumerate(self.paths)}
+
+    def run(self, values: Array | None = None) -> Results:
+        """Run once.
+
+        Parameters
+        ----------
+        values : ndarray, shape (P,), optional
+            Parameter vector; default the nominal one. [unit of each]
+
+        Returns
+        -------
+        Results
+            Labelled series and the energy ledger.
+
+        Raises
+        ------
+        SolverError
+            A step did not converge, or the first period did not settle.
+        """
+        probes, recipes = _probes(self.outputs)
+        vector = self.values if values is None else np.ascontiguousarray(values, dtype=np.float64)
+        with _told_apart():
+            raw = self._plan.simulate(vector, self._forcing, self._options(probes, 0, 1))
+        records = _derive(raw["records"], recipes)
+        return Results(
+            outputs=self.outputs,
+            index=self.index,
+            records=records,
+            energy=EnergyLedger.read(raw),
+            provenance=self._provenance(raw, vector),
+        )
+
+    def ensemble(
+        self,
+        samples: Array,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        report: Callable[[int], object] | None = None,
+    ) -> tuple[Array, Array, list[Failure]]:
+        """Run many parameter vectors, several at a time in lanes and threads.
+
+        Parameters
+        ----------
+        samples : ndarray, shape (M, P)
+            One parameter vector a row. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        report : callable, optional
+            Called with the number of members done.
+
+        Returns
+        -------
+        records : ndarray, shape (M, rows, outputs)
+            NaN for a member that failed.
+        closure : ndarray, shape (M,)
+            Energy closure of each member. [-]
+        failures : list of Failure
+            Members that failed, and why.
+        """
+        probes, recipes = _probes(self.outputs)
+        options = self._options(probes, record_from, record_every)
+        members = np.ascontiguousarray(samples, dtype=np.float64)
+        with _told_apart():
+            raw, closure, failed = self._plan.ensemble(members, self._forcing, options, report)
+        return _derive(raw, recipes), closure, [Failure(member, reason) for member, reason in failed]
+
+    def state_space(self) -> dict[str, Any]:
+        """Matrices and names of a linear building; see `mascarin.state_space`."""
+        with _told_apart():
+            return self._plan.state_space(self.values)
+
+    def _options(self, probes: str, record_from: int, record_every: int) -> dict[str, Any]:
+        repeat = self._initial is None
+        steps = min(max(round(self._first_period / self.step_seconds), 1), len(self._forcing))
+        return {
+            "dt": self.step_seconds,
+            "scheme": self.scheme,
+            # Where the repetition starts from matters only for its length.
+            "initial": float(self._forcing[:, -1, 0].mean()) if self._initial is None else self._initial,
+            "warmup_steps": steps if repeat else 0,
+            "warmup_tolerance": SETTLED,
+            "warmup_max_cycles": MAX_CYCLES,
+            "probes": probes,
+            "record_from": record_from,
+            "record_every": record_every,
+        }
+
+    def _provenance(self, raw: Mapping[str, Any], vector: Array) -> Provenance:
+        from mascarin.climate import summary
+
+        changed = {
+            path: float(value)
+            for path, value, nominal in zip(self.paths, vector, self.values, strict=True)
+            if value != nominal
+        }
+        return Provenance(
+            building=self.building.name,
+            building_hash=_hash(self._description.json),
+            climate=summary(self.climate),
+            step_seconds=self.step_seconds,
+            scheme=self.scheme,
+            start=self._start_note(raw),
+            changed=changed,
+            newton_iterations=int(raw["iterations"]),
+        )
+
+    def _start_note(self, raw: Mapping[str, Any]) -> str:
+        if self._initial is not None:
+            return f"{self._initial:g} degC everywhere"
+        return (
+            f"first {self._first_period / 3600.0:g} h repeated {raw['cycles']} times until nothing changed by more "
+            f"than {SETTLED:g} K (last change {raw['settled']:.4f} K)"
+        )
+
+
+def simulate(
+    building: Building,
+    climate: Climate,
+    *,
+    step: str | float = "15min",
+    start: object = None,
+    end: object = None,
+    outputs: Sequence[str] | None = None,
+    scheme: Scheme = "sdirk2",
+    initial: Literal["repeat"] | float = "repeat",
+    first_period: str | float = "1d",
+    measurements: Measurements | None = None,
+) -> Results:
+    """Run a building in a climate.
+
+    Parameters
+    ----------
+    building, climate, step, start, end, outputs, scheme, initial, first_period, measurements
+        As in `Simulation`.
+
+    Returns
+    -------
+    Results
+        Labelled series and the energy ledger.
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used, before the run.
+    SolverError
+        A step did not converge, or the first period did not settle.
+    """
+    return Simulation(
+        building,
+        climate,
+        step=step,
+        start=start,
+        end=end,
+        outputs=outputs,
+        scheme=scheme,
+        initial=initial,
+        first_period=first_period,
+        measurements=measurements,
+    ).run()
+
+
+@contextmanager
+def _told_apart() -> Iterator[None]:
+    """Engine errors as Mascarin's: what was given, or what could not be solved."""
+    try:
+        yield
+    except _engine.EngineInputError as error:
+        raise InputError(str(error)) from None
+    except _engine.EngineSolverError as error:
+        raise SolverError(str(error)) from None
+
+
+def _period(climate: Climate, start: object, end: object) -> tuple[pd.Timestamp, pd.Timestamp]:
+    from mascarin.climate.table import stamps_of
+
+    grid = climate.grid
+    first, last = stamps_of(np.array([grid.start, grid.end]), grid.zone)
+    begin = first if start is None else moment(start, grid.zone, "start")
+    finish = last if end is None else moment(end, grid.zone, "end")
+    if finish <= begin:
+        raise InputError(f"period: found start {begin} and end {finish}, expected the end after the start")
+    return begin, finish
+
+
+def _chosen(building: Building, names: Sequence[str] | None) -> list[Output]:
+    if names is not None:
+        return [building.output(name) for name in names]
+    usual = ("air_temperature", "face_temperature", "interface_temperature", "sensor", "liquid_fraction")
+    return [output for output in building.outputs() if output.kind in usual]
+
+
+def _initial(given: object) -> float | None:
+    """Temperature at the start, or None to repeat the first period."""
+    if given == "repeat":
+        return None
+    if isinstance(given, (int, float)) and not isinstance(given, bool) and -100.0 < given < 200.0:
+        return float(given)
+    raise InputError(f"initial: found {given!r}, expected 'repeat' or a temperature in degC")
+
+
+def _finite(forcing: Array, channels: Sequence[str], building: Building) -> None:
+    """Channels that the engine reads must hold numbers; two may be absent."""
+    from mascarin.climate import CHANNELS
+
+    names = (*CHANNELS, *channels)
+    absent = {"pressure"} | (set() if building.site.sky.kind == "measured" else {"infrared"})
+    if building.site.sky.kind in ("offset", "measured"):
+        absent.add("dew_point")
+    bad = np.isnan(forcing).any(axis=(0, 1))
+    missing = [name for name, empty in zip(names, bad, strict=True) if empty and name not in absent]
+    if missing:
+        raise InputError(
+            f"climate: no values for {', '.join(missing)}, which this building needs (sky model "
+            f"'{building.site.sky.kind}'). Give the column, or choose another sky model, for example "
+            "site.sky: {kind: offset}"
+        )
+
+
+def _probes(outputs: Sequence[Output]) -> tuple[str, list[tuple[str, tuple[int, ...]]]]:
+    """What the engine records, and how each output follows from it: kind and columns."""
+    probes: list[dict[str, Any]] = []
+
+    def column(kind: str, place: Mapping[str, int]) -> int:
+        probe = {"kind": kind, **place}
+        if probe not in probes:
+            probes.append(probe)
+        return probes.index(probe)
+
+    recipes = []
+    for output in outputs:
+        kinds = ("air_temperature", "mean_radiant_temperature") if output.kind in _DERIVED else (output.kind,)
+        recipes.append((output.kind, tuple(column(kind, output.place) for kind in kinds)))
+    return json.dumps(probes), recipes
+
+
+def _derive(records: Array, recipes: Sequence[tuple[str, tuple[int, ...]]]) -> Array:
+    """Outputs from records, along the last axis."""
+    if all(kind not in _DERIVED for kind, _ in recipes) and [c for _, (c, *_) in recipes] == list(
+        range(records.shape[-1])
+    ):
+        return records
+    columns = [_reading(kind, [records[..., c] for c in places]) for kind, places in recipes]
+    return np.stack(columns, axis=-1)
+
+
+def _reading(kind: str, parts: Sequence[Array]) -> Array:
+    if kind == "operative_temperature":
+        return 0.5 * (parts[0] + parts[1])
+    if kind == "globe_temperature":
+        return globe_temperature(*parts)
+    return parts[0]
+
+
+def globe_temperature(air: Array, radiant: Array, diameter: float = 0.15, emissivity: float = 0.95) -> Array:
+    """Temperature of a black globe in still air.
+
+    Balances radiation with natural convection, ``1.4 (|dT|/D)^0.25`` (ISO 7726:1998, annex B).
+
+    Parameters
+    ----------
+    air, radiant : ndarray
+        Air and mean radiant temperature. [degC]
+    diameter : float
+        Diameter of the globe. [m]
+    emissivity : float
+        Long-wave emissivity of the globe. [-]
+
+    Returns
+    -------
+    ndarray
+        Globe temperature. [degC]
+    """
+    sigma, kelvin = 5.670374419e-8, 273.15
+    globe = 0.5 * (air + radiant)
+    for _ in range(20):
+        convection = 1.4 * (np.maximum(np.abs(globe - air), 1e-3) / diameter) ** 0.25
+        mean = 0.5 * (globe + radiant) + kelvin
+        radiation = 4.0 * emissivity * sigma * mean**3
+        globe = 0.5 * globe + 0.5 * (convection * air + radiation * radiant) / (convection + radiation)
+    return np.asarray(globe)
+
+
+def _hash(text: str) -> str:
+    import hashlib
+
+    return hashlib.sha256(text.encode()).hexdigest()
