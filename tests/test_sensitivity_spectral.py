@@ -147,15 +147,17 @@ def test_estimates_are_free_of_bias_where_lines_are_crowded() -> None:
     np.testing.assert_allclose(shares / 30, expected, atol=0.004)
 
 
-def test_threshold_is_what_noise_stays_under() -> None:
+def test_threshold_is_what_noise_stays_under_and_nothing_in_noise_is_significant() -> None:
     rng = np.random.default_rng(6)
-    exceeded = 0
+    exceeded = significant = 0
     for seed in range(150):
         plan = design(12, order=2, replicates=4, seed=seed)
         result = analyse(plan, rng.normal(size=len(plan)))
         exceeded += bool(np.any(result.raw_share > result.threshold))
+        significant += bool(np.any(result.significant))
         assert result.raw_share.mean() == pytest.approx(2.0 / ((plan.runs - 1) // 2), rel=0.4)
     assert 1 <= exceeded <= 16  # 5 % of 150, give or take
+    assert significant <= 3
 
 
 def test_streaming_gives_the_same_bits_in_any_order_of_batches() -> None:
@@ -255,6 +257,7 @@ def test_result_as_dictionary_and_table() -> None:
     assert table["unit"].tolist() == ["degC"] * 3
     assert result.ranking("room", 1) == ["b"]
     assert result.influential() == ["b", "a"]
+    assert result.influential(minimum=0.4) == ["b"]
     with pytest.raises(InputError, match="Did you mean 'room'"):
         result.ranking("rom")
 

@@ -22,7 +22,7 @@ def test_peaks_are_named_in_every_replicate() -> None:
     for replicate in range(result.design.replicates):
         w = dict(zip("abcd", result.design.frequencies[replicate], strict=True))
         found = {peak.line: peak for peak in result.peaks("room", replicate)}
-        lines = {w["a"]: "a", 2 * w["b"]: "2 b", w["b"] + w["c"]: "b + c", abs(w["b"] - w["c"]): "b − c"}
+        lines = {w["a"]: "a", 2 * w["b"]: "2 × b", w["b"] + w["c"]: "b + c", abs(w["b"] - w["c"]): "b − c"}
         for line, label in lines.items():
             assert label in (found[line].label, *found[line].others)
     # Nothing is put down to d, whatever falls on its line.
@@ -36,8 +36,8 @@ def test_powers_of_the_peaks() -> None:
     by_label = {peak.label: peak for peak in result.peaks("room")}
     assert by_label["a"].kind == "fundamental"
     assert by_label["a"].power == pytest.approx(0.5 / total, rel=0.02)
-    assert by_label["2 b"].kind == "harmonic"
-    assert by_label["2 b"].power == pytest.approx(0.08 / total, rel=0.02)
+    assert by_label["2 × b"].kind == "harmonic"
+    assert by_label["2 × b"].power == pytest.approx(0.08 / total, rel=0.02)
     assert by_label["b + c"].kind == "interaction"
     assert by_label["b + c"].parameters == ("b", "c")
     assert by_label["b + c"].power == pytest.approx(0.125 / total, rel=0.02)

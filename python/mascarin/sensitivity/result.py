@@ -39,7 +39,7 @@ class Sensitivity:
         Change of the output, averaged over time, when the parameter goes from the low to the high end of
         its range; NaN where a method or a group has no sign. [unit of the output]
     significant : ndarray of bool, shape (G, S)
-        Whether the share stands above what chance gives.
+        Whether the share is above zero beyond doubt, with all parameters looked at together.
     confidence : float
         Of the intervals. [-]
     runs : int
@@ -102,10 +102,21 @@ class Sensitivity:
         order = np.argsort(-self.share[:, self.output_index(output)], kind="stable")
         return [self.names[k] for k in order[:limit]]
 
-    def influential(self) -> list[str]:
-        """Names that are significant for at least one output, by falling largest share."""
+    def influential(self, minimum: float = 0.01) -> list[str]:
+        """Names that matter for at least one output: significant, and with a share worth fitting.
+
+        Parameters
+        ----------
+        minimum : float
+            Smallest share of an output's variance that counts. [-]
+
+        Returns
+        -------
+        list of str
+            By falling largest share.
+        """
         largest = np.where(self.significant, self.share, -1.0).max(axis=1, initial=-1.0)
-        return [self.names[k] for k in np.argsort(-largest, kind="stable") if largest[k] >= 0.0]
+        return [self.names[k] for k in np.argsort(-largest, kind="stable") if largest[k] >= minimum]
 
     def to_dict(self) -> dict[str, dict[str, dict[str, float | None]]]:
         """The analysis as ``{output: {path: {share, low, high, effect}}}``, ready for JSON."""

@@ -14,9 +14,10 @@ is an unbiased estimate of :math:`a_{i,m}^2`, and
 
 .. math:: share_i = \frac{\sum_t \sum_m \overline{a^{(r)} a^{(s)}}_{r \ne s} / 2}{\sum_t V}
 
-with V likewise free of bias. Intervals come from leaving out one replicate at a time. The plain share of the
-method, the power on the lines of i over the variance, is kept as `raw_share` and is what the significance
-threshold refers to.
+with V likewise free of bias. Intervals come from leaving out one replicate at a time; a parameter is called
+significant when its interval, widened so that it holds for all parameters at once (Bonferroni), excludes
+zero. The plain share of the method, the power on the lines of i over the variance, is kept as `raw_share`,
+with the threshold below which noise would stay; it holds what falls on these lines by coincidence too.
 
 References
 ----------
@@ -623,10 +624,12 @@ def _analyse(
     shape, shape_t = (count, len(outputs)), (count, times, len(outputs))
     share, low, high, effect, effect_rms, raw = (np.zeros(shape) for _ in range(6))
     share_t, low_t, high_t, effect_t = (np.zeros(shape_t) for _ in range(4))
+    significant = np.zeros(shape, dtype=np.bool_)
     variance_t = np.zeros((times, len(outputs)))
     spectra = np.zeros((r, parts[0].lines.shape[0], len(outputs)))
     coherent = np.bincount(plan.group_of) == 1
     quantile = float(stats.t.ppf(0.5 + 0.5 * confidence, r - 1))
+    strict = float(stats.t.isf((1.0 - confidence) / count, r - 1))
     gain = np.stack([part.gain for part in parts])
     warnings = []
     for s, output in enumerate(outputs):
@@ -651,6 +654,8 @@ def _analyse(
             warnings.append(f"'{output}' does not depend on any of the varied parameters")
             continue
         share[:, s], low[:, s], high[:, s] = _interval(numerator.summed(), total, quantile)
+        # What is left of a linear model's silence is rounding.
+        significant[:, s] = (_interval(numerator.summed(), total, strict)[1] > 0.0) & (share[:, s] > 1e-12)
         plain = np.mean([part.variance[:, s].sum() for part in parts])
         raw[:, s] = np.mean([part.raw[:, s] for part in parts], axis=0) / plain
         spectra[:, :, s] = np.stack([part.lines[:, s] / part.variance[:, s].sum() for part in parts])
@@ -664,7 +669,7 @@ def _analyse(
         low=low,
         high=high,
         effect=effect,
-        significant=(raw > threshold) & (low > 0.0),
+        significant=significant,
         confidence=confidence,
         runs=len(plan),
         seed=plan.seed,

@@ -44,7 +44,7 @@ class Peak:
         ``fundamental``, ``harmonic``, ``interaction``, or ``unnamed`` when nothing that would explain it
         stands out in the other replicates.
     label : str
-        What it is, for a figure: ``a``, ``2 a``, ``a + b``; empty when unnamed.
+        What it is, for a figure: ``a``, ``2 × a``, ``a + b``; empty when unnamed.
     parameters : tuple of str
         The parameters in it.
     others : tuple of str
@@ -214,7 +214,7 @@ def _heard(
         for i in survivors:
             loudness[i] += power[i]
             kind: PeakKind = "fundamental" if harmonic == 1 else "harmonic"
-            label = names[i] if harmonic == 1 else f"{harmonic} {names[i]}"
+            label = _times(harmonic, names[i])
             yield _Sound(kind, label, (names[i],), lines[:, i], float(power[i]))
     first, second = _pairs(loudness)
     if not first.size:
@@ -247,7 +247,7 @@ def _folded(lines: Integers, runs: int) -> Integers:
 
 
 def _times(factor: int, name: str) -> str:
-    return name if factor == 1 else f"{factor} {name}"
+    return name if factor == 1 else f"{factor} × {name}"
 
 
 def _peak(line: int, power: float, sounds: Sequence[_Sound]) -> Peak:
