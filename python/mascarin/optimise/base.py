@@ -38,6 +38,9 @@ class Observer:
     def note(self, text: str) -> None:
         """A remark on the course of the search."""
 
+    def summary(self, lines: Sequence[str]) -> None:
+        """A closing overview, as lines of text."""
+
 
 class Optimiser(ABC):
     """Proposes points and learns from their costs.
@@ -55,11 +58,20 @@ class Optimiser(ABC):
         Listens to the course of the search.
     remember : bool
         Whether points that repeat are answered from memory instead of being asked again.
+
+    Attributes
+    ----------
+    step_number : int
+        Current step number of penalty functions [-].
+    phase : int
+        Which of several searches in a row is running, counted from 0 [-].
     """
 
     def __init__(self, space: Space, *, observer: Observer | None = None, remember: bool = True) -> None:
         self.space = space
         self.observer = observer or Observer()
+        self.step_number = 1
+        self.phase = 0
         self._remember = remember
         self._memory: dict[Point, Evaluation] = {}
         self._steps: Steps | None = None
@@ -169,7 +181,7 @@ class Optimiser(ABC):
         ValueError
             When the results do not belong to the points asked.
         """
-        if [r.point for r in results] != self._asked:
+        if [(r.point.x, r.point.choices) for r in results] != [(p.x, p.choices) for p in self._asked]:
             msg = f"expected the evaluations of the {len(self._asked)} points asked, in that order"
             raise ValueError(msg)
         clean = [replace(r, cost=math.inf) if math.isnan(r.cost) else r for r in results]

@@ -146,7 +146,6 @@ class PatternSearch(Optimiser):
         # 0: the positive direction of a coordinate is tried first, 1: the negative one.
         self._signs = [0] * len(space.continuous)
         self._delta = self._mesh(exponent)
-        self._step = 1
         self._scale: float | None = None
         self._current = 0
         self._plan: Callable[[], Iterable[Point]] = tuple
@@ -161,7 +160,7 @@ class PatternSearch(Optimiser):
         lowest = math.inf
         for k, start in enumerate(self._starts):
             self._current = k
-            self._step = 1
+            self.step_number = 1
             if several:
                 self.observer.note(f"Start search for point number {k + 1}.")
             reason, end = yield from self._descend(start, several=several)
@@ -238,11 +237,11 @@ class PatternSearch(Optimiser):
     ) -> Generator[list[Point], list[Evaluation], tuple[int, Evaluation]]:
         """Let the mesh follow the precision that the required decrease asks for."""
         alpha = rule.alpha or 0.0
-        before = rule.phi(self._delta, self._step, best)
-        after = rule.phi(self._delta, self._step + 1, best)
+        before = rule.phi(self._delta, self.step_number, best)
+        after = rule.phi(self._delta, self.step_number + 1, best)
         if not after < before:
             msg = (
-                f"Phi does not fall when the step number rises from {self._step} to {self._step + 1} "
+                f"Phi does not fall when the step number rises from {self.step_number} by one "
                 f"({before!r} to {after!r}); with Alpha it must"
             )
             raise SolverError(msg)
@@ -252,7 +251,7 @@ class PatternSearch(Optimiser):
             exponent += by
             self._delta = self._mesh(exponent)
             self.observer.note(
-                f"Set N = {self._step + 1}; Phi = {self._text(after)}; t = {by}; "
+                f"Set N = {self.step_number + 1}; Phi = {self._text(after)}; t = {by}; "
                 f"Delta = {self._text(self._delta)}."
             )
         comment = f"{self._failed} Reduce step size to '{self._text(self._delta)}'."
@@ -262,7 +261,7 @@ class PatternSearch(Optimiser):
 
     def _raise_step(self, best: Evaluation, comment: str) -> _Batch:
         """Next step number: counters start again and the point is evaluated for the new penalty."""
-        self._step += 1
+        self.step_number += 1
         self.observer.restart()
         if self._penalty:
             x = best.point.x
@@ -327,7 +326,7 @@ class PatternSearch(Optimiser):
                 scale = self._scale = old.cost
         else:
             scale = self._scale
-        return (new.cost - old.cost) / scale < -rule.zeta * rule.phi(self._delta, self._step, new)
+        return (new.cost - old.cost) / scale < -rule.zeta * rule.phi(self._delta, self.step_number, new)
 
     # ------------------------------------------------------------------ small helpers
 
@@ -363,7 +362,7 @@ class PatternSearch(Optimiser):
     def _point(self, x: Iterable[float], choices: tuple[int, ...]) -> Point:
         """Rounded point at the current step number."""
         rounded = tuple(self._round(v, i) for i, v in enumerate(x))
-        return Point(rounded, choices, self._step if self._steps_count else 1)
+        return Point(rounded, choices, self.step_number if self._steps_count else 1)
 
     # ------------------------------------------------------------------ guesses for idle workers
 

@@ -1,0 +1,412 @@
+"""Evaluates points as GenOpt does: numbers, cache, retries; in parallel and ahead where that helps."""
+
+from __future__ import annotations
+
+import bisect
+import math
+import shutil
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from mascarin.genopt.algorithm import Built
+from mascarin.genopt.program import RUN_PREFIX, Result, RunFailed
+from mascarin.genopt.project import Project
+from mascarin.genopt.records import Key, Log, Record, Replay
+from mascarin.optimise import Evaluation, Point
+
+_SAME = 1e-12
+FAILURES = "failed-runs"
+
+_Known = tuple[tuple[float, ...], Record]
+Runner = Callable[[Point, Path], Result]
+
+
+class Cache:
+    """Costs of evaluated points; coordinates are equal within a relative 1e-12."""
+
+    def __init__(self) -> None:
+        self._groups: dict[
+            tuple[object, ...], tuple[list[float], list[tuple[tuple[float, ...], Record]]]
+        ] = {}
+
+    def find(self, group: tuple[object, ...], x: tuple[float, ...]) -> Record | None:
+        """The record of a point, None when it has not been evaluated.
+
+        Parameters
+        ----------
+        group : tuple
+            What must be identical: step number, discrete values, phase.
+        x : tuple of float
+            Continuous values [units of the parameters].
+
+        Returns
+        -------
+        Record or None
+            The record.
+        """
+        if group not in self._groups:
+            return None
+        firsts, entries = self._groups[group]
+        first = x[0] if x else 0.0
+        slack = _SAME * abs(first)
+        at = bisect.bisect_left(firsts, first - slack)
+        while at < len(firsts) and firsts[at] <= first + slack:
+            if _same(entries[at][0], x):
+                return entries[at][1]
+            at += 1
+        return None
+
+    def add(self, group: tuple[object, ...], x: tuple[float, ...], record: Record) -> None:
+        """Remember a point."""
+        firsts, entries = self._groups.setdefault(group, ([], []))
+        first = x[0] if x else 0.0
+        at = bisect.bisect_left(firsts, first)
+        firsts.insert(at, first)
+        entries.insert(at, (x, record))
+
+
+@dataclass
+class Policy:
+    """How evaluations are run.
+
+    Parameters
+    ----------
+    workers : int
+        Number of runs at a time [-].
+    ahead : bool
+        Whether idle workers run points that are likely to be needed.
+    penalty : float or None
+        Cost of a failed run; None stops the optimisation.
+    """
+
+    workers: int = 1
+    ahead: bool = False
+    penalty: float | None = None
+
+
+class Evaluator:
+    """Turns points into evaluations.
+
+    Parameters
+    ----------
+    project : Project
+        The project.
+    built : Built
+        The optimiser, asked for guesses.
+    run : callable
+        Runs one point in a directory.
+    policy : Policy
+        How to run.
+    log : Log, optional
+        Takes every run.
+    replay : Replay, optional
+        Results of an earlier run.
+    watch : callable, optional
+        Called after every evaluation with its record.
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        built: Built,
+        run: Runner,
+        policy: Policy,
+        *,
+        log: Log | None = None,
+        replay: Replay | None = None,
+        watch: Callable[[Record], None] | None = None,
+    ) -> None:
+        self._project, self._built, self._run, self._policy = project, built, run, policy
+        self._log, self._replay, self._watch = log, replay or Replay(), watch
+        self._cache = Cache()
+        self.records: list[Record] = []
+        self.notes: list[str] = []
+        self.count = 0
+        self.runs = 0
+        self._pool = ThreadPoolExecutor(policy.workers) if policy.workers > 1 else None
+        self._flying: dict[Key, Future[Record]] = {}
+        self._ahead: dict[Key, Record] = {}
+        self._folders: dict[Key, Path] = {}
+        self._ahead_count = 0
+        self._lock = threading.Lock()
+        self._any_success = False
+
+    # ------------------------------------------------------------------ batches
+
+    def evaluate(self, points: Sequence[Point]) -> list[Evaluation]:
+        """Evaluate one batch.
+
+        Parameters
+        ----------
+        points : sequence of Point
+            What the optimiser asks for.
+
+        Returns
+        -------
+        list of Evaluation
+            In the same order.
+
+        Raises
+        ------
+        RunFailed
+            When a run fails and failures end the optimisation.
+        """
+        first_batch = self.count == 0
+        step = self._built.optimiser.step_number
+        seen: dict[tuple[object, ...], int] = {}
+        numbers: list[int] = []
+        twins: list[int | None] = []
+        needed: list[Record | None] = []
+        for i, p in enumerate(points):
+            # Within a batch points are told apart by their own step number too.
+            own = (p.step, p.x, p.choices)
+            twin = seen.setdefault(own, i)
+            twins.append(None if twin == i else twin)
+            if twin != i:
+                numbers.append(numbers[twin])
+                needed.append(None)
+                continue
+            record = self._cache.find(self._group(p, step), p.x)
+            if record is None:
+                self.count += 1
+            needed.append(record)
+            numbers.append(self.count)
+        new = [
+            (i, replace(p, step=step), numbers[i])
+            for i, p in enumerate(points)
+            if twins[i] is None and needed[i] is None
+        ]
+        for (i, p, _), record in zip(new, self._obtain(new, first_batch=first_batch), strict=True):
+            needed[i] = record
+            self._cache.add(self._group(points[i], step), p.x, record)
+        fresh = {i for i, _, _ in new}
+        out: list[Evaluation] = []
+        for i, p in enumerate(points):
+            twin_of = twins[i]
+            record = needed[i if twin_of is None else twin_of]
+            if record is not None:
+                # Only a point that is run takes the current step number; others keep the one they carry.
+                mine = step if i in fresh else p.step
+                out.append(self._evaluation(p, record, numbers[i], mine))
+        return out
+
+    def _group(self, p: Point, step: int) -> tuple[object, ...]:
+        """What must be identical for two points to share a result."""
+        phase = self._built.optimiser.phase if self._project.discrete else 0
+        return (step if self._project.settings.write_step else 1, p.choices, phase)
+
+    def _evaluation(self, p: Point, record: Record, number: int, step: int) -> Evaluation:
+        """Evaluation of a point from its record."""
+        if record.costs is not None:
+            cost, *others = record.costs
+            return Evaluation(replace(p, step=step), cost, tuple(others), number)
+        others = [math.nan] * (len(self._project.objectives) - 1)
+        if self._policy.penalty is not None:
+            return Evaluation(replace(p, step=step), self._policy.penalty, tuple(others), number, failed=True)
+        # GenOpt records a failure that does not stop it as zeros with step number 0.
+        return Evaluation(replace(p, step=0), 0.0, tuple(0.0 for _ in others), number, failed=True)
+
+    # ------------------------------------------------------------------ runs
+
+    def _obtain(self, new: Sequence[tuple[int, Point, int]], *, first_batch: bool) -> list[Record]:
+        """Records of new points, from the log of an earlier run or by running them."""
+        waiting: dict[int, Future[Record]] = {}
+        records: dict[int, Record] = {}
+        for i, p, number in new:
+            key = self._key(p)
+            found = self._replayed(key) or self._ahead.pop(key, None)
+            if found is not None:
+                records[i] = found
+            elif self._pool is None:
+                records[i] = self._attempt(p, self._folder(number))
+                if records[i].costs is None and first_batch and self._stops():
+                    raise RunFailed(records[i].reason)
+            else:
+                flying = self._flying.pop(key, None)
+                waiting[i] = flying or self._pool.submit(self._attempt, p, self._folder(number))
+        self._wait(waiting)
+        records.update((i, future.result()) for i, future in waiting.items())
+        out = []
+        for i, p, number in new:
+            record = records[i]
+            self._settle(self._key(p), number)
+            if record.costs is None and not record.replayed:
+                record = self._second_try(record, p, number, first_batch=first_batch)
+            record.number = number
+            self._finish(record, p, number)
+            out.append(record)
+        self._check_any(out)
+        return out
+
+    def _attempt(self, p: Point, folder: Path) -> Record:
+        """Run one point; a failure becomes part of the record."""
+        key = self._key(p)
+        try:
+            result = self._run(p, folder)
+        except RunFailed as error:
+            record = Record(key, None, reason=str(error))
+        else:
+            record = Record(key, result.costs, result.seconds)
+        with self._lock:
+            self.runs += 1
+        return record
+
+    def _second_try(self, record: Record, p: Point, number: int, *, first_batch: bool) -> Record:
+        """What follows a failure: the end, or one more try."""
+        if first_batch and self._stops():
+            raise RunFailed(record.reason)
+        cause = record.reason.splitlines()[0]
+        self.notes.append(f"Caught '{cause}'. Try to evaluate simulation a second time.")
+        again = self._attempt(p, self._folder(number))
+        again.attempts = record.attempts + 1
+        if again.costs is None and self._stops():
+            again.number = number
+            self._write(again)
+            raise RunFailed(again.reason)
+        return again
+
+    def _stops(self) -> bool:
+        """Whether a failure ends the optimisation."""
+        return self._policy.penalty is None and self._built.stop_at_error
+
+    def _finish(self, record: Record, p: Point, number: int) -> None:
+        """Log a run and put its files away."""
+        if not record.replayed:
+            self._write(record)
+            folder = self._folder(number)
+            if record.costs is None:
+                self._archive(record, folder, number)
+            else:
+                self._save(folder, number)
+        self._any_success = self._any_success or record.costs is not None
+        self.records.append(record)
+        if self._watch is not None:
+            self._watch(record)
+
+    def _write(self, record: Record) -> None:
+        """Log a run, once."""
+        if self._log is not None and not record.logged:
+            self._log.add(record)
+            record.logged = True
+
+    def _archive(self, record: Record, folder: Path, number: int) -> None:
+        """Keep the files of a failed run that the optimisation survives."""
+        keep = self._project.folder / FAILURES / f"run-{number}"
+        if folder.exists():
+            if keep.exists():
+                shutil.rmtree(keep)
+            keep.parent.mkdir(exist_ok=True)
+            shutil.move(folder, keep)
+            record.reason = record.reason.replace(str(folder), str(keep))
+        self.notes.append(f"Simulation {number} failed; its files are in '{keep}'. {record.reason}")
+
+    def _save(self, folder: Path, number: int) -> None:
+        """Move files to their SavePath and delete the directory of a run."""
+        project = self._project
+        for entry in (*project.input, *project.log, *project.output):
+            source = folder / entry.path.relative_to(project.folder)
+            if entry.save is not None and source.exists():
+                source.replace(entry.save / f"{number}{entry.name}")
+        shutil.rmtree(folder, ignore_errors=True)
+
+    def _check_any(self, records: Sequence[Record]) -> None:
+        """A project whose every run fails is not worth going on with."""
+        if records and not self._any_success and self._policy.penalty is not None:
+            reason = records[0].reason
+            raise RunFailed(
+                f"every run of the first batch failed, so the project itself is at fault\n{reason}"
+            )
+
+    def _replayed(self, key: Key) -> Record | None:
+        """Record of an earlier run; a failure counts only where failures are survived."""
+        while (found := self._replay.take(key)) is not None:
+            if found.costs is not None or not self._stops():
+                return found
+        return None
+
+    # ------------------------------------------------------------------ runs ahead
+
+    def _wait(self, waiting: dict[int, Future[Record]]) -> None:
+        """Wait for the runs that are needed; idle workers run ahead meanwhile."""
+        open_ = set(waiting.values())
+        while open_:
+            self._collect()
+            self._look_ahead(len({f for f in open_ if not f.done()} | set(self._flying.values())))
+            done, _ = wait([*open_, *self._flying.values()], return_when=FIRST_COMPLETED)
+            open_ -= done
+
+    def _collect(self) -> None:
+        """Take the results of runs ahead that have ended."""
+        for key in [k for k, f in self._flying.items() if f.done() and not f.cancelled()]:
+            record = self._flying.pop(key).result()
+            self._ahead[key] = record
+            if record.costs is not None:
+                self._write(record)
+
+    def _look_ahead(self, busy: int) -> None:
+        """Give idle workers points that are likely to be needed."""
+        idle = self._policy.workers - busy
+        if not self._policy.ahead or self._pool is None or idle <= 0:
+            return
+        optimiser = self._built.optimiser
+        for p in optimiser.guesses(idle + len(self._flying), self._known):
+            key = self._key(p)
+            if idle > 0 and key not in self._flying and key not in self._ahead:
+                idle -= 1
+                self._ahead_count += 1
+                folder = self._project.folder / f"{RUN_PREFIX}ahead-{self._ahead_count}"
+                self._folders[key] = folder
+                self._flying[key] = self._pool.submit(self._attempt, p, folder)
+
+    def _known(self, p: Point) -> float | None:
+        """Cost of a point from any source."""
+        record = self._cache.find(self._group(p, p.step), p.x) or self._ahead.get(self._key(p))
+        if record is None:
+            return self._replay.cost(self._key(p))
+        if record.costs is None:
+            return self._policy.penalty
+        return record.costs[0]
+
+    def _settle(self, key: Key, number: int) -> None:
+        """Give the directory of a run ahead the number under which it is needed."""
+        folder = self._folders.pop(key, None)
+        if folder is not None and folder.exists():
+            target = self._folder(number)
+            if target.exists():
+                shutil.rmtree(target)
+            folder.rename(target)
+
+    def close(self, stop: Callable[[], None]) -> None:
+        """End runs that are still going on and remove what they leave.
+
+        Parameters
+        ----------
+        stop : callable
+            Ends the programs.
+        """
+        self._collect()
+        if self._pool is not None:
+            stop()
+            self._pool.shutdown(wait=True, cancel_futures=True)
+        unused = [r for r in self._ahead.values() if r.costs is not None]
+        self.records += unused
+        for folder in self._folders.values():
+            shutil.rmtree(folder, ignore_errors=True)
+
+    # ------------------------------------------------------------------ names
+
+    def _key(self, p: Point) -> Key:
+        """What a run depends on."""
+        return (p.step if self._project.settings.write_step else 1, p.x, p.choices)
+
+    def _folder(self, number: int) -> Path:
+        """Directory of a run."""
+        return self._project.folder / f"{RUN_PREFIX}{number}"
+
+
+def _same(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+    """Whether all coordinates are equal within rounding."""
+    return all(abs(u - v) <= _SAME * max(abs(u), abs(v)) for u, v in zip(a, b, strict=True))

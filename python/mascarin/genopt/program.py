@@ -1,0 +1,502 @@
+"""Runs the simulation program once: input files, command line, checks and results."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mascarin.errors import InputError, MascarinError, did_you_mean
+from mascarin.genopt import functions
+from mascarin.genopt.numbers import double_text, parse_double
+from mascarin.genopt.project import FileEntry, Objective, Project
+from mascarin.optimise import Point
+
+RUN_PREFIX = "tmp-genopt-run-"
+SEPARATORS = ":;,"
+_FORTRAN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)[dD][+-]?\d+\Z")
+_ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
+
+
+class RunFailed(MascarinError):
+    """One run of the simulation program failed; its files are kept."""
+
+    exit_code = 1
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one run gave.
+
+    Parameters
+    ----------
+    costs : tuple of float
+        Values of all objectives, the cost first [own units].
+    seconds : float
+        Wall time of the run [s].
+    """
+
+    costs: tuple[float, ...]
+    seconds: float
+
+
+class Program:
+    """The simulation program of a project.
+
+    Parameters
+    ----------
+    project : Project
+        The project.
+    time_limit : float, optional
+        Longest time for one run [s].
+    separators : str
+        Characters that end a number in an output file.
+    """
+
+    def __init__(
+        self, project: Project, *, time_limit: float | None = None, separators: str = SEPARATORS
+    ) -> None:
+        self._project = project
+        self._limit = time_limit
+        self._separators = separators
+        self._templates = [_read_template(entry) for entry in project.template]
+        self._text_names = self._check_names()
+        self._words = _split_command(project)
+        self._found: dict[str, int] = {}
+        self._running: set[subprocess.Popen[bytes]] = set()
+        self._lock = threading.Lock()
+        self._closed = False
+        self._check_program()
+
+    # ------------------------------------------------------------------ checks before the first run
+
+    def _check_names(self) -> list[str]:
+        """Every parameter and function must occur somewhere."""
+        project = self._project
+        outputs = [o.function for o in project.objectives if o.function is not None]
+        names = [*project.names, *(["stepNumber"] if project.settings.write_step else [])]
+        places = {p.name: p.place for p in project.continuous}
+        places.update((p.name, p.place) for p in project.discrete)
+        for name in names:
+            mark = f"%{name}%"
+            if not any(mark in t for t in (*self._templates, *project.functions.values(), *outputs)):
+                place = places.get(name, str(project.command_file))
+                listed = ", ".join(f"'{e.path}'" for e in project.template)
+                project.report.error(
+                    place,
+                    f"'{mark}' must occur in at least one simulation input template file, or in at least one "
+                    f"function object; searched {listed}. Write it where the value belongs",
+                )
+        for name in project.functions:
+            mark = f"%{name}%"
+            if not any(mark in t for t in (*self._templates, *outputs)) and not self._used_inside(name):
+                project.report.error(
+                    project.function_places[name], f"function '{mark}' is used nowhere; use or remove it"
+                )
+        project.report.raise_if_any()
+        return names
+
+    def _used_inside(self, name: str) -> bool:
+        """Whether another input function was written with this one."""
+        # References are resolved by then, so the text of the function itself is looked for.
+        text = self._project.functions[name]
+        return any(text in other for key, other in self._project.functions.items() if key != name)
+
+    def _check_program(self) -> None:
+        """The program must exist and relative names must mean what they seem to."""
+        project = self._project
+        words = self.command(Path(project.folder) / f"{RUN_PREFIX}1")
+        if not words:
+            project.report.error(project.command_place, "the command is empty; name a program")
+        elif shutil.which(words[0]) is None:
+            project.report.error(
+                project.command_place,
+                f"the program '{words[0]}' is not found or cannot be executed; give its full path",
+            )
+        for entry in (*project.input, *project.log, *project.output):
+            stale = Path.cwd() / entry.name
+            named = any(w.text == entry.name for w in self._words)
+            if named and stale.exists():
+                project.report.beyond(
+                    project.command_place,
+                    f"'{stale}' has the name of a file of the run, so GenOpt started in this directory would "
+                    "hand it to every run in place of the run's own",
+                    "remove it or start from another directory",
+                )
+        project.report.raise_if_any()
+
+    # ------------------------------------------------------------------ one run
+
+    def texts(self, point: Point) -> list[str]:
+        """Values of all parameters as they are written into files.
+
+        Parameters
+        ----------
+        point : Point
+            The point.
+
+        Returns
+        -------
+        list of str
+            Continuous ones first.
+        """
+        project = self._project
+        return [project.number_text(v) for v in point.x] + [
+            p.values[k] for p, k in zip(project.discrete, point.choices, strict=True)
+        ]
+
+    def _values(self, point: Point) -> dict[str, str]:
+        """Text for every name, in the order of replacement."""
+        values = dict(zip(self._project.names, self.texts(point), strict=True))
+        if self._project.settings.write_step:
+            values["stepNumber"] = str(point.step)
+        for name, text in self._project.functions.items():
+            # All variables are known by then: parameters come first in `values`.
+            values[name] = double_text(functions.evaluate(functions.substitute(text, values)))
+        return values
+
+    def run(self, point: Point, folder: Path) -> Result:
+        """Evaluate one point in a directory of its own.
+
+        Parameters
+        ----------
+        point : Point
+            The point.
+        folder : Path
+            The directory, made anew.
+
+        Returns
+        -------
+        Result
+            Costs and time.
+
+        Raises
+        ------
+        RunFailed
+            When the program or its results are not right; the directory is kept.
+        """
+        began = time.perf_counter()
+        if folder.exists():
+            shutil.rmtree(folder)
+        folder.mkdir(parents=True)
+        try:
+            values = self._values(point)
+            self._write_inputs(values, folder)
+            self._start(folder)
+            costs = self._read(values, folder)
+        except RunFailed as error:
+            note = f"{error}\n"
+            with contextlib.suppress(OSError):
+                (folder / "failure.txt").write_text(note, **_ENCODING)
+            raise
+        return Result(costs, time.perf_counter() - began)
+
+    def _inside(self, entry: FileEntry, folder: Path) -> Path:
+        """Where a file of a run lies."""
+        return folder / entry.path.relative_to(self._project.folder)
+
+    def _write_inputs(self, values: dict[str, str], folder: Path) -> None:
+        """Input files from their templates."""
+        for entry, template in zip(self._project.input, self._templates, strict=True):
+            target = self._inside(entry, folder)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(functions.substitute(template, values), newline=os.linesep, **_ENCODING)
+        for entry in (*self._project.log, *self._project.output):
+            self._inside(entry, folder).parent.mkdir(parents=True, exist_ok=True)
+
+    def _start(self, folder: Path) -> None:
+        """Run the command to its end."""
+        words = self.command(folder)
+        with tempfile.TemporaryFile() as stderr:
+            try:
+                process = subprocess.Popen(  # noqa: S603 - a list of words, no shell
+                    words,
+                    cwd=folder,
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=stderr,
+                    start_new_session=os.name == "posix",
+                )
+            except OSError as error:
+                raise self._failed(folder, f"cannot start '{words[0]}': {error.strerror}") from error
+            with self._lock:
+                self._running.add(process)
+            try:
+                if self._closed:
+                    _end(process)
+                code = process.wait(self._limit)
+            except subprocess.TimeoutExpired:
+                _end(process)
+                msg = f"the program did not end within {self._limit:g} s and was stopped"
+                raise self._failed(folder, msg) from None
+            except BaseException:
+                _end(process)
+                raise
+            finally:
+                with self._lock:
+                    self._running.discard(process)
+            if code != 0:
+                stderr.seek(0)
+                said = stderr.read().decode(**_ENCODING).strip()
+                text = f"exit value of the simulation program: {code}"
+                raise self._failed(folder, f"{text}\nerror stream of the program: {said}" if said else text)
+
+    def stop(self) -> None:
+        """End all runs that are still going on."""
+        self._closed = True
+        with self._lock:
+            for process in list(self._running):
+                _end(process)
+
+    def _failed(self, folder: Path, text: str) -> RunFailed:
+        """Error with everything needed to look for its cause."""
+        number = folder.name.removeprefix(RUN_PREFIX)
+        words = " ".join(self.command(folder))
+        return RunFailed(f"run {number}: {text}\nworking directory: '{folder}'\ncommand: {words}")
+
+    # ------------------------------------------------------------------ results
+
+    def _read(self, values: dict[str, str], folder: Path) -> tuple[float, ...]:
+        """Costs, after the checks of the log files."""
+        for entry in self._project.log:
+            path = self._inside(entry, folder)
+            text = self._text(path, folder, "log")
+            for number, line in enumerate(_lines(text), start=1):
+                if any(e in line for e in self._project.errors):
+                    raise self._failed(
+                        folder, f"{path}: following error was found on line {number}:\n   {line.strip()}"
+                    )
+        outputs = [
+            _lines(self._text(self._inside(entry, folder), folder, "output"))
+            for entry in self._project.output
+        ]
+        found = {
+            o.name: self._extract(o, o.delimiter, outputs, folder)
+            for o in self._project.objectives
+            if o.delimiter is not None
+        }
+        known = {**values, **{name: double_text(v) for name, v in found.items()}}
+        return tuple(self._cost(o, found, known, folder) for o in self._project.objectives)
+
+    def _text(self, path: Path, folder: Path, role: str) -> str:
+        """A file the program should have written."""
+        try:
+            return path.read_text(**_ENCODING)
+        except OSError as error:
+            raise self._failed(
+                folder,
+                f"the program ended without error but {role} file '{path}' is missing ({error.strerror})",
+            ) from error
+
+    def _cost(self, o: Objective, found: dict[str, float], known: dict[str, str], folder: Path) -> float:
+        """Value of one objective."""
+        if o.function is None:
+            return found[o.name]
+        text = functions.substitute(o.function, known)
+        value = functions.evaluate(text)
+        if value != value or abs(value) == float("inf"):
+            raise self._failed(folder, f"cost '{o.name}' is {double_text(value)}: {o.function} = {text}")
+        return value
+
+    def _extract(self, o: Objective, delimiter: str, outputs: Sequence[list[str]], folder: Path) -> float:
+        """A number behind its delimiter, from the first file that has it."""
+        known = self._found.get(o.name)
+        order = range(len(outputs)) if known is None else [known]
+        for i in order:
+            word = _word_behind(outputs[i], delimiter, o.column, self._separators)
+            if word is not None:
+                value = self._number(o, word, self._inside(self._project.output[i], folder), folder)
+                self._found[o.name] = i
+                return value
+        files = ", ".join(f"'{self._inside(self._project.output[i], folder)}'" for i in order)
+        raise self._failed(
+            folder,
+            f"the value of '{o.name}' could not be found in {files}. Objective function delimiter is "
+            f"'{delimiter}' ({o.place}); check it and the file",
+        )
+
+    def _number(self, o: Objective, word: str, path: Path, folder: Path) -> float:
+        """A finite number, or the reason why not."""
+        value = parse_double(word)
+        if value is None and _FORTRAN.match(word):
+            if self._project.report.lenient:
+                value = float(re.sub("[dD]", "e", word))
+            else:
+                hint = "write it with E (or accept it with --lenient)"
+                raise self._failed(folder, f"{path}: '{o.name}' is '{word}', a Fortran number; {hint}")
+        if value is None:
+            raise self._failed(folder, f"{path}: '{o.name}' is '{word}', which is no number")
+        if value != value or abs(value) == float("inf"):
+            raise self._failed(folder, f"{path}: '{o.name}' is {word}")
+        return value
+
+    # ------------------------------------------------------------------ command line
+
+    def command(self, folder: Path) -> list[str]:
+        """Words of the command line for a run.
+
+        Parameters
+        ----------
+        folder : Path
+            Directory of the run.
+
+        Returns
+        -------
+        list of str
+            Program and arguments.
+        """
+        return [_place_word(w, self._variables(folder), self._project.folder) for w in self._words]
+
+    def _variables(self, folder: Path) -> dict[str, str]:
+        """Values of the variables of the command line."""
+        return _variables(self._project, folder)
+
+
+@dataclass(frozen=True)
+class _Word:
+    """One word of the command; `text` still has the variables that differ between runs."""
+
+    text: str
+
+
+def _variables(project: Project, folder: Path) -> dict[str, str]:
+    """Variables of the command line for a run in `folder`."""
+    out: dict[str, str] = {}
+
+    def put(role: str, entries: Sequence[FileEntry], *, inside: bool) -> None:
+        for i, e in enumerate(entries, start=1):
+            name = e.name
+            if role == "Input" and not project.keep_extension:
+                name = name.rpartition(".")[0] or name
+            base = folder / e.folder.relative_to(project.folder) if inside else e.folder
+            out[f"Simulation.Files.{role}.File{i}"] = name
+            out[f"Simulation.Files.{role}.Path{i}"] = str(base)
+            if e.save is not None:
+                out[f"Simulation.Files.{role}.SavePath{i}"] = str(e.save)
+
+    put("Template", project.template, inside=False)
+    put("Input", project.input, inside=True)
+    put("Log", project.log, inside=True)
+    put("Output", project.output, inside=True)
+    out["Simulation.Files.Configuration.Name1"] = project.configuration.name
+    out["Simulation.Files.Configuration.Path1"] = str(project.configuration.parent)
+    out["Simulation.CallParameter.Prefix"] = project.prefix
+    out["Simulation.CallParameter.Suffix"] = project.suffix
+    out["Optimization.Files.Command.File1"] = project.command_file.name
+    out["Optimization.Files.Command.Path1"] = str(project.command_file.parent)
+    out["CLASSPATH"] = os.environ.get("CLASSPATH", "")
+    return out
+
+
+def _split_command(project: Project) -> list[_Word]:
+    """Words of the command; quotes keep blanks together, values of files stay one word."""
+    text = project.command
+    for key in ("Prefix", "Suffix"):
+        value = project.prefix if key == "Prefix" else project.suffix
+        text = text.replace(f"%Simulation.CallParameter.{key}%", value)
+    known = _variables(project, project.folder)
+    for name in re.findall(r"%((?:Simulation|Optimization)\.[\w.]+)%", text):
+        if name not in known:
+            project.report.error(
+                project.command_place,
+                f"'%{name}%' in the command is not known. {did_you_mean(name, known)}".rstrip(),
+            )
+    if text.count('"') % 2:
+        project.report.error(project.command_place, "the command has an odd number of double quotes")
+    project.report.raise_if_any()
+    words: list[str] = []
+    for piece in re.findall(r'(?:[^\s"]|"[^"]*")+', text):
+        word = piece.replace('"', "")
+        if re.match(r"\.\d+\Z", word):
+            project.report.beyond(
+                project.command_place,
+                f"the argument '{word}' begins with a point, so GenOpt takes it for a file and puts "
+                "a directory in front",
+                f"write 0{word}",
+            )
+        words.append(word)
+    project.report.raise_if_any()
+    return [_Word(w) for w in words]
+
+
+def _place_word(word: _Word, variables: dict[str, str], folder: Path) -> str:
+    """A word with its variables replaced and its path made absolute where GenOpt does so."""
+    text = functions.substitute(word.text, variables)
+    if text.startswith(".") and not re.match(r"\.\d+\Z", text):
+        return os.path.normpath(folder / text)
+    # A name that comes from the project's own files belongs to the run, whatever lies in the directory
+    # from which the optimisation was started.
+    if text == word.text and text and not Path(text).is_absolute() and Path(text).exists():
+        return str(Path(text).absolute())
+    return text
+
+
+def _read_template(entry: FileEntry) -> str:
+    """Text of a template with every line ended."""
+    try:
+        lines = _lines(entry.path.read_text(**_ENCODING))
+    except OSError as error:
+        msg = f"{entry.place}: cannot read template '{entry.path}': {error.strerror}"
+        raise InputError(msg) from error
+    return "".join(line + "\n" for line in lines)
+
+
+def _lines(text: str) -> list[str]:
+    """Lines without their ends; only line feeds end one, reading has unified the rest."""
+    lines = text.split("\n")
+    return lines[:-1] if lines[-1] == "" else lines
+
+
+def _word_behind(lines: Sequence[str], delimiter: str, column: int, separators: str) -> str | None:
+    """Text of the number behind a delimiter, None when the delimiter is not there.
+
+    The last line with the delimiter counts and in it the last place, unless a column is given.
+    """
+    if delimiter == "":
+        for line in reversed(lines):
+            if line.strip(" \t"):
+                return _first_word(line, separators)
+        return None
+    for line in reversed(lines):
+        if column > 0:
+            if len(line) > column and line.startswith(delimiter, column - 1):
+                return _first_word(line[column - 1 + len(delimiter) :], separators)
+        elif delimiter in line:
+            text = line.rstrip(" \t")
+            end = delimiter.rstrip(" \t")
+            if end and text.endswith(end):
+                text = text[: -len(end)]
+            at = text.rfind(delimiter)
+            return _first_word(text[at + len(delimiter) :], separators) if at >= 0 else ""
+    return None
+
+
+def _first_word(text: str, separators: str) -> str:
+    """Text up to the first blank or separator."""
+    return re.split(rf"[ \t{re.escape(separators)}]", text.lstrip(" \t"), maxsplit=1)[0]
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a program and what it has started."""
+    with contextlib.suppress(OSError):
+        if sys.platform == "win32":
+            subprocess.run(  # noqa: S603 - fixed program, a number as argument
+                ["taskkill", "/T", "/F", "/PID", str(process.pid)],  # noqa: S607
+                check=False,
+                capture_output=True,
+            )
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
+    with contextlib.suppress(OSError, subprocess.TimeoutExpired):
+        process.kill()
+        process.wait(10)

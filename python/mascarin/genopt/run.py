@@ -1,0 +1,325 @@
+"""Runs a whole GenOpt project."""
+
+from __future__ import annotations
+
+import contextlib
+import datetime as dt
+import os
+import re
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mascarin import __version__
+from mascarin.errors import InputError, MascarinError
+from mascarin.genopt.algorithm import Built, build
+from mascarin.genopt.evaluator import Evaluator, Policy, Runner
+from mascarin.genopt.listing import Listings, Row
+from mascarin.genopt.numbers import double_text
+from mascarin.genopt.program import RUN_PREFIX, SEPARATORS, Program
+from mascarin.genopt.project import Project, load
+from mascarin.genopt.records import Log, Record, Replay, check_table, fingerprint, write_table
+from mascarin.optimise.pattern import EXHAUSTED
+from mascarin.progress import Progress
+
+LOG_NAME = "GenOpt.log"
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a project is run; without any of them as GenOpt would.
+
+    Parameters
+    ----------
+    workers : int, optional
+        Number of runs at a time; UnitsOfExecution of the command file when absent [-].
+    ahead : bool
+        Whether idle workers run points that a sequential algorithm is likely to need.
+    penalty : float, optional
+        Cost of a failed run; failures end the optimisation when absent [unit of the cost].
+    time_limit : float, optional
+        Longest time of one run [s].
+    resume : bool
+        Whether to go on from the log of an earlier run.
+    lenient : bool
+        Whether to accept and note what GenOpt cannot run.
+    table : Path, optional
+        File that gets all evaluations, ``.csv`` or ``.parquet``.
+    progress : bool
+        Whether to show progress on standard error.
+    """
+
+    workers: int | None = None
+    ahead: bool = True
+    penalty: float | None = None
+    time_limit: float | None = None
+    resume: bool = False
+    lenient: bool = False
+    table: Path | None = None
+    progress: bool = False
+
+
+@dataclass
+class Outcome:
+    """The end of an optimisation.
+
+    Parameters
+    ----------
+    project : Project
+        The project.
+    algorithm : str
+        Name of the algorithm.
+    reason : str
+        Why it ended.
+    exhausted : bool
+        Whether it ended because of MaxIte.
+    lowest : Row or None
+        The lowest point as in the listings, None for algorithms that look for none.
+    simulations : int
+        Last simulation number [-].
+    runs : int
+        How often the program was started [-].
+    records : list of Record
+        All evaluations.
+    notes : list of str
+        Remarks and everything accepted beyond GenOpt.
+    failures : int
+        Number of evaluations that failed [-].
+    """
+
+    project: Project
+    algorithm: str
+    reason: str = ""
+    exhausted: bool = False
+    lowest: Row | None = None
+    simulations: int = 0
+    runs: int = 0
+    records: list[Record] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def failures(self) -> int:
+        """Number of evaluations that failed [-]."""
+        return sum(r.costs is None for r in self.records)
+
+    def values(self) -> dict[str, float | str]:
+        """Costs and parameters of the lowest point by name, empty when there is none."""
+        if self.lowest is None:
+            return {}
+        e, project = self.lowest.evaluation, self.project
+        out: dict[str, float | str] = {}
+        out.update(zip([o.name for o in project.objectives], (e.cost, *e.outputs), strict=True))
+        out.update(zip([p.name for p in project.continuous], e.point.x, strict=True))
+        out.update((p.name, p.values[k]) for p, k in zip(project.discrete, e.point.choices, strict=True))
+        return out
+
+
+def optimise(path: str | Path, options: Options | None = None, *, run: Runner | None = None) -> Outcome:
+    """Run a GenOpt project.
+
+    Parameters
+    ----------
+    path : str or Path
+        The initialization file.
+    options : Options, optional
+        How to run it.
+    run : callable, optional
+        Stands in for the simulation program: takes a point and a directory, returns a result.
+
+    Returns
+    -------
+    Outcome
+        The end of the optimisation; the listings lie beside the command file.
+
+    Raises
+    ------
+    InputError
+        When the project has errors; nothing has been run.
+    RunFailed
+        When a run of the simulation program fails and failures are not survived.
+    SolverError
+        When the algorithm cannot go on.
+    """
+    o = options or Options()
+    started = dt.datetime.now().astimezone()
+    if o.table is not None:
+        check_table(o.table)
+    project = load(path, lenient=o.lenient)
+    listings = Listings(project)
+    built: Built | None = None
+    outcome = Outcome(project, "")
+    try:
+        # The listings exist even when the project turns out to be wrong, as GenOpt leaves them.
+        main = project.algorithm.get("Main")
+        listings.open(main.value if main else "", started)
+        workers = o.workers or project.settings.units or os.cpu_count() or 1
+        built = build(project, listings, workers)
+        outcome.algorithm = built.name
+        if built.counts_equal:
+            listings.max_equal = project.settings.max_equal
+        program = (
+            None if run is not None else Program(project, time_limit=o.time_limit, separators=_separators())
+        )
+        _work(project, built, listings, o, outcome, run or _runner(program), workers, _stopper(program))
+    except MascarinError as error:
+        _write_log(project, outcome, started, str(error))
+        raise
+    finally:
+        listings.close()
+    ended = "Maximum number of iteration exceeded." if outcome.exhausted else ""
+    _write_log(project, outcome, started, ended)
+    return outcome
+
+
+def _runner(program: Program | None) -> Runner:
+    """The real program."""
+    if program is None:
+        msg = "no program to run"
+        raise InputError(msg)
+    return program.run
+
+
+def _stopper(program: Program | None) -> Callable[[], None]:
+    """What ends runs that are going on."""
+    return program.stop if program is not None else lambda: None
+
+
+def _work(
+    project: Project,
+    built: Built,
+    listings: Listings,
+    o: Options,
+    outcome: Outcome,
+    run: Runner,
+    workers: int,
+    stop: Callable[[], None],
+) -> None:
+    """Drive the optimiser to its end."""
+    log = Log(project.ini.with_suffix(".evaluations.jsonl"))
+    digests = fingerprint(project)
+    earlier = log.resume(digests) if o.resume else []
+    if not o.resume:
+        log.begin(digests)
+    _clean(project, saved=not o.resume)
+    watch = _Watch(project, built) if o.progress else None
+    policy = Policy(workers, o.ahead and workers > 1, o.penalty)
+    evaluator = Evaluator(project, built, run, policy, log=log, replay=Replay(earlier), watch=watch)
+    try:
+        while points := built.optimiser.ask():
+            built.optimiser.tell(evaluator.evaluate(points))
+    finally:
+        evaluator.close(stop)
+        log.close()
+        if watch is not None:
+            watch.close()
+        outcome.simulations, outcome.runs = evaluator.count, evaluator.runs
+        outcome.records = evaluator.records
+        outcome.notes = [*project.report.notes, *listings.notes]
+        outcome.warnings = evaluator.notes
+        if o.table is not None:
+            write_table(o.table, project, outcome.records)
+    outcome.reason = built.optimiser.reason
+    outcome.exhausted = outcome.reason == EXHAUSTED
+    outcome.lowest = listings.lowest
+
+
+class _Watch:
+    """Shows how far an optimisation is."""
+
+    def __init__(self, project: Project, built: Built) -> None:
+        self._expected = built.optimiser.expected
+        self._total = self._expected or project.settings.max_iterations
+        self._progress = Progress("simulations")
+        self._done = 0
+        self._best: float | None = None
+        self._name = project.objectives[0].name
+
+    def __call__(self, record: Record) -> None:
+        """One more evaluation."""
+        self._done += 1
+        if record.costs is not None and (self._best is None or record.costs[0] < self._best):
+            self._best = record.costs[0]
+        total = max(self._total, self._done)
+        most = "" if self._expected else ", at most"
+        best = "" if self._best is None else f", lowest {self._name} {self._best:.6g}"
+        self._progress.update(self._done, total, f"{self._done} of {total}{most}{best}")
+
+    def close(self) -> None:
+        """Wipe the line."""
+        self._progress.close()
+
+
+def _clean(project: Project, *, saved: bool) -> None:
+    """Remove what an earlier run has left."""
+    for folder in project.folder.glob(f"{RUN_PREFIX}*"):
+        if folder.is_dir():
+            shutil.rmtree(folder, ignore_errors=True)
+    for entry in (*project.input, *project.log, *project.output):
+        if entry.save is None:
+            continue
+        entry.save.mkdir(parents=True, exist_ok=True)
+        if saved:
+            for old in entry.save.iterdir():
+                if re.fullmatch(rf"\d+{re.escape(entry.name)}", old.name):
+                    old.unlink()
+
+
+def _separators() -> str:
+    """Characters that end a number, as GenOpt's preferences file says."""
+    path = Path.home() / ".genopt3.1.1" / "properties.txt"
+    with contextlib.suppress(OSError):
+        for line in path.read_text(encoding="latin-1").splitlines():
+            key, _, value = line.partition("=")
+            if key.strip() == "simulation.result.separator":
+                return re.sub(r"\\(.)", r"\1", value.strip())
+    return SEPARATORS
+
+
+def _write_log(project: Project, outcome: Outcome, started: dt.datetime, error: str) -> None:
+    """The log of the whole run."""
+    finished = dt.datetime.now().astimezone()
+    lines = [
+        f"Mascarin {__version__}, log in the format of GenOpt 3.1.1",
+        "",
+        f"Configuration file : {project.configuration}",
+        f"Command file       : {project.command_file}",
+        f"Start time         : {started:%a %b %d %H:%M:%S %Z %Y}",
+        f"Finish time        : {finished:%a %b %d %H:%M:%S %Z %Y}",
+        f"Execution time     : {(finished - started).total_seconds():.1f} s",
+        "_" * 63,
+        "",
+    ]
+    if error:
+        lines += ["Optimization terminated with error.", "Error message:", error]
+    else:
+        lines.append("Optimization completed successfully.")
+    for title, texts in (("Warning messages:", outcome.warnings), ("Info messages:", outcome.notes)):
+        if texts:
+            lines += ["", title, *(f"{i}: {t}" for i, t in enumerate(texts, start=1))]
+    with contextlib.suppress(OSError):
+        (project.folder / LOG_NAME).write_text(
+            "\n".join(lines) + "\n", encoding="utf-8", errors="surrogateescape"
+        )
+
+
+def summary(outcome: Outcome) -> list[str]:
+    """The end of an optimisation in a few lines.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        The end.
+
+    Returns
+    -------
+    list of str
+        Lines of text.
+    """
+    lines = [f"{outcome.algorithm}: {outcome.reason}; {outcome.simulations} simulations"]
+    if outcome.failures:
+        lines[0] += f", {outcome.failures} of them failed"
+    for name, value in outcome.values().items():
+        lines.append(f"{name} = {double_text(value) if isinstance(value, float) else value}")
+    return lines
