@@ -107,15 +107,17 @@ def _each(
 
 def _fields(part: Any, ids: Ids, prefix: str = "") -> Json:
     """Write a part whose fields bear the names of the border: its kind and the ids of its numbers."""
-    numbers = (key for key in type(part).model_fields if isinstance(getattr(part, key), Number))
-    kind = {"kind": part.kind} if hasattr(part, "kind") else {}
-    return kind | {key: ids(f"{prefix}{key}") for key in numbers}
+    written = {"kind": part.kind} if hasattr(part, "kind") else {}
+    for key in type(part).model_fields:
+        number = getattr(part, key)
+        if isinstance(number, Number) and not number.structural:
+            written[key] = ids(f"{prefix}{key}")
+    return written
 
 
 def _site(site: Site, ids: Ids) -> Json:
     return {
-        "altitude": ids("altitude"),
-        "ground_reflectance": ids("ground_reflectance"),
+        **_fields(site, ids),
         "wind": _fields(site.wind, ids, "wind."),
         "sky": _fields(site.sky, ids, "sky."),
         "cloud": [ids("cloud.c1"), ids("cloud.c2"), ids("cloud.c3")],

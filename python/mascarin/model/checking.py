@@ -255,9 +255,10 @@ def assumptions(building: Building) -> Iterator[str]:
         if number.assumed:
             unit = number.quantity.unit if number.quantity else ""
             yield f"{path} = {number:g} {unit} ({source or 'no source'})"
-    if "sky" not in building.site.model_fields_set:
+    outdoors = [side for surface in building.surfaces.values() for side in surface.sides if side.outdoors]
+    if outdoors and "sky" not in building.site.model_fields_set:
         yield "site.sky: martin_berdahl, because none is written"
-    if "diffuse" not in building.site.model_fields_set:
+    if any(not side.irradiance for side in outdoors) and "diffuse" not in building.site.model_fields_set:
         yield "site.diffuse: perez, because none is written"
     for name in building.zones:
         if "approximated" in _exchange(building, name):

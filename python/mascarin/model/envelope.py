@@ -12,7 +12,7 @@ from mascarin.model import quantities as q
 from mascarin.model.convection import Convection, Mowitt, Tarp
 from mascarin.model.names import ConstructionName, MaterialName, Name, SurfaceName, ZoneName
 from mascarin.model.number import Number, problem
-from mascarin.model.part import Part, Shorthand, fault, insist
+from mascarin.model.part import Part, Shorthand, fault, insist, refuse
 
 FACINGS = ("outdoors", "zone", "ground", "measured", "adiabatic")
 
@@ -44,7 +44,7 @@ class Construction(Part):
     @model_validator(mode="after")
     def _sound(self) -> Construction:
         if not self.layers:
-            raise problem("no layers", "at least one layer", "List the layers from outside to inside.")
+            refuse(fault(("layers",), "no layers", "at least one layer", "List them from outside to inside."))
         twice = [name for name, count in Counter(layer.name for layer in self.layers).items() if count > 1]
         insist(
             *(

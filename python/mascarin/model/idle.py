@@ -93,7 +93,10 @@ def _in_site(building: Building, faces: list[_Face]) -> Reasons:
         reason = "no film depends on wind at the height of its face: mast wind is used as it is"
         yield from _all_of("site.wind", site.wind, reason)
     if not building.zones:
-        yield "site.altitude", "there is no zone whose air has a density"
+        reason = "there is no zone whose air has a density"
+        yield from ((f"site.{key}", reason) for key in ("altitude", "air_density"))
+    elif site.air_density is not None:
+        yield "site.altitude", "the density of the air is written"
 
 
 def _on_side(face: _Face) -> Reasons:

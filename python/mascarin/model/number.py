@@ -78,6 +78,11 @@ class Number(float):
         )
 
     @property
+    def structural(self) -> bool:
+        """Whether the number shapes the calculation itself."""
+        return self.quantity is not None and isinstance(self.quantity.spread, Fixed)
+
+    @property
     def believable(self) -> Interval:
         """Lowest and highest believable value: as written, else by the quantity's default."""
         if self.range is not None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from mascarin.errors import InputError, did_you_mean
 from mascarin.model.idle import without_effect
 from mascarin.model.leaves import leaves
-from mascarin.model.number import Fixed, Number
+from mascarin.model.number import Number
 
 if TYPE_CHECKING:
     from mascarin.model.building import Building
@@ -79,7 +79,8 @@ def _parameter(path: str, number: Number, source: str, idle: str | None) -> Para
     if quantity is None:
         raise TypeError(f"{path} measures no quantity")
     low, high = number.believable
-    fixed = isinstance(quantity.spread, Fixed)
+    if not low < high:
+        idle = idle or "its default range has no width: write a range"
     return Parameter(
         path=path,
         value=float(number),
@@ -91,8 +92,8 @@ def _parameter(path: str, number: Number, source: str, idle: str | None) -> Para
         description=quantity.description,
         source=source or None,
         assumed=number.assumed,
-        structural=fixed,
-        reason=quantity.spread.reason if fixed else idle,
+        structural=number.structural,
+        reason=quantity.spread.reason if number.structural else idle,
         range_reason=quantity.spread.reason if number.range is None else "written in the description",
     )
 

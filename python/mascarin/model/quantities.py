@@ -44,9 +44,18 @@ Altitude = Annotated[
     Number,
     Quantity(
         "m",
-        "Altitude above sea level; gives the air pressure where the climate has none",
+        "Altitude above sea level; gives the density of the air where none is written",
         Within(50, "height of the plot against the station's; 50 m are 0.6 % of pressure"),
         Limits(at_least=-500, at_most=9000),
+    ),
+]
+AirDensity = Annotated[
+    Number,
+    Quantity(
+        "kg/m3",
+        "Density of the air in the zones and of the air that enters them",
+        Percent(3, "10 K of temperature or 30 hPa of weather"),
+        Limits(above=0, at_most=3),
     ),
 ]
 GroundReflectance = Annotated[

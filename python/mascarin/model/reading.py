@@ -92,15 +92,15 @@ def _place(location: Place, plain: Any) -> Place:
         if _holds(plain, step):
             place.append(step)
             plain = plain[step]
-    missing = location[-1] if location else None
-    if (
-        isinstance(plain, Mapping)
-        and isinstance(missing, str)
-        and place[-1:] != [missing]
-        and "]" not in missing
-    ):
-        place.append(missing)
+    last = location[-1] if location else None
+    if isinstance(last, str) and "]" not in last and _lacks(plain, last, place):
+        place.append(last)
     return tuple(place)
+
+
+def _lacks(plain: Any, key: str, place: list[str | int]) -> bool:
+    """Tell whether a location ends in a key that should stand here, not in the kind of what stands here."""
+    return isinstance(plain, Mapping) and place[-1:] != [key] and plain.get("kind", "solid") != key
 
 
 def _holds(plain: Any, step: str | int) -> bool:

@@ -140,6 +140,7 @@ class Site(Part):
     latitude: q.Latitude
     longitude: q.Longitude
     altitude: q.Altitude
+    air_density: q.AirDensity | None = None
     timezone: Annotated[str, AfterValidator(_timezone)] = Field(
         description="Time zone of the building's clock: an IANA name such as Europe/Paris, or UTC+4"
     )

@@ -1,0 +1,189 @@
+"""Descriptions that the tests of the model share."""
+
+from __future__ import annotations
+
+from mascarin.model import Building
+from mascarin.model.reading import parse
+
+# One closed room: small, and free of anything that the tests do not look at.
+ROOM = """\
+name: room
+site: {latitude: 48, longitude: 2, altitude: 100, timezone: Europe/Paris}
+materials:
+  concrete: {conductivity: 1.75, density: 2240, specific_heat: 900, source: a table}
+constructions:
+  wall:
+    layers:
+      - {material: concrete, thickness: 0.2}
+zones:
+  room: {volume: 30, infiltration: 0.5}
+surfaces:
+  south:
+    construction: wall
+    area: 16
+    tilt: 90
+    azimuth: 180
+    outside: {outdoors: true, convection: 15, emissivity: 0.9, absorptance: 0.6}
+    inside: {zone: room, convection: 3, emissivity: 0.9}
+  rest:
+    construction: wall
+    area: 50
+    tilt: 90
+    azimuth: 0
+    outside: {adiabatic: true}
+    inside: {zone: room, convection: 3, emissivity: 0.9}
+sensors:
+  core: {surface: south, depth: 0.1}
+"""
+
+# Every kind of part once; the kinds of sky follow below.
+EVERYTHING = """\
+name: everything
+site:
+  latitude: -21.3
+  longitude: 55.5
+  altitude: {value: 55, range: [40, 70], source: a map}
+  timezone: UTC+4
+  wind: {terrain: suburb}
+  diffuse: hay_davies
+materials:
+  concrete: {conductivity: 1.75, density: 2240, specific_heat: 900, source: a table}
+  gap: {kind: resistance, resistance: 0.15}
+  wax:
+    kind: pcm
+    conductivity: [0.22, 0.18]
+    density: 855
+    specific_heat: {solid: 3134, liquid: 2833}
+    latent_heat: 71000
+    melting_temperature: 23.4
+    law: {kind: tanh, gamma: 0.04, delta_t: 0.01}
+  salt:
+    kind: pcm
+    conductivity: 0.5
+    density: [1500, 1450]
+    specific_heat: 2000
+    latent_heat: 150000
+    melting_temperature: 27
+    law: {kind: tanh, width: 1.5}
+  curve:
+    kind: pcm
+    conductivity: 0.2
+    density: 800
+    specific_heat: 2000
+    law:
+      kind: table
+      temperatures: [10, 20, 24, 40]
+      enthalpies: [0, 2.0e+4, 9.0e+4, 1.2e+5]
+      melting_range: [20, 24]
+constructions:
+  wall:
+    layers:
+      - {material: concrete, thickness: 0.1, nodes: 5}
+      - {material: gap}
+      - {name: lining, material: concrete, thickness: 0.02}
+  ceiling:
+    layers:
+      - {material: wax, thickness: 0.00526}
+      - {material: salt, thickness: 0.01}
+      - {material: curve, thickness: 0.01}
+zones:
+  room:
+    volume: 27
+    capacity_factor: 2
+    infiltration: {constant: 0.2, temperature: 0.01, wind: 0.02}
+    longwave: radiosity
+  attic:
+    volume: 9
+    infiltration: {value: 0.3, range: [0, 1]}
+    longwave: {kind: linearised, reference: 25}
+    view_factors: {roof: {ceiling: 1.0}, ceiling: {roof: 1.0}}
+  shaft: {volume: 4, longwave: none}
+surfaces:
+  roof:
+    construction: wall
+    vertices: [[0, 0, 3], [3, 0, 3], [3, 3, 3.5], [0, 3, 3.5]]
+    outside: {outdoors: true, convection: tarp, emissivity: 0.9, absorptance: 0.8, area_factor: 1.1}
+    inside: {zone: attic, convection: {kind: alamdari_hammond}, emissivity: 0.25}
+  ceiling:
+    construction: ceiling
+    area: 9
+    tilt: 0
+    outside: {zone: attic, convection: {kind: paper_eq5, factor: 0.8}, emissivity: 0.05}
+    inside:
+      zone: room
+      emissivity: 0.9
+      convection:
+        kind: power
+        upward: {a: 0.1, b: 1.5, n: 0.33}
+        downward: {b: 0.6, n: 0.25}
+  floor:
+    construction: wall
+    area: 9
+    tilt: 180
+    outside: {ground: {mean: 22, amplitude: 2, coldest_day: 200}}
+    inside: {zone: room, convection: {kind: linear_wind, constant: 3, wind: 0}, emissivity: 0.9}
+  west:
+    construction: wall
+    area: 9
+    tilt: 90
+    azimuth: 270
+    outside:
+      outdoors: true
+      convection: {kind: mowitt}
+      emissivity: 0.9
+      absorptance: 0.4
+      sky_view: 0.4
+      height: 1.5
+      longwave: {kind: linearised, reference: 24}
+    inside: {zone: room, convection: 2.5, emissivity: 0.9}
+  east:
+    construction: wall
+    area: 9
+    tilt: 90
+    azimuth: 90
+    outside:
+      outdoors: true
+      convection: {kind: linear_wind, constant: 11.4, wind: 5.7}
+      emissivity: 0.9
+      absorptance: 0.4
+      longwave: none
+    inside: {zone: room, convection: 2.5, emissivity: 0.9}
+  north:
+    construction: wall
+    area: 9
+    tilt: 90
+    azimuth: 0
+    outside: {measured: T_out, convection: 12, irradiance: G_north, absorptance: 0.4}
+    inside: {zone: shaft, convection: 2.5}
+  mass:
+    construction: wall
+    area: 4
+    tilt: 90
+    azimuth: 0
+    internal_mass: true
+    outside: {zone: room, convection: 2, emissivity: 0.9}
+    inside: {zone: room, convection: 2, emissivity: 0.9}
+  held: {construction: wall, area: 1, tilt: 90, outside: {measured: T_face}, inside: {adiabatic: true}}
+sensors:
+  core: {surface: west, depth: 0.05}
+"""
+
+SKIES = [
+    {"kind": "martin_berdahl"},
+    {"kind": "clark_allen"},
+    {"kind": "brunt"},
+    {"kind": "offset", "depression": 9},
+    {"kind": "measured"},
+]
+
+
+def room() -> Building:
+    """The closed room."""
+    return parse(ROOM, "room.yaml")
+
+
+def everything() -> list[Building]:
+    """Every kind of part, once for each sky; the air's density from the altitude and, in the last, written."""
+    building = parse(EVERYTHING, "everything.yaml")
+    skies = [building.replace({"site.sky": sky}) for sky in SKIES]
+    return [*skies, building.replace({"site.air_density": 1.16})]
