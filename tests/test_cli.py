@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import importlib
+import inspect
 import io
 import subprocess
 import sys
@@ -19,7 +21,7 @@ def raising(monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
     def app(_words: list[str]) -> None:
         raise error
 
-    monkeypatch.setattr(cli, "build_app", lambda: app)
+    monkeypatch.setattr(cli, "build_app", lambda _chosen: app)
 
 
 def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
@@ -42,6 +44,13 @@ def test_every_command_has_help(command: cli.Command, capsys: pytest.CaptureFixt
     out = capsys.readouterr().out
     assert f"mascarin {command.name}" in out
     assert " ".join(command.help.split()[:3]) in " ".join(out.split())
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda c: c.name)
+def test_the_list_says_of_a_command_what_its_docstring_says(command: cli.Command) -> None:
+    module, name = command.function.split(":")
+    function = getattr(importlib.import_module(module), name)
+    assert inspect.getdoc(function).splitlines()[0] == command.help
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
@@ -125,7 +134,7 @@ def test_debug_after_two_dashes_is_an_argument() -> None:
 
 
 def test_the_code_a_command_returns_is_the_exit_code(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cli, "build_app", lambda: lambda _words: 1)
+    monkeypatch.setattr(cli, "build_app", lambda _chosen: lambda _words: 1)
     assert cli.main([]) == 1
 
 
@@ -137,7 +146,7 @@ def test_warnings_are_said_in_one_line(
         warnings.warn("the step is long", UserWarning, stacklevel=1)
 
     monkeypatch.delenv("MASCARIN_DEBUG", raising=False)
-    monkeypatch.setattr(cli, "build_app", lambda: app)
+    monkeypatch.setattr(cli, "build_app", lambda _chosen: app)
     assert cli.main([]) == 0
     assert capsys.readouterr() == ("", "warning: the step is long\n")
 
@@ -145,7 +154,7 @@ def test_warnings_are_said_in_one_line(
 def test_a_reader_that_stops_reading_is_no_error() -> None:
     script = (
         "import sys; from mascarin import cli\n"
-        "cli.build_app = lambda: lambda words: print('x' * 200_000)\n"
+        "cli.build_app = lambda chosen: lambda words: print('x' * 200_000)\n"
         "sys.exit(cli.main([]))"
     )
     with subprocess.Popen(

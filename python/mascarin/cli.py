@@ -57,13 +57,20 @@ _EPILOGUE: Final = (
 )
 
 
-def build_app() -> App:
-    """The command line as cyclopts sees it."""
+def build_app(chosen: str | None = None) -> App:
+    """The command line as cyclopts sees it.
+
+    Parameters
+    ----------
+    chosen : str, optional
+        The command that is called. Its help is its docstring, which is read with its module; the others
+        have the one line that stands here.
+    """
     app = App(
         name="mascarin",
         help="Simulate buildings with phase-change materials, and prove the model on measurements.",
         help_epilogue=_EPILOGUE,
-        help_format="plaintext",
+        help_format="markdown",
         version=__version__,
         print_error=False,
         exit_on_error=False,
@@ -74,7 +81,8 @@ def build_app() -> App:
     for order, (title, commands) in enumerate(GROUPS.items()):
         group = Group(title, sort_key=order)
         for command in commands:
-            app.command(command.function, name=command.name, help=command.help, group=group)
+            line = None if command.name == chosen else command.help
+            app.command(command.function, name=command.name, help=line, group=group)
     return app
 
 
@@ -97,7 +105,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not debug:
             warnings.showwarning = _show_warning
         try:
-            code = build_app()(words)
+            code = build_app(words[0] if words else None)(words)
             sys.stdout.flush()
         except BrokenPipeError:
             return _reader_gone()
