@@ -1,0 +1,17 @@
+"""Types of arrays."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Array: TypeAlias = npt.NDArray[np.floating[Any]]
+"""Numbers."""
+
+Flags: TypeAlias = npt.NDArray[np.bool_]
+"""True or false."""
+
+Lines: TypeAlias = npt.NDArray[np.int64]
+"""Row or line numbers."""

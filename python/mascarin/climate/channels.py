@@ -1,0 +1,71 @@
+"""The channels of a climate: names, units, kinds and hard limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+Kind = Literal["instant", "mean"]
+"""`instant`: the value at the stamp; `mean`: the mean over the interval that the stamp starts."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One quantity of a climate.
+
+    Attributes
+    ----------
+    name : str
+        Name, the same as in the engine.
+    unit : str
+        Unit in which the engine takes it.
+    kind : str
+        How weather files give it unless told otherwise.
+    low, high : float
+        Values outside of these cannot be right anywhere outdoors [unit].
+    description : str
+        What it is.
+    """
+
+    name: str
+    unit: str
+    kind: Kind
+    low: float
+    high: float
+    description: str
+
+
+_TABLE: Final = (
+    Channel("air_temperature", "degC", "instant", -90.0, 65.0, "dry-bulb temperature of the air"),
+    Channel("dew_point", "degC", "instant", -100.0, 45.0, "dew-point temperature"),
+    Channel("cloud_cover", "tenths", "instant", 0.0, 10.0, "part of the sky covered by cloud"),
+    Channel("infrared", "W/m2", "mean", 20.0, 800.0, "long-wave radiation from the sky on the horizontal"),
+    Channel("wind_speed", "m/s", "instant", 0.0, 110.0, "wind speed at the mast"),
+    Channel(
+        "wind_direction", "deg", "instant", 0.0, 360.0, "where the wind blows from, clockwise from north"
+    ),
+    Channel("pressure", "Pa", "instant", 30000.0, 115000.0, "atmospheric pressure at the station's height"),
+    Channel("direct_normal", "W/m2", "mean", -20.0, 1500.0, "beam irradiance on a plane facing the sun"),
+    Channel("diffuse_horizontal", "W/m2", "mean", -20.0, 1200.0, "sky irradiance on the horizontal"),
+    Channel("global_horizontal", "W/m2", "mean", -20.0, 2000.0, "beam and sky irradiance on the horizontal"),
+    Channel("direct_normal_extra", "W/m2", "instant", 1300.0, 1420.0, "extraterrestrial normal irradiance"),
+    Channel("sun_east", "-", "instant", -1.0, 1.0, "unit vector to the sun, east"),
+    Channel("sun_north", "-", "instant", -1.0, 1.0, "unit vector to the sun, north"),
+    Channel("sun_up", "-", "instant", -1.0, 1.0, "unit vector to the sun, up"),
+    Channel("day_of_year", "d", "instant", 0.0, 367.0, "time since 1 January 00:00, local"),
+)
+
+CHANNELS: Final[tuple[str, ...]] = tuple(channel.name for channel in _TABLE)
+"""Names of the climate channels in the order of the forcing's last axis."""
+
+BY_NAME: Final[dict[str, Channel]] = {channel.name: channel for channel in _TABLE}
+"""The channels by name."""
+
+UNITS: Final[dict[str, str]] = {channel.name: channel.unit for channel in _TABLE}
+"""Unit of each channel."""
+
+SOURCE_CHANNELS: Final[tuple[str, ...]] = CHANNELS[:10]
+"""Channels that come from a weather file; the others follow from place and time."""
+
+RADIATION: Final[tuple[str, ...]] = ("direct_normal", "diffuse_horizontal", "global_horizontal")
+"""The three short-wave channels."""

@@ -1,0 +1,294 @@
+"""Weather files of a year: EPW and TMY3."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import date, tzinfo
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.errors import InputError
+
+from .arrays import Array, Lines
+from .table import file_hash
+from .timezones import fixed_zone, zone_name
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+_HEADER = 8
+_FIELDS = 35
+_HOURS = 8760
+
+# Channel, pvlib's column, field number in the file, factor, entry from which on it means "no value".
+_EPW: Final = (
+    ("air_temperature", "temp_air", 6, 1.0, 99.9),
+    ("dew_point", "temp_dew", 7, 1.0, 99.9),
+    ("pressure", "atmospheric_pressure", 9, 1.0, 999999.0),
+    ("infrared", "ghi_infrared", 12, 1.0, 9999.0),
+    ("global_horizontal", "ghi", 13, 1.0, 9999.0),
+    ("direct_normal", "dni", 14, 1.0, 9999.0),
+    ("diffuse_horizontal", "dhi", 15, 1.0, 9999.0),
+    ("wind_direction", "wind_direction", 20, 1.0, 999.0),
+    ("wind_speed", "wind_speed", 21, 1.0, 999.0),
+    ("cloud_cover", "opaque_sky_cover", 23, 1.0, 99.0),
+)
+_TMY: Final = (
+    ("air_temperature", "temp_air", 1.0),
+    ("dew_point", "temp_dew", 1.0),
+    ("pressure", "pressure", 100.0),
+    ("global_horizontal", "ghi", 1.0),
+    ("direct_normal", "dni", 1.0),
+    ("diffuse_horizontal", "dhi", 1.0),
+    ("wind_direction", "wind_direction", 1.0),
+    ("wind_speed", "wind_speed", 1.0),
+    ("cloud_cover", "OpqCld", 1.0),
+)
+_MEANS: Final = frozenset({"global_horizontal", "direct_normal", "diffuse_horizontal"})
+
+_STAMPS_NOTE: Final = (
+    "{where}: stamps are hour-ending. Radiation stamped h is the mean of the hour before and was put at "
+    "its start; "
+    "temperature, humidity, wind, pressure, cloud cover and infrared are spot values at the stamp and "
+    "stay there."
+)
+
+
+@dataclass(frozen=True)
+class Year:
+    """One year of hourly weather as read; values of hour-ending rows, in order.
+
+    Attributes
+    ----------
+    year : int
+        Calendar year of the first row.
+    mixed : bool
+        The months come from different years.
+    zone : datetime.tzinfo
+        Fixed offset.
+    values : mapping of str to ndarray, shape (8760 or 8784,)
+        Channels; NaN where missing.
+    place : tuple of float and str
+        Latitude, longitude [deg], altitude [m] and name.
+    where : str
+        File name.
+    sha256 : str
+        Hash of the file.
+    lines : ndarray
+        Line of each row.
+    notes : tuple of str
+        What was done.
+    """
+
+    year: int
+    mixed: bool
+    zone: tzinfo
+    values: Mapping[str, Array]
+    place: tuple[float, float, float, str]
+    where: str
+    sha256: str
+    lines: Lines
+    notes: tuple[str, ...]
+
+
+def read_epw(path: Path) -> Year:
+    """Read an EPW file, with pvlib after a check of every line.
+
+    Raises
+    ------
+    InputError
+        Header or rows are broken; the line is named.
+    """
+    from pvlib import iotools
+
+    digest = file_hash(path)
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    where = path.name
+    years = _check_epw(text.splitlines(), where)
+    frame, meta = iotools.read_epw(io.StringIO(text))
+    values = {}
+    for channel, column, _, factor, limit in _EPW:
+        raw = frame[column].to_numpy(dtype=np.float64)
+        values[channel] = np.where(raw >= limit, np.nan, raw * factor)
+    name = ", ".join(str(meta[key]) for key in ("city", "country") if meta.get(key))
+    place = (float(meta["latitude"]), float(meta["longitude"]), float(meta["altitude"]), name)
+    zone = fixed_zone(float(meta["TZ"]))
+    notes = (
+        f"{where}: EPW, {len(frame)} hours, {name}, time zone {zone_name(zone)}.",
+        _STAMPS_NOTE.format(where=where),
+        f"{where}: cloud cover is the opaque sky cover.",
+    )
+    lines = np.arange(len(frame), dtype=np.int64) + _HEADER + 1
+    return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, lines, notes)
+
+
+def read_tmy3(path: Path) -> Year:
+    """Read a TMY3 CSV file with pvlib.
+
+    Raises
+    ------
+    InputError
+        The file is not TMY3, or not a whole year.
+    """
+    from pvlib import iotools
+
+    digest = file_hash(path)
+    where = path.name
+    try:
+        frame, meta = iotools.read_tmy3(str(path), map_variables=True)
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
+        raise InputError(
+            f"{where}: cannot be read as TMY3 CSV ({error}); use from_table for other tables."
+        ) from error
+    if len(frame) not in (_HOURS, _HOURS + 24):
+        raise InputError(
+            f"{where}: found {len(frame)} rows, expected 8760 hours; the file is cut or holds gaps."
+        )
+    names = {str(column).lower(): column for column in frame.columns}
+    values = {}
+    for channel, column, factor in _TMY:
+        if column.lower() in names:
+            values[channel] = _tmy_column(frame, str(names[column.lower()]), where) * factor
+    values = {name: np.where(column <= -9000.0, np.nan, column) for name, column in values.items()}
+    years = [int(stamp.year) for stamp in frame.index[12::24]]
+    place = (
+        float(meta["latitude"]),
+        float(meta["longitude"]),
+        float(meta["altitude"]),
+        str(meta.get("Name", "")),
+    )
+    zone = fixed_zone(float(meta["TZ"]))
+    notes = (
+        f"{where}: TMY3, {len(frame)} hours, {place[3]}, time zone {zone_name(zone)}.",
+        _STAMPS_NOTE.format(where=where),
+        f"{where}: cloud cover is the opaque sky cover.",
+    )
+    lines = np.arange(len(frame), dtype=np.int64) + 3
+    return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, lines, notes)
+
+
+def kind_of(channel: str) -> str:
+    """`mean` for the radiation of a yearly file, `instant` for the rest."""
+    return "mean" if channel in _MEANS else "instant"
+
+
+def _tmy_column(frame: pd.DataFrame, column: str, where: str) -> Array:
+    series: pd.Series[Any] = frame[column]
+    try:
+        return series.to_numpy(dtype=np.float64).copy()
+    except (ValueError, TypeError) as error:
+        raise InputError(
+            f"{where}: column {column!r} holds an entry that is not a number ({error})."
+        ) from error
+
+
+def _check_epw(lines: list[str], where: str) -> list[int]:
+    """Check every line; return the year of each row."""
+    if len(lines) <= _HEADER or not lines[0].upper().startswith("LOCATION"):
+        raise InputError(
+            f"{where}:1: expected the LOCATION line of an EPW file, found {lines[0][:60] if lines else ''!r}."
+        )
+    _check_location(lines[0], where)
+    _check_periods(lines[_HEADER - 1], where)
+    rows = lines[_HEADER:]
+    while rows and not rows[-1].strip():
+        rows.pop()
+    numbers = [field for _, _, field, _, _ in _EPW]
+    years = []
+    previous: tuple[int, int, int] | None = None
+    for count, row in enumerate(rows):
+        line = _HEADER + 1 + count
+        fields = row.split(",")
+        if len(fields) < _FIELDS - 3:
+            raise InputError(
+                f"{where}:{line}: found {len(fields)} fields, expected {_FIELDS}; the file is cut or "
+                "damaged here."
+            )
+        stamp = _integers(fields, where, line)
+        for field in numbers:
+            _check_number(fields[field], field, where, line)
+        years.append(stamp[0])
+        previous = _check_order(previous, stamp, where, line)
+    if len(rows) not in (_HOURS, _HOURS + 24):
+        raise InputError(
+            f"{where}:{_HEADER + len(rows)}: the file ends after {len(rows)} hours, expected 8760 "
+            "(or 8784 in a leap year); it is cut or holds gaps."
+        )
+    return years
+
+
+def _check_location(line: str, where: str) -> None:
+    fields = line.split(",")
+    if len(fields) < 10:
+        raise InputError(f"{where}:1: LOCATION has {len(fields)} fields, expected 10.")
+    limits = ((6, "latitude", 90.0), (7, "longitude", 180.0), (8, "time zone", 14.0), (9, "altitude", 9000.0))
+    for field, name, limit in limits:
+        try:
+            good = abs(float(fields[field])) <= limit
+        except ValueError:
+            good = False
+        if not good:
+            raise InputError(
+                f"{where}:1: {name} is {fields[field]!r}, expected a number within {limit:g} of zero."
+            )
+
+
+def _check_periods(line: str, where: str) -> None:
+    fields = line.split(",")
+    if not line.upper().startswith("DATA PERIODS") or len(fields) < 3:
+        raise InputError(f"{where}:{_HEADER}: expected the DATA PERIODS line, found {line[:60]!r}.")
+    if fields[2].strip() != "1":
+        raise InputError(
+            f"{where}:{_HEADER}: {fields[2].strip()} records per hour, expected 1; read such a file "
+            "with from_table."
+        )
+
+
+def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, int]:
+    try:
+        year, month, day, hour = (int(float(field)) for field in fields[:4])
+    except ValueError as error:
+        raise InputError(
+            f"{where}:{line}: date {','.join(fields[:4])!r} is not year,month,day,hour."
+        ) from error
+    return year, month, day, hour
+
+
+def _check_number(text: str, field: int, where: str, line: int) -> None:
+    try:
+        value = float(text)
+    except ValueError as error:
+        raise InputError(f"{where}:{line}: field {field + 1} is {text!r}, expected a number.") from error
+    if not np.isfinite(value):
+        raise InputError(f"{where}:{line}: field {field + 1} is {text!r}, expected a finite number.")
+
+
+def _check_order(
+    previous: tuple[int, int, int] | None, stamp: tuple[int, int, int, int], where: str, line: int
+) -> tuple[int, int, int]:
+    _, month, day, hour = stamp
+    here = (month, day, hour)
+    expected = _next_hours(previous)
+    if here not in expected:
+        wanted = " or ".join(f"{m}/{d} hour {h}" for m, d, h in expected)
+        raise InputError(
+            f"{where}:{line}: found {month}/{day} hour {hour}, expected {wanted}; a row is missing or twice."
+        )
+    return here
+
+
+def _next_hours(previous: tuple[int, int, int] | None) -> list[tuple[int, int, int]]:
+    if previous is None:
+        return [(1, 1, 1)]
+    month, day, hour = previous
+    if hour < 24:
+        return [(month, day, hour + 1)]
+    if (month, day) == (2, 28):
+        return [(2, 29, 1), (3, 1, 1)]
+    following = date.fromordinal(date(2000, month, day).toordinal() + 1)
+    return [(following.month, following.day, 1)]

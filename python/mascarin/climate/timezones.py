@@ -1,0 +1,176 @@
+"""Time zones: fixed offsets and IANA names, and local stamps that do not exist or exist twice."""
+
+from __future__ import annotations
+
+import re
+from datetime import UTC, datetime, timedelta, timezone, tzinfo
+from typing import TYPE_CHECKING
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
+
+from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_OFFSET = re.compile(r"^(?:UTC|GMT)?\s*([+-])(\d{1,2})(?::?([0-5]\d))?$", re.IGNORECASE)
+_WANTED = (
+    "expected an IANA name such as 'Europe/Paris' or 'Indian/Reunion', "
+    "or a fixed offset such as 'UTC+4' or 'UTC-07:00'"
+)
+
+
+def parse_timezone(text: object, where: str = "timezone") -> tzinfo:
+    """Time zone from its text.
+
+    Parameters
+    ----------
+    text : str
+        IANA name (`Europe/Paris`) or fixed offset east of Greenwich (`UTC+4`, `UTC-07:00`, `UTC`).
+    where : str
+        What the text belongs to, for the error.
+
+    Returns
+    -------
+    datetime.tzinfo
+        The zone.
+
+    Raises
+    ------
+    InputError
+        The text is missing or names no zone.
+    """
+    if not isinstance(text, str) or not text.strip():
+        raise InputError(f"{where}: a time zone is required, found {text!r}; {_WANTED}.")
+    name = text.strip()
+    if name.upper() in {"UTC", "GMT", "Z"}:
+        return UTC
+    match = _OFFSET.match(name)
+    if match:
+        hours, minutes = int(match[2]), int(match[3] or 0)
+        offset = timedelta(hours=hours, minutes=minutes) * (-1 if match[1] == "-" else 1)
+        if not timedelta(hours=-12) <= offset <= timedelta(hours=14):
+            raise InputError(f"{where}: offset {name!r} is outside UTC-12 .. UTC+14; {_WANTED}.")
+        return timezone(offset, _offset_name(offset))
+    try:
+        return ZoneInfo(name)
+    except (ZoneInfoNotFoundError, ValueError, OSError) as error:
+        hint = did_you_mean(name, available_timezones())
+        raise InputError(f"{where}: no time zone {name!r}; {_WANTED}. {hint}".rstrip()) from error
+
+
+def fixed_zone(hours: float) -> tzinfo:
+    """Zone with a fixed offset.
+
+    Parameters
+    ----------
+    hours : float
+        Offset east of Greenwich [h].
+    """
+    offset = timedelta(hours=hours)
+    return timezone(offset, _offset_name(offset))
+
+
+def zone_name(zone: tzinfo) -> str:
+    """Text from which `parse_timezone` makes the zone again."""
+    if isinstance(zone, ZoneInfo):
+        return zone.key
+    return _offset_name(zone.utcoffset(datetime(2001, 1, 1)) or timedelta())
+
+
+def _offset_name(offset: timedelta) -> str:
+    minutes = round(offset.total_seconds() / 60)
+    if minutes == 0:
+        return "UTC"
+    sign = "-" if minutes < 0 else "+"
+    hours, rest = divmod(abs(minutes), 60)
+    return f"UTC{sign}{hours}" + (f":{rest:02d}" if rest else "")
+
+
+def localise(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeIndex:
+    """Give local stamps their zone.
+
+    Parameters
+    ----------
+    stamps : pandas.DatetimeIndex
+        Local stamps without a zone, shape (n,).
+    zone : datetime.tzinfo
+        The zone that they are in.
+    where : str
+        File or table, for the error.
+
+    Returns
+    -------
+    pandas.DatetimeIndex
+        Stamps with a zone, shape (n,).
+
+    Raises
+    ------
+    InputError
+        Stamps that the zone skips in spring, or has twice in autumn.
+    """
+    import numpy as np
+
+    exists = stamps.tz_localize(zone, ambiguous=np.ones(len(stamps), dtype=bool), nonexistent="NaT")
+    skipped = stamps[exists.isna()]
+    if len(skipped):
+        raise InputError(_clock_text(skipped, zone, where, "skips", "when clocks go forward"))
+    single = stamps.tz_localize(zone, ambiguous="NaT", nonexistent="NaT")
+    doubled = stamps[single.isna()]
+    if len(doubled):
+        raise InputError(_clock_text(doubled, zone, where, "has twice", "when clocks go back"))
+    return single
+
+
+def _clock_text(stamps: pd.DatetimeIndex, zone: tzinfo, where: str, verb: str, when: str) -> str:
+    shown = ", ".join(f"{stamp:%Y-%m-%d %H:%M}" for stamp in stamps[:3])
+    more = f" and {len(stamps) - 3} more, up to {stamps[-1]:%Y-%m-%d %H:%M}" if len(stamps) > 3 else ""
+    winter = _standard_offset(zone, stamps[0].year)
+    return (
+        f"{where}: {zone_name(zone)} {verb} the local stamps {shown}{more} ({when}), so the time of "
+        "these rows is "
+        "not known. If the clock of the file kept winter time all year, state timezone: "
+        f"{_offset_name(winter)}; "
+        "otherwise write the stamps with their offset, as in 2024-10-27T02:00+01:00."
+    )
+
+
+def _standard_offset(zone: tzinfo, year: int) -> timedelta:
+    offsets = [datetime(year, month, 1, tzinfo=zone).utcoffset() or timedelta() for month in (1, 7)]
+    return min(offsets)
+
+
+def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:
+    """A point in time given by the user.
+
+    Parameters
+    ----------
+    value : str, datetime or pandas.Timestamp
+        With an offset it is taken as it is; without one it is local time in `zone`.
+    zone : datetime.tzinfo
+        Zone of the climate or table.
+    what : str
+        Name of the value, for the error.
+
+    Returns
+    -------
+    pandas.Timestamp
+        The same point, in `zone`.
+
+    Raises
+    ------
+    InputError
+        No date can be read, or clocks skip or double it.
+    """
+    import pandas as pd
+
+    try:
+        stamp = pd.Timestamp(value)  # type: ignore[arg-type]
+    except (ValueError, TypeError) as error:
+        raise InputError(
+            f"{what}: {value!r} is not a date; write it as 2012-09-20 or 2012-09-20 06:30."
+        ) from error
+    if pd.isna(stamp):
+        raise InputError(f"{what}: found {value!r}, expected a date such as 2012-09-20 06:30.")
+    if stamp.tzinfo is not None:
+        return stamp.tz_convert(zone)
+    return localise(pd.DatetimeIndex([stamp]), zone, what)[0]
