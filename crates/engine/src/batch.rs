@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::error::EngineError;
 use crate::forcing::Forcing;
-use crate::march::{march, Options, Watch};
+use crate::march::{Options, Watch, march};
 use crate::plan::Plan;
 use crate::real::{Lanes, Real};
 
@@ -43,16 +43,19 @@ pub fn ensemble(
     }
     let members = numbers.len() / width;
     let row = options.rows(forcing.steps()) * options.probes.len();
-    let mut result =
-        Ensemble { records: vec![f64::NAN; members * row], closure: vec![f64::NAN; members], failures: Vec::new() };
+    let mut result = Ensemble {
+        records: vec![f64::NAN; members * row],
+        closure: vec![f64::NAN; members],
+        failures: Vec::new(),
+    };
     let packs = result.records.par_chunks_mut(row.max(1) * WIDTH).zip(result.closure.par_chunks_mut(WIDTH));
     let failures: Result<Vec<_>, EngineError> = packs
         .enumerate()
         .map(|(pack, (records, closure))| {
             let first = pack * WIDTH;
             let members = &numbers[first * width..(first + closure.len()) * width];
-            let target = Target { records, closure, row };
-            let failed = run_pack(plan, members, forcing, options, watch, target)?;
+            let mut target = Target { records, closure, row };
+            let failed = run_pack(plan, members, forcing, options, watch, &mut target)?;
             Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
         })
         .collect();
@@ -74,7 +77,7 @@ fn run_pack(
     forcing: &Forcing<'_>,
     options: &Options,
     watch: &Watch,
-    target: Target<'_>,
+    target: &mut Target<'_>,
 ) -> Result<Vec<(usize, EngineError)>, EngineError> {
     let width = plan.description.parameters.len();
     let members = target.closure.len();
@@ -98,7 +101,8 @@ fn run_pack(
                 let numbers = &numbers[member * width..(member + 1) * width];
                 match march(plan, numbers, forcing, options, watch) {
                     Ok(run) => {
-                        target.records[member * target.row..(member + 1) * target.row].copy_from_slice(&run.records);
+                        target.records[member * target.row..(member + 1) * target.row]
+                            .copy_from_slice(&run.records);
                         target.closure[member] = run.ledger.closure();
                     }
                     Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),

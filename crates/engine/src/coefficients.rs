@@ -6,7 +6,7 @@ use crate::forcing::CLIMATE_CHANNELS;
 use crate::parameters::Values;
 use crate::pcm::PcmCoefficients;
 use crate::plan::{FaceId, Plan, WallPlan};
-use crate::radiation::{exchange_areas, Emission};
+use crate::radiation::{Emission, exchange_areas};
 use crate::real::Real;
 use crate::solar::Plane;
 
@@ -45,7 +45,12 @@ pub struct Cell<S> {
 #[derive(Debug, Clone)]
 pub enum Matter<S> {
     /// Conductivity [W/(m K)], volumetric heat capacity [J/(m3 K)].
-    Solid { conductivity: S, capacity: S },
+    Solid {
+        /// Conductivity [W/(m K)].
+        conductivity: S,
+        /// Volumetric heat capacity [J/(m3 K)].
+        capacity: S,
+    },
     /// Index into [`Wall::pcm`].
     Pcm(usize),
 }
@@ -97,7 +102,14 @@ pub enum Imposed<S> {
     /// Forcing channel.
     Channel(usize),
     /// `mean - amplitude cos(2 pi (day - coldest)/365)`.
-    Annual { mean: S, amplitude: S, coldest: S },
+    Annual {
+        /// Annual mean [degC].
+        mean: S,
+        /// Half of the annual swing [K].
+        amplitude: S,
+        /// Day of the year with the lowest temperature [d].
+        coldest: S,
+    },
 }
 
 /// A face.
@@ -145,7 +157,8 @@ impl<S: Real> Coefficients<S> {
         let walls: Vec<_> = (0..plan.walls.len()).map(|i| Wall::new(plan, i, &values)).collect();
         let faces: Vec<_> = (0..plan.faces.len()).map(|i| Face::new(plan, i, &values)).collect();
         let site = &description.site;
-        let density = site.air_density.map_or_else(|| density_at(values.get(site.altitude)), |id| values.get(id));
+        let density =
+            site.air_density.map_or_else(|| density_at(values.get(site.altitude)), |id| values.get(id));
         let zones =
             (0..plan.zones.len()).map(|i| Zone::new(plan, i, &values, &walls, &faces, density)).collect();
         Self {
@@ -198,9 +211,10 @@ impl<S: Real> Wall<S> {
                 cells.push(Cell { thickness: thickness.scale(share), matter: matter.clone() });
             }
         }
-        let extra = wall.link_layers.iter().map(|layers| {
-            layers.iter().fold(S::zero(), |sum, &layer| sum + layer_resistance[layer])
-        });
+        let extra = wall
+            .link_layers
+            .iter()
+            .map(|layers| layers.iter().fold(S::zero(), |sum, &layer| sum + layer_resistance[layer]));
         let extra = extra.collect();
         Self { area: values.get(surface.area), extra, cells, pcm, layer_resistance }
     }

@@ -11,8 +11,13 @@ use crate::real::Real;
 /// Heat flux along a link, `left T_left - right T_right + offset` [W/m2], positive towards the inside.
 #[derive(Debug, Clone, Copy)]
 pub struct Link<S> {
+    /// Gain of the temperature on the outer side [W/(m2 K)].
     pub left: S,
+
+    /// Gain of the temperature on the inner side [W/(m2 K)].
     pub right: S,
+
+    /// Part that depends on neither [W/m2].
     pub offset: S,
 }
 
@@ -26,7 +31,10 @@ impl<S: Real> Link<S> {
 /// Enthalpy of a cell near the current iterate, `offset + capacity T` [J/m3].
 #[derive(Debug, Clone, Copy)]
 pub struct Storage<S> {
+    /// Enthalpy of the tangent at 0 degC [J/m3].
     pub offset: S,
+
+    /// Slope [J/(m3 K)].
     pub capacity: S,
 }
 
@@ -47,11 +55,11 @@ pub struct Chain<S> {
     /// Thickness over stage length [m/s].
     rate: Vec<S>,
     inverse: Vec<S>,
-    /// T_i = known + to_outside T_outside + next T_(i+1).
+    /// `T_i` = known + `to_outside` `T_outside` + next T_(i+1).
     known: Vec<S>,
     to_outside: Vec<S>,
     next: Vec<S>,
-    /// T_1 = sum of `path_i known_i` + ...: product of `next` up to the cell.
+    /// `T_1` = sum of `path_i known_i` + ...: product of `next` up to the cell.
     path: Vec<S>,
     /// Response of the first cell to the two faces.
     first: [S; 2],
@@ -61,7 +69,10 @@ pub struct Chain<S> {
 /// Heat that the wall sends into its faces, `source_e + sum_o response_eo T_o` [W/m2].
 #[derive(Debug, Clone, Copy)]
 pub struct Condensed<S> {
+    /// Heat into the outside and the inside face at faces of 0 degC [W/m2].
     pub source: [S; 2],
+
+    /// Heat into face e per degree of face o [W/(m2 K)].
     pub response: [[S; 2]; 2],
 }
 
@@ -77,15 +88,23 @@ pub enum StorageRule {
 /// Temperatures about which a wall is linearised [degC].
 #[derive(Debug, Clone, Copy)]
 pub struct Iterate<'a, S> {
+    /// Its cells, outside to inside.
     pub cells: &'a [S],
+
+    /// Its outside and inside face.
     pub faces: [S; 2],
 }
 
 /// A wall at the start of the step: temperatures [degC], enthalpies [J/m3], memory.
 #[derive(Debug, Clone, Copy)]
 pub struct Start<'a, S> {
+    /// Temperatures [degC].
     pub cells: &'a [S],
+
+    /// Enthalpies [J/m3].
     pub enthalpy: &'a [S],
+
+    /// What the cells remember.
     pub memory: &'a [PcmMemory<S>],
 }
 
@@ -147,7 +166,13 @@ impl<S: Real> Chain<S> {
     }
 
     /// Linearises the phase-change cells about an iterate of the cells and the two faces.
-    pub fn linearise(&mut self, wall: &Wall<S>, at: &Iterate<'_, S>, start: &Start<'_, S>, rule: StorageRule) {
+    pub fn linearise(
+        &mut self,
+        wall: &Wall<S>,
+        at: &Iterate<'_, S>,
+        start: &Start<'_, S>,
+        rule: StorageRule,
+    ) {
         for (i, cell) in wall.cells.iter().enumerate() {
             let Matter::Pcm(law) = cell.matter else { continue };
             let (temperature, memory) = (at.cells[i], &start.memory[i]);
@@ -172,14 +197,20 @@ impl<S: Real> Chain<S> {
     /// Newton form of `K (T_left - T_right)` with K depending on the temperatures of its cells.
     fn linearise_link(&mut self, wall: &Wall<S>, i: usize, at: &Iterate<'_, S>) {
         let n = wall.cells.len();
-        let (left, left_temperature) = if i > 0 { (self.end(wall, i - 1), at.cells[i - 1]) } else { (End::face(), at.faces[0]) };
-        let (right, right_temperature) = if i < n { (self.end(wall, i), at.cells[i]) } else { (End::face(), at.faces[1]) };
+        let (left, left_temperature) =
+            if i > 0 { (self.end(wall, i - 1), at.cells[i - 1]) } else { (End::face(), at.faces[0]) };
+        let (right, right_temperature) =
+            if i < n { (self.end(wall, i), at.cells[i]) } else { (End::face(), at.faces[1]) };
         if !left.varies && !right.varies {
             return;
         }
         let conductance = S::one() / (left.resistance + wall.extra[i] + right.resistance);
         let square = conductance * conductance * (left_temperature - right_temperature);
         let (by_left, by_right) = (square * left.gain, square * right.gain);
+        // Where the slope of the conductivity would make heat flow the wrong way, Newton's tangent misleads: the
+        // conductivity of the iterate is kept. The flux at the solution is the same.
+        let kept = S::zero().lt(conductance + by_left) & S::zero().lt(conductance - by_right);
+        let (by_left, by_right) = (S::select(kept, by_left, S::zero()), S::select(kept, by_right, S::zero()));
         self.links[i] = Link {
             left: conductance + by_left,
             right: conductance - by_right,
@@ -244,8 +275,8 @@ impl<S: Real> Chain<S> {
             return [-self.links[0].offset, self.links[0].offset];
         }
         let mut first = S::zero();
-        for i in 0..n {
-            let mut right = (held[i] - self.storage[i].offset) * self.rate[i];
+        for (i, &held) in held.iter().enumerate() {
+            let mut right = (held - self.storage[i].offset) * self.rate[i];
             right = right + self.links[i].offset - self.links[i + 1].offset;
             if i > 0 {
                 right += self.links[i].left * self.known[i - 1];

@@ -90,15 +90,38 @@ pub struct WindProfile {
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Sky {
     /// Horizontal infrared of the climate [W/m2] (channel `infrared`), times a scale.
-    Measured { scale: ParamId },
+    Measured {
+        /// Multiplies the channel [-].
+        scale: ParamId,
+    },
     /// Emissivity `a + b ln(Tdp/273)`, Tdp in K.
-    ClarkAllen { a: ParamId, b: ParamId },
+    ClarkAllen {
+        /// Constant [-].
+        a: ParamId,
+        /// Gain of the logarithm [-].
+        b: ParamId,
+    },
     /// Emissivity `a + b (tdp/100) + c (tdp/100)^2`, tdp in degC.
-    MartinBerdahl { a: ParamId, b: ParamId, c: ParamId },
+    MartinBerdahl {
+        /// Constant [-].
+        a: ParamId,
+        /// Linear gain [-].
+        b: ParamId,
+        /// Square gain [-].
+        c: ParamId,
+    },
     /// Emissivity `a + b sqrt(pw)`, pw in hPa.
-    Brunt { a: ParamId, b: ParamId },
+    Brunt {
+        /// Constant [-].
+        a: ParamId,
+        /// Gain of the root [1/hPa^(1/2)].
+        b: ParamId,
+    },
     /// Sky temperature = air temperature - depression [K].
-    Offset { depression: ParamId },
+    Offset {
+        /// Air minus sky [K].
+        depression: ParamId,
+    },
 }
 
 /// Diffuse short-wave models on a tilted plane.
@@ -119,17 +142,27 @@ pub enum DiffuseSky {
 pub enum Material {
     /// Constant properties: W/(m K), kg/m3, J/(kg K).
     Solid {
+        /// [W/(m K)].
         conductivity: ParamId,
+        /// [kg/m3].
         density: ParamId,
+        /// [J/(kg K)].
         specific_heat: ParamId,
     },
     /// No heat capacity, a resistance [m2 K/W]; the layer has no thickness.
-    Resistance { resistance: ParamId },
+    Resistance {
+        /// [m2 K/W].
+        resistance: ParamId,
+    },
     /// Phase-change material; pairs are [solid, liquid].
     Pcm {
+        /// [W/(m K)].
         conductivity: [ParamId; 2],
+        /// [kg/m3].
         density: [ParamId; 2],
+        /// [J/(kg K)].
         specific_heat: [ParamId; 2],
+        /// Enthalpy over temperature.
         law: PcmLaw,
     },
 }
@@ -140,15 +173,22 @@ pub enum Material {
 pub enum PcmLaw {
     /// Liquid fraction `1/2 + 1/2 tanh((T - Tm)/w)`, half-width `w` [K].
     TanhWidth {
+        /// Heat of melting [J/kg].
         latent_heat: ParamId,
+        /// Middle of the melting range [degC].
         melting_temperature: ParamId,
+        /// Half-width w [K].
         width: ParamId,
     },
     /// The paper's form, `w = 4 delta_t / gamma`.
     TanhGamma {
+        /// Heat of melting [J/kg].
         latent_heat: ParamId,
+        /// Middle of the melting range [degC].
         melting_temperature: ParamId,
+        /// The paper's gamma [-].
         gamma: ParamId,
+        /// The paper's delta T [K].
         delta_t: ParamId,
     },
     /// Monotone C1 interpolation of specific enthalpy [J/kg] over temperature [degC];
@@ -156,10 +196,19 @@ pub enum PcmLaw {
     /// of the material is used outside the table. The liquid fraction is 0 below `melting_range[0]`, 1 above
     /// `melting_range[1]` and follows the enthalpy between.
     Tabulated {
+        /// Points of the curve, rising [degC].
         temperatures: Vec<f64>,
+
+        /// Enthalpy at each point, rising [J/kg].
         enthalpies: Vec<f64>,
+
+        /// Solidus and liquidus [degC].
         melting_range: [f64; 2],
+
+        /// Shifts the curve towards higher temperatures [K].
         temperature_shift: ParamId,
+
+        /// Multiplies the enthalpies [-].
         enthalpy_scale: ParamId,
     },
 }
@@ -168,7 +217,10 @@ pub enum PcmLaw {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Construction {
+    /// Name in messages and outputs.
     pub name: String,
+
+    /// Outside to inside.
     pub layers: Vec<Layer>,
 }
 
@@ -176,6 +228,7 @@ pub struct Construction {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Layer {
+    /// Name in messages and outputs.
     pub name: String,
     /// Index into [`Description::materials`].
     pub material: usize,
@@ -190,6 +243,7 @@ pub struct Layer {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
+    /// Name in messages and outputs.
     pub name: String,
     /// Volume [m3].
     pub volume: ParamId,
@@ -211,8 +265,13 @@ pub struct Zone {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Infiltration {
+    /// Air changes that always happen [1/h].
     pub constant: ParamId,
+
+    /// Air changes per degree between zone and outdoors [1/(h K)].
     pub temperature: ParamId,
+
+    /// Air changes per wind speed at the mast [1/h per m/s].
     pub wind: ParamId,
 }
 
@@ -223,7 +282,10 @@ pub enum ZoneLongwave {
     /// Exact grey-diffuse exchange (radiosity), T^4.
     Radiosity,
     /// The same exchange factors, linearised about a reference temperature [degC].
-    Linearised { reference: ParamId },
+    Linearised {
+        /// Temperature of the tangent [degC].
+        reference: ParamId,
+    },
     /// No separate exchange (films are combined coefficients).
     None,
 }
@@ -232,6 +294,7 @@ pub enum ZoneLongwave {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surface {
+    /// Name in messages and outputs.
     pub name: String,
     /// Index into [`Description::constructions`].
     pub construction: usize,
@@ -241,7 +304,11 @@ pub struct Surface {
     pub tilt: ParamId,
     /// Azimuth of the outside normal [deg], clockwise from north.
     pub azimuth: ParamId,
+
+    /// The side that the construction's first layer touches.
     pub outside: Side,
+
+    /// The side that the construction's last layer touches.
     pub inside: Side,
 }
 
@@ -249,6 +316,7 @@ pub struct Surface {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Side {
+    /// What it sees.
     pub facing: Facing,
     /// Convection (also the film of a `measured` air temperature). None: the face itself takes the imposed
     /// temperature (`ground`, `measured`), or nothing flows (`adiabatic`).
@@ -281,17 +349,31 @@ pub struct Side {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Facing {
+    /// Outdoor air, sun, sky and ground.
     Outdoors,
     /// Index into [`Description::zones`].
-    Zone { zone: usize },
+    Zone {
+        /// Index into [`Description::zones`].
+        zone: usize,
+    },
     /// Ground temperature [degC]: `mean - amplitude cos(2 pi (day - coldest_day)/365)`.
     Ground {
+        /// Annual mean [degC].
         mean: ParamId,
+
+        /// Half of the annual swing [K].
         amplitude: ParamId,
+
+        /// Day of the year with the lowest temperature [d].
         coldest_day: ParamId,
     },
     /// Measured temperature: index into [`Description::channels`].
-    Measured { channel: usize },
+    Measured {
+        /// Index into [`Description::channels`].
+        channel: usize,
+    },
+
+    /// Nothing: no heat flows.
     Adiabatic,
 }
 
@@ -303,7 +385,10 @@ pub enum OutdoorLongwave {
     #[default]
     Exact,
     /// Linearised about a reference temperature [degC].
-    Linearised { reference: ParamId },
+    Linearised {
+        /// Temperature of the tangent [degC].
+        reference: ParamId,
+    },
     /// None (the film is a combined coefficient).
     None,
 }
@@ -312,23 +397,53 @@ pub enum OutdoorLongwave {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Convection {
-    Constant { coefficient: ParamId },
+    /// One number.
+    Constant {
+        /// [W/(m2 K)].
+        coefficient: ParamId,
+    },
     /// `constant + wind V`.
-    LinearWind { constant: ParamId, wind: ParamId },
+    LinearWind {
+        /// Coefficient in still air [W/(m2 K)].
+        constant: ParamId,
+
+        /// Its rise with wind [W/(m2 K) per m/s].
+        wind: ParamId,
+    },
     /// Alamdari & Hammond (1983); `length`: height of a vertical face, 4 A/P of a horizontal one [m].
-    AlamdariHammond { length: ParamId, factor: ParamId },
+    AlamdariHammond {
+        /// [m].
+        length: ParamId,
+
+        /// Multiplies the correlation [-].
+        factor: ParamId,
+    },
     /// The paper's eq. 5 as printed, `length` = H [m].
-    PaperEq5 { length: ParamId, factor: ParamId },
+    PaperEq5 {
+        /// [m].
+        length: ParamId,
+
+        /// Multiplies the correlation [-].
+        factor: ParamId,
+    },
     /// TARP (Walton 1983). On an outdoor side the forced part is added; roughness and perimeter [m] act there alone.
     Tarp {
+        /// Multiplies the correlation [-].
         factor: ParamId,
         #[serde(default)]
+
+        /// Roughness multiplier Rf [-].
         roughness: Option<ParamId>,
         #[serde(default)]
+
+        /// Perimeter of the face [m].
         perimeter: Option<ParamId>,
     },
-    /// MoWiTT (Yazdanian & Klems 1994), times a factor.
-    Mowitt { factor: ParamId },
+    /// `MoWiTT` (Yazdanian & Klems 1994), times a factor.
+    Mowitt {
+        /// Multiplies the correlation [-].
+        factor: ParamId,
+    },
     /// `a + b |dT|^n + c V^m` by direction of heat flow.
     Power {
         /// Heat flows up, or the face is vertical.
@@ -342,10 +457,19 @@ pub enum Convection {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PowerLaw {
+    /// Constant [W/(m2 K)].
     pub a: ParamId,
+
+    /// Gain of the temperature difference [W/(m2 K) per K^n].
     pub b: ParamId,
+
+    /// Exponent of the temperature difference [-].
     pub n: ParamId,
+
+    /// Gain of the wind [W/(m2 K) per (m/s)^m].
     pub c: ParamId,
+
+    /// Exponent of the wind [-].
     pub m: ParamId,
 }
 
@@ -353,6 +477,7 @@ pub struct PowerLaw {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sensor {
+    /// Name in messages and outputs.
     pub name: String,
     /// Index into [`Description::surfaces`].
     pub surface: usize,

@@ -60,9 +60,10 @@ impl<S: Real> Drive<S> {
                         air: outdoor_film(face, outdoors, row),
                     }
                 }
-                Boundary::Imposed(imposed) => {
-                    FaceDrive { temperature: imposed_temperature(imposed, row), ..FaceDrive::sheltered(face, measured) }
-                }
+                Boundary::Imposed(imposed) => FaceDrive {
+                    temperature: imposed_temperature(imposed, row),
+                    ..FaceDrive::sheltered(face, measured)
+                },
                 Boundary::Zone | Boundary::Adiabatic => FaceDrive::sheltered(face, measured),
             }
         });
@@ -82,7 +83,7 @@ impl<S: Real> FaceDrive<S> {
     }
 }
 
-/// `F_sky (beta E_sky + (1 - beta) E_air) + F_ground E_air`, beta = sqrt(F_sky); the ground is at air temperature.
+/// `F_sky (beta E_sky + (1 - beta) E_air) + F_ground E_air`, beta = `sqrt(F_sky)`; the ground is at air temperature.
 fn incoming_longwave<S: Real>(outdoors: &Outdoors<S>, sky: S, air: S) -> S {
     let Some(emission) = &outdoors.emission else { return S::zero() };
     let from_air = emission.at(air).0;
@@ -107,7 +108,8 @@ fn imposed_temperature<S: Real>(imposed: &Imposed<S>, row: &[f64]) -> S {
     match imposed {
         Imposed::Channel(channel) => S::constant(row[*channel]),
         Imposed::Annual { mean, amplitude, coldest } => {
-            let phase = (S::constant(row[channel::DAY_OF_YEAR]) - *coldest).scale(core::f64::consts::TAU / 365.0);
+            let phase =
+                (S::constant(row[channel::DAY_OF_YEAR]) - *coldest).scale(core::f64::consts::TAU / 365.0);
             *mean - *amplitude * phase.cos()
         }
     }

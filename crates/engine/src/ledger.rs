@@ -19,7 +19,8 @@ pub enum Flow {
 
 impl Flow {
     /// All flows, in the order of the ledger's arrays.
-    pub const ALL: [Self; 5] = [Self::Solar, Self::Convection, Self::Longwave, Self::Boundary, Self::Infiltration];
+    pub const ALL: [Self; 5] =
+        [Self::Solar, Self::Convection, Self::Longwave, Self::Boundary, Self::Infiltration];
 
     /// Name in results.
     #[must_use]

@@ -4,6 +4,8 @@
 //! [`march::march`] (or [`batch::ensemble`]) under a [`forcing::Forcing`], and leaves records and an energy ledger. The
 //! engine knows no file, no date and no Python.
 
+#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in square brackets: [m] is no link")]
+
 pub mod batch;
 pub mod coefficients;
 pub mod conduction;

@@ -88,11 +88,9 @@ impl<S: Real> PcmCoefficients<S> {
             PcmLaw::TanhWidth { latent_heat, melting_temperature, width } => {
                 tanh(*latent_heat, *melting_temperature, values.get(*width))
             }
-            PcmLaw::TanhGamma { latent_heat, melting_temperature, gamma, delta_t } => tanh(
-                *latent_heat,
-                *melting_temperature,
-                values.get(*delta_t).scale(4.0) / values.get(*gamma),
-            ),
+            PcmLaw::TanhGamma { latent_heat, melting_temperature, gamma, delta_t } => {
+                tanh(*latent_heat, *melting_temperature, values.get(*delta_t).scale(4.0) / values.get(*gamma))
+            }
             PcmLaw::Tabulated {
                 temperatures,
                 enthalpies,
@@ -205,7 +203,8 @@ impl Segment {
         let u = raw.max(S::zero()).min(S::one());
         let inside = !raw.lt(S::zero()) & raw.lt(S::one());
         let rise = u * (S::constant(self.linear) + u * (S::constant(self.square) + u.scale(self.cube)));
-        let slope = S::constant(self.linear) + u * (S::constant(2.0 * self.square) + u.scale(3.0 * self.cube));
+        let slope =
+            S::constant(self.linear) + u * (S::constant(2.0 * self.square) + u.scale(3.0 * self.cube));
         (rise, S::select(inside, slope.scale(1.0 / self.length), S::zero()))
     }
 }
@@ -213,7 +212,8 @@ impl Segment {
 /// Monotone cubic interpolation (Fritsch & Butland 1984, SIAM J. Sci. Stat. Comput. 5(2), doi:10.1137/0905021):
 /// harmonic-mean slopes inside, secants at the ends.
 fn monotone_segments(x: &[f64], y: &[f64]) -> Vec<Segment> {
-    let secants: Vec<f64> = x.windows(2).zip(y.windows(2)).map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0])).collect();
+    let secants: Vec<f64> =
+        x.windows(2).zip(y.windows(2)).map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0])).collect();
     let slope = |i: usize| {
         if i == 0 {
             return secants[0];

@@ -43,7 +43,12 @@ pub struct WallPlan {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceRole {
     /// Unknown `row` of the dense block, in contact with a zone.
-    Zone { zone: usize, row: usize },
+    Zone {
+        /// Index of the zone.
+        zone: usize,
+        /// Row in the dense block.
+        row: usize,
+    },
     /// Eliminated inside its wall.
     Local,
 }
@@ -78,7 +83,8 @@ impl Plan {
         let mut first_cell = 0;
         let mut walls = Vec::with_capacity(description.surfaces.len());
         for surface in &description.surfaces {
-            let wall = WallPlan::new(&description, &description.constructions[surface.construction], first_cell);
+            let wall =
+                WallPlan::new(&description, &description.constructions[surface.construction], first_cell);
             first_cell += wall.cell_layers.len();
             walls.push(wall);
         }
@@ -90,11 +96,7 @@ impl Plan {
     #[must_use]
     pub fn side(&self, face: FaceId) -> &Side {
         let surface = &self.description.surfaces[face / 2];
-        if face % 2 == 0 {
-            &surface.outside
-        } else {
-            &surface.inside
-        }
+        if face % 2 == 0 { &surface.outside } else { &surface.inside }
     }
 
     /// Row of a zone face in the dense block.
@@ -217,7 +219,9 @@ fn check(description: &Description) -> Result<(), EngineError> {
         }
     }
     for zone in &description.zones {
-        if !zone.view_weights.is_empty() && zone.view_weights.iter().any(|r| r.len() != zone.view_weights.len()) {
+        if !zone.view_weights.is_empty()
+            && zone.view_weights.iter().any(|r| r.len() != zone.view_weights.len())
+        {
             return fail(format!("zone {}: view weights are not square", zone.name));
         }
     }

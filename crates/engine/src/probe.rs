@@ -13,23 +13,62 @@ use crate::step::{State, Stepper};
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Probe {
     /// Air temperature of a zone [degC].
-    AirTemperature { zone: usize },
+    AirTemperature {
+        /// Index of the zone.
+        zone: usize,
+    },
     /// Area-weighted mean temperature of a zone's faces [degC].
-    MeanRadiantTemperature { zone: usize },
+    MeanRadiantTemperature {
+        /// Index of the zone.
+        zone: usize,
+    },
     /// Temperature of a face [degC]; side 0 outside, 1 inside.
-    FaceTemperature { surface: usize, side: usize },
+    FaceTemperature {
+        /// Index of the surface.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
     /// Conduction through a face [W/m2], positive towards the inside.
-    FaceFlux { surface: usize, side: usize },
+    FaceFlux {
+        /// Index of the surface.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
     /// Temperature between layer `interface - 1` and `interface`, counted from outside [degC].
-    InterfaceTemperature { surface: usize, interface: usize },
+    InterfaceTemperature {
+        /// Index of the surface.
+        surface: usize,
+        /// Layers before it.
+        interface: usize,
+    },
     /// Conduction through the middle of a layer [W/m2], positive towards the inside.
-    LayerFlux { surface: usize, layer: usize },
+    LayerFlux {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the layer, counted from outside.
+        layer: usize,
+    },
     /// Mean liquid fraction of a layer [-].
-    LiquidFraction { surface: usize, layer: usize },
+    LiquidFraction {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the layer, counted from outside.
+        layer: usize,
+    },
     /// Mean enthalpy of a layer above its law's reference [J/m3].
-    LayerEnthalpy { surface: usize, layer: usize },
+    LayerEnthalpy {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the layer, counted from outside.
+        layer: usize,
+    },
     /// Temperature at a sensor [degC].
-    Sensor { sensor: usize },
+    Sensor {
+        /// Index of the sensor.
+        sensor: usize,
+    },
 }
 
 impl Probe {
@@ -51,7 +90,8 @@ impl Probe {
             Self::InterfaceTemperature { surface, interface } => interface > 0 && interface < layers(surface),
             Self::LayerFlux { surface, layer } => layer < layers(surface),
             Self::LiquidFraction { surface, layer } | Self::LayerEnthalpy { surface, layer } => {
-                layer < layers(surface) && plan.walls[surface].layer_cells[layer].1 > plan.walls[surface].layer_cells[layer].0
+                layer < layers(surface)
+                    && plan.walls[surface].layer_cells[layer].1 > plan.walls[surface].layer_cells[layer].0
             }
             Self::Sensor { sensor } => sensor < description.sensors.len(),
         };

@@ -7,7 +7,7 @@
 //! - Sky: Clark & Allen (1978); Martin & Berdahl (1984), Solar Energy 33(3), doi:10.1016/0038-092X(84)90162-2;
 //!   Brunt (1932), doi:10.1002/qj.49705824704; recalibrated by Li, Jiang & Coimbra (2017), Solar Energy 144,
 //!   doi:10.1016/j.solener.2017.01.006; clouds: Clark & Allen (1978).
-//! - Split of the sky by sqrt(F_sky) between sky and air: Walton (1983), NBSSIR 83-2655.
+//! - Split of the sky by `sqrt(F_sky)` between sky and air: Walton (1983), NBSSIR 83-2655.
 
 use crate::description::Sky;
 use crate::forcing::channel;

@@ -203,7 +203,7 @@ fn ln(x: f64) -> f64 {
     p = p * z + 1.0 / 7.0;
     p = p * z + 1.0 / 5.0;
     p = p * z + 1.0 / 3.0;
-    p = p * z;
+    p *= z;
     e * LN2_HIGH + (2.0 * s + (2.0 * s * p + e * LN2_LOW))
 }
 
@@ -215,13 +215,9 @@ fn cbrt(x: f64) -> f64 {
     let mut y = f64::from_bits(tiny.to_bits() / 3 + THIRD_OF_BIAS);
     for _ in 0..3 {
         let cube = y * y * y;
-        y = y * ((cube + 2.0 * tiny) / (2.0 * cube + tiny));
+        y *= (cube + 2.0 * tiny) / (2.0 * cube + tiny);
     }
-    if x < 1e-290 {
-        0.0
-    } else {
-        y
-    }
+    if x < 1e-290 { 0.0 } else { y }
 }
 
 // ---------------------------------------------------------------- f64
@@ -269,11 +265,7 @@ impl Real for f64 {
     }
     #[inline]
     fn select(mask: bool, yes: Self, no: Self) -> Self {
-        if mask {
-            yes
-        } else {
-            no
-        }
+        if mask { yes } else { no }
     }
 }
 
@@ -477,6 +469,7 @@ impl<S: Real, const K: usize> Sub for Dual<S, K> {
 }
 impl<S: Real, const K: usize> Mul for Dual<S, K> {
     type Output = Self;
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule is a sum")]
     #[inline]
     fn mul(self, other: Self) -> Self {
         Self {
@@ -487,6 +480,7 @@ impl<S: Real, const K: usize> Mul for Dual<S, K> {
 }
 impl<S: Real, const K: usize> Div for Dual<S, K> {
     type Output = Self;
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the quotient rule has a product and a difference")]
     #[inline]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;

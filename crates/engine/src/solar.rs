@@ -71,7 +71,8 @@ impl Sunlight {
     #[must_use]
     pub fn on<S: Real>(&self, plane: &Plane<S>, ground_reflectance: S) -> S {
         let n = &plane.normal;
-        let cosine = n[0].scale(self.direction[0]) + n[1].scale(self.direction[1]) + n[2].scale(self.direction[2]);
+        let cosine =
+            n[0].scale(self.direction[0]) + n[1].scale(self.direction[1]) + n[2].scale(self.direction[2]);
         let facing = cosine.max(S::zero());
         let beam = facing.scale(self.direct_normal + self.circumsolar);
         let diffuse = plane.sky_view.scale(self.isotropic) + plane.sin_tilt.scale(self.horizon);

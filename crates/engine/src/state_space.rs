@@ -14,12 +14,25 @@ use crate::radiation::Emission;
 /// Matrices in row-major order with names for their rows and columns.
 #[derive(Debug, Clone)]
 pub struct StateSpace {
+    /// States x states [1/s].
     pub a: Vec<f64>,
+
+    /// States x inputs [K/s per unit of the input].
     pub b: Vec<f64>,
+
+    /// Outputs x states [-].
     pub c: Vec<f64>,
+
+    /// Outputs x inputs [K per unit of the input].
     pub d: Vec<f64>,
+
+    /// Name of each state, a temperature [degC].
     pub states: Vec<String>,
+
+    /// Name of each input: temperatures [degC], irradiances and emissions [W/m2].
     pub inputs: Vec<String>,
+
+    /// Name of each output, a temperature [degC].
     pub outputs: Vec<String>,
 }
 
@@ -61,7 +74,10 @@ fn require_linear(plan: &Plan, numbers: &[f64], coefficients: &Coefficients<f64>
         }
         if let Boundary::Outdoors(outdoors) = &face.boundary {
             if matches!(outdoors.emission, Some(Emission::Exact)) {
-                return refuse(format!("long-wave exchange at {name}"), "use `longwave: {kind: linearised, ...}`");
+                return refuse(
+                    format!("long-wave exchange at {name}"),
+                    "use `longwave: {kind: linearised, ...}`",
+                );
             }
         }
     }
@@ -74,7 +90,10 @@ fn require_linear(plan: &Plan, numbers: &[f64], coefficients: &Coefficients<f64>
         }
         let Infiltration { temperature, wind, .. } = &definition.infiltration;
         if [temperature, wind].iter().any(|id| numbers[id.0 as usize] != 0.0) {
-            return refuse(format!("infiltration of zone {}", definition.name), "keep only its constant part");
+            return refuse(
+                format!("infiltration of zone {}", definition.name),
+                "keep only its constant part",
+            );
         }
     }
     Ok(())
@@ -186,7 +205,9 @@ impl<'a> Network<'a> {
                     crate::coefficients::Imposed::Channel(channel) => {
                         self.plan.description.channels[channel - crate::forcing::CLIMATE_CHANNELS].clone()
                     }
-                    crate::coefficients::Imposed::Annual { .. } => format!("{surface}.{side}_ground_temperature"),
+                    crate::coefficients::Imposed::Annual { .. } => {
+                        format!("{surface}.{side}_ground_temperature")
+                    }
                 };
                 // A face held at a temperature: a film too strong to matter would spoil the matrix, so the
                 // balance of the face is replaced by T = input.
@@ -286,18 +307,18 @@ fn state_names(plan: &Plan) -> Vec<String> {
 
 fn output_names(plan: &Plan) -> Vec<String> {
     let airs = plan.description.zones.iter().map(|zone| format!("{}.air_temperature", zone.name));
-    let faces = plan.description.surfaces.iter().flat_map(|surface| {
-        ["outside", "inside"].map(|side| format!("{}.{side}_temperature", surface.name))
-    });
+    let faces =
+        plan.description.surfaces.iter().flat_map(|surface| {
+            ["outside", "inside"].map(|side| format!("{}.{side}_temperature", surface.name))
+        });
     airs.chain(faces).collect()
 }
 
 /// Gaussian elimination with row pivoting, `width` right-hand sides in place.
 fn solve(matrix: &mut [f64], right: &mut [f64], n: usize, width: usize) {
     for k in 0..n {
-        let pivot = (k..n)
-            .max_by(|&a, &b| matrix[a * n + k].abs().total_cmp(&matrix[b * n + k].abs()))
-            .unwrap_or(k);
+        let pivot =
+            (k..n).max_by(|&a, &b| matrix[a * n + k].abs().total_cmp(&matrix[b * n + k].abs())).unwrap_or(k);
         for column in 0..n {
             matrix.swap(k * n + column, pivot * n + column);
         }

@@ -168,8 +168,11 @@ impl<'a, S: Real> Stepper<'a, S> {
         let coefficients = Coefficients::new(plan, numbers);
         let chains = coefficients.walls.iter().map(Chain::new).collect();
         let zeros = |n: usize| vec![S::zero(); n];
-        let unknowns =
-            Unknowns { cells: zeros(plan.n_cells), faces: zeros(plan.faces.len()), air: zeros(plan.zones.len()) };
+        let unknowns = Unknowns {
+            cells: zeros(plan.n_cells),
+            faces: zeros(plan.faces.len()),
+            air: zeros(plan.zones.len()),
+        };
         Self {
             plan,
             coefficients,
@@ -290,7 +293,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Takes the last stage as the new state and books the step.
     fn accept(&mut self, state: &mut State<S>, energy: &Power<S>, ledger: &mut Ledger<S>) {
         let mut stored = S::zero();
-        for ((wall, chain), numbers) in self.plan.walls.iter().zip(&self.chains).zip(&self.coefficients.walls) {
+        for ((wall, chain), numbers) in self.plan.walls.iter().zip(&self.chains).zip(&self.coefficients.walls)
+        {
             for (i, cell) in numbers.cells.iter().enumerate() {
                 let k = wall.first_cell + i;
                 let temperature = self.solved.cells[k];
@@ -338,15 +342,15 @@ impl<'a, S: Real> Stepper<'a, S> {
             self.solve_linear(drive, &sources, length);
             let change = self.change();
             active = active & S::constant(TOLERANCE).lt(change);
-            if !active.any() {
+            if active.any() {
+                self.advance(active);
+            } else {
                 if !polish {
                     self.finish_linear_walls();
                     return Ok(());
                 }
                 polish = false;
                 self.advance(S::Mask::splat(true));
-            } else {
-                self.advance(active);
             }
         }
         Err(self.not_converged(active, place))
@@ -410,7 +414,11 @@ impl<'a, S: Real> Stepper<'a, S> {
             self.laws[index] = FaceLaws {
                 film: face.film.as_ref().map_or_else(Line::zero, |film| {
                     let flux = film.flux(temperature - air, &drive.faces[index].air);
-                    Line::tangent(flux.flux * face.area_factor, flux.slope * face.area_factor, temperature - air)
+                    Line::tangent(
+                        flux.flux * face.area_factor,
+                        flux.slope * face.area_factor,
+                        temperature - air,
+                    )
                 }),
                 emission: emission.map_or_else(Line::zero, |law| {
                     let (value, slope) = law.at(temperature);
@@ -427,8 +435,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn solve_linear(&mut self, drive: &Drive<S>, sources: &[[S; 2]], length: f64) {
         let mut locals = Vec::with_capacity(self.plan.walls.len());
         self.block.clear();
-        for w in 0..self.plan.walls.len() {
-            let local = self.eliminate_wall(drive, w, sources[w]);
+        for (w, &source) in sources.iter().enumerate() {
+            let local = self.eliminate_wall(drive, w, source);
             locals.push(local);
         }
         for zone in 0..self.plan.zones.len() {
@@ -474,7 +482,14 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// A wall whose face `e` is in a zone and whose other face is local.
-    fn eliminate_one(&mut self, drive: &Drive<S>, w: usize, e: usize, row: usize, source: [S; 2]) -> LocalFaces<S> {
+    fn eliminate_one(
+        &mut self,
+        drive: &Drive<S>,
+        w: usize,
+        e: usize,
+        row: usize,
+        source: [S; 2],
+    ) -> LocalFaces<S> {
         let (response, area, o) = (self.responses[w], self.coefficients.walls[w].area, 1 - e);
         let line = match self.local_balance(drive, 2 * w + o) {
             LocalBalance::Fixed(value) => Line { offset: value, slope: S::zero() },
@@ -627,11 +642,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             return -self.laws[index].film.at(self.solved.faces[index] - at.temperature);
         }
         let flux = self.face_flux(index);
-        if index % 2 == 0 {
-            flux
-        } else {
-            -flux
-        }
+        if index % 2 == 0 { flux } else { -flux }
     }
 
     /// Conduction through a face at the end of the last stage [W/m2], positive towards the inside.
@@ -676,7 +687,13 @@ impl<'a, S: Real> Stepper<'a, S> {
                 });
             }
         }
-        EngineError::NotConverged { step, stage, place: worst.1, residual: worst.0, iterations: MAX_ITERATIONS }
+        EngineError::NotConverged {
+            step,
+            stage,
+            place: worst.1,
+            residual: worst.0,
+            iterations: MAX_ITERATIONS,
+        }
     }
 }
 

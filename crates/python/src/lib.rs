@@ -15,13 +15,20 @@ use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::state_space;
 use mascarin_engine::step::Scheme;
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{
+    PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-create_exception!(_engine, EngineInputError, PyException, "Arrays, options or descriptions the engine refuses.");
+create_exception!(
+    _engine,
+    EngineInputError,
+    PyException,
+    "Arrays, options or descriptions the engine refuses."
+);
 create_exception!(_engine, EngineSolverError, PyException, "A step or a warm-up that did not converge.");
 
 /// How often a waiting call looks for Ctrl-C and reports progress.
@@ -134,7 +141,11 @@ impl RunOptions {
     }
 }
 
+/// Records, closures and failures of an ensemble.
+type EnsembleArrays<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyList>);
+
 #[pymethods]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands arrays over by value")]
 impl Plan {
     #[new]
     fn new(description: &str) -> PyResult<Self> {
@@ -169,7 +180,8 @@ impl Plan {
     ) -> PyResult<Bound<'py, PyDict>> {
         let options = options.read()?;
         let (values, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
-        let drive = Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+        let drive =
+            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
         let plan = &self.plan;
         let run = attended(py, None, |watch| march(plan, values, &drive, &options, watch))?;
         let rows = options.rows(drive.steps());
@@ -189,21 +201,27 @@ impl Plan {
         forcing: PyReadonlyArray3<'py, f64>,
         options: RunOptions,
         report: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyList>)> {
+    ) -> PyResult<EnsembleArrays<'py>> {
         let options = options.read()?;
         let members = values.as_array().dim().0;
         let (numbers, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
-        let drive = Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+        let drive =
+            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
         let plan = &self.plan;
         let result = attended(py, report, |watch| batch::ensemble(plan, numbers, &drive, &options, watch))?;
         let rows = options.rows(drive.steps());
-        let records = PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;
+        let records =
+            PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;
         let failures = result.failures.iter().map(|(member, error)| (*member, error.to_string()));
         Ok((records, PyArray1::from_vec(py, result.closure), PyList::new(py, failures)?))
     }
 
     /// A, B, C, D and the names of states, inputs and outputs of a linear building.
-    fn state_space<'py>(&self, py: Python<'py>, values: PyReadonlyArray1<'py, f64>) -> PyResult<Bound<'py, PyDict>> {
+    fn state_space<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
         let system = state_space::state_space(&self.plan, contiguous(values.as_slice())?)
             .map_err(|error| to_python(&error))?;
         let (n, m, p) = (system.states.len(), system.inputs.len(), system.outputs.len());
@@ -222,7 +240,7 @@ impl Plan {
     }
 }
 
-fn contiguous<T>(slice: Result<&[T], numpy::NonContiguousError>) -> PyResult<&[T]> {
+fn contiguous<T>(slice: Result<&[T], numpy::AsSliceError>) -> PyResult<&[T]> {
     slice.map_err(|_| EngineInputError::new_err("arrays must be C-contiguous float64"))
 }
 
