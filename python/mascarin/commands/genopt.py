@@ -79,7 +79,7 @@ def optimize(
         )
     except MascarinError as error:
         _say(f"error: {error}")
-        if not check:
+        if not check and project.is_file():
             _say(f"Optimization terminated with error. See '{project.absolute().parent / 'GenOpt.log'}'.")
         return _FAILED
 

@@ -123,7 +123,9 @@ _NUMBERS = {
     "Sigma": _POSITIVE,
     "PopulationSize": Number(whole=True, low=4),
     "MaxEvaluations": _COUNT,
-    "Tolerance": _POSITIVE,
+    "Tolerance": _NOT_NEGATIVE,
+    "Weight": Number(low=0, high=2, open_low=True),
+    "Crossover": Number(low=0, high=1, open_low=True),
 }
 _BOOLEANS = {"ModifyStoppingCriterion", "StopAtError"}
 _WORDS = {"MultiStart": ["Uniform"], "NeighborhoodTopology": ["gbest", "lbest", "vonNeumann"]}
@@ -176,6 +178,7 @@ class Algorithm:
     build: Callable[[Context, Keys], Optimiser]
     optional: tuple[str, ...] = ()
     discrete: bool = False
+    mixed: bool = False
     bounds: bool = False
     start: bool = True
     own: bool = False
@@ -217,8 +220,13 @@ def build(project: Project, observer: Observer, workers: int) -> Built:
     rule = known[name]
     for inner in block.blocks:
         report.error(inner.place, f"unexpected section '{inner.name}' in 'Algorithm'")
-    found = ordered(block, ["Main", *rule.keys], report, optional=rule.optional)
-    keys = _values(found, report)
+    order = ["Main", *rule.keys]
+    if rule.own:
+        # GenOpt has no such algorithm, so its order of keys means nothing here.
+        written = [e.key for e in block.entries if e.key in order]
+        order = [*dict.fromkeys(written), *(k for k in order if k not in written)]
+    found = ordered(block, order, report, optional=rule.optional)
+    keys = _values(found, report, own=rule.own)
     _groups(found, report)
     report.raise_if_any()
     space = _space(project, name, rule)
@@ -258,12 +266,12 @@ def _check_bounds(project: Project, rule: Algorithm, *, bounds: bool) -> None:
     report.raise_if_any()
 
 
-def _values(found: dict[str, Entry], report: Report) -> Keys:
+def _values(found: dict[str, Entry], report: Report, *, own: bool) -> Keys:
     """Checked values by key."""
     keys = Keys()
     for key, entry in found.items():
         if key in _NUMBERS:
-            value = _number(entry, _NUMBERS[key], report)
+            value = _number(entry, _NUMBERS[key], report, own=own)
             if value is not None:
                 keys[key] = value
         elif key in _BOOLEANS:
@@ -282,13 +290,13 @@ def _values(found: dict[str, Entry], report: Report) -> Keys:
     return keys
 
 
-def _number(entry: Entry, rule: Number, report: Report) -> float | int | None:
+def _number(entry: Entry, rule: Number, report: Report, *, own: bool) -> float | int | None:
     """A number within its limits."""
     value = parse_double(entry.value)
     if value is None or not math.isfinite(value):
         report.error(entry.place, f"'{entry.key}' is '{entry.value}'; expected a number")
         return None
-    if entry.has_exponent:
+    if entry.has_exponent and not own:
         report.beyond(
             entry.place,
             f"'{entry.raw}' is read as a number with a unit in this section",
@@ -324,7 +332,12 @@ def _groups(found: dict[str, Entry], report: Report) -> None:
 
 def _space(project: Project, name: str, rule: Algorithm) -> Space:
     """Parameters of the optimiser."""
-    if project.discrete and not rule.discrete:
+    if project.discrete and rule.mixed and project.report.lenient:
+        project.report.notes.append(
+            f"{project.discrete[0].place}: accepted beyond GenOpt: discrete parameters with {name}; "
+            "their other values are tried in turn"
+        )
+    elif project.discrete and not rule.discrete:
         names = [f"'{p.name}'" for p in project.discrete]
         listed = ", ".join(names[:-1]) + ", and " + names[-1] if len(names) > 1 else names[0]
         verb = "Variables" if len(names) > 1 else "Variable"
@@ -332,7 +345,7 @@ def _space(project: Project, name: str, rule: Algorithm) -> Space:
             project.discrete[0].place,
             f"Algorithm '{name}' can only have continuous variables. {verb} {listed} "
             f"{'are' if len(names) > 1 else 'is'} specified as discrete. Choose an algorithm that takes "
-            "them, such as PSOCC, GPSPSOCCHJ or MascarinDE",
+            "them, such as PSOCC, GPSPSOCCHJ, MascarinHookeJeeves or MascarinDE",
         )
         project.report.raise_if_any()
     continuous = tuple(
@@ -379,6 +392,7 @@ def _pattern(
             max_evaluations=settings.max_iterations,
             sufficient=_sufficient(context, keys),
             penalty=settings.write_step,
+            discrete_moves=bool(space.discrete),
             rounding=single_rounding,
             text=double_text,
             observer=context.observer,
@@ -571,8 +585,8 @@ def _known() -> dict[str, Algorithm]:
     from mascarin.genopt.modern import ALGORITHMS
 
     return {
-        "GPSHookeJeeves": Algorithm(_GPS_KEYS, _pattern(HookeJeeves), _GPS_OPTIONAL),
-        "GPSCoordinateSearch": Algorithm(_GPS_KEYS, _pattern(CoordinateSearch), _GPS_OPTIONAL),
+        "GPSHookeJeeves": Algorithm(_GPS_KEYS, _pattern(HookeJeeves), _GPS_OPTIONAL, mixed=True),
+        "GPSCoordinateSearch": Algorithm(_GPS_KEYS, _pattern(CoordinateSearch), _GPS_OPTIONAL, mixed=True),
         "NelderMeadONeill": Algorithm(
             ("Accuracy", "StepSizeFactor", "BlockRestartCheck", "ModifyStoppingCriterion"), _simplex
         ),
@@ -617,6 +631,9 @@ def _known() -> dict[str, Algorithm]:
         ),
         "Mesh": Algorithm(("StopAtError",), _mesh, discrete=True, bounds=True, start=False),
         "Parametric": Algorithm(("StopAtError",), _parametric, discrete=True, bounds=True, start=False),
+        "MascarinHookeJeeves": Algorithm(
+            _GPS_KEYS, _pattern(HookeJeeves), _GPS_OPTIONAL, discrete=True, own=True
+        ),
         **ALGORITHMS,
     }
 

@@ -15,6 +15,7 @@ from mascarin.errors import InputError
 from mascarin.genopt.project import Project
 
 FORMAT = 1
+_END = '{"end":'
 Key = tuple[int, tuple[float, ...], tuple[int, ...]]
 
 
@@ -157,7 +158,11 @@ class Log:
             self.begin(digests)
             return []
         _compare(self.path, lines[0], digests)
-        records = [_record(self.path, i, line) for i, line in enumerate(lines[1:], start=2)]
+        records = [
+            _record(self.path, i, line)
+            for i, line in enumerate(lines[1:], start=2)
+            if not line.startswith(_END)
+        ]
         if len(whole) < len(data):
             with self.path.open("r+b") as file:
                 file.truncate(len(whole))
@@ -167,6 +172,10 @@ class Log:
     def add(self, record: Record) -> None:
         """Append a run."""
         self._put(record.line())
+
+    def end(self, reason: str) -> None:
+        """Note that the optimisation came to its end."""
+        self._put(json.dumps({"end": reason}))
 
     def close(self) -> None:
         """Close the file."""
@@ -179,6 +188,25 @@ class Log:
         if self._file is not None:
             self._file.write(line + "\n")
             self._file.flush()
+
+
+def interrupted(path: Path) -> int:
+    """Number of runs in a log whose optimisation did not come to its end.
+
+    Parameters
+    ----------
+    path : Path
+        The log.
+
+    Returns
+    -------
+    int
+        The number, 0 when there is no log or it is complete [-].
+    """
+    if not path.exists():
+        return 0
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    return 0 if lines and lines[-1].startswith(_END) else max(len(lines) - 1, 0)
 
 
 class Replay:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from mascarin import __version__
 from mascarin.errors import InputError, MascarinError
+from mascarin.genopt import records
 from mascarin.genopt.algorithm import Built, build
 from mascarin.genopt.evaluator import Evaluator, Policy, Runner
 from mascarin.genopt.listing import Listings, Row
@@ -146,7 +147,13 @@ def optimise(path: str | Path, options: Options | None = None, *, run: Runner | 
     started = dt.datetime.now().astimezone()
     if o.table is not None:
         check_table(o.table)
-    project = load(path, lenient=o.lenient)
+    try:
+        project = load(path, lenient=o.lenient)
+    except InputError as error:
+        blank = Project(Path(path).absolute())
+        if blank.ini.is_file():
+            _write_log(blank, Outcome(blank, ""), started, str(error))
+        raise
     listings = Listings(project)
     built: Built | None = None
     outcome = Outcome(project, "")
@@ -197,7 +204,7 @@ def _work(
     stop: Callable[[], None],
 ) -> None:
     """Drive the optimiser to its end."""
-    log = Log(project.ini.with_suffix(".evaluations.jsonl"))
+    log = Log(log_path(project.ini))
     digests = fingerprint(project)
     earlier = log.resume(digests) if o.resume else []
     if not o.resume:
@@ -209,6 +216,7 @@ def _work(
     try:
         while points := built.optimiser.ask():
             built.optimiser.tell(evaluator.evaluate(points))
+        log.end(built.optimiser.reason)
     finally:
         evaluator.close(stop)
         log.close()
@@ -223,6 +231,80 @@ def _work(
     outcome.reason = built.optimiser.reason
     outcome.exhausted = outcome.reason == EXHAUSTED
     outcome.lowest = listings.lowest
+
+
+def log_path(ini: Path) -> Path:
+    """Where the log of evaluations of a project lies.
+
+    Parameters
+    ----------
+    ini : Path
+        The initialization file.
+
+    Returns
+    -------
+    Path
+        The log, beside it.
+    """
+    return ini.absolute().with_suffix(".evaluations.jsonl")
+
+
+def interrupted(ini: Path) -> str:
+    """What to do about an earlier run that did not come to its end.
+
+    Parameters
+    ----------
+    ini : Path
+        The initialization file.
+
+    Returns
+    -------
+    str
+        A sentence, empty when there is no such run.
+    """
+    count = records.interrupted(log_path(ini))
+    if not count:
+        return ""
+    return (
+        f"note: an earlier run ended after {count} evaluations without coming to its end. Starting anew; "
+        f"stop and add --resume to go on from it (its log is kept as "
+        f"'{log_path(ini).with_suffix('.previous.jsonl').name}')"
+    )
+
+
+def check(path: str | Path, options: Options | None = None) -> tuple[Project, list[str]]:
+    """Read and check a project without running or writing anything.
+
+    Parameters
+    ----------
+    path : str or Path
+        The initialization file.
+    options : Options, optional
+        As for `optimise`.
+
+    Returns
+    -------
+    tuple of Project and list of str
+        The project, and what it would do in a few lines.
+
+    Raises
+    ------
+    InputError
+        When the project has errors.
+    """
+    o = options or Options()
+    project = load(path, lenient=o.lenient)
+    workers = o.workers or project.settings.units or os.cpu_count() or 1
+    built = build(project, Listings(project), workers)
+    program = Program(project, time_limit=o.time_limit)
+    expected = built.optimiser.expected
+    return project, [
+        f"{built.name}: {', '.join(project.names)}",
+        f"cost: {project.objectives[0].name}",
+        f"simulations: {expected}" if expected else "simulations: as many as it takes",
+        f"workers: {workers}",
+        f"first command: {' '.join(program.command(project.folder / (RUN_PREFIX + '1')))}",
+    ]
 
 
 class _Watch:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mascarin.optimise.base import Observer, Optimiser, minimise
+from mascarin.optimise.evolution import CovarianceSearch, DifferentialEvolution
 from mascarin.optimise.gradient import ArmijoGradient, ArmijoRules
 from mascarin.optimise.grid import Grid, OneAtATime
 from mascarin.optimise.line import FibonacciSearch, GoldenSection
@@ -22,6 +23,8 @@ __all__ = [
     "ArmijoRules",
     "Continuous",
     "CoordinateSearch",
+    "CovarianceSearch",
+    "DifferentialEvolution",
     "Discrete",
     "Evaluation",
     "FibonacciSearch",

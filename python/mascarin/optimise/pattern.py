@@ -98,6 +98,8 @@ class PatternSearch(Optimiser):
         Condition on a decrease; any decrease counts when absent.
     penalty : bool
         Whether the cost depends on the step number, which then rises with every reduction.
+    discrete_moves : bool
+        Whether discrete parameters are tried at other values; else they keep the value of the start.
     rounding : callable, optional
         Rounded value for a value and its parameter's index; `decimal_rounding` when absent.
     text : callable
@@ -120,6 +122,7 @@ class PatternSearch(Optimiser):
         max_evaluations: int | None = None,
         sufficient: SufficientDecrease | None = None,
         penalty: bool = False,
+        discrete_moves: bool = False,
         rounding: Callable[[float, int], float] | None = None,
         text: Callable[[float], str] = repr,
         observer: Observer | None = None,
@@ -140,6 +143,7 @@ class PatternSearch(Optimiser):
         self._limit = max_evaluations
         self._sufficient = sufficient
         self._penalty = penalty
+        self._discrete_moves = discrete_moves
         self._steps_count = penalty or (sufficient is not None and sufficient.counts_steps)
         self._round = rounding or decimal_rounding(space)
         self._text = text
@@ -284,6 +288,30 @@ class PatternSearch(Optimiser):
                 trials.append(trial)
                 if self._better(trial, low):
                     low = trial
+        if self._discrete_moves:
+            trials += yield from self._discrete_search(low)
+        return trials
+
+    def _discrete_search(self, low: Evaluation) -> _Trials:
+        """Try the other values of every discrete parameter, going on from each success.
+
+        Audet and Dennis (2001), doi:10.1137/S1052623499352024.
+        """
+        trials: list[Evaluation] = []
+        for j, d in enumerate(self.space.discrete):
+            here = low.point.choices
+            for k in range(d.size):
+                if k == here[j] or self._exhausted:
+                    continue
+                choices = (*here[:j], k, *here[j + 1 :])
+                trial = yield from self._evaluate(low.point.x, choices, tuple)
+                trials.append(trial)
+                better = self._better(trial, low)
+                if trial.cost != _REFUSED:
+                    verb = "reduced    " if better else "not reduced"
+                    self.observer.sub(trial, f"Cost {verb} at {d.name}, value {k + 1}.")
+                if better:
+                    low = trial
         return trials
 
     def _perturb(self, base: Evaluation, i: int) -> _Batch:
@@ -411,6 +439,7 @@ class PatternSearch(Optimiser):
             starts=[start],
             sufficient=self._sufficient,
             penalty=self._penalty,
+            discrete_moves=self._discrete_moves,
             rounding=self._round,
             remember=False,
         )

@@ -50,7 +50,7 @@ def from_free(c: Continuous, t: float) -> float:
     """
     low, high = math.isfinite(c.lower), math.isfinite(c.upper)
     if low and high:
-        return c.lower + (c.upper - c.lower) * math.sin(t) ** 2
+        return c.lower + (c.upper - c.lower) * math.sin(t) * math.sin(t)
     if low:
         return c.lower + t * t
     if high:
