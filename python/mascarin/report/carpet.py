@@ -1,0 +1,120 @@
+"""Carpet plots: one pixel per instant, days along, hours of the day up, as a small PNG of our own making."""
+
+from __future__ import annotations
+
+import base64
+import struct
+import zlib
+from dataclasses import dataclass
+from datetime import timedelta
+
+import numpy as np
+import numpy.typing as npt
+
+from mascarin.report.payload import Array, Series
+
+#: Colours at -limit, -limit/2, 0, +limit/2, +limit: blue to red through a light grey; told apart in the
+#: common kinds of colour blindness because they differ in lightness and on the blue-yellow axis.
+STOPS = ((8, 64, 129), (91, 155, 203), (240, 239, 235), (232, 142, 88), (148, 30, 18))
+#: Colour of instants without a value.
+EMPTY = (150, 150, 150)
+_LEVELS = 201
+_MOST_ROWS = 96
+
+
+@dataclass(frozen=True)
+class Carpet:
+    """Picture of an error over days and hours.
+
+    Parameters
+    ----------
+    image : str
+        The picture as a ``data:`` address.
+    columns, rows : int
+        Days and instants in a day. [-]
+    limit : float
+        Value of the darkest colours.
+    days : list of (int, str)
+        Marks of the day axis: column and date.
+    """
+
+    image: str
+    columns: int
+    rows: int
+    limit: float
+    days: list[tuple[int, str]]
+
+
+def carpet(series: Series, values: Array, limit: float) -> Carpet:
+    """Draw values over days (across) and hours (midnight at the bottom).
+
+    Parameters
+    ----------
+    series : Series
+        Gives the time axis.
+    values : array, shape (n,)
+        One value per instant.
+    limit : float
+        Value of the darkest colours, the same to both sides.
+    """
+    first = series.time(0).replace(hour=0, minute=0, second=0, microsecond=0)
+    offset = (series.time(0) - first).total_seconds()
+    rows = int(min(_MOST_ROWS, max(1.0, 86400.0 // series.step)))
+    seconds = offset + series.step * np.arange(len(values))
+    days = (seconds // 86400.0).astype(np.intp)
+    slots = (seconds % 86400.0 / 86400.0 * rows).astype(np.intp)
+    columns = int(days[-1]) + 1 if len(days) else 1
+    total, count = np.zeros((rows, columns)), np.zeros((rows, columns))
+    good = np.isfinite(values)
+    np.add.at(total, (slots[good], days[good]), values[good])
+    np.add.at(count, (slots[good], days[good]), 1.0)
+    grid = np.where(count > 0, total / np.maximum(count, 1.0), np.nan)[::-1]
+    every = max(1, round(columns / 6))
+    marks = [
+        (column, f"{(first + timedelta(days=column)).day} {first + timedelta(days=column):%b}")
+        for column in range(0, columns, every)
+        if column < 0.93 * columns
+    ]
+    address = "data:image/png;base64," + base64.b64encode(_png(_levels(grid, limit))).decode("ascii")
+    return Carpet(address, columns, rows, limit, marks)
+
+
+def legend() -> str:
+    """Give the colour scale from low to high as a ``data:`` address of a picture one pixel high."""
+    scale = np.arange(_LEVELS, dtype=np.uint8)[None, :] + np.uint8(1)
+    return "data:image/png;base64," + base64.b64encode(_png(scale)).decode("ascii")
+
+
+def round_limit(spread: float) -> float:
+    """Smallest of 1, 2, 5 times a power of ten that is not below a value."""
+    if not spread > 0.0:
+        return 1.0
+    size = 10.0 ** np.floor(np.log10(spread))
+    return float(next(m * size for m in (1.0, 2.0, 5.0, 10.0) if m * size >= spread * (1.0 - 1e-9)))
+
+
+def _levels(grid: Array, limit: float) -> npt.NDArray[np.uint8]:
+    place = np.clip((grid / limit + 1.0) * 0.5, 0.0, 1.0) * (_LEVELS - 1)
+    levels = np.where(np.isfinite(grid), np.round(np.nan_to_num(place)) + 1.0, 0.0)
+    return levels.astype(np.uint8)
+
+
+def _palette() -> bytes:
+    places = np.linspace(0.0, 1.0, _LEVELS)
+    stops = np.array(STOPS, dtype=np.float64)
+    at = np.linspace(0.0, 1.0, len(stops))
+    colours = np.column_stack([np.interp(places, at, stops[:, c]) for c in range(3)])
+    return bytes(EMPTY) + np.round(colours).astype(np.uint8).tobytes()
+
+
+def _png(levels: npt.NDArray[np.uint8]) -> bytes:
+    """PNG with a palette (ISO/IEC 15948); level 0 is :data:`EMPTY`."""
+    rows, columns = levels.shape
+    raw = b"".join(b"\0" + row.tobytes() for row in levels)
+    header = struct.pack(">IIBBBBB", columns, rows, 8, 3, 0, 0, 0)
+    chunks = [(b"IHDR", header), (b"PLTE", _palette()), (b"IDAT", zlib.compress(raw, 9)), (b"IEND", b"")]
+    body = b"".join(
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        for name, data in chunks
+    )
+    return b"\x89PNG\r\n\x1a\n" + body

@@ -1,0 +1,69 @@
+"""Template, style and script put together into one file."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from collections.abc import Mapping
+from importlib.resources import files
+from typing import Any
+
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+
+from mascarin.report.page import context, explorer
+from mascarin.report.payload import Series
+
+
+def page(study: Mapping[str, Any], series: Series) -> str:
+    """Make the HTML of a report.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.report.payload.Study`.
+    series : Series
+        Curves.
+    """
+    library, own = _asset("vendor/uPlot.iife.min.js"), _asset("report.js")
+    environment = Environment(
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    template = environment.from_string(_asset("template.html"))
+    return template.render(
+        **context(study, series),
+        style=Markup(_asset("vendor/uPlot.min.css") + "\n" + _asset("report.css")),  # noqa: S704  (our own files)
+        library=Markup(library),  # noqa: S704
+        licence=_asset("vendor/uPlot.LICENSE"),
+        script=Markup(own),  # noqa: S704
+        data=_json(explorer(study, series)),
+        policy=_policy(library, own),
+    )
+
+
+def _policy(*scripts: str) -> str:
+    """Content security policy: only the scripts of this file run, and nothing is loaded."""
+    digests = " ".join(
+        f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
+        for script in scripts
+    )
+    return (
+        f"default-src 'none'; script-src {digests}; style-src 'unsafe-inline'; img-src data:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _json(content: Mapping[str, Any]) -> Markup:
+    """JSON that cannot end the element it stands in."""
+    raw = json.dumps(content, separators=(",", ":"), allow_nan=False)
+    safe = raw.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+    return Markup(safe)  # noqa: S704  (escaped above)
+
+
+def _asset(name: str) -> str:
+    return files("mascarin.report").joinpath(name).read_text(encoding="utf-8")

@@ -1,0 +1,198 @@
+"use strict";
+// Interactive curves over the series of the page. Everything here is an addition: the page says the same without it.
+(() => {
+  const data = JSON.parse(document.getElementById("report-data").textContent);
+  const series = data.series;
+  // Local times are drawn as if they were UTC: the page states the zone.
+  const seconds = (text) => Date.parse(text + "Z") / 1000;
+  const start = series.count ? seconds(series.start) : 0;
+  const cache = new Map();
+
+  function column(key) {
+    if (cache.has(key)) return cache.get(key);
+    const raw = series.columns[key];
+    if (!raw) return null;
+    const bytes = atob(raw.data);
+    const values = new Array(series.count);
+    for (let i = 0; i < series.count; i++) {
+      let level = bytes.charCodeAt(2 * i) | (bytes.charCodeAt(2 * i + 1) << 8);
+      if (level > 32767) level -= 65536;
+      values[i] = level === -32768 ? null : (level + 32500) * raw.scale + raw.offset;
+    }
+    cache.set(key, values);
+    return values;
+  }
+  const times = Array.from({ length: series.count }, (_, i) => start + i * series.step);
+  const minus = (a, b) => a.map((v, i) => (v === null || b[i] === null ? null : v - b[i]));
+  const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const shown = (v, digits) => (v === null || v === undefined ? "–" : v.toFixed(digits).replace("-", "−"));
+  const two = (n) => String(n).padStart(2, "0");
+  const months = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+  function date(t) {
+    const d = new Date(t * 1000);
+    return `${d.getUTCDate()} ${months[d.getUTCMonth()]} ${two(d.getUTCHours())}:${two(d.getUTCMinutes())}`;
+  }
+
+  const box = document.getElementById("explorer");
+  const picks = { sensor: "pick-sensor", period: "pick-period", beside: "pick-beside" };
+  const picked = (name) => document.getElementById(picks[name])?.value ?? "";
+  const extra = ["--c2", "--c3", "--c6", "--c5"];
+  let plots = [];
+
+  function colour(key, number) {
+    if (key === data.main) return style("--fitted");
+    return key === "nominal" ? style("--nominal") : style(extra[number % extra.length]);
+  }
+
+  function axes(label) {
+    const ink = style("--soft");
+    const lines = { stroke: style("--hair"), width: 1 };
+    const marks = { stroke: style("--rule"), width: 1, size: 5 };
+    const font = `11px ${style("--sans")}`;
+    const values = (_, splits, __, ___, step) => splits.map((t) => {
+      const d = new Date(t * 1000);
+      const day = `${d.getUTCDate()} ${months[d.getUTCMonth()]}`;
+      const clock = `${two(d.getUTCHours())}:${two(d.getUTCMinutes())}`;
+      return step >= 86400 ? day : d.getUTCHours() + d.getUTCMinutes() === 0 ? `${clock}\n${day}` : clock;
+    });
+    return [
+      { stroke: ink, grid: lines, ticks: marks, font, values, space: 64 },
+      { stroke: ink, grid: lines, ticks: marks, font, label, labelFont: font, labelSize: 18, size: 52,
+        values: (_, splits) => splits.map((v) => String(+v.toFixed(6)).replace("-", "−")) },
+    ];
+  }
+
+  function tint(u) {
+    const { ctx } = u;
+    ctx.save();
+    ctx.fillStyle = style("--panel");
+    for (const [, a, b] of data.spans) {
+      const left = Math.max(u.valToPos(seconds(a), "x", true), u.bbox.left);
+      const right = Math.min(u.valToPos(seconds(b), "x", true), u.bbox.left + u.bbox.width);
+      if (right > left) ctx.fillRect(left, u.bbox.top, right - left, u.bbox.height);
+    }
+    ctx.restore();
+  }
+
+  let moving = false;
+  function follow(u) {
+    if (moving) return;
+    moving = true;
+    const { min, max } = u.scales.x;
+    for (const other of plots) if (other !== u) other.setScale("x", { min, max });
+    moving = false;
+  }
+
+  function plot(target, label, unit, height, lines, values, bands) {
+    const width = target.clientWidth || box.clientWidth;
+    return new uPlot({
+      width, height, tzDate: (t) => new Date(t * 1000), axes: axes(`${label}, ${unit}`),
+      scales: { x: { time: true } }, bands,
+      cursor: { sync: { key: "report" }, drag: { x: true, y: false }, points: { size: 6 } },
+      legend: { live: true },
+      hooks: { drawClear: [tint], setScale: [(u, key) => key === "x" && follow(u)] },
+      series: [{ label: "time", value: (_, t) => (t === null ? "–" : date(t)) }, ...lines],
+    }, values, target);
+  }
+
+  const line = (label, stroke, unit, more = {}) => ({
+    label, stroke, width: 1.4, points: { show: false }, spanGaps: false,
+    value: (_, v) => (v === null ? "–" : `${shown(v, 2)} ${unit}`), ...more,
+  });
+
+  function draw() {
+    for (const p of plots) p.destroy();
+    plots = [];
+    const sensor = picked("sensor");
+    const info = data.sensors[sensor];
+    const seen = column(`observed/${sensor}`);
+    if (!seen) return;
+    const chosen = [...box.querySelectorAll("input[name=model]:checked")].map((i) => i.value)
+      .filter((key) => series.columns[`${key}/${sensor}`]);
+    const half = info.uncertainty || 0;
+    const band = style("--band");
+    const ghost = (label) => ({ label, stroke: "transparent", width: 0, points: { show: false }, class: "hidden" });
+    const lines = [], values = [times], errors = [times], below = [];
+    let bands;
+    if (half) {
+      lines.push(ghost("upper"), ghost("lower"));
+      below.push(ghost("upper"), ghost("lower"));
+      values.push(seen.map((v) => (v === null ? null : v + half)), seen.map((v) => (v === null ? null : v - half)));
+      errors.push(seen.map(() => half), seen.map(() => -half));
+      bands = [{ series: [1, 2], fill: band }];
+    }
+    chosen.forEach((key, n) => {
+      const made = column(`${key}/${sensor}`);
+      const dash = key === "nominal" && key !== data.main ? [6, 4] : undefined;
+      lines.push(line(data.models[key] || key, colour(key, n), info.unit, { dash }));
+      values.push(made);
+      below.push(line(data.models[key] || key, colour(key, n), info.difference, { dash }));
+      errors.push(minus(made, seen));
+    });
+    lines.push(line(data.observed, style("--observed"), info.unit, { width: 1.2 }));
+    values.push(seen);
+    plots.push(plot(document.getElementById("plot-values"), info.label, info.unit, 300, lines, values, bands));
+    plots.push(plot(document.getElementById("plot-errors"), "error", info.difference, 170, below, errors, bands));
+    const key = picked("beside");
+    if (key) {
+      const raw = series.columns[key];
+      plots.push(plot(document.getElementById("plot-beside"), raw.label, raw.unit || "–", 150,
+        [line(raw.label, style("--c6"), raw.unit)], [times, column(key)]));
+    }
+    zoom();
+  }
+
+  function zoom() {
+    const [a, b] = picked("period").split("|");
+    const range = a ? { min: seconds(a), max: seconds(b) } : { min: times[0], max: times[times.length - 1] };
+    for (const p of plots) p.setScale("x", range);
+  }
+
+  function resize() {
+    for (const p of plots) p.setSize({ width: p.root.parentElement.clientWidth, height: p.height });
+  }
+
+  if (box && series.count) {
+    box.hidden = false;
+    draw();
+    for (const name of ["sensor", "beside"]) document.getElementById(picks[name])?.addEventListener("change", draw);
+    document.getElementById(picks.period).addEventListener("change", zoom);
+    for (const input of box.querySelectorAll("input[name=model]")) input.addEventListener("change", draw);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+    let timer;
+    addEventListener("resize", () => { clearTimeout(timer); timer = setTimeout(resize, 120); });
+  }
+
+  // Read a carpet under the pointer.
+  const readout = document.getElementById("carpet-readout");
+  for (const image of document.querySelectorAll(".carpet-picture img")) {
+    const sensor = image.closest(".carpet").dataset.sensor;
+    const { model, days } = image.dataset;
+    image.addEventListener("pointermove", (event) => {
+      const place = image.getBoundingClientRect();
+      const day = Math.floor((event.clientX - place.left) / place.width * days);
+      const hour = 24 * (1 - (event.clientY - place.top) / place.height);
+      const midnight = Math.floor(start / 86400) * 86400;
+      const i = Math.round((midnight + day * 86400 + hour * 3600 - start) / series.step);
+      const made = column(`${model}/${sensor}`), seen = column(`observed/${sensor}`);
+      if (!made || i < 0 || i >= series.count) return;
+      const error = made[i] === null || seen[i] === null ? null : made[i] - seen[i];
+      const info = data.sensors[sensor];
+      readout.textContent = `${info.label}, ${data.models[model]}, ${date(times[i])}: ` +
+        (error === null ? "no value" : `${error > 0 ? "+" : ""}${shown(error, 2)} ${info.difference}`);
+    });
+  }
+
+  // Mark the section being read in the contents; open everything for print.
+  const links = new Map([...document.querySelectorAll(".contents a")].map((a) => [a.hash.slice(1), a]));
+  const watch = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      if (!entry.isIntersecting) continue;
+      for (const a of links.values()) { a.classList.remove("here"); a.removeAttribute("aria-current"); }
+      links.get(entry.target.id)?.classList.add("here");
+      links.get(entry.target.id)?.setAttribute("aria-current", "location");
+    }
+  }, { rootMargin: "-20% 0px -70% 0px" });
+  for (const section of document.querySelectorAll("main > section")) watch.observe(section);
+  addEventListener("beforeprint", () => { for (const d of document.querySelectorAll("main details")) d.open = true; });
+})();

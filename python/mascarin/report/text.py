@@ -1,0 +1,110 @@
+"""Numbers, units and names as a report shows them."""
+
+from __future__ import annotations
+
+import math
+from datetime import datetime
+
+_UNITS = {
+    "degC": "°C",
+    "deg": "°",
+    "-": "",
+    "m2": "m²",
+    "m3": "m³",
+    "W/m2": "W/m²",
+    "W/(m K)": "W/(m·K)",
+    "W/(m2 K)": "W/(m²·K)",
+    "m2 K/W": "m²·K/W",
+    "kg/m3": "kg/m³",
+    "J/(kg K)": "J/(kg·K)",
+}
+NONE = "–"
+MINUS = "−"
+
+
+def unit(raw: str) -> str:
+    """Unit with its typographic signs; unknown ones as they are."""
+    return _UNITS.get(raw, raw)
+
+
+def difference_unit(raw: str) -> str:
+    """Unit of a difference: K for temperatures."""
+    return "K" if raw in ("degC", "°C") else unit(raw)
+
+
+def fixed(value: float | None, digits: int = 2, *, sign: bool = False) -> str:
+    """Number with fixed decimals, a true minus sign, and a dash for nothing."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    text = f"{value:+.{digits}f}" if sign else f"{value:.{digits}f}"
+    if float(text) == 0.0:
+        text = text.lstrip("+-")
+    return text.replace("-", MINUS)
+
+
+def significant(value: float | None, digits: int = 3) -> str:
+    """Number with so many significant digits, thin spaces between thousands."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    if value == 0.0:
+        return "0"
+    size = math.floor(math.log10(abs(value)))
+    if size < -3 or size > 6:
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+        return f"{mantissa}×10{_superscript(int(exponent))}".replace("-", MINUS)
+    decimals = max(0, digits - 1 - size)
+    text = f"{round(value, digits - 1 - size):,.{decimals}f}".replace(",", "\u202f")
+    if "." in text:
+        text = text.rstrip("0").rstrip(".")
+    return text.replace("-", MINUS)
+
+
+def with_unit(value: float | None, raw_unit: str, digits: int = 3) -> str:
+    """Number and unit, kept on one line."""
+    text, symbol = significant(value, digits), unit(raw_unit)
+    if not symbol or text == NONE:
+        return text
+    return f"{text}{symbol}" if symbol in ("°", "%") else f"{text}\u00a0{symbol}"
+
+
+def percent(value: float | None, digits: int = 1) -> str:
+    """Part of one as a percentage."""
+    return NONE if value is None else f"{fixed(100.0 * value, digits)}\u00a0%"
+
+
+def span_of(start: datetime, end: datetime) -> str:
+    """Span of time in words; whole days by their dates."""
+    whole = start.time() == end.time() and start.hour == start.minute == 0
+    if not whole:
+        return f"{day(start)} {start:%H:%M} to {day(end)} {end:%H:%M}"
+    last = datetime.fromordinal(end.toordinal() - 1)
+    if last.toordinal() <= start.toordinal():
+        return day(start)
+    if (start.year, start.month) == (last.year, last.month):
+        return f"{start.day}–{day(last)}"
+    return f"{day(start)} to {day(last)}"
+
+
+def day(time: datetime) -> str:
+    """Date without leading zero, e.g. 5 Oct 2012."""
+    return f"{time.day} {time:%b %Y}"
+
+
+def plain_path(path: str) -> str:
+    """Last parts of a parameter path that tell it from others: what it belongs to, and the property."""
+    words = [
+        w for w in path.split(".") if w not in ("constructions", "layers", "materials", "surfaces", "zones")
+    ]
+    return " · ".join(words).replace("_", " ")
+
+
+def duration(seconds: float) -> str:
+    """Time a run took."""
+    if seconds < 60.0:
+        return f"{significant(seconds, 2)}\u00a0s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}\u00a0min {rest}\u00a0s"
+
+
+def _superscript(number: int) -> str:
+    return str(number).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))

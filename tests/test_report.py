@@ -1,0 +1,306 @@
+from __future__ import annotations
+
+import base64
+import re
+import struct
+import zlib
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import report_example
+from mascarin.errors import InputError
+from mascarin.report import render, write
+from mascarin.report.payload import Series
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+VOID = {"meta", "link", "img", "br", "input"}
+SECTIONS = ["criteria", "model", "data", "sensitivity", "parameters", "comparison", "curves", "carpets",
+            "phase-change", "residuals", "energy", "notes", "reproduce"]  # fmt: skip
+
+
+class Outline(HTMLParser):
+    """Elements, their attributes and whether they nest."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.found: list[tuple[str, dict[str, str]]] = []
+        self.faults: list[str] = []
+        self.text: list[str] = []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, {name: value or "" for name, value in attrs}))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, {name: value or "" for name, value in attrs}))
+
+    def handle_endtag(self, tag: str) -> None:
+        if not self.open or self.open.pop() != tag:
+            self.faults.append(f"</{tag}> at {self.getpos()}")
+
+    def handle_data(self, data: str) -> None:
+        if not self.open or self.open[-1] not in ("script", "style"):
+            self.text.append(data)
+
+    def all(self, tag: str) -> list[dict[str, str]]:
+        return [attributes for name, attributes in self.found if name == tag]
+
+
+@pytest.fixture(scope="module")
+def lgi_page() -> str:
+    return render(*report_example.lgi())
+
+
+@pytest.fixture(scope="module")
+def outline(lgi_page: str) -> Outline:
+    return Outline(lgi_page)
+
+
+def test_every_section_is_there_in_its_order(outline: Outline) -> None:
+    assert [s["id"] for s in outline.all("section")] == SECTIONS
+    links = [a["href"] for a in outline.all("a") if a["href"].startswith("#")]
+    assert links[1:] == [f"#{name}" for name in SECTIONS]
+    assert outline.faults == []
+    assert outline.open == []
+
+
+def test_the_file_is_small(lgi_page: str) -> None:
+    assert len(lgi_page.encode()) < 3_000_000
+
+
+def test_nothing_outside_is_named_to_be_loaded(lgi_page: str, outline: Outline) -> None:
+    for tag, attributes in outline.found:
+        for name in ("src", "srcset", "data", "poster", "action", "xlink:href"):
+            assert attributes.get(name, "data:").startswith("data:"), (tag, attributes)
+    assert [link["href"] for link in outline.all("link")] == ["data:,"]
+    assert "@import" not in lgi_page
+    assert "url(" not in re.sub(r"<script.*?</script>", "", lgi_page, flags=re.DOTALL)
+    policy = next(m["content"] for m in outline.all("meta") if m.get("http-equiv"))
+    assert policy.startswith("default-src 'none'; script-src 'sha256-")
+    assert "unsafe-inline" not in policy.split("style-src")[0]
+
+
+def test_the_words_of_the_study_are_said(outline: Outline) -> None:
+    text = re.sub(r"\s+", " ", "".join(outline.text))
+    for words in (
+        "virtual experiment",
+        "18 of 18",
+        "energain_plasterboard_temperature",
+        "20–24 Sep 2010",
+        "beyond 0.5 m²·K/W the mask no longer acts",
+        "mascarin study lgi",
+        "closes to 3.1×10⁻¹³",
+        "80 mm in all (paper, table 1)",
+        "Copyright (c) 2022 Leon Sorokin",
+    ):
+        assert words in text, words
+
+
+def test_tables_hold_the_numbers(outline: Outline) -> None:
+    study, _ = report_example.lgi()
+    text = re.sub(r"\s+", " ", " ".join(outline.text))
+    steel = study["sensors"]["steel_sheet"]["corroboration"]["fitted"]
+    table = text[text.index("Corroboration: fitted Sensor") :]
+    row = table[table.index("Steel sheet") :].split()
+    assert row[2].replace("−", "-") == f"{steel['bias']:+.2f}"
+    assert row[4] == f"{steel['sd']:.2f}"
+    assert row[5] == "1.6"
+
+
+def test_the_page_can_be_read_without_seeing_it(outline: Outline) -> None:
+    assert outline.all("html") == [{"lang": "en"}]
+    assert len(outline.all("main")) == len(outline.all("h1")) == 1
+    assert all("alt" in image for image in outline.all("img"))
+    assert all(svg.get("role") == "img" and svg.get("aria-label") for svg in outline.all("svg"))
+    assert all(th.get("scope") for th in outline.all("th"))
+    levels = [int(tag[1]) for tag, _ in outline.found if re.fullmatch(r"h[1-6]", tag)]
+    assert all(b <= a + 1 for a, b in pairwise(levels))
+    identifiers = [a["id"] for _, a in outline.found if "id" in a]
+    assert len(identifiers) == len(set(identifiers))
+
+
+EVIL = "</script><script>alert(1)</script>\"'&<b>"
+NAMES = {"spans", "start", "end", "created", "outside", "inside", "name", "surface", "construction", "sensor",
+         "period", "model", "kind", "column", "output", "path", "paths", "unit"}  # fmt: skip
+
+
+def poisoned(value: Any, key: str = "") -> Any:
+    """The same content with markup in every text that is neither a name nor a time."""
+    if isinstance(value, dict):
+        return {k: poisoned(v, k) for k, v in value.items()}
+    if isinstance(value, list):
+        return [poisoned(v, key) for v in value]
+    return value + EVIL if isinstance(value, str) and key not in NAMES else value
+
+
+def test_markup_in_texts_stays_text() -> None:
+    study, series = report_example.lgi()
+    page = render(poisoned(study), series)
+    assert "<script>alert" not in page
+    assert page.count("<script") == 3
+    outline = Outline(page)
+    assert outline.faults == []
+    assert not outline.all("b")
+    assert "alert(1)" in "".join(outline.text)
+
+
+def test_names_are_escaped_in_drawings() -> None:
+    study, series = report_example.wall()
+    study["building"]["constructions"][0]["layers"][0]["material"] = EVIL
+    study["building"]["surfaces"][0]["name"] = EVIL
+    page = render(study, series)
+    assert "<script>alert" not in page
+    assert Outline(page).faults == []
+
+
+def test_a_doi_becomes_a_link_and_nothing_else_does() -> None:
+    study, series = report_example.wall()
+    study["sources"] = [
+        {"text": "good", "doi": "10.3390/en9010009"},
+        {"text": "bad", "doi": "javascript:alert(1)"},
+    ]
+    links = [a["href"] for a in Outline(render(study, series)).all("a") if not a["href"].startswith("#")]
+    assert links == ["https://doi.org/10.3390/en9010009"]
+
+
+def test_a_single_wall_makes_a_page() -> None:
+    outline = Outline(render(*report_example.wall()))
+    assert [s["id"] for s in outline.all("section")] == ["model", "data", "curves", "carpets"]
+    assert "20.444 all the time" in "".join(outline.text)
+    assert outline.faults == []
+
+
+def test_a_title_alone_makes_a_page() -> None:
+    outline = Outline(render({"title": "Nothing yet"}, Series("2024-01-01T00:00", 900.0)))
+    assert outline.all("section") == []
+    assert outline.faults == []
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"title": ""}, "no 'title'"),
+        ({"sensors": {"attic": {}}}, "'attic', which 'sensor_info' does not declare"),
+        ({"sensors": {"interface": {"blind": {}}}}, "'blind', which 'periods' does not declare"),
+        ({"sensors": {"interface": {"corroboration": {"best": {}}}}}, "'best', which 'models'"),
+        ({"periods": {"x": {"spans": [["2024-01-01"]]}}}, "expected pairs"),
+        ({"periods": {"x": {"spans": [["soon", "2024-01-01"]]}}}, "time 'soon'"),
+        ({"phase_change": [{"column": "state/none"}]}, "'state/none', which is not there"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(change: dict[str, Any], message: str) -> None:
+    study, series = report_example.wall()
+    with pytest.raises(InputError, match=re.escape(message)):
+        render(study | change, series)
+
+
+def test_writing_leaves_one_file(tmp_path: Path) -> None:
+    write(tmp_path / "report.html", *report_example.wall())
+    assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
+
+
+def test_carpet_pictures_hold_the_errors(lgi_page: str) -> None:
+    """Decode one carpet and find the colour of an error where it belongs."""
+    study, series = report_example.lgi()
+    address = re.findall(r'src="data:image/png;base64,([^"]+)" alt="Error of fitted for Room air', lgi_page)
+    raw = base64.b64decode(address[0])
+    width, height = struct.unpack(">II", raw[16:24])
+    assert (width, height) == (92, 96)
+    start = raw.index(b"IDAT")
+    size = struct.unpack(">I", raw[start - 4 : start])[0]
+    rows = zlib.decompress(raw[start + 4 : start + 4 + size])
+    levels = np.frombuffer(rows, dtype=np.uint8).reshape(height, width + 1)[::-1, 1:].astype(float)
+    error = series.columns["fitted/room_air"].values - series.columns["observed/room_air"].values
+    expected = np.clip((error.reshape(92, 96).T / 0.5 + 1) / 2, 0, 1) * 200 + 1
+    assert np.abs(levels - expected).max() <= 0.51
+    assert study["sensor_info"]
+
+
+# --- in a browser --------------------------------------------------------------------------------
+
+
+def opened(page: Page, folder: Path, name: str) -> tuple[list[str], list[str]]:
+    """Open a report; give the addresses that it asked for and what it complained about."""
+    asked: list[str] = []
+    complaints: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    file = write(folder / "report.html", *getattr(report_example, name)())
+    page.goto(file.as_uri())
+    page.wait_for_selector("#plot-values canvas")
+    return asked, complaints
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("name", ["lgi", "wall"])
+def test_nothing_leaves_the_page_and_nothing_fails(page: Page, tmp_path: Path, name: str) -> None:
+    asked, complaints = opened(page, tmp_path, name)
+    for scheme in ("dark", "light"):
+        page.emulate_media(color_scheme=scheme)
+    options = page.eval_on_selector_all("#pick-sensor option", "all => all.map(o => o.value)")
+    for sensor in options:
+        page.select_option("#pick-sensor", sensor)
+    page.select_option("#pick-period", "")
+    for model in page.query_selector_all("input[name=model]"):
+        model.click()
+    if page.query_selector("#pick-beside"):
+        page.select_option("#pick-beside", index=1)
+        assert page.query_selector("#plot-beside canvas")
+    carpet = page.query_selector(".carpet-picture img")
+    assert carpet is not None
+    carpet.scroll_into_view_if_needed()
+    carpet.hover()
+    assert " K" in (page.text_content("#carpet-readout") or "")
+    page.emulate_media(media="print")
+    assert complaints == []
+    assert [a for a in asked if not a.startswith(("file:", "data:"))] == []
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("width", [320, 768, 1400])
+def test_no_width_scrolls_sideways(page: Page, tmp_path: Path, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 800})
+    opened(page, tmp_path, "lgi")
+    page.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing(page: Page, tmp_path: Path, scheme: Any) -> None:
+    from axe_playwright_python.sync_playwright import Axe
+
+    page.emulate_media(color_scheme=scheme)
+    opened(page, tmp_path, "lgi")
+    page.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
+    found = Axe().run(page)
+    assert found.response["passes"]
+    assert [violation["id"] for violation in found.response["violations"]] == []
+
+
+@pytest.mark.browser
+def test_curves_in_the_browser_are_those_of_the_study(page: Page, tmp_path: Path) -> None:
+    """The browser's decoding of the packed series gives the values back."""
+    _, series = report_example.lgi()
+    opened(page, tmp_path, "lgi")
+    page.select_option("#pick-period", "")
+    page.hover("#plot-values .u-over", position={"x": 200, "y": 100})
+    shown = page.eval_on_selector_all(
+        "#plot-values .u-legend .u-series:not(.hidden) .u-value", "all => all.map(v => v.textContent)"
+    )
+    day, month, clock = re.match(r"(\d+) (\w+) (\d\d:\d\d)", shown[0]).groups()  # type: ignore[union-attr]
+    at = f"2010-{ {'Aug': '08', 'Sep': '09', 'Oct': '10'}[month] }-{int(day):02d}T{clock}"
+    index = series.slice_of(at, at).start
+    seen = series.columns["observed/room_air"].values[index]
+    assert shown[-1] == f"{seen:.2f} °C"

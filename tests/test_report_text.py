@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from datetime import datetime
+
+import pytest
+
+from mascarin.report import text
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "expected"),
+    [
+        (0.0, 3, "0"),
+        (0.7304, 3, "0.73"),
+        (71000.0, 3, "71\u202f000"),
+        (22.6489, 4, "22.65"),
+        (99.96, 3, "100"),
+        (-0.04567, 2, "−0.046"),
+        (3.14e-13, 2, "3.1×10⁻¹³"),
+        (None, 3, "–"),
+        (float("nan"), 3, "–"),
+    ],
+)
+def test_significant(value: float | None, digits: int, expected: str) -> None:
+    assert text.significant(value, digits) == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "sign", "expected"), [(-0.004, True, "0.00"), (0.126, True, "+0.13"), (-2.5, False, "−2.50")]
+)
+def test_fixed(value: float, sign: bool, expected: str) -> None:
+    assert text.fixed(value, sign=sign) == expected
+
+
+def test_spans() -> None:
+    assert text.span_of(datetime(2010, 9, 20), datetime(2010, 9, 25)) == "20–24 Sep 2010"
+    assert text.span_of(datetime(2010, 9, 20), datetime(2010, 9, 21)) == "20 Sep 2010"
+    assert text.span_of(datetime(2010, 9, 25), datetime(2010, 10, 2)) == "25 Sep 2010 to 1 Oct 2010"
+    assert (
+        text.span_of(datetime(2010, 9, 4, 10), datetime(2010, 9, 5, 10))
+        == "4 Sep 2010 10:00 to 5 Sep 2010 10:00"
+    )
+
+
+def test_units() -> None:
+    assert text.with_unit(25.0, "degC") == "25\u00a0°C"
+    assert text.with_unit(20.0, "deg") == "20°"
+    assert text.difference_unit("degC") == "K"
+    assert text.difference_unit("W/m2") == "W/m²"
+
+
+def test_paths_become_words() -> None:
+    assert (
+        text.plain_path("constructions.ceiling.layers.energain.thickness") == "ceiling · energain · thickness"
+    )
+    assert text.plain_path("surfaces.wall_north.outside.absorptance") == "wall north · outside · absorptance"
