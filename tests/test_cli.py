@@ -50,7 +50,7 @@ def test_every_command_has_help(command: cli.Command, capsys: pytest.CaptureFixt
 def test_the_list_says_of_a_command_what_its_docstring_says(command: cli.Command) -> None:
     module, name = command.function.split(":")
     function = getattr(importlib.import_module(module), name)
-    assert inspect.getdoc(function).splitlines()[0] == command.help
+    assert (inspect.getdoc(function) or "").splitlines()[0] == command.help
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:

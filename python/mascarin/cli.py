@@ -47,6 +47,14 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command("parameters", "mascarin.commands.model:parameters", "List every parameter of a building."),
         Command("cite", "mascarin.commands.model:cite", "List the sources that a building rests on."),
     ),
+    "Run": (Command("run", "mascarin.commands.run:run", "Run a building in a climate."),),
+    "Optimise": (
+        Command(
+            "optimize",
+            "mascarin.commands.genopt:optimize",
+            "Run a GenOpt project with any simulation program.",
+        ),
+    ),
 }
 """Every command, by the group it is listed under."""
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 
@@ -21,6 +23,20 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
     return value
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[Path]:
+    """Give a file to write to that takes the name `path` only once it is whole.
+
+    Whatever goes wrong in between leaves no half a file, and an older one as it was.
+    """
+    part = path.with_name(f"{path.name}.part")
+    try:
+        yield part
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def print_table(header: Sequence[str], rows: Sequence[Sequence[str | float]]) -> None:

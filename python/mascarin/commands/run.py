@@ -1,0 +1,163 @@
+"""The command that runs a building in a climate."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+from mascarin.commands.inputs import AsJson, Settings, Step, read_building, seconds
+from mascarin.commands.output import print_json, print_table, writing
+from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from mascarin.climate import Climate
+    from mascarin.model import Building
+    from mascarin.results import Results
+
+FORMATS = (".nc", ".csv")
+
+
+def run(
+    building: Path,
+    /,
+    *,
+    weather: Path,
+    out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    start: str | None = None,
+    end: str | None = None,
+    step: Step = "15min",
+    outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
+    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
+    settings: Settings = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run a building in a climate.
+
+    Writes the series to a file, or prints their extremes, their mean and the energy ledger.
+
+    Parameters
+    ----------
+    building : Path
+        Description of a building.
+    weather : Path
+        Weather file: EPW, or TMY3 as CSV.
+    out : Path
+        File for the series: NetCDF (.nc) or CSV (.csv, in local time). Without it a summary is printed.
+    start : str
+        First moment, such as 2012-09-20 or "2012-09-20 12:00", local time. Default: where the weather starts.
+    end : str
+        Last moment. Default: where the weather ends.
+    outputs : list of str
+        What to record, such as room.air_temperature or "roof.*"; may be given again. Default: the
+        temperatures of air, faces, interfaces and sensors.
+    scheme : str
+        Time-stepping scheme.
+    """
+    described = read_building(building, settings)
+    if out is not None:
+        _can_be_written(out)
+    from mascarin.simulation import Simulation
+
+    simulation = Simulation(
+        described,
+        read_weather(weather),
+        step=seconds(step),
+        start=start,
+        end=end,
+        outputs=_matching(described, outputs),
+        scheme=scheme,
+    )
+    for note in simulation.notes:
+        print(f"warning: {note}", file=sys.stderr)
+    results = simulation.run()
+    if out is not None:
+        _write(results, out)
+    if as_json:
+        print_json(_summary(results))
+    elif out is None:
+        _print(results)
+
+
+def read_weather(file: Path) -> Climate:
+    """Read a weather file by what its name ends in.
+
+    Raises
+    ------
+    InputError
+        If it is neither EPW nor TMY3, or damaged.
+    """
+    from mascarin.climate import Climate
+
+    match file.suffix.lower():
+        case ".epw":
+            return Climate.from_epw(file)
+        case ".csv":
+            return Climate.from_tmy(file)
+        case suffix:
+            raise InputError(
+                f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, or .csv (TMY3)"
+            )
+
+
+def _can_be_written(out: Path) -> None:
+    """Refuse a file that could not be written, before the work is done."""
+    if out.suffix.lower() not in FORMATS:
+        raise InputError(f"--out: found '{out}'; expected a file ending in {' or '.join(FORMATS)}")
+    if not out.parent.is_dir():
+        raise InputError(f"--out: found '{out}'; expected an existing folder; make '{out.parent}' first")
+
+
+def _matching(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
+    """Names of the outputs that are meant; none: the usual ones."""
+    if patterns is None:
+        return None
+    names = [output.name for output in building.outputs()]
+    found: dict[str, None] = {}
+    for pattern in patterns:
+        meant = [name for name in names if fnmatchcase(name, pattern)]
+        if not meant and any(sign in pattern for sign in "*?["):
+            raise InputError(
+                f"--output: found no output like '{pattern}'. {did_you_mean(pattern, names)}".rstrip()
+            )
+        found |= dict.fromkeys(meant or [building.output(pattern).name])
+    return list(found)
+
+
+def _write(results: Results, out: Path) -> None:
+    with writing(out) as part:
+        if out.suffix.lower() == ".nc":
+            results.to_netcdf(part)
+        else:
+            results.frame().to_csv(part, index_label="time")
+    print(f"wrote {out}", file=sys.stderr)
+
+
+def _summary(results: Results) -> dict[str, Any]:
+    records = results.records
+    return {
+        "outputs": {
+            output.name: {
+                "unit": output.unit,
+                "min": float(records[:, k].min()),
+                "mean": float(records[:, k].mean()),
+                "max": float(records[:, k].max()),
+            }
+            for k, output in enumerate(results.outputs)
+        },
+        "energy": results.energy.to_dict(),
+        **results.provenance.to_dict(),
+    }
+
+
+def _print(results: Results) -> None:
+    rows = [
+        (name, row["unit"], round(row["min"], 3), round(row["mean"], 3), round(row["max"], 3))
+        for name, row in _summary(results)["outputs"].items()
+    ]
+    print_table(("output", "unit", "min", "mean", "max"), rows)
+    print(f"\n{results.energy}")

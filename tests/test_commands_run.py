@@ -1,0 +1,126 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import xarray as xr
+
+from mascarin import __version__, cli
+
+BOX = """\
+name: Box
+site: {latitude: 39.83, longitude: -104.65, altitude: 1650, timezone: America/Denver}
+materials: {concrete: {conductivity: 1.75, density: 2400, specific_heat: 880}}
+constructions: {wall: {layers: [{material: concrete, thickness: 0.2}]}}
+zones: {room: {volume: 27}}
+surfaces:
+  facade: {construction: wall, area: 9, tilt: 90, azimuth: 180,
+           outside: {outdoors: true, convection: 20, emissivity: 0.9, absorptance: 0.6},
+           inside: {zone: room, convection: 3, emissivity: 0.9}}
+"""
+PERIOD = ["--start", "2001-01-02", "--end", "2001-01-03"]
+
+
+@pytest.fixture
+def call(data_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Words that run the box for a day in Denver, in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    Path("box.yaml").write_text(BOX, encoding="utf-8")
+    return ["run", "box.yaml", "--weather", str(data_dir / "bestest" / "725650TYCST.epw"), *PERIOD]
+
+
+def test_summary(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(call) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    name, unit, low, mean, high = out.splitlines()[1].split()
+    assert (name, unit) == ("room.air_temperature", "degC")
+    assert -15.0 < float(low) < float(mean) < float(high) < 25.0
+    assert float(out.split("closure")[1]) < 1e-10
+
+
+def test_json(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main([*call, "--json", "--output", "facade.*_flux", "--output", "room.air_temperature"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["mascarin_version"] == __version__
+    assert list(result["outputs"]) == [
+        "facade.outside_flux",
+        "facade.inside_flux",
+        "facade.concrete_flux",
+        "room.air_temperature",
+    ]
+    assert result["energy"]["closure"] < 1e-10
+
+
+def test_netcdf_holds_what_the_summary_says(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main([*call, "-o", "box.nc", "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert err == "wrote box.nc\n"
+    with xr.open_dataset("box.nc", engine="h5netcdf") as written:
+        series = written["room.air_temperature"]
+        assert series.attrs["units"] == "degC"
+        assert len(series) == 24 * 4 + 1
+        assert float(series.max()) == json.loads(out)["outputs"]["room.air_temperature"]["max"]
+
+
+def test_csv_is_in_local_time(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main([*call, "-o", "box.csv", "--step", "1h"]) == 0
+    assert capsys.readouterr() == ("", "wrote box.csv\n")
+    table = pd.read_csv("box.csv")
+    assert table["time"].iloc[[0, -1]].tolist() == ["2001-01-02 00:00:00-07:00", "2001-01-03 00:00:00-07:00"]
+    assert len(table) == 25
+
+
+def test_another_value_acts(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    means = []
+    for absorptance in ("0.2", "0.9"):
+        words = ["--set", f"surfaces.facade.outside.absorptance={absorptance}", "--json"]
+        assert cli.main([*call, *words]) == 0
+        result = json.loads(capsys.readouterr().out)
+        assert result["changed"] == {} or set(result["changed"]) == {"surfaces.facade.outside.absorptance"}
+        means.append(result["outputs"]["facade.outside_temperature"]["mean"])
+    assert means[1] > means[0] + 1.0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["-o", "box.xls"], "expected a file ending in .nc or .csv"),
+        (["-o", "nowhere/box.nc"], "make 'nowhere' first"),
+        (["--output", "rom.*"], "no output like 'rom.*'"),
+        (["--output", "room.air_temprature"], "'room.air_temperature'"),
+        (["--step", "soon"], "--step: found 'soon'"),
+        (["--start", "2001-13-02"], "2001-13-02"),
+        (["--scheme", "euler"], "backward-euler"),
+        (["--weather", "box.yaml"], "expected .epw"),
+    ],
+)
+def test_bad_input_leaves_nothing(
+    words: list[str], said: str, call: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    for option in ("--weather", "--start"):
+        if option in words:
+            at = call.index(option)
+            del call[at : at + 2]
+    assert cli.main([*call, *words]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert said in err
+    assert [path.name for path in Path().iterdir()] == ["box.yaml"]
+
+
+def test_a_failure_while_writing_leaves_the_older_file(
+    call: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(_self: object, path: Path) -> None:
+        path.write_text("half", encoding="utf-8")
+        raise OSError(28, "No space left on device", str(path))
+
+    Path("box.nc").write_text("older", encoding="utf-8")
+    monkeypatch.setattr("mascarin.results.Results.to_netcdf", fail)
+    assert cli.main([*call, "-o", "box.nc"]) == 2
+    assert "No space left" in capsys.readouterr().err
+    assert Path("box.nc").read_text(encoding="utf-8") == "older"
+    assert sorted(path.name for path in Path().iterdir()) == ["box.nc", "box.yaml"]
