@@ -72,9 +72,9 @@ materials:
     specific_heat: 2000
     law:
       kind: table
-      temperatures: [10, 20, 24, 40]
+      temperatures: [15, 20, 22, 23]
       enthalpies: [0, 2.0e+4, 9.0e+4, 1.2e+5]
-      melting_range: [20, 24]
+      melting_range: [20, 22]
 constructions:
   wall:
     layers:
@@ -183,7 +183,7 @@ def room() -> Building:
 
 
 def everything() -> list[Building]:
-    """Every kind of part, once for each sky; the air's density from the altitude and, in the last, written."""
+    """Every kind of part, once for each sky; in the last the density of the air is written."""
     building = parse(EVERYTHING, "everything.yaml")
     skies = [building.replace({"site.sky": sky}) for sky in SKIES]
     return [*skies, building.replace({"site.air_density": 1.16})]

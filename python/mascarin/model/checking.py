@@ -193,6 +193,8 @@ def _strongest_films(building: Building, construction: str) -> tuple[float, floa
 
 
 def _nominal_film(side: Side, surface: Surface) -> float:
+    if side.adiabatic:
+        return math.inf
     if isinstance(side.convection, Constant) and side.convection.coefficient > 0.0:
         return 1.0 / side.convection.coefficient
     return _film(side, surface)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from mascarin.model.convection import LinearWind, Mowitt, Power, Tarp
+from mascarin.model.convection import AlamdariHammond, LinearWind, Mowitt, PaperEq5, Power, Tarp
 from mascarin.model.envelope import NoLongwave, Side, Surface
 from mascarin.model.leaves import leaves
 from mascarin.model.settling import faces_of
@@ -131,28 +131,35 @@ def _in_power(face: _Face, film: Power) -> Reasons:
 
 
 def _in_direction(building: Building, name: str, surface: Surface) -> Reasons:
-    """Tilt and azimuth act through sun, sky, wind, buoyancy and the view between faces."""
+    """Tilt and azimuth act through sun, sky and wind; through buoyancy and view they only choose a case."""
     faces = list(_faces(name, surface))
-    seen = any(face.side.zone is not None and not _placed(building, face.side.zone) for face in faces)
     sunlit = any(face.sunlit for face in faces)
+    seen = any(face.side.zone is not None and _by_direction(building, face.side.zone) for face in faces)
+    buoyant = any(isinstance(face.side.convection, AlamdariHammond | PaperEq5 | Power) for face in faces)
+    reasons = ["which faces of a zone lie in one plane"] if seen else []
     if surface.tilt in (0.0, 180.0):
         yield f"surfaces.{name}.azimuth", "a horizontal surface has no direction"
-    elif not (seen or sunlit or any(isinstance(face.side.convection, Tarp | Mowitt) for face in faces)):
-        yield f"surfaces.{name}.azimuth", "no sun, no wind and no zone see the direction"
-    buoyant = any(getattr(face.side.convection, "kind", "") not in _LEVEL_FILMS for face in faces)
-    skyward = any(face.side.outdoors and face.side.sky_view is None for face in faces)
-    if not (seen or sunlit or skyward or buoyant):
-        yield f"surfaces.{name}.tilt", "no sun, no sky, no buoyancy and no zone see the tilt"
+    elif not (
+        sunlit or any(face.windy and isinstance(face.side.convection, Tarp | Mowitt) for face in faces)
+    ):
+        yield f"surfaces.{name}.azimuth", _only(reasons)
+    skyward = any(face.side.outdoors and face.side.sky_view is None and face.sees_sky for face in faces)
+    if not (sunlit or skyward or any(isinstance(face.side.convection, Tarp) for face in faces)):
+        yield (
+            f"surfaces.{name}.tilt",
+            _only([*reasons, *(["vertical or horizontal film"] if buoyant else [])]),
+        )
 
 
-#: Films that do not depend on the tilt of their face; "" where there is none.
-_LEVEL_FILMS = ("", "constant", "linear_wind")
+def _only(choices: list[str]) -> str:
+    return f"it only decides: {', '.join(choices)}" if choices else "neither sun, sky, wind nor zone see it"
 
 
-def _placed(building: Building, zone: str) -> bool:
-    """Tell whether the view factors of a zone do not depend on tilt and azimuth, because they are given."""
-    given = building.zones[zone].view_factors is not None
-    return given or all(building.surfaces[name].vertices for name, _ in faces_of(zone, building.surfaces))
+def _by_direction(building: Building, zone: str) -> bool:
+    """Tell whether the view factors of a zone are approximated from areas, tilts and azimuths."""
+    if isinstance(building.zones[zone].longwave, NoLongwave) or building.zones[zone].view_factors is not None:
+        return False
+    return not all(building.surfaces[name].vertices for name, _ in faces_of(zone, building.surfaces))
 
 
 def _between_faces(building: Building) -> Reasons:

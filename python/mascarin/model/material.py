@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic_core import InitErrorDetails
 
 from mascarin.model import quantities as q
 from mascarin.model.number import Number, problem
@@ -148,17 +149,20 @@ class TableLaw(Part):
                     "Complete the table.",
                 )
             )
-        if self.melting_range is not None and not self.melting_range[0] < self.melting_range[1]:
-            faults.append(
-                fault(
-                    ("melting_range",),
-                    str(list(map(float, self.melting_range))),
-                    "[start, end] with start < end [degC]",
-                    "Swap the two.",
-                )
-            )
+        faults += self._melting_outside()
         insist(*faults)
         return self
+
+    def _melting_outside(self) -> list[InitErrorDetails]:
+        if self.melting_range is None or not self.temperatures:
+            return []
+        (start, end), first, last = self.melting_range, self.temperatures[0], self.temperatures[-1]
+        if first <= start < end <= last:
+            return []
+        expected = f"[start, end] with start < end, between {first:g} and {last:g} degC"
+        return [
+            fault(("melting_range",), f"[{start:g}, {end:g}]", expected, "Swap the two or extend the table.")
+        ]
 
     @property
     def melting(self) -> tuple[float, float]:
@@ -167,7 +171,7 @@ class TableLaw(Part):
         return (float(low), float(high))
 
 
-def _rising(key: str, values: tuple[Number, ...]) -> list[Any]:
+def _rising(key: str, values: tuple[Number, ...]) -> list[InitErrorDetails]:
     if len(values) < 2:
         return [fault((key,), f"{len(values)} points", "at least two points", "Complete the table.")]
     return [
@@ -224,7 +228,7 @@ class PhaseChangeMaterial(Part):
             )
         return self
 
-    def _falling_enthalpy(self, law: TanhLaw) -> list[Any]:
+    def _falling_enthalpy(self, law: TanhLaw) -> list[InitErrorDetails]:
         """Find where dH/dT = (rho c)_s + D f + f' (rho_l L + D (T - Tm)) is not positive."""
         solid, liquid = self.heat_capacities
         difference, latent = liquid - solid, phase(self.density, "liquid") * (self.latent_heat or 0.0)

@@ -8,7 +8,7 @@ parameter table and documentation all read it from there.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -322,25 +322,28 @@ class Quantity:
     ) -> JsonSchemaValue:
         """Give the plain and the noted form, and the facts about the quantity."""
         plain: dict[str, Any] = {"type": "integer" if self.whole else "number", **self.limits.schema()}
-        value = {"anyOf": [plain, {"enum": list(self.words)}]} if self.words else plain
-        noted = {
-            "type": "object",
-            "properties": {
-                "value": value,
-                "range": {"type": "array", "items": plain, "minItems": 2, "maxItems": 2},
-                "source": {"type": "string"},
-                "assumed": {"type": "boolean"},
-            },
-            "required": ["value"],
-            "additionalProperties": False,
-        }
-        forms = [plain, noted] if not self.words else [plain, {"enum": list(self.words)}, noted]
+        words = [{"enum": list(self.words)}] if self.words else []
         return {
             "description": self.description,
-            "anyOf": forms,
+            "anyOf": [plain, *words, noted_form(plain, words)],
             "unit": self.unit,
             "default_range": self.spread.schema(),
         }
+
+
+def noted_form(plain: dict[str, Any], words: Sequence[dict[str, Any]] = ()) -> dict[str, Any]:
+    """JSON Schema of a number with notes, given those of the plain number and of words for it."""
+    return {
+        "type": "object",
+        "properties": {
+            "value": {"anyOf": [plain, *words]},
+            "range": {"type": "array", "items": plain, "minItems": 2, "maxItems": 2},
+            "source": {"type": "string"},
+            "assumed": {"type": "boolean"},
+        },
+        "required": ["value"],
+        "additionalProperties": False,
+    }
 
 
 def problem(found: str, expected: str, help_: str) -> PydanticCustomError:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 
 from mascarin.errors import did_you_mean
-from mascarin.model.number import Number, Quantity, problem, shown
+from mascarin.model.number import Number, Quantity, noted_form, problem, shown
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ModelWrapValidatorHandler
@@ -184,12 +184,9 @@ class Shorthand:
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         """Allow the short forms beside the mapping."""
-        short = []
-        if self.number is not None:
-            short.append({"type": "number"})
-        if self.word is not None:
-            short.append({"type": "string"})
-        return {"anyOf": [handler(schema), *short]}
+        number, word = {"type": "number"}, {"type": "string"}
+        short = [number, noted_form(number)] if self.number is not None else []
+        return {"anyOf": [handler(schema), *short, *([word] if self.word is not None else [])]}
 
 
 def is_number(raw: object) -> bool:

@@ -5,20 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import ValidationError
 
 from mascarin.errors import InputError
 from mascarin.model.building import Building
+from mascarin.model.part import Part
 
 if TYPE_CHECKING:
     from ruamel.yaml.nodes import Node
 
 Place = tuple[str | int, ...]
+AnyPart = TypeVar("AnyPart", bound=Part)
 
 #: A description with more values than this is no description but an attack with aliases.
-MOST_VALUES = 1_000_000
+MOST_VALUES = 100_000
 
 
 def load(path: str | Path) -> Building:
@@ -40,23 +42,58 @@ def load(path: str | Path) -> Building:
         If the file cannot be read or describes no sound building. The text names every fault by file, line
         and path, with what was found, what was expected and what to do.
     """
+    return read(path, Building, "a building")
+
+
+def read(path: str | Path, kind: type[AnyPart], what: str) -> AnyPart:
+    """Read a description of any kind from a YAML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    kind : type of Part
+        What it describes.
+    what : str
+        The same in words, for messages.
+
+    Returns
+    -------
+    Part
+        Checked, frozen.
+
+    Raises
+    ------
+    InputError
+        As for :func:`load`.
+    """
     file = Path(path)
     try:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of a building") from error
-    return parse(text, str(file))
+        raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of {what}") from error
+    return parse_as(kind, text, str(file))
 
 
 def parse(text: str, name: str) -> Building:
     """Read a building from YAML text; ``name`` stands for the file in messages."""
+    return parse_as(Building, text, name)
+
+
+def parse_as(kind: type[AnyPart], text: str, name: str) -> AnyPart:
+    """Read a description of any kind from YAML text; ``name`` stands for the file in messages."""
     document = _Document(name)
     plain = document.read(text)
     try:
-        return Building.model_validate(plain)
+        return kind.model_validate(plain)
     except ValidationError as error:
         raise explained(error, plain, name, document.lines) from None
+
+
+def plain(text: str, name: str) -> Any:
+    """Read YAML text as plain mappings, lists, texts and numbers; ``name`` stands for its file."""
+    return _Document(name).read(text)
 
 
 def explained(
@@ -170,7 +207,9 @@ class _Document:
         from ruamel.yaml.nodes import MappingNode, SequenceNode
 
         self.values += 1
-        if id(node) in above or self.values > MOST_VALUES:
+        if self.values > MOST_VALUES:
+            raise InputError(f"{self.name}: found more than {MOST_VALUES} values; expected a building")
+        if id(node) in above:
             self._refuse(
                 node.start_mark.line,
                 _text(place),
