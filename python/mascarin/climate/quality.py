@@ -317,7 +317,7 @@ def _elsewhere_moves(values: Array, candidates: list[tuple[int, int]], run: tupl
 
 
 def _resolution(values: Array) -> float:
-    """Smallest step that the channel usually makes: large of a coarse logger, next to nothing of a fine one."""
+    """Smallest step that the channel usually makes: the resolution of a coarse logger."""
     steps = np.abs(np.diff(values))
     steps = steps[steps > 0.0]
     return float(np.quantile(steps, 0.05)) if len(steps) else 0.0

@@ -105,6 +105,8 @@ class Climate:
         What was read, converted, derived and assumed, as sentences.
     lines : ndarray
         Line of each row in the file; 0 where the row was missing.
+    check_sun : bool
+        Refuse radiation that does not follow the sun.
     """
 
     data: pd.DataFrame
@@ -116,6 +118,7 @@ class Climate:
     sha256: str | None
     provenance: tuple[str, ...]
     lines: Lines
+    check_sun: bool = True
     _ready: dict[tuple[float, float], Climate] = field(default_factory=dict, repr=False)
 
     # ------------------------------------------------------------------ readers
@@ -182,6 +185,7 @@ class Climate:
         latitude: float | None = None,
         longitude: float | None = None,
         altitude: float = 0.0,
+        check_sun: bool = True,
     ) -> Climate:
         """Read a measured table: CSV, Parquet or a pandas frame with any regular step.
 
@@ -213,6 +217,8 @@ class Climate:
             Place of the measurement, positive north and east [deg].
         altitude : float
             Height above the sea [m].
+        check_sun : bool
+            Refuse radiation that does not follow the sun at the place where it is used.
 
         Returns
         -------
@@ -231,6 +237,7 @@ class Climate:
             decimal=decimal, skip_lines=skip_lines, step=step, missing=missing,
         )  # fmt: skip
         climate = climate_of(table, columns, extra, absent, stamps, instant, mean)
+        climate = replace(climate, check_sun=check_sun, _ready={})
         if latitude is None or longitude is None:
             return climate
         return replace(climate, site=Place(latitude, longitude, altitude), _ready={}).completed()
@@ -297,8 +304,9 @@ class Climate:
         Raises
         ------
         InputError
-            There is no site.
+            There is no site, or the radiation does not follow the sun there.
         """
+        from .clock import check_clock
         from .completion import complete
 
         place = site if site is not None else self.site
@@ -308,6 +316,8 @@ class Climate:
             )
         key = (float(place.latitude), float(place.longitude))
         if key not in self._ready:
+            if self.check_sun:
+                check_clock(self, *key)
             self._ready[key] = complete(self, *key)
         return self._ready[key]
 
@@ -332,8 +342,12 @@ class Climate:
 
 
 def summary(climate: Climate) -> dict[str, Any]:
-    """What a report prints of a climate: file, hash, range, step, site and provenance."""
+    """What a report prints of a climate: file, hash, range, step, site and provenance.
+
+    The provenance includes what was derived for the place where the climate was last used.
+    """
     place = climate.site
+    used = list(climate._ready.values())[-1:] or [climate]
     return {
         "file": climate.file,
         "sha256": climate.sha256,
@@ -342,5 +356,5 @@ def summary(climate: Climate) -> dict[str, Any]:
         "timezone": climate.timezone,
         "site": None if place is None else {"latitude": place.latitude, "longitude": place.longitude,
                                            "altitude": place.altitude, "name": place.name},
-        "provenance": list(climate.provenance),
+        "provenance": list(used[0].provenance),
     }  # fmt: skip
