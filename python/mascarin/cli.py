@@ -48,6 +48,9 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command("cite", "mascarin.commands.model:cite", "List the sources that a building rests on."),
     ),
     "Run": (Command("run", "mascarin.commands.run:run", "Run a building in a climate."),),
+    "Prove": (
+        Command("study", "mascarin.commands.study:study", "Compare, identify and corroborate on measurements."),
+    ),
     "Optimise": (
         Command(
             "optimize",

@@ -76,7 +76,7 @@ class Progress:
         Parameters
         ----------
         done, total : float
-            Work done and work in all, in any common unit. The first call may be above zero
+            Work done and work in all, in any common unit; a total of 0 means that nobody knows it. The first call may be above zero
             (work found done by an earlier run): the remaining time counts only what is done here.
         note : str, optional
             A few words shown behind the numbers, such as the best cost so far.
@@ -101,7 +101,9 @@ class Progress:
                 self._width = 0
 
     def _text(self, now: float, done: float, total: float, note: str) -> str:
-        share = min(max(done / total, 0.0), 1.0) if total > 0 else 0.0
+        if total <= 0:
+            return "  ".join([self._label, note] if note else [self._label, f"{done:g} done"])
+        share = min(max(done / total, 0.0), 1.0)
         parts = [self._label]
         if self._terminal:
             filled = int(share * _BAR)

@@ -116,7 +116,7 @@ class Simulation:
         self._description: EngineDescription = building.to_engine(self.step_seconds, dict(ranges or {}))
         with _told_apart():
             self._plan = _engine.Plan(self._description.json)
-        self._forcing = np.ascontiguousarray(
+        self._forcing: Array = np.ascontiguousarray(
             climate.forcing(
                 building.site,
                 self.start,
@@ -125,7 +125,8 @@ class Simulation:
                 scheme,
                 self._description.channels,
                 measurements,
-            )
+            ),
+            dtype=np.float64,
         )
         _finite(self._forcing, self._description.channels, building)
 
@@ -151,6 +152,19 @@ class Simulation:
 
         count = len(self._forcing) + 1
         return pd.date_range(self.start, periods=count, freq=pd.Timedelta(seconds=self.step_seconds))
+
+    @cached_property
+    def identity(self) -> str:
+        """Hash of everything a run depends on beside the parameter vector: building, forcing, options."""
+        import hashlib
+
+        digest = hashlib.sha256(self._description.json.encode())
+        digest.update(self._forcing.tobytes())
+        outputs = [output.name for output in self.outputs]
+        digest.update(
+            repr((self.scheme, self.step_seconds, self._initial, self._first_period, outputs)).encode()
+        )
+        return digest.hexdigest()
 
     def vector(self, values: Mapping[str, float]) -> Array:
         """The nominal parameter vector with some values replaced.
@@ -203,7 +217,7 @@ class Simulation:
             A step did not converge, or the first period did not settle.
         """
         probes, recipes = _probes(self.outputs)
-        vector = self.values if values is None else np.ascontiguousarray(values, dtype=np.float64)
+        vector: Array = np.array(self.values if values is None else values, dtype=np.float64)
         with _told_apart():
             raw = self._plan.simulate(vector, self._forcing, self._options(probes, 0, 1))
         records = _derive(raw["records"], recipes)
@@ -245,7 +259,7 @@ class Simulation:
         """
         probes, recipes = _probes(self.outputs)
         options = self._options(probes, record_from, record_every)
-        members = np.ascontiguousarray(samples, dtype=np.float64)
+        members: Array = np.ascontiguousarray(samples, dtype=np.float64)
         with _told_apart():
             raw, closure, failed = self._plan.ensemble(members, self._forcing, options, report)
         return _derive(raw, recipes), closure, [Failure(member, reason) for member, reason in failed]
@@ -392,7 +406,7 @@ def _finite(forcing: Array, channels: Sequence[str], building: Building) -> None
     absent = {"pressure"} | (set() if building.site.sky.kind == "measured" else {"infrared"})
     if building.site.sky.kind in ("offset", "measured"):
         absent.add("dew_point")
-    bad = np.isnan(forcing).any(axis=(0, 1))
+    bad = np.isnan(forcing).any(axis=(0, 1)).tolist()
     missing = [name for name, empty in zip(names, bad, strict=True) if empty and name not in absent]
     if missing:
         raise InputError(
@@ -412,7 +426,7 @@ def _probes(outputs: Sequence[Output]) -> tuple[str, list[tuple[str, tuple[int, 
             probes.append(probe)
         return probes.index(probe)
 
-    recipes = []
+    recipes: list[tuple[str, tuple[int, ...]]] = []
     for output in outputs:
         kinds = ("air_temperature", "mean_radiant_temperature") if output.kind in _DERIVED else (output.kind,)
         recipes.append((output.kind, tuple(column(kind, output.place) for kind in kinds)))
@@ -433,7 +447,7 @@ def _reading(kind: str, parts: Sequence[Array]) -> Array:
     if kind == "operative_temperature":
         return 0.5 * (parts[0] + parts[1])
     if kind == "globe_temperature":
-        return globe_temperature(*parts)
+        return globe_temperature(parts[0], parts[1])
     return parts[0]
 
 

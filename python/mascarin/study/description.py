@@ -1,0 +1,191 @@
+"""What a study file says: building, climate, measurements, periods, and what to do with them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field, model_validator
+
+from mascarin.model.part import Part, fault, insist
+
+if TYPE_CHECKING:
+    from typing import Self
+
+#: A local time, ISO 8601, with or without an offset.
+Time = str
+Span = tuple[Time, Time]
+Columns = str | tuple[str, ...] | dict[str, Any]
+
+
+class Table(Part):
+    """A table of measured columns."""
+
+    table: str = Field(description="CSV or Parquet file beside the study, or data:NAME of a known data set")
+    timezone: str | None = Field(
+        None, description="IANA name or fixed offset (UTC+4) of the stamps; required"
+    )
+    stamps: Literal["start", "end"] = Field("start", description="Which end of its interval a stamp marks")
+    mean: tuple[str, ...] = Field((), description="Columns that are means over their interval")
+    separator: str | None = Field(None, description="Column separator; found when absent")
+    decimal: str = Field(".", description="Decimal sign")
+    time: str | tuple[str, ...] | None = Field(None, description="Time column or columns; found when absent")
+    time_format: str | None = Field(None, description="How stamps are written, as in strptime")
+    skip_lines: int = Field(0, ge=0, description="Lines before the header")
+    inspect: tuple[str, ...] = Field(
+        (), description="Further columns whose quality is judged, though not used"
+    )
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Options that every table reader takes."""
+        keys = ("timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "mean")
+        return {key: getattr(self, key) for key in keys}
+
+
+class MeasuredWeather(Table):
+    """Weather from a measured table."""
+
+    columns: dict[str, Columns] = Field(description="Climate channel -> column")
+    absent: tuple[str, ...] = Field((), description="Channels that were not measured and get a neutral value")
+
+
+class ClimateSource(Part):
+    """Where the weather comes from; exactly one kind."""
+
+    epw: str | None = Field(None, description="EPW file")
+    tmy: str | None = Field(None, description="TMY3 file")
+    measured: MeasuredWeather | None = Field(None, description="A measured table")
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        given = [key for key in ("epw", "tmy", "measured") if getattr(self, key) is not None]
+        if len(given) != 1:
+            insist(fault((), ", ".join(given) or "nothing", "one of epw, tmy, measured", "Keep exactly one."))
+        return self
+
+
+class Sensor(Part):
+    """A measured series and the model output that stands for it."""
+
+    column: str | tuple[str, ...] = Field(description="Column, or several whose mean is taken")
+    output: str = Field(description="Output of the model")
+    uncertainty: float = Field(0.5, gt=0, description="Half-width of the 95 % band of the sensor [degC]")
+    label: str | None = Field(None, description="What the report calls it")
+    use: bool = Field(True, description="Whether it takes part in the identification")
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns it is made of."""
+        return (self.column,) if isinstance(self.column, str) else self.column
+
+
+class Periods(Part):
+    """Which part of the record is for what; local time of the building. Ends are not included."""
+
+    warm_up: Span | None = Field(None, description="Run but not compared; starts the run")
+    identification: Span = Field(description="Parameters are identified here")
+    corroboration: Span | None = Field(
+        None, description="Held back and named; all days after the identification when absent"
+    )
+    end: Time | None = Field(None, description="End of the record to use; its end when absent")
+
+
+class Quality(Part):
+    """What to do with suspicious stretches. They are always reported."""
+
+    mask: tuple[Literal["stuck", "forward_filled", "spike", "out_of_range"], ...] = Field(
+        (), description="Kinds that are left out of all comparisons"
+    )
+
+
+class SensitivityPlan(Part):
+    """Spectral sensitivity over all parameters that have a range."""
+
+    replicates: int = Field(8, ge=3, description="Independent repetitions of the design")
+    order: int | None = Field(None, ge=1, description="Harmonics counted as a parameter's own")
+    seed: int = Field(1, description="Of the random numbers")
+    interval: str = Field("1h", description="Spacing of the outputs that are analysed")
+    ranges: dict[str, tuple[float, float]] = Field(
+        default_factory=dict, description="Ranges that replace those of the building"
+    )
+    leave_out: tuple[str, ...] = Field((), description="Parameters that stay at their value")
+
+
+class Free(Part):
+    """A parameter to identify."""
+
+    low: float | None = Field(None, description="Lowest value; that of the building's range when absent")
+    high: float | None = Field(None, description="Highest value; that of the building's range when absent")
+    prior: float | None = Field(
+        None, gt=0, description="Standard deviation of a normal prior about the value"
+    )
+    at_bound: str | None = Field(None, description="Why an estimate on a bound would be right")
+    reference: tuple[float, float] | None = Field(
+        None, description="Before and after in a publication, shown beside ours"
+    )
+
+
+class IdentificationPlan(Part):
+    """Which parameters to identify, and how."""
+
+    parameters: dict[str, Free | None] = Field(min_length=1, description="Path -> bounds")
+    method: Literal["least-squares", "hooke-jeeves"] = Field("least-squares", description="Optimiser")
+    starts: int = Field(4, ge=1, description="Starts of the multi-start")
+    seed: int = Field(1, description="Of the random starts")
+    lead: str = Field("3d", description="Run before the identification period starts to be compared")
+    budget: int | None = Field(None, ge=1, description="Largest number of evaluations of a pattern search")
+    cost: Literal["nll", "sd", "rmse", "cv_rmse"] = Field(
+        "nll", description="What is minimised; least squares knows nll only, priors need it"
+    )
+    independent: str | None = Field(
+        None,
+        description="Time after which residuals of a model count as independent; samples closer together share "
+        "one weight, so that priors are not drowned by an error that lasts",
+    )
+
+
+class Variant(Part):
+    """Another choice of model, compared on the blind days."""
+
+    changes: dict[str, Any] = Field(description="Path -> value or part")
+    identify: bool = Field(True, description="Whether its parameters are identified too")
+    note: str | None = Field(None, description="What it is")
+
+
+class StudyFile(Part):
+    """A study: compare, find what matters, identify, compare again, corroborate."""
+
+    name: str = Field(description="Title of the study")
+    about: str = Field("", description="A few sentences for the report")
+    observed: str = Field(
+        "measurement", description="What the data are called: measurement, virtual experiment"
+    )
+    building: str = Field(description="Building file, beside the study")
+    set: dict[str, Any] = Field(
+        default_factory=dict, description="Path -> value, on top of the building file"
+    )
+    climate: ClimateSource = Field(description="The weather")
+    measurements: Table = Field(description="The measured table")
+    sensors: dict[str, Sensor] = Field(min_length=1, description="Sensors by name")
+    step: str = Field("15min", description="Time step")
+    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field("sdirk2", description="Scheme")
+    periods: Periods = Field(description="Which part of the record is for what")
+    quality: Quality = Field(default_factory=lambda: Quality(mask=()), description="Suspicious stretches")
+    criteria: tuple[dict[str, Any], ...] = Field((), description="Limits on metrics, see docs/studies.md")
+    sensitivity: SensitivityPlan | None = Field(None, description="Which parameters matter")
+    identification: IdentificationPlan = Field(description="Which parameters to identify")
+    variants: dict[str, Variant] = Field(default_factory=dict, description="Other model choices")
+
+
+def read_study(path: str | Path) -> StudyFile:
+    """Read a study file.
+
+    Raises
+    ------
+    InputError
+        File, line, path, what was found, what was expected, what to do.
+    """
+    from mascarin.model.reading import read
+
+    return read(path, StudyFile, "a study")

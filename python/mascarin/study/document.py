@@ -1,0 +1,407 @@
+"""The content of ``study.json``: everything a study found, in plain numbers and words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin import __version__
+from mascarin.study.observation import PERIODS
+from mascarin.study.pipeline import scores_of
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.model import Building
+    from mascarin.study.description import StudyFile
+    from mascarin.study.pipeline import Findings, ModelRun, Study
+
+#: Parameters named in the spectra and shares over the day.
+_SHOWN: Final = 8
+_WORDS: Final = {
+    "identification": ("Identification", "the parameters were found on these days"),
+    "corroboration": ("Corroboration", "held back: the fit has not seen these days"),
+    "blind": ("Blind days", "every other day that the fit has not seen"),
+}
+_FLOW_LABELS: Final = {
+    "solar": "sun absorbed",
+    "convection": "convection from outdoor air",
+    "longwave": "long-wave exchange with sky and surroundings",
+    "boundary": "imposed boundaries (ground, measured temperatures)",
+    "infiltration": "outdoor air entering",
+}
+
+
+def document(study: Study, findings: Findings) -> dict[str, Any]:
+    """Everything but the curves.
+
+    Parameters
+    ----------
+    study : Study
+        The inputs.
+    findings : Findings
+        What was found.
+
+    Returns
+    -------
+    dict
+        Ready for JSON. In ``sensors`` the metrics at the level of a period are those of the fitted model; those of
+        every model stand beside them under its name.
+    """
+    file = study.file
+    models = {"nominal": findings.nominal, "fitted": findings.fitted, **findings.variants}
+    content: dict[str, Any] = {
+        "mascarin_version": __version__,
+        "title": file.name,
+        "intro": [part.strip() for part in file.about.split("\n\n") if part.strip()],
+        "observed": {"label": file.observed},
+        "seed": file.identification.seed,
+        "timezone": study.climate.timezone,
+        "command": [f"mascarin study {study.path.name} -o out/"],
+        "inputs": _inputs(study),
+        "versions": _versions(),
+        "sources": [{"text": text} for text in study.building.sources()],
+        "sensor_info": _sensor_info(study),
+        "periods": _periods(study),
+        "models": {name: {"label": run.label, "note": run.note} for name, run in models.items()},
+        "sensors": _scores(models),
+        "building": _building(study.building),
+        "assumptions": _assumptions(study.building),
+        "quality": _quality(study),
+        "parameters": _parameters(study, findings),
+        "correlation": {
+            "paths": list(findings.fit.problem.paths),
+            "matrix": _plain(findings.fit.correlation),
+        },
+        "identification": _identification(findings),
+        "criteria": _criteria(findings),
+        "ledger": _ledger(findings.fitted),
+        "notes": [{"title": "What a reader must know", "text": text} for text in findings.fit.warnings],
+    }
+    if findings.sensitivity is not None:
+        content |= _sensitivity(study, findings)
+    return content
+
+
+def for_report(content: Mapping[str, Any]) -> dict[str, Any]:
+    """The same with the metrics as the report takes them: sensor, period, model."""
+    sensors = {
+        sensor: {
+            period: {model: entry[model] for model in content["models"] if entry[model]["n"]}
+            for period, entry in periods.items()
+        }
+        for sensor, periods in content["sensors"].items()
+    }
+    return {**content, "sensors": sensors}
+
+
+def _plain(values: Any) -> Any:
+    """Arrays as nested lists, numbers that are none as null."""
+    if isinstance(values, np.ndarray):
+        return [_plain(value) for value in values]
+    number = float(values)
+    return number if math.isfinite(number) else None
+
+
+def _inputs(study: Study) -> list[dict[str, str]]:
+    named = [
+        ("study", study.path.name, study.inputs()["study"]),
+        ("climate", study.climate.file, study.climate.sha256),
+        ("measurements", study.measurements.file, study.measurements.sha256),
+    ]
+    said = {"climate": study.climate.provenance, "measurements": study.measurements.provenance}
+    return [
+        {"name": f"{role}: {name}", "sha256": digest or "", "note": " ".join(said.get(role, ()))}
+        for role, name, digest in named
+    ]
+
+
+def _versions() -> dict[str, str]:
+    import platform
+    from importlib.metadata import version
+
+    packages = ("numpy", "scipy", "pandas", "pvlib", "pydantic")
+    return {
+        "mascarin": __version__,
+        "python": platform.python_version(),
+        **{name: version(name) for name in packages},
+    }
+
+
+def _sensor_info(study: Study) -> dict[str, dict[str, Any]]:
+    return {
+        name: {
+            "label": sensor.label or name.replace("_", " "),
+            "output": sensor.output,
+            "unit": study.building.output(sensor.output).unit,
+            "uncertainty": sensor.uncertainty,
+        }
+        for name, sensor in study.file.sensors.items()
+    }
+
+
+def _periods(study: Study) -> dict[str, dict[str, Any]]:
+    return {
+        name: {
+            "label": _WORDS[name][0],
+            "note": _WORDS[name][1],
+            "spans": _spans(study.observation.times, study.during[name], study.observation.interval),
+        }
+        for name in PERIODS
+    }
+
+
+def _spans(times: pd.DatetimeIndex, use: npt.NDArray[np.bool_], interval: float) -> list[list[str]]:
+    """Runs of True as pairs of local times."""
+    import pandas as pd
+
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], use, [False]]).astype(np.int8)))
+    local = times.tz_localize(None)
+    step = pd.Timedelta(seconds=interval)
+    return [
+        [local[first].isoformat(), (local[last - 1] + step).isoformat()]
+        for first, last in zip(edges[::2], edges[1::2], strict=True)
+    ]
+
+
+def _scores(models: Mapping[str, ModelRun]) -> dict[str, dict[str, dict[str, Any]]]:
+    return {
+        sensor: {
+            period: {**by_model["fitted"].to_dict(), **{m: found.to_dict() for m, found in by_model.items()}}
+            for period, by_model in periods.items()
+        }
+        for sensor, periods in scores_of(models).items()
+    }
+
+
+def _parameters(study: Study, findings: Findings) -> dict[str, dict[str, Any]]:
+    fit, plan = findings.fit, study.file.identification.parameters
+    given = {study.building.parameter(path).path: free for path, free in plan.items()}
+    entries = {}
+    for parameter, entry in zip(fit.problem.parameters, fit.to_dict().values(), strict=True):
+        free, path = given[parameter.path], parameter.path
+        more: dict[str, Any] = {
+            "interval": [entry["low"], entry["high"]],
+            "range": [parameter.lower, parameter.upper],
+        }
+        if path in fit.on_bound:
+            reason = free.at_bound if free is not None and free.at_bound else fit.on_bound[path]
+            more |= {"at_bound": True, "reason": reason}
+        if free is not None and free.reference is not None:
+            more |= {"reference_nominal": free.reference[0], "reference_fitted": free.reference[1]}
+        source = study.building.parameter(path).source
+        entries[path] = {**entry, **more, **({"source": source} if source else {})}
+    return entries
+
+
+def _identification(findings: Findings) -> list[list[str]]:
+    fit = findings.fit
+    return [
+        ["method", fit.method.replace("_", " ")],
+        ["cost", fit.cost_name],
+        ["searches", str(len(fit.minima))],
+        ["distinct minima", str(len(fit.distinct_minima()))],
+        ["evaluations", str(len(fit.trace.cost))],
+        ["ended", fit.reason],
+        ["uncertainty", fit.uncertainty_method],
+        ["effective samples", ", ".join(f"{n:.0f}" for n in fit.uncertainty.effective_samples)],
+        ["seed", str(fit.seed)],
+    ]
+
+
+def _criteria(findings: Findings) -> list[dict[str, Any]]:
+    return [
+        {**verdict.to_dict(), "model": model}
+        for model, verdicts in findings.verdicts.items()
+        for verdict in verdicts
+    ]
+
+
+def _ledger(run: ModelRun) -> dict[str, Any]:
+    energy = run.results.energy
+    terms = [
+        {"label": _FLOW_LABELS[flow], "value": joule / 1e6} for flow, joule in energy.into.items() if joule
+    ]
+    return {
+        **energy.to_dict(),
+        "model": run.label,
+        "terms": [*terms, {"label": "rise of the stored heat", "value": -energy.stored / 1e6}],
+    }
+
+
+def _quality(study: Study) -> list[dict[str, Any]]:
+    masked = set(study.file.quality.mask)
+    sensors = {column for sensor in study.file.sensors.values() for column in sensor.columns}
+    return [
+        {
+            "channel": stretch.channel,
+            "kind": stretch.kind,
+            "start": stretch.start.tz_localize(None).isoformat(),
+            "end": stretch.end.tz_localize(None).isoformat(),
+            "count": stretch.count,
+            "detail": stretch.detail,
+            "masked": stretch.kind in masked and stretch.channel in sensors,
+        }
+        for stretch in study.quality
+    ]
+
+
+def _assumptions(building: Building) -> list[dict[str, Any]]:
+    return [
+        {
+            "path": p.path,
+            "value": p.value,
+            "unit": p.unit,
+            "low": p.low,
+            "high": p.high,
+            "source": p.source or "",
+            "assumed": True,
+        }
+        for p in building.parameters()
+        if p.assumed
+    ]
+
+
+# --- the building -------------------------------------------------------------------------------------------
+
+
+def _building(building: Building) -> dict[str, Any]:
+    site = building.site
+    return {
+        "name": building.name,
+        "site": [
+            ["latitude", f"{float(site.latitude):g} deg"],
+            ["longitude", f"{float(site.longitude):g} deg"],
+            ["altitude", f"{float(site.altitude):g} m"],
+            ["time zone", str(site.timezone)],
+        ],
+        "zones": [
+            {"name": name, "volume": float(zone.volume or 0.0)} for name, zone in building.zones.items()
+        ],
+        "constructions": [
+            {"name": name, "layers": [_layer(building, layer) for layer in construction.layers]}
+            for name, construction in building.constructions.items()
+        ],
+        "surfaces": [_surface(name, surface) for name, surface in building.surfaces.items()],
+        "probes": [
+            {"name": name, "surface": sensor.surface, "depth": float(sensor.depth)}
+            for name, sensor in building.sensors.items()
+        ],
+        "choices": [["sky", site.sky.kind], ["diffuse radiation", site.diffuse]]
+        + [[f"long-wave exchange in {name}", zone.longwave.kind] for name, zone in building.zones.items()],
+    }
+
+
+def _layer(building: Building, layer: Any) -> dict[str, Any]:
+    material = building.materials[layer.material]
+    entry: dict[str, Any] = {"name": layer.name, "material": layer.material, "kind": material.kind}
+    if layer.thickness is not None:
+        entry["thickness"] = float(layer.thickness)
+    for key in (
+        "conductivity",
+        "density",
+        "specific_heat",
+        "resistance",
+        "latent_heat",
+        "melting_temperature",
+    ):
+        value = getattr(material, key, None)
+        if value is not None:
+            entry[key] = _one_or_two(value)
+    return entry
+
+
+def _one_or_two(value: Any) -> float | list[float]:
+    if hasattr(value, "solid"):
+        return [float(value.solid), float(value.liquid)]
+    return float(value)
+
+
+def _surface(name: str, surface: Any) -> dict[str, Any]:
+    entry: dict[str, Any] = {
+        "name": name,
+        "construction": surface.construction,
+        "area": float(surface.area),
+        "tilt": float(surface.tilt),
+        "azimuth": float(surface.azimuth),
+        "outside": _facing(surface.outside),
+        "inside": _facing(surface.inside),
+    }
+    if surface.vertices is not None:
+        entry["vertices"] = [[float(x) for x in vertex] for vertex in surface.vertices]
+    for key, side in (("film_outside", surface.outside), ("film_inside", surface.inside)):
+        if side.convection is not None:
+            entry[key] = side.convection.kind
+    return entry
+
+
+def _facing(side: Any) -> str:
+    if side.zone is not None:
+        return str(side.zone)
+    if side.measured is not None:
+        return str(side.measured)
+    return "ground" if side.ground is not None else str(side.faces)
+
+
+# --- sensitivity --------------------------------------------------------------------------------------------
+
+
+def _sensitivity(study: Study, findings: Findings) -> dict[str, Any]:
+    found = findings.sensitivity
+    assert found is not None
+    hours = _hours(study, found.share_t.shape[1])
+    return {
+        "sensitivity": found.to_dict(),
+        "sensitivity_design": [
+            ["parameters", str(len(found.names))],
+            ["runs", str(len(found.design))],
+            ["replicates", str(found.design.replicates)],
+            ["harmonics counted", str(found.design.order)],
+            ["seed", str(found.design.seed)],
+            *([["warning", text] for text in found.warnings]),
+        ],
+        "spectra": {output: _spectrum(found, output) for output in found.outputs},
+        "day_shares": {output: _day_shares(found, output, hours) for output in found.outputs},
+    }
+
+
+def _hours(study: Study, count: int) -> npt.NDArray[np.float64]:
+    """Hour of the day of each analysed time, local."""
+    import pandas as pd
+
+    assert study.file.sensitivity is not None
+    step = pd.Timedelta(study.file.sensitivity.interval)
+    times = pd.date_range(study.identification[0], periods=count, freq=step).tz_localize(None)
+    return np.asarray(times.hour + times.minute / 60.0, dtype=np.float64)
+
+
+def _spectrum(found: Any, output: str) -> dict[str, Any]:
+    spectrum = found.spectrum(output)
+    return {
+        "frequencies": list(range(1, len(spectrum.power) + 1)),
+        "power": [float(p) for p in spectrum.power],
+        "threshold": float(spectrum.threshold),
+        "peaks": [
+            {"frequency": peak.line, "power": peak.power, "path": peak.label or "unnamed", "harmonic": 1}
+            for peak in spectrum.peaks
+        ],
+    }
+
+
+def _day_shares(found: Any, output: str, hours: npt.NDArray[np.float64]) -> dict[str, Any]:
+    """Shares by hour of the day of the parameters that matter most, variances added up over the days."""
+    s = found.output_index(output)
+    names = found.ranking(output, _SHOWN)
+    rows = [list(found.names).index(name) for name in names]
+    unique = np.unique(hours)
+    variance = np.nan_to_num(found.variance_t[:, s])
+    power = np.nan_to_num(found.share_t[rows, :, s]) * variance
+    share = [
+        [float(p[hours == hour].sum() / max(variance[hours == hour].sum(), 1e-300)) for hour in unique]
+        for p in power
+    ]
+    return {"hours": unique.tolist(), "paths": names, "share": share}

@@ -1,0 +1,436 @@
+"""The five steps of the method: compare, find what matters, identify, compare again, corroborate."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mascarin import __version__
+from mascarin.calibration import Fit
+from mascarin.climate import Climate, Measurements
+from mascarin.climate.quality import mask
+from mascarin.climate.table import file_hash, seconds_of
+from mascarin.climate.timezones import moment
+from mascarin.errors import InputError
+from mascarin.model import Building, load
+from mascarin.progress import Progress
+from mascarin.results import Results
+from mascarin.simulation import Simulation
+from mascarin.study.description import StudyFile, Variant, read_study
+from mascarin.study.fitting import fit_parameters, identify
+from mascarin.study.keeping import Workspace
+from mascarin.study.observation import PERIODS, Observation, observe, require_comparable
+from mascarin.study.screening import factors, screen
+from mascarin.study.sources import find, open_climate, open_measurements
+from mascarin.validation.criteria import Criterion, Verdict, judge, parse_criteria
+from mascarin.validation.metrics import Metrics, compare
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.climate.quality import Stretch
+    from mascarin.sensitivity.spectral import SpectralSensitivity
+
+    Flags = npt.NDArray[np.bool_]
+
+Scores = dict[str, dict[str, Metrics]]
+"""Metrics by sensor and period."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModelRun:
+    """One model of the study over the whole record.
+
+    Attributes
+    ----------
+    label : str
+        What it is called.
+    simulation : Simulation
+        What was run.
+    results : Results
+        Its series and ledger.
+    scores : dict
+        Metrics by sensor and period.
+    fit : Fit or None
+        How its parameters were found.
+    note : str
+        What it is.
+    """
+
+    label: str
+    simulation: Simulation
+    results: Results
+    scores: Scores
+    fit: Fit | None = None
+    note: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Findings:
+    """Everything a study found.
+
+    Attributes
+    ----------
+    nominal, fitted : ModelRun
+        The model before and after the identification.
+    variants : dict of str to ModelRun
+        Other model choices.
+    sensitivity : SpectralSensitivity or None
+        Which parameters matter.
+    fit : Fit
+        The identification.
+    verdicts : dict of str to list of Verdict
+        Criteria of the nominal and of the fitted model.
+    quality : list of Stretch
+        Suspicious stretches of the measured columns.
+    seconds : float
+        Time the study took. [s]
+    """
+
+    nominal: ModelRun
+    fitted: ModelRun
+    variants: dict[str, ModelRun]
+    sensitivity: SpectralSensitivity | None
+    fit: Fit
+    verdicts: dict[str, list[Verdict]]
+    quality: list[Stretch]
+    seconds: float = field(default=0.0)
+
+    @property
+    def passed(self) -> bool:
+        """Whether the fitted model keeps every criterion."""
+        return all(verdict.passed for verdict in self.verdicts["fitted"])
+
+
+class Study:
+    """A study file with its inputs opened and checked.
+
+    Parameters
+    ----------
+    path : str or Path
+        The study file.
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used, before anything is run.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self.file: StudyFile = read_study(self.path)
+        beside = self.path.parent
+        self.building: Building = load(find(self.file.building, beside)).replace(self.file.set)
+        self.climate: Climate = open_climate(self.file.climate, beside, self.building)
+        read = open_measurements(self.file, beside, self.building)
+        self.quality: list[Stretch] = read.quality()
+        self.measurements: Measurements = self._masked(read)
+        self.criteria: tuple[Criterion, ...] = parse_criteria(
+            self.file.criteria, where=f"{self.path}: criteria"
+        )
+        fit_parameters(self.building, self.file.identification)
+        self._check_periods()
+        # Everything that can be refused is refused here, before the first run.
+        _ = (self.simulation, self.observation)
+        for period in ("identification", "corroboration"):
+            used = [name for name, sensor in self.file.sensors.items() if sensor.use]
+            require_comparable(self.observation, self.during[period], period, used)
+
+    def _masked(self, read: Measurements) -> Measurements:
+        kinds = self.file.quality.mask
+        if not kinds:
+            return read
+        sensors = {column for sensor in self.file.sensors.values() for column in sensor.columns}
+        chosen = [stretch for stretch in self.quality if stretch.channel in sensors]
+        return read.masked(mask(read.data, chosen, list(kinds)))
+
+    # --- periods ----------------------------------------------------------------------------------------
+
+    def _moment(self, text: str, what: str) -> pd.Timestamp:
+        return moment(text, self.climate.grid.zone, f"periods.{what}")
+
+    def _span(self, name: str) -> tuple[pd.Timestamp, pd.Timestamp] | None:
+        span = getattr(self.file.periods, name)
+        if span is None:
+            return None
+        return self._moment(span[0], name), self._moment(span[1], name)
+
+    def _check_periods(self) -> None:
+        for name in ("warm_up", "identification", "corroboration"):
+            span = self._span(name)
+            if span is not None and span[1] <= span[0]:
+                raise InputError(
+                    f"{self.path}: periods.{name}: found {span[0]} .. {span[1]}, expected the end after the start"
+                )
+        held, known = self._span("corroboration"), self.identification
+        if held is not None and held[0] < known[1] and known[0] < held[1]:
+            raise InputError(
+                f"{self.path}: periods.corroboration overlaps the identification; data that the fit has seen "
+                "corroborate nothing: move one of the two"
+            )
+
+    @cached_property
+    def identification(self) -> tuple[pd.Timestamp, pd.Timestamp]:
+        """Start and end of the identification period."""
+        span = self._span("identification")
+        assert span is not None
+        return span
+
+    @cached_property
+    def start(self) -> pd.Timestamp:
+        """Start of the run: that of the warm-up, else of the record."""
+        span = self._span("warm_up")
+        return span[0] if span is not None else self._record()[0]
+
+    @cached_property
+    def compared_from(self) -> pd.Timestamp:
+        """First instant that is compared."""
+        span = self._span("warm_up")
+        return span[1] if span is not None else self.start
+
+    def _record(self) -> tuple[pd.Timestamp, pd.Timestamp]:
+        """What climate and measurements both cover."""
+        import pandas as pd
+
+        grids = [self.measurements.grid] + ([] if self.climate.grid.periodic else [self.climate.grid])
+        first, last = max(grid.start for grid in grids), min(grid.end for grid in grids)
+        # Instants at the very end of a table have no value to interpolate to.
+        interval = max(grid.interval for grid in grids)
+        zone = self.climate.grid.zone
+        step = seconds_of(self.file.step)
+        steps = int((last - interval - first) // step)
+        return (
+            pd.Timestamp(first, unit="s", tz="UTC").tz_convert(zone),
+            pd.Timestamp(first + steps * step, unit="s", tz="UTC").tz_convert(zone),
+        )
+
+    @cached_property
+    def end(self) -> pd.Timestamp:
+        """End of the run."""
+        given = self.file.periods.end
+        return self._record()[1] if given is None else self._moment(given, "end")
+
+    @cached_property
+    def during(self) -> dict[str, Flags]:
+        """Instants of each period, shape (n,).
+
+        `blind` holds every instant that the identification did not see and that is not in the named
+        corroboration period; where that leaves nothing, it is the corroboration period itself.
+        """
+        seen = self.observation.during(*self.identification)
+        held = self._span("corroboration")
+        named = ~seen & (
+            self.observation.during(*held)
+            if held is not None
+            else np.asarray(self.observation.times >= self.identification[1])
+        )
+        rest = ~seen & ~named
+        return dict(zip(PERIODS, (seen, named, rest if rest.any() else named), strict=True))
+
+    # --- runs -------------------------------------------------------------------------------------------
+
+    def _simulate(self, building: Building, start: object, end: object) -> Simulation:
+        return Simulation(
+            building,
+            self.climate,
+            step=self.file.step,
+            start=start,
+            end=end,
+            outputs=[sensor.output for sensor in self.file.sensors.values()],
+            scheme=self.file.scheme,
+            measurements=self.measurements,
+            ranges=self._ranges,
+        )
+
+    @cached_property
+    def _ranges(self) -> dict[str, tuple[float, float]]:
+        """Ranges that parameters move in: the mesh is chosen once, for their worst end."""
+        ranges = {p.path: (p.low, p.high) for p in self.building.parameters() if not p.structural}
+        for free in fit_parameters(self.building, self.file.identification):
+            ranges[free.path] = (free.lower, free.upper)
+        return ranges
+
+    @cached_property
+    def simulation(self) -> Simulation:
+        """The nominal model over the whole record."""
+        return self._simulate(self.building, self.start, self.end)
+
+    @cached_property
+    def observation(self) -> Observation:
+        """Measured series on the instants of the comparison."""
+        return observe(self.simulation, self.measurements, self.file.sensors, self.compared_from)
+
+    @cached_property
+    def _lead_seconds(self) -> float:
+        """Length of the run before the identification period, as long as the record allows."""
+        available = (self.identification[0] - self.start).total_seconds()
+        step = seconds_of(self.file.step)
+        return step * (min(seconds_of(self.file.identification.lead, "lead"), available) // step)
+
+    def _short(self, building: Building) -> Simulation:
+        """A model over the lead and the identification period."""
+        import pandas as pd
+
+        start = self.identification[0] - pd.Timedelta(seconds=self._lead_seconds)
+        return self._simulate(building, start, self.identification[1])
+
+    def scores(self, results: Results) -> Scores:
+        """Metrics of a run by sensor and period."""
+        simulated = self.observation.simulated(results.index, results.records)
+        return {
+            name: {
+                period: compare(
+                    self.observation.measured[:, s], simulated[:, s], use=use, unit=results.outputs[s].unit
+                )
+                for period, use in self.during.items()
+            }
+            for s, name in enumerate(self.observation.names)
+        }
+
+    def inputs(self) -> dict[str, Any]:
+        """What makes this study: version, hashes and seeds."""
+        return {
+            "mascarin_version": __version__,
+            "study": file_hash(self.path),
+            "model": self.simulation.identity,
+            "measurements": self.measurements.sha256,
+            "climate": self.climate.sha256,
+        }
+
+    def run(self, out: str | Path, *, quiet: bool = False) -> Findings:
+        """Go through the five steps.
+
+        Parameters
+        ----------
+        out : str or Path
+            Folder for the results and for unfinished work: a study that was killed goes on from there.
+        quiet : bool
+            No progress on stderr.
+
+        Returns
+        -------
+        Findings
+            Also written to the folder: study.json, tables, figures and the report.
+        """
+        from mascarin.study.writing import write_all
+
+        began = time.monotonic()
+        workspace = Workspace(Path(out), self.inputs())
+        tell = _Teller(quiet)
+        nominal = self._compared("nominal", self.simulation, self.simulation.values, None, "as described")
+        sensitivity = self._screen(workspace, tell)
+        fitted = self._identified(
+            "fitted", self.building, workspace, tell, "after the identification, frozen on all other days"
+        )
+        assert fitted.fit is not None
+        variants = {
+            name: self._variant(name, variant, workspace, tell)
+            for name, variant in self.file.variants.items()
+        }
+        verdicts = {
+            run.label: judge(self.criteria, run.scores, where=f"{self.path}: criteria")
+            for run in (nominal, fitted)
+        }
+        findings = Findings(
+            nominal,
+            fitted,
+            variants,
+            sensitivity,
+            fitted.fit,
+            verdicts,
+            self.quality,
+            time.monotonic() - began,
+        )
+        write_all(self, findings, workspace)
+        workspace.drop("sensitivity")
+        return findings
+
+    def _compared(
+        self, label: str, simulation: Simulation, values: Any, fit: Fit | None, note: str
+    ) -> ModelRun:
+        results = simulation.run(values)
+        return ModelRun(label, simulation, results, self.scores(results), fit, note)
+
+    def _screen(self, workspace: Workspace, tell: _Teller) -> SpectralSensitivity | None:
+        plan = self.file.sensitivity
+        if plan is None:
+            return None
+        with tell.about("sensitivity") as progress:
+            return screen(
+                self._short(self.building),
+                plan,
+                factors(self.building, plan),
+                self._lead_seconds,
+                self.observation.names,
+                workspace,
+                progress,
+            )
+
+    def _identified(
+        self, label: str, building: Building, workspace: Workspace, tell: _Teller, note: str
+    ) -> ModelRun:
+        short = self._short(building)
+        with tell.about(f"identification ({label})") as progress:
+            fit = identify(
+                short,
+                self.observation,
+                self.during["identification"],
+                self.file.sensors,
+                self.file.identification,
+                record=workspace.path(f"evaluations-{_safe(label)}.jsonl"),
+                progress=_searching(progress),
+            )
+        whole = self._simulate(building, self.start, self.end)
+        return self._compared(label, whole, whole.vector(fit.values), fit, note)
+
+    def _variant(self, name: str, variant: Variant, workspace: Workspace, tell: _Teller) -> ModelRun:
+        building = self.building.replace(variant.changes)
+        note = variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
+        if variant.identify:
+            return self._identified(name, building, workspace, tell, note)
+        simulation = self._simulate(building, self.start, self.end)
+        return self._compared(name, simulation, simulation.values, None, note)
+
+
+class _Teller:
+    """Makes progress lines, or silent ones."""
+
+    def __init__(self, quiet: bool) -> None:
+        self._quiet = quiet
+
+    def about(self, label: str) -> Progress:
+        import io
+
+        return Progress(label, stream=io.StringIO() if self._quiet else None)
+
+
+def _searching(progress: Progress) -> Callable[[int, float], object]:
+    """Evaluations of a search as progress: how many there will be is not known before."""
+
+    def report(done: int, lowest: float) -> None:
+        progress.update(done, 0, f"{done} evaluations, lowest cost {lowest:.6g}")
+
+    return report
+
+
+def _safe(name: str) -> str:
+    """A short file name that no two labels share."""
+    return hashlib.sha256(name.encode()).hexdigest()[:12]
+
+
+def scores_of(runs: Mapping[str, ModelRun]) -> dict[str, dict[str, dict[str, Metrics]]]:
+    """Metrics as sensor -> period -> model."""
+    found: dict[str, dict[str, dict[str, Metrics]]] = {}
+    for label, run in runs.items():
+        for sensor, periods in run.scores.items():
+            for period, metrics in periods.items():
+                found.setdefault(sensor, {}).setdefault(period, {})[label] = metrics
+    return found

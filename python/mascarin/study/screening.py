@@ -1,0 +1,139 @@
+"""The sensitivity step of a study: runs in chunks of about a second, each kept as soon as it is done."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.climate.table import seconds_of
+from mascarin.errors import InputError, SolverError
+from mascarin.sensitivity.factors import Factor
+from mascarin.sensitivity.spectral import Accumulator, Design, SpectralSensitivity, design
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.model import Building
+    from mascarin.progress import Progress
+    from mascarin.simulation import Simulation
+    from mascarin.study.description import SensitivityPlan
+    from mascarin.study.keeping import Workspace
+
+    Array = npt.NDArray[np.float64]
+
+#: At most so much work is lost when a study is killed. [s]
+CHUNK_SECONDS: Final = 1.0
+_FIRST_CHUNK: Final = 16
+_NAME: Final = "sensitivity"
+
+
+def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
+    """All parameters that have a range, with the study's own ranges in place of the building's.
+
+    Raises
+    ------
+    InputError
+        A path does not exist.
+    """
+    ranges = {building.parameter(path).path: span for path, span in plan.ranges.items()}
+    fixed = {building.parameter(path).path for path in plan.leave_out}
+    found = []
+    for parameter in building.parameters():
+        low, high = ranges.get(parameter.path, (parameter.low, parameter.high))
+        if not parameter.structural and parameter.path not in fixed and low < high:
+            found.append(Factor(parameter.path, low, high, parameter.unit))
+    if not found:
+        raise InputError(
+            "sensitivity: no parameter of the building has a range; give ranges: {path: [low, high]}"
+        )
+    return found
+
+
+def screen(
+    simulation: Simulation,
+    plan: SensitivityPlan,
+    chosen: list[Factor],
+    lead_seconds: float,
+    names: tuple[str, ...],
+    workspace: Workspace,
+    progress: Progress,
+) -> SpectralSensitivity:
+    """Make the runs of the spectral design and analyse them.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Covers the lead and the period that is analysed.
+    plan : SensitivityPlan
+        Replicates, order, seed.
+    chosen : list of Factor
+        What varies.
+    lead_seconds : float
+        Run before the outputs are analysed. [s]
+    names : tuple of str
+        Names of the outputs, in the order of the simulation.
+    workspace : Workspace
+        Keeps finished chunks.
+    progress : Progress
+        Is told how far it is.
+
+    Raises
+    ------
+    SolverError
+        A run failed; the text names its parameters.
+    """
+    runs = design(chosen, replicates=plan.replicates, order=plan.order, seed=plan.seed)
+    accumulator = Accumulator(runs, names, units=[output.unit for output in simulation.outputs])
+    done = np.zeros(len(runs), dtype=bool)
+    for first, values in workspace.kept(_NAME):
+        accumulator.add(first, values)
+        done[first : first + len(values)] = True
+    positions = [simulation.position(path) for path in runs.paths]
+    every = max(1, round(seconds_of(plan.interval) / simulation.step_seconds))
+    size = _FIRST_CHUNK
+    for first, samples in _missing(runs, done, lambda: size):
+        began = time.monotonic()
+        vectors = np.repeat(simulation.values[None, :], len(samples), axis=0)
+        vectors[:, positions] = samples
+        records, _, failures = simulation.ensemble(
+            vectors, record_from=round(lead_seconds / simulation.step_seconds), record_every=every
+        )
+        if failures:
+            worst = failures[0]
+            raise SolverError(
+                f"sensitivity: run {first + worst.member} failed: {worst.reason} Its parameters: "
+                + ", ".join(f"{p}={v:g}" for p, v in zip(runs.paths, samples[worst.member], strict=True))
+            )
+        workspace.keep(_NAME, first, records)
+        accumulator.add(first, records)
+        done[first : first + len(samples)] = True
+        size = _next_size(size, time.monotonic() - began)
+        progress.update(int(done.sum()), len(runs))
+    return accumulator.result()
+
+
+def _next_size(size: int, seconds: float) -> int:
+    """Runs that fill a chunk, in whole packs of lanes."""
+    wanted = size * CHUNK_SECONDS / max(seconds, 1e-3)
+    return int(np.clip(8 * round(wanted / 8), 8, 2048))
+
+
+def _missing(runs: Design, done: npt.NDArray[np.bool_], size: object) -> Iterator[tuple[int, Array]]:
+    """Runs that have not been made, in consecutive pieces of one replicate."""
+    assert callable(size)
+    for replicate in range(runs.replicates):
+        start = replicate * runs.runs
+        samples = runs.samples(replicate)
+        row = 0
+        while row < runs.runs:
+            if done[start + row]:
+                row += 1
+                continue
+            stop = min(row + int(size()), runs.runs)
+            taken = done[start + row : start + stop]
+            stop = row + (int(np.argmax(taken)) if taken.any() else stop - row)
+            yield start + row, samples[row:stop]
+            row = stop

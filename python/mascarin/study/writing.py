@@ -1,0 +1,141 @@
+"""What a study leaves behind: study.json, tables, figures, curves and the report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.study.document import document
+from mascarin.study.keeping import Workspace, write_whole
+
+if TYPE_CHECKING:
+    from mascarin.study.pipeline import Findings, ModelRun, Study
+
+_DRIVERS: Final = ("air_temperature", "global_horizontal", "wind_speed")
+
+
+def write_all(study: Study, findings: Findings, workspace: Workspace) -> None:
+    """Write everything but the report into the study's folder; each file appears when it is complete.
+
+    Parameters
+    ----------
+    study : Study
+        The inputs.
+    findings : Findings
+        What was found.
+    workspace : Workspace
+        The folder.
+    """
+    out = workspace.out
+    _figures(study, findings, _folder(out / "figures"))
+    _tables(study, findings, _folder(out / "tables"))
+    write_whole(out / "study.json", json.dumps(document(study, findings), indent=1, allow_nan=False) + "\n")
+
+
+def _folder(path: Path) -> Path:
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def _tables(study: Study, findings: Findings, folder: Path) -> None:
+    import pandas as pd
+
+    rows = [
+        {"sensor": sensor, "period": period, "model": run.label, **metrics.to_dict()}
+        for run in _runs(findings)
+        for sensor, periods in run.scores.items()
+        for period, metrics in periods.items()
+    ]
+    tables = {
+        "metrics": pd.DataFrame(rows),
+        "parameters": findings.fit.table(),
+        "criteria": pd.DataFrame(
+            [{"model": m, **v.to_dict()} for m, vs in findings.verdicts.items() for v in vs]
+        ),
+        "quality": pd.DataFrame(
+            [(s.channel, s.kind, s.start, s.end, s.count, s.detail) for s in findings.quality],
+            columns=["channel", "kind", "start", "end", "count", "detail"],
+        ),
+        "series": _series(study, findings),
+    }
+    if findings.sensitivity is not None:
+        tables["sensitivity"] = findings.sensitivity.table()
+    for name, table in tables.items():
+        write_whole(folder / f"{name}.csv", table.to_csv(index=False, lineterminator="\n"))
+
+
+def _runs(findings: Findings) -> Iterator[ModelRun]:
+    yield from (findings.nominal, findings.fitted)
+    yield from findings.variants.values()
+
+
+def _series(study: Study, findings: Findings) -> Any:
+    """Measured, nominal and fitted series at the instants of the comparison."""
+    import pandas as pd
+
+    observation = study.observation
+    table = pd.DataFrame({"time": observation.times.map(lambda stamp: stamp.isoformat())})
+    for s, name in enumerate(observation.names):
+        table[f"{name}.measured"] = observation.measured[:, s]
+    for run in (findings.nominal, findings.fitted):
+        simulated = observation.simulated(run.results.index, run.results.records)
+        for s, name in enumerate(observation.names):
+            table[f"{name}.{run.label}"] = np.round(simulated[:, s], 6)
+    return table
+
+
+def _figures(study: Study, findings: Findings, folder: Path) -> None:
+    from mascarin.sensitivity.plots import save, spectrum, tornado
+
+    observation = study.observation
+    models = {
+        run.label: observation.simulated(run.results.index, run.results.records)
+        for run in (findings.nominal, findings.fitted)
+    }
+    for s, name in enumerate(observation.names):
+        save(
+            _comparison(study, s, {label: values[:, s] for label, values in models.items()}),
+            folder / f"{name}.svg",
+        )
+        if findings.sensitivity is not None:
+            save(spectrum(findings.sensitivity, name), folder / f"{name}-spectrum.svg")
+            save(tornado(findings.sensitivity, name), folder / f"{name}-tornado.svg")
+
+
+def _comparison(study: Study, s: int, models: dict[str, Any]) -> Any:
+    """Measured and simulated curves with the sensor's band; the error below."""
+    from matplotlib.figure import Figure
+
+    observation = study.observation
+    name = observation.names[s]
+    sensor, measured = study.file.sensors[name], observation.measured[:, s]
+    local = observation.times.tz_localize(None)
+    figure = Figure(figsize=(9.0, 5.0), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    upper.fill_between(
+        local,
+        measured - sensor.uncertainty,
+        measured + sensor.uncertainty,
+        color="0.85",
+        lw=0,
+        label="sensor band",
+    )
+    upper.plot(local, measured, color="0.2", lw=1.0, label=study.file.observed)
+    for (label, values), colour in zip(models.items(), ("#0072b2", "#d55e00"), strict=True):
+        upper.plot(local, values, lw=1.0, color=colour, label=label)
+        lower.plot(local, values - measured, lw=0.9, color=colour)
+    first, last = (stamp.tz_localize(None) for stamp in study.identification)
+    for axes in (upper, lower):
+        axes.axvspan(first, last, color="#009e73", alpha=0.08, lw=0, label="identification")
+        axes.grid(alpha=0.3)
+    upper.set_title(sensor.label or name, loc="left", fontsize=11)
+    upper.set_ylabel("degC")
+    upper.legend(fontsize="small", ncols=5, loc="upper left", bbox_to_anchor=(0.0, -0.02), frameon=False)
+    lower.axhline(0.0, color="0.2", lw=0.8)
+    lower.set_ylabel("simulated - observed [K]")
+    lower.set_xlabel(f"local time ({study.climate.timezone})")
+    return figure
