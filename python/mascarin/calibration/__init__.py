@@ -1,0 +1,29 @@
+"""Fitting parameters to measurements, with honest uncertainty.
+
+The pieces work on plain arrays: a `CalibrationProblem` ties parameters and measured series to a model that is
+evaluated in batches, `solve` finds the parameters, and the `Fit` says how certain they are.
+"""
+
+from __future__ import annotations
+
+from mascarin.calibration.cost import Cost
+from mascarin.calibration.fit import Fit, Minimum
+from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor, require_known
+from mascarin.calibration.record import Evaluator, Trace
+from mascarin.calibration.search import Rules, solve
+from mascarin.calibration.uncertainty import Uncertainty
+
+__all__ = [
+    "CalibrationProblem",
+    "Cost",
+    "Evaluator",
+    "Fit",
+    "FitParameter",
+    "FitSensor",
+    "Minimum",
+    "Rules",
+    "Trace",
+    "Uncertainty",
+    "require_known",
+    "solve",
+]

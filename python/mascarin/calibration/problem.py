@@ -1,0 +1,316 @@
+"""What is to be fitted: parameters, measured series, and the model that ties them."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mascarin.errors import InputError, did_you_mean
+
+Floats = NDArray[np.float64]
+Model = Callable[[Floats], ArrayLike]
+"""``(M, P) -> (M, T, S)``: simulated series of a batch of members, in the units of the parameters and the
+sensors. A member that could not be simulated is a row of NaN."""
+
+
+@dataclass(frozen=True, slots=True)
+class FitParameter:
+    """A parameter to be found.
+
+    Attributes
+    ----------
+    path : str
+        Path of the parameter.
+    lower, upper : float
+        Range that is searched. [unit]
+    start : float, optional
+        Where the search begins: the nominal value when absent, else the middle of the range. [unit]
+    nominal : float, optional
+        Value before the fit, shown beside the result. [unit]
+    unit : str
+        Unit of the parameter.
+    limits : tuple of float
+        What the parameter can be at all; the range must lie within. [unit]
+    scale : str
+        ``linear`` or ``log``: how distances are measured when the search moves.
+    prior : tuple of float, optional
+        Mean and standard deviation of what is known beforehand. [unit]
+    """
+
+    path: str
+    lower: float
+    upper: float
+    start: float | None = None
+    nominal: float | None = None
+    unit: str = ""
+    limits: tuple[float, float] = (-math.inf, math.inf)
+    scale: Literal["linear", "log"] = "linear"
+    prior: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.lower) and math.isfinite(self.upper) and self.lower < self.upper):
+            raise InputError(f"{self._range}: a fit needs a finite lower bound below a finite upper bound")
+        if self.lower < self.limits[0] or self.upper > self.limits[1]:
+            low, high = self.limits
+            msg = f"{self._range} reaches beyond what the parameter can be, [{low:g}, {high:g}]: narrow it"
+            raise InputError(msg)
+        if self.start is not None and not self.lower <= self.start <= self.upper:
+            msg = f"{self._range} does not hold the start {self.start:g}: move the start or widen the range"
+            raise InputError(msg)
+        if self.scale == "log" and self.lower <= 0.0:
+            msg = f"{self._range} on a log scale must be positive"
+            raise InputError(msg)
+        if self.prior is not None and not (math.isfinite(self.prior[0]) and 0.0 < self.prior[1] < math.inf):
+            msg = f"{self.path}: prior {self.prior} must be a mean and a positive standard deviation"
+            raise InputError(msg)
+
+    @property
+    def first(self) -> float:
+        """Where the search begins. [unit]"""
+        if self.start is not None:
+            return self.start
+        if self.nominal is not None and self.lower <= self.nominal <= self.upper:
+            return self.nominal
+        return self.value(0.5)
+
+    def value(self, z: float) -> float:
+        """Value at a position between 0 (lower) and 1 (upper). [unit]"""
+        if z <= 0.0:
+            return self.lower
+        if z >= 1.0:
+            return self.upper
+        if self.scale == "log":
+            return min(self.lower * math.pow(self.upper / self.lower, z), self.upper)
+        return min(self.lower + z * (self.upper - self.lower), self.upper)
+
+    def position(self, value: float) -> float:
+        """Position of a value between 0 (lower) and 1 (upper). [-]"""
+        if self.scale == "log":
+            return math.log(value / self.lower) / math.log(self.upper / self.lower)
+        return (value - self.lower) / (self.upper - self.lower)
+
+    @property
+    def _range(self) -> str:
+        return f"{self.path}: range [{self.lower:g}, {self.upper:g}] {self.unit}".rstrip()
+
+
+@dataclass(frozen=True, eq=False)
+class FitSensor:
+    """A measured series to be met.
+
+    Attributes
+    ----------
+    name : str
+        Name of the sensor.
+    measured : ndarray, shape (T,)
+        Measured values, NaN where nothing was measured. [unit]
+    uncertainty : float
+        Standard deviation of one measured value. [unit]
+    relative : float
+        Further standard deviation as a share of the measured value. [-]
+    unit : str
+        Unit of the sensor.
+    use : ndarray of bool, shape (T,), optional
+        Samples to compare; all that were measured when absent.
+    weight : float
+        Importance beside that which the uncertainty gives; the number of times that it counts. [-]
+    """
+
+    name: str
+    measured: Floats
+    uncertainty: float = 1.0
+    relative: float = 0.0
+    unit: str = "degC"
+    use: NDArray[np.bool_] | None = None
+    weight: float = 1.0
+
+    def __post_init__(self) -> None:
+        measured = np.asarray(self.measured, dtype=np.float64)
+        object.__setattr__(self, "measured", measured)
+        if measured.ndim != 1:
+            msg = f"sensor '{self.name}': expected one series, found an array of shape {measured.shape}"
+            raise InputError(msg)
+        if self.use is not None and np.shape(self.use) != measured.shape:
+            msg = f"sensor '{self.name}': {measured.size} samples but a mask of shape {np.shape(self.use)}"
+            raise InputError(msg)
+        kept = measured[self.mask]
+        if kept.size == 0:
+            msg = f"sensor '{self.name}' has no sample in the period (dead or masked): leave it out"
+            raise InputError(msg)
+        if kept.size > 1 and np.ptp(kept) == 0.0:
+            msg = (
+                f"sensor '{self.name}' shows {kept[0]:g} {self.unit} in all {kept.size} samples and looks "
+                f"dead: mask it or leave it out"
+            )
+            raise InputError(msg)
+        if not (self.uncertainty >= 0.0 and self.relative >= 0.0 and self.weight > 0.0):
+            msg = (
+                f"sensor '{self.name}': uncertainty {self.uncertainty:g}, relative {self.relative:g} and "
+                f"weight {self.weight:g} must not be negative, nor the weight zero"
+            )
+            raise InputError(msg)
+        if np.any(self.sigma[self.mask] <= 0.0):
+            msg = f"sensor '{self.name}': its uncertainty is zero somewhere; give an absolute part"
+            raise InputError(msg)
+
+    @property
+    def mask(self) -> NDArray[np.bool_]:
+        """Samples that are compared, shape (T,)."""
+        there = np.isfinite(self.measured)
+        return there if self.use is None else there & np.asarray(self.use, dtype=np.bool_)
+
+    @property
+    def sigma(self) -> Floats:
+        """Standard deviation of each measured value, shape (T,). [unit]"""
+        return np.asarray(np.hypot(self.uncertainty, self.relative * np.abs(self.measured)))
+
+    @property
+    def span(self) -> float:
+        """Largest minus smallest compared value. [unit]"""
+        return float(np.ptp(self.measured[self.mask]))
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrationProblem:
+    """Parameters, measurements and the model between them.
+
+    Attributes
+    ----------
+    parameters : tuple of FitParameter, length P
+        What is found.
+    sensors : tuple of FitSensor, length S
+        What is met; all on the same T regular instants.
+    model : callable
+        See `Model`. The order of parameters and sensors is that of this problem.
+    identity : str
+        Names everything the model depends on beside the parameters (building, climate, period, step), such
+        as a hash: a record of evaluations is only continued by a problem of the same identity.
+    step : float, optional
+        Time between samples, for texts. [s]
+    """
+
+    parameters: tuple[FitParameter, ...]
+    sensors: tuple[FitSensor, ...]
+    model: Model
+    identity: str = ""
+    step: float | None = None
+    measured: Floats = field(init=False)
+    mask: NDArray[np.bool_] = field(init=False)
+    sigma: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        for name in ("parameters", "sensors"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        _named_once("parameter", [p.path for p in self.parameters])
+        _named_once("sensor", [s.name for s in self.sensors])
+        lengths = {s.name: s.measured.size for s in self.sensors}
+        if len(set(lengths.values())) > 1:
+            text = ", ".join(f"'{name}' {n}" for name, n in lengths.items())
+            msg = f"sensors must share their instants, found numbers of samples {text}"
+            raise InputError(msg)
+        object.__setattr__(self, "measured", np.column_stack([s.measured for s in self.sensors]))
+        object.__setattr__(self, "mask", np.column_stack([s.mask for s in self.sensors]))
+        object.__setattr__(self, "sigma", np.column_stack([s.sigma for s in self.sensors]))
+        samples = int(self.mask.sum())
+        if samples < len(self.parameters):
+            msg = (
+                f"{len(self.parameters)} parameters cannot be found from {samples} measured values: fit "
+                f"fewer, or compare a longer period"
+            )
+            raise InputError(msg)
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Paths of the parameters."""
+        return tuple(p.path for p in self.parameters)
+
+    def values(self, z: Floats) -> Floats:
+        """Values at positions between 0 and 1, both (M, P). [unit of each parameter]"""
+        return np.array([[p.value(float(v)) for p, v in zip(self.parameters, row, strict=True)] for row in z])
+
+    def positions(self, x: Floats) -> Floats:
+        """Positions between 0 and 1 of values, both (P,). [-]"""
+        return np.array([p.position(float(v)) for p, v in zip(self.parameters, x, strict=True)])
+
+    def residuals(self, x: Floats) -> Floats:
+        """Simulated minus measured series of a batch.
+
+        Parameters
+        ----------
+        x : ndarray, shape (M, P)
+            Members. [unit of each parameter]
+
+        Returns
+        -------
+        ndarray, shape (M, T, S)
+            0 where nothing is compared; a whole member is NaN when it could not be simulated. [unit]
+
+        Raises
+        ------
+        InputError
+            When the model returns another shape.
+        """
+        simulated = np.asarray(self.model(x), dtype=np.float64)
+        if simulated.shape != (x.shape[0], *self.measured.shape):
+            msg = (
+                f"the model returned an array of shape {simulated.shape} for {x.shape[0]} members, expected "
+                f"{(x.shape[0], *self.measured.shape)}: members, times, sensors"
+            )
+            raise InputError(msg)
+        residuals = np.where(self.mask, simulated - np.where(self.mask, self.measured, 0.0), 0.0)
+        failed = ~np.isfinite(residuals).all(axis=(1, 2))
+        residuals[failed] = np.nan
+        return residuals
+
+    def fingerprint(self) -> str:
+        """Hash of everything that an evaluation depends on."""
+        digest = hashlib.sha256()
+        digest.update(repr((self.identity, self.paths, [s.name for s in self.sensors])).encode())
+        for array in (
+            np.where(self.mask, self.measured, 0.0),
+            self.mask,
+            np.where(self.mask, self.sigma, 0.0),
+        ):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
+
+
+def require_known(paths: Iterable[str], known: Sequence[str]) -> None:
+    """Refuse paths that do not exist.
+
+    Parameters
+    ----------
+    paths : iterable of str
+        Paths to be fitted.
+    known : sequence of str
+        Paths of the building.
+
+    Raises
+    ------
+    InputError
+        Naming every unknown path and the nearest known ones.
+    """
+    there = set(known)
+    lines = [
+        f"parameter '{path}' is not in the building. {did_you_mean(path, known)}".rstrip()
+        for path in paths
+        if path not in there
+    ]
+    if lines:
+        raise InputError("\n".join(lines))
+
+
+def _named_once(what: str, names: Sequence[str]) -> None:
+    if not names:
+        msg = f"a calibration needs at least one {what}"
+        raise InputError(msg)
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        msg = f"{what} '{twice[0]}' is listed twice"
+        raise InputError(msg)

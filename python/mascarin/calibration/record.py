@@ -1,0 +1,259 @@
+"""Every evaluation of a calibration, on disk as it happens, so that nothing is run twice.
+
+A record is a text file of JSON lines. The first says which problem it belongs to; each further line holds one
+evaluation: the parameter values, the cost of each sensor and, where the method needs them, the residuals. A
+line that was cut short when the program was killed is dropped, and the file goes on from there.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from array import array
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration.cost import Cost
+from mascarin.errors import InputError
+
+Floats = NDArray[np.float64]
+
+_FORMAT = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """All evaluations in the order in which they were made.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n, P)
+        Parameter values. [unit of each parameter]
+    cost : ndarray, shape (n,)
+        Total cost; infinite for members that could not be simulated.
+    of_sensors : ndarray, shape (n, S)
+        Cost of each sensor.
+    replayed : int
+        How many of them came from the record. [-]
+    """
+
+    x: Floats
+    cost: Floats
+    of_sensors: Floats
+    replayed: int
+
+
+class Evaluator:
+    """Evaluates members in batches, each only once, and keeps the record.
+
+    Parameters
+    ----------
+    cost : Cost
+        The cost, with its problem.
+    path : Path, optional
+        File of the record; continued when it exists. Without it nothing is written.
+    keep_residuals : bool
+        Whether residuals are kept and recorded too; least squares needs them.
+    batch : int
+        Largest number of members handed to the model at once. [-]
+    progress : callable, optional
+        Called after each batch with the number of evaluations and the lowest cost so far.
+
+    Raises
+    ------
+    InputError
+        When the record belongs to another problem.
+    """
+
+    def __init__(
+        self,
+        cost: Cost,
+        path: Path | None = None,
+        *,
+        keep_residuals: bool = False,
+        batch: int = 64,
+        progress: Callable[[int, float], object] | None = None,
+    ) -> None:
+        self.cost = cost
+        self._path = path
+        self._keep = keep_residuals
+        self._batch = batch
+        self._progress = progress
+        self._rows: dict[bytes, int] = {}
+        # Flat, because a multi-start search makes a million evaluations.
+        self._x = array("d")
+        self._of_sensors = array("d")
+        self._residuals: list[Floats] = []
+        self._lowest = np.inf
+        if path is not None:
+            self._open(path)
+        self.replayed = self.count
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file of the record."""
+        if self._path is not None:
+            self._file.close()
+
+    @property
+    def count(self) -> int:
+        """Number of different members evaluated, those from the record included. [-]"""
+        return len(self._rows)
+
+    def costs(self, x: Floats) -> Floats:
+        """Total costs of members (M, P), shape (M,)."""
+        rows = self._evaluated(x)
+        n = len(self.cost.problem.sensors)
+        return self.cost.total(x, np.array([self._of_sensors[k * n : (k + 1) * n] for k in rows]))
+
+    def residuals(self, x: Floats) -> Floats:
+        """Residuals of members (M, P), shape (M, T, S); NaN for those that could not be simulated. [unit]"""
+        if not self._keep:
+            return self.cost.problem.residuals(x)
+        return np.stack([self._residuals[k] for k in self._evaluated(x)])
+
+    def trace(self) -> Trace:
+        """Everything evaluated so far."""
+        problem = self.cost.problem
+        x = np.array(self._x, dtype=np.float64).reshape(-1, len(problem.parameters))
+        of_sensors = np.array(self._of_sensors, dtype=np.float64).reshape(-1, len(problem.sensors))
+        return Trace(x, self.cost.total(x, of_sensors), of_sensors, self.replayed)
+
+    def _evaluated(self, x: Floats) -> list[int]:
+        """Row of each member, evaluated where it is new."""
+        keys = [row.tobytes() for row in np.ascontiguousarray(x, dtype=np.float64)]
+        fresh = list(dict.fromkeys(k for k in keys if k not in self._rows))
+        members = np.array([np.frombuffer(k) for k in fresh]).reshape(len(fresh), x.shape[1])
+        for first in range(0, len(fresh), self._batch):
+            self._run(members[first : first + self._batch])
+        return [self._rows[k] for k in keys]
+
+    def _run(self, x: Floats) -> None:
+        residuals = self.cost.problem.residuals(x)
+        of_sensors = self.cost.of_sensors(residuals)
+        lines = []
+        for k in range(x.shape[0]):
+            self._remember(x[k], of_sensors[k], residuals[k])
+            lines.append(self._line(x[k], of_sensors[k], residuals[k]))
+        if self._path is not None:
+            # One write per batch; the system keeps it even if the program is killed the moment after.
+            self._file.write("".join(lines).encode())
+            self._file.flush()
+        if self._progress is not None:
+            self._progress(self.count, float(self._lowest))
+
+    def _remember(self, x: Floats, of_sensors: Floats, residuals: Floats) -> None:
+        key = x.tobytes()
+        if key in self._rows:
+            return
+        self._rows[key] = len(self._rows)
+        self._x.extend(x.tolist())
+        self._of_sensors.extend(of_sensors.tolist())
+        self._lowest = min(self._lowest, float(self.cost.total(x[None], of_sensors[None])[0]))
+        if self._keep:
+            self._residuals.append(residuals)
+
+    # --- the file -------------------------------------------------------------------------------------
+
+    def _header(self) -> dict[str, Any]:
+        problem = self.cost.problem
+        return {
+            "mascarin_record": _FORMAT,
+            "problem": problem.fingerprint(),
+            "cost": self.cost.name,
+            "weights": [s.weight for s in problem.sensors],
+            "residuals": self._keep,
+            "parameters": list(problem.paths),
+            "sensors": [s.name for s in problem.sensors],
+        }
+
+    def _line(self, x: Floats, of_sensors: Floats, residuals: Floats) -> str:
+        # repr of a float is its shortest text that reads back to the same bits; NaN is written as null.
+        entry: dict[str, Any] = {
+            "x": x.tolist(),
+            "c": [c if np.isfinite(c) else None for c in of_sensors.tolist()],
+        }
+        if self._keep:
+            # Little-endian on every machine.
+            entry["r"] = base64.b64encode(residuals.astype("<f8").tobytes()).decode("ascii")
+        return json.dumps(entry, allow_nan=False) + "\n"
+
+    def _open(self, path: Path) -> None:
+        """Read what is there, cut off a half-written line, and stand ready to append."""
+        whole = 0
+        if path.exists():
+            whole = self._read(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = path.open("r+b" if path.exists() else "w+b")
+        self._file.truncate(whole)
+        self._file.seek(whole)
+        if whole == 0:
+            self._file.write((json.dumps(self._header()) + "\n").encode())
+            self._file.flush()
+
+    def _read(self, path: Path) -> int:
+        """Number of bytes that are complete lines, after taking them in."""
+        whole = 0
+        with path.open("rb") as file:
+            for number, line in enumerate(file, start=1):
+                if not line.endswith(b"\n"):
+                    break
+                entry = _parsed(path, number, line)
+                if number == 1:
+                    self._check_header(path, entry)
+                else:
+                    self._take(path, number, entry)
+                whole += len(line)
+        return whole
+
+    def _check_header(self, path: Path, found: dict[str, Any]) -> None:
+        expected = self._header()
+        if found.get("mascarin_record") != _FORMAT:
+            msg = f"{path}: not a record of a calibration (its first line does not say so); name another file"
+            raise InputError(msg)
+        differing = [key for key in expected if found.get(key) != expected[key]]
+        if differing:
+            msg = (
+                f"{path}: this record belongs to another calibration (differing: {', '.join(differing)}); "
+                f"name another file, or remove this one to begin anew"
+            )
+            raise InputError(msg)
+
+    def _take(self, path: Path, number: int, entry: dict[str, Any]) -> None:
+        problem = self.cost.problem
+        try:
+            x = np.array(entry["x"], dtype=np.float64)
+            costs = np.array([np.nan if c is None else c for c in entry["c"]], dtype=np.float64)
+            residuals = np.empty(problem.measured.shape)
+            if self._keep:
+                data = base64.b64decode(entry["r"], validate=True)
+                residuals[...] = np.frombuffer(data, dtype="<f8").reshape(residuals.shape)
+            fits = x.shape == (len(problem.parameters),) and costs.shape == (len(problem.sensors),)
+        except (KeyError, TypeError, ValueError):
+            fits = False
+        if not fits:
+            msg = f"{path}:{number}: not an evaluation of this problem; remove the line or name another file"
+            raise InputError(msg)
+        self._remember(x, costs, residuals)
+
+
+def _parsed(path: Path, number: int, line: bytes) -> dict[str, Any]:
+    try:
+        entry = json.loads(line)
+    except ValueError as error:
+        msg = f"{path}:{number}: not a line of JSON ({error}); remove the line or name another file"
+        raise InputError(msg) from error
+    if not isinstance(entry, dict):
+        msg = f"{path}:{number}: expected a JSON object"
+        raise InputError(msg)
+    return entry

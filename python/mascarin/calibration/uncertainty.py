@@ -1,0 +1,326 @@
+"""How certain a fit is, when its residuals are not independent.
+
+At the minimum the estimates answer a small change of the residuals linearly, with the Jacobian J of the
+simulated series and the weights W of the squares: ``B J' W dr`` with ``B = (J' W J)^-1``. Their covariance
+is therefore ``B (J' W Omega W J) B``, where Omega is the covariance of the residuals. Residuals of thermal
+models are strongly autocorrelated, and those of neighbouring sensors resemble each other; taking Omega as
+diagonal gives intervals that are many times too narrow. Here each sensor's residuals are described by an
+autoregressive model (order by BIC), with correlated innovations between sensors, which gives Omega.
+
+References
+----------
+Seber G.A.F., Wild C.J. (1989), Nonlinear Regression, chapter 6 (autocorrelated errors).
+https://doi.org/10.1002/0471725315
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.series import Autoregression, fit_autoregression
+
+Floats = NDArray[np.float64]
+
+METHOD: Final = (
+    "covariance of the estimates from the Jacobian, with the residuals' own autocorrelation (one "
+    "autoregressive model per sensor, order by BIC) and correlation between sensors; Student quantile with "
+    "the effective number of independent residuals"
+)
+"""How the intervals are made, for reports."""
+
+FREE: Final = 1e3
+"""Standard deviation given to directions that the data do not see, in ranges of the parameters. [-]"""
+
+_ALIKE = 0.95  # correlation from which two parameters are called hard to tell apart
+_SAME = 0.999
+_UNDETERMINED = 0.8  # share of the range that an interval may cover
+_SETTLED = 0.05  # share of the range below which an interval is narrow, whatever it goes with
+_AT_BOUND = 1e-4  # of the range
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """What is known about the estimates, at positions z between 0 and 1 of their ranges.
+
+    Attributes
+    ----------
+    low, high : ndarray, shape (P,)
+        Interval, within [0, 1]. [-]
+    sd : ndarray, shape (P,)
+        Standard deviation in ranges. [-]
+    correlation : ndarray, shape (P, P)
+        Between the estimates. [-]
+    effective_samples : tuple of float, length S
+        Number of independent residuals of each sensor. [-]
+    order : tuple of int, length S
+        Order of each sensor's autoregressive model. [-]
+    freedom : float
+        Degrees of freedom of the quantile. [-]
+    """
+
+    low: Floats
+    high: Floats
+    sd: Floats
+    correlation: Floats
+    effective_samples: tuple[float, ...]
+    order: tuple[int, ...]
+    freedom: float
+
+
+def estimate(
+    problem: CalibrationProblem,
+    z: Floats,
+    residuals: Floats,
+    jacobian: Floats,
+    weights: Floats,
+    *,
+    priors: Floats,
+    blind_to_bias: bool,
+    confidence: float,
+) -> Uncertainty:
+    """Intervals and correlations at a minimum.
+
+    Parameters
+    ----------
+    problem : CalibrationProblem
+        What was fitted.
+    z : ndarray, shape (P,)
+        The estimates, as positions between 0 and 1. [-]
+    residuals : ndarray, shape (T, S)
+        0 where nothing is compared. [unit]
+    jacobian : ndarray, shape (T, S, P)
+        Derivative of the residuals by z. [unit]
+    weights : ndarray, shape (T, S)
+        Weights of the squares, see `Cost.weights`.
+    priors : ndarray, shape (P,)
+        Inverse variance of the prior of z, 0 without one; counts only with weights of the likelihood. [-]
+    blind_to_bias : bool
+        Whether the cost takes off each sensor's mean.
+    confidence : float
+        Of the intervals. [-]
+
+    Returns
+    -------
+    Uncertainty
+    """
+    from scipy import stats
+
+    mask = problem.mask
+    j = np.where(mask[:, :, None], jacobian, 0.0)
+    if blind_to_bias:
+        j = np.where(mask[:, :, None], j - j.sum(axis=0) / mask.sum(axis=0)[:, None], 0.0)
+    r = np.where(mask, residuals, np.nan)
+    models = tuple(fit_autoregression(r[:, s]) for s in range(r.shape[1]))
+    wj = weights[:, :, None] * j
+    information = np.einsum("tsp,tsq->pq", wj, j) + np.diag(priors)
+    effective = tuple(m.effective_samples for m in models)
+    freedom = max(sum(effective) - z.size, 1.0)
+    # The fit has swallowed a part of the errors, as many independent ones as there are parameters. A prior
+    # is data with known, independent error: it enters the middle as it enters the information.
+    swallowed = max(sum(effective), 1.0) / freedom
+    middle = _middle(r, wj, models) * swallowed + np.diag(priors)
+    covariance = _sandwich(information, middle)
+    inside = (z > _AT_BOUND) & (z < 1.0 - _AT_BOUND)
+    sd = np.sqrt(np.diag(covariance))
+    if inside.any() and not inside.all():
+        # A parameter held by its bound is not free to trade off against the others.
+        free = np.flatnonzero(inside)
+        sub = _sandwich(information[np.ix_(free, free)], middle[np.ix_(free, free)])
+        sd[free] = np.sqrt(np.diag(sub))
+    reach = float(stats.t.ppf(0.5 + 0.5 * confidence, freedom)) * sd
+    return Uncertainty(
+        low=np.clip(z - reach, 0.0, 1.0),
+        high=np.clip(z + reach, 0.0, 1.0),
+        sd=sd,
+        correlation=_correlation(covariance),
+        effective_samples=effective,
+        order=tuple(m.order for m in models),
+        freedom=freedom,
+    )
+
+
+def warnings(
+    problem: CalibrationProblem, z: Floats, found: Uncertainty, residuals: Floats, jacobian: Floats
+) -> list[str]:
+    """What a reader of the estimates must know, in words.
+
+    Parameters
+    ----------
+    problem, z, found, residuals, jacobian
+        As for `estimate`, and what it returned.
+
+    Returns
+    -------
+    list of str
+    """
+    names = problem.paths
+    idle = _idle(problem, jacobian)
+    texts = [f"{names[i]} changes none of the compared sensors: fix it" for i in np.flatnonzero(idle)]
+    covered = found.high - found.low
+    alike = _alike(names, found.correlation, idle | (covered < _SETTLED))
+    texts += alike.values()
+    told = {i for pair in alike for i in pair}
+    texts += [
+        f"{name} is not determined by these data: its interval covers {100.0 * covered[k]:.0f} % of the "
+        f"range searched; fix it, or measure what it acts on"
+        for k, name in enumerate(names)
+        if covered[k] > _UNDETERMINED and not idle[k] and k not in told
+    ]
+    total = sum(found.effective_samples)
+    if total < 3.0 * len(names):
+        texts.append(
+            f"{len(names)} parameters were fitted to residuals worth only {total:.0f} independent samples: "
+            f"fit fewer, or compare a longer period"
+        )
+    texts += _biased(problem, residuals, found)
+    return texts
+
+
+def on_bounds(problem: CalibrationProblem, z: Floats, slope: Floats, found: Uncertainty) -> dict[str, str]:
+    """Parameters that ended on a bound, each with a reason.
+
+    Parameters
+    ----------
+    problem : CalibrationProblem
+        What was fitted.
+    z : ndarray, shape (P,)
+        The estimates, as positions between 0 and 1. [-]
+    slope : ndarray, shape (P,)
+        Derivative of the cost by z.
+    found : Uncertainty
+        What `estimate` returned.
+
+    Returns
+    -------
+    dict of str to str
+        Reason by path.
+    """
+    reasons = {}
+    for i, p in enumerate(problem.parameters):
+        low, high = z[i] <= _AT_BOUND, z[i] >= 1.0 - _AT_BOUND
+        if not (low or high):
+            continue
+        side, bound = ("lower", p.lower) if low else ("upper", p.upper)
+        where = f"on its {side} bound {bound:g} {p.unit}".rstrip()
+        outward = slope[i] > 0.0 if low else slope[i] < 0.0
+        if found.high[i] - found.low[i] > _UNDETERMINED:
+            reason = "the data do not determine it, and the search ended there"
+        elif outward:
+            more = "less" if low else "more"
+            reason = (
+                f"the data ask for {more} than the range allows: the bound is wrong, or the parameter makes "
+                f"up for something the model lacks"
+            )
+        else:
+            reason = "the minimum lies there within its uncertainty"
+        reasons[p.path] = f"{where}: {reason}"
+    return reasons
+
+
+def _middle(r: Floats, wj: Floats, models: tuple[Autoregression, ...]) -> Floats:
+    """``J' W Omega W J`` from one autoregressive model per sensor.
+
+    Omega of one sensor is ``innovation * Psi Psi'`` with Psi the response to an innovation; the product with
+    Psi' is the recursion run backwards in time, and goes on before the first sample until it has died away.
+    """
+    from scipy.signal import lfilter
+
+    memory = max((m.memory() for m in models), default=0)
+    memory = min(memory, 20 * r.shape[0])
+    times, sensors, parameters = wj.shape
+    filtered = np.empty((times + memory, sensors, parameters))
+    padded = np.concatenate([wj[::-1], np.zeros((memory, sensors, parameters))])
+    impulse = np.zeros(times + memory)
+    impulse[0] = 1.0
+    responses = np.empty((times + memory, sensors))
+    for s, model in enumerate(models):
+        denominator = np.concatenate([[1.0], -model.coefficients])
+        filtered[:, s] = lfilter([1.0], denominator, padded[:, s], axis=0)
+        responses[:, s] = lfilter([1.0], denominator, impulse)
+    innovation = _innovations(r, models, responses)
+    return np.asarray(np.einsum("tsp,su,tuq->pq", filtered, innovation, filtered, optimize=True))
+
+
+def _innovations(r: Floats, models: tuple[Autoregression, ...], responses: Floats) -> Floats:
+    """Covariance of the innovations of all sensors, from that of the residuals; shape (S, S). [unit^2]"""
+    size = np.array([math.sqrt(max(m.innovation, 0.0)) for m in models])
+    sensors = len(models)
+    correlation = np.eye(sensors)
+    for s in range(sensors):
+        for u in range(s):
+            both = np.isfinite(r[:, s]) & np.isfinite(r[:, u])
+            if both.sum() < 3:
+                continue
+            a, b = r[both, s] - r[both, s].mean(), r[both, u] - r[both, u].mean()
+            shared = float(responses[:, s] @ responses[:, u])
+            scale = size[s] * size[u] * shared
+            if scale > 0.0:
+                correlation[s, u] = correlation[u, s] = np.clip(float(np.mean(a * b)) / scale, -1.0, 1.0)
+    # Estimated pair by pair, so not always a covariance: take the nearest one.
+    value, vector = np.linalg.eigh(correlation)
+    correlation = (vector * np.maximum(value, 0.0)) @ vector.T
+    return np.asarray(correlation * np.outer(size, size))
+
+
+def _sandwich(information: Floats, middle: Floats) -> Floats:
+    """``B middle B``, ``B = information^-1``; what the data do not see gets the variance `FREE` squared."""
+    value, vector = np.linalg.eigh(information)
+    largest = float(value.max(initial=0.0))
+    seen = value > max(1e-13 * largest, np.finfo(float).tiny)
+    inverse = np.where(seen, 1.0 / np.where(seen, value, 1.0), 0.0)
+    b = (vector * inverse) @ vector.T
+    unseen = vector[:, ~seen]
+    covariance = b @ middle @ b + FREE**2 * unseen @ unseen.T
+    return np.asarray(0.5 * (covariance + covariance.T))
+
+
+def _correlation(covariance: Floats) -> Floats:
+    sd = np.sqrt(np.diag(covariance))
+    sd = np.where(sd > 0.0, sd, 1.0)
+    correlation = np.clip(covariance / np.outer(sd, sd), -1.0, 1.0)
+    np.fill_diagonal(correlation, 1.0)
+    return np.asarray(correlation)
+
+
+def _idle(problem: CalibrationProblem, jacobian: Floats) -> NDArray[np.bool_]:
+    """Parameters whose whole range moves no sensor by a noticeable part of its uncertainty."""
+    scale = np.where(problem.mask, problem.sigma, np.inf)[:, :, None]
+    return np.asarray(np.max(np.abs(jacobian) / scale, axis=(0, 1)) < 1e-9)
+
+
+def _alike(
+    names: tuple[str, ...], correlation: Floats, aside: NDArray[np.bool_]
+) -> dict[tuple[int, int], str]:
+    """Sentences on pairs that act alike, the most alike first; parameters set aside are in none."""
+    pairs = [
+        (i, k)
+        for i in range(len(names))
+        for k in range(i)
+        if abs(correlation[i, k]) >= _ALIKE and not (aside[i] or aside[k])
+    ]
+    texts = {}
+    for i, k in sorted(pairs, key=lambda pair: -abs(correlation[pair])):
+        c = correlation[i, k]
+        verb = "cannot" if abs(c) >= _SAME else "can hardly"
+        texts[i, k] = f"{names[k]} and {names[i]} {verb} be told apart (correlation {c:+.3f}): fix one"
+    return texts
+
+
+def _biased(problem: CalibrationProblem, residuals: Floats, found: Uncertainty) -> list[str]:
+    """Sensors whose residuals keep a mean that their scatter does not explain."""
+    texts = []
+    for s, sensor in enumerate(problem.sensors):
+        r = residuals[sensor.mask, s]
+        bias, spread = float(r.mean()), float(r.std())
+        if abs(bias) > 3.0 * spread / math.sqrt(max(found.effective_samples[s], 1.0)) and abs(bias) > 1e-9:
+            texts.append(
+                f"'{sensor.name}' keeps a bias of {bias:+.2g} {sensor.unit}; the intervals do not cover what "
+                f"causes it"
+            )
+    return texts

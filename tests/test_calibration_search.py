@@ -1,0 +1,406 @@
+"""Searching: recovery, agreement of sequences, bounds, interruption."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from mascarin.calibration import CalibrationProblem, Fit, FitParameter, FitSensor, Rules, solve
+from mascarin.errors import InputError, SolverError
+from mascarin.optimise import NelderMead
+
+Floats = NDArray[np.float64]
+
+STEP = 0.25  # h
+TRUTH = np.array([4.0, 0.76, 30.0, 2.5])
+
+
+class Cell:
+    """A sheet without mass under the sun and a heavy room behind it; counts what it is asked."""
+
+    def __init__(self) -> None:
+        hour = np.arange(192) * STEP
+        self.sun = 800.0 * np.maximum(0.0, np.sin((hour - 6.0) / 12.0 * np.pi))
+        self.wave = np.exp(1j * hour / 12.0 * np.pi)
+        self.members = 0
+        self.batches: list[int] = []
+
+    def __call__(self, x: Floats) -> Floats:
+        self.members += x.shape[0]
+        self.batches.append(x.shape[0])
+        film, absorptance, mass, inner = x.T[:4, :, None]
+        air = 24.0 + 4.0 * self.wave.real
+        # The sheet loses heat to the air and, 5 W/m2K, to the sky.
+        sheet = (absorptance * self.sun + film * air + 5.0 * (air - 10.0)) / (film + 5.0)
+        lagged = self.wave / (1.0 + 1j * np.pi / 12.0 * mass / inner)
+        room = 24.0 + 10.0 * inner / (inner + 2.0) + 4.0 * lagged.real
+        return np.stack([sheet, room], axis=2)
+
+
+def _parameters() -> tuple[FitParameter, ...]:
+    return (
+        FitParameter("film", 1.0, 20.0, nominal=10.0, unit="W/m2K"),
+        FitParameter("absorptance", 0.3, 0.95, nominal=0.85),
+        FitParameter("mass", 5.0, 200.0, scale="log", unit="Wh/m2K"),
+        FitParameter("inner", 0.5, 8.0, start=1.0, unit="W/m2K"),
+    )
+
+
+def _problem(model: Any = None, noise: float = 0.0, **keywords: Any) -> CalibrationProblem:
+    cell = model or Cell()
+    measured = Cell()(TRUTH[None])[0] + noise * np.random.default_rng(1).normal(size=(192, 2))
+    measured[40:60, 1] = np.nan
+    sensors = (FitSensor("sheet", measured[:, 0], 0.5), FitSensor("room", measured[:, 1], 0.3))
+    return CalibrationProblem(_parameters(), sensors, cell, **keywords)
+
+
+def test_least_squares_recovers_the_truth_from_data_without_noise() -> None:
+    cell = Cell()
+    fit = solve(_problem(cell), rules=Rules(starts=3))
+    np.testing.assert_allclose(fit.x, TRUTH, rtol=1e-4)
+    assert len(fit.minima) == 3
+    assert len(fit.distinct_minima()) == 1
+    # Each step and the differences around it come in one batch.
+    assert cell.batches[1] >= 4
+    assert cell.members < 600
+    assert fit.on_bound == {}
+
+
+def test_intervals_hold_the_truth_and_the_table_says_so() -> None:
+    fit = solve(_problem(noise=0.3))
+    assert np.all((fit.low < TRUTH) & (fit.high > TRUTH))
+    assert np.all(fit.low < fit.x)
+    assert np.all((fit.high - fit.low) / fit.x < 0.2)
+    entry = fit.to_dict()["film"]
+    assert list(entry) == ["nominal", "fitted", "low", "high", "unit"]
+    assert (entry["nominal"], entry["unit"]) == (10.0, "W/m2K")
+    assert fit.to_dict()["inner"]["nominal"] is None
+    table = fit.table()
+    assert table["parameter"].tolist() == ["film", "absorptance", "mass", "inner"]
+    assert fit.values["mass"] == fit.x[2]
+    np.testing.assert_allclose(np.diag(fit.correlation), 1.0)
+    assert np.isnan(fit.residuals[40:60, 1]).all()
+    assert "autoregressive" in fit.uncertainty_method
+
+
+@pytest.mark.parametrize("cost", ["sd", "rmse", "cv_rmse", "nll"])
+def test_pattern_search_finds_the_minimum_of_every_cost(cost: Any) -> None:
+    rules = Rules(agree=1, reductions=12, together=1)
+    fit = solve(_problem(noise=0.05), method="pattern_search", cost=cost, rules=rules, seed=3)
+    if cost == "sd":
+        # Blind to bias, it sees the room's swing alone and that only tells the ratio of mass and inner film.
+        assert fit.x[2] / fit.x[3] == pytest.approx(TRUTH[2] / TRUTH[3], rel=0.01)
+        assert any("mass and inner cannot be told apart" in text for text in fit.warnings)
+    else:
+        np.testing.assert_allclose(fit.x, TRUTH, rtol=0.02)
+        # Film and absorptance are correlated by 0.99, but both are known to a part in a hundred.
+        assert fit.correlation[0, 1] > 0.95
+        assert fit.warnings == ()
+    assert fit.reason == "1 of 1 sequences reached the same minimum"
+    lowest = min(m.cost for m in fit.minima)
+    assert fit.cost == lowest
+    assert fit.trace.cost.min() <= lowest
+    assert fit.of_sensors.sum() == pytest.approx(lowest)
+    assert np.all((fit.low <= fit.x) & (fit.x <= fit.high))
+
+
+def _two_wells(depth: float) -> CalibrationProblem:
+    """A cost with a minimum at 0.2 and another, `depth` higher, at 0.8."""
+
+    def model(x: Floats) -> Floats:
+        well = np.minimum(np.abs(x[:, 0] - 0.2), np.abs(x[:, 0] - 0.8) + depth)
+        return np.stack([1.0 + well, -1.0 - well], axis=1)[:, :, None]
+
+    return CalibrationProblem(
+        (FitParameter("p", 0.0, 1.0),), (FitSensor("s", np.array([0.0, 0.001])),), model
+    )
+
+
+def test_sequences_end_in_different_minima_and_the_lowest_wins() -> None:
+    rules = Rules(agree=5, sequences=60, reductions=14)
+    fit = solve(_two_wells(0.1), method="pattern_search", cost="rmse", rules=rules)
+    assert fit.x[0] == pytest.approx(0.2, abs=1e-3)
+    groups = fit.distinct_minima()
+    assert len(groups) == 2
+    assert groups[1][0].x[0] == pytest.approx(0.8, abs=1e-3)
+    assert len(groups[0]) == 5
+    assert sum(len(g) for g in groups) == len(fit.minima)
+    counts, edges = fit.histogram(bins=2)
+    assert counts.tolist() == [len(groups[0]), len(groups[1])]
+    assert edges[0] == pytest.approx(1.0, abs=0.01)
+
+
+def test_agreement_waits_for_the_lowest_minimum() -> None:
+    rules = Rules(agree=10, sequences=4, reductions=14)
+    fit = solve(_two_wells(0.1), method="pattern_search", cost="rmse", rules=rules)
+    assert fit.reason == "all 4 sequences searched, without agreement of 10"
+    assert len(fit.minima) == 4
+
+
+def test_number_side_by_side_does_not_change_the_result() -> None:
+    fits = [
+        solve(
+            _problem(noise=0.3),
+            method="pattern_search",
+            cost="rmse",
+            rules=Rules(agree=3, sequences=8, reductions=3, together=together),
+            seed=5,
+        )
+        for together in (1, 5)
+    ]
+    for fit in fits[1:]:
+        np.testing.assert_array_equal(fit.x, fits[0].x)
+        assert [m.cost for m in fit.minima] == [m.cost for m in fits[0].minima]
+
+
+def test_lanes_are_filled_by_many_sequences() -> None:
+    cell = Cell()
+    rules = Rules(agree=20, sequences=20, together=16, reductions=2)
+    solve(_problem(cell, noise=0.3), method="pattern_search", cost="rmse", rules=rules)
+    assert np.median(cell.batches) >= 12
+
+
+def test_budget_of_evaluations_stops_every_sequence() -> None:
+    cell = Cell()
+    rules = Rules(agree=10, evaluations=100, together=4)
+    fit = solve(_problem(cell), method="pattern_search", cost="rmse", rules=rules)
+    assert "budget of 100 evaluations" in fit.reason
+    assert cell.members < 130
+    assert fit.cost == fit.trace.cost.min()
+
+
+def test_an_optimiser_of_ones_own() -> None:
+    fit = solve(
+        _problem(noise=0.05),
+        method="pattern_search",
+        cost="rmse",
+        optimiser=lambda space: NelderMead(space, accuracy=1e-6),
+        rules=Rules(agree=1, together=1),
+    )
+    assert np.isfinite(fit.cost)
+
+
+def test_estimate_on_a_bound_is_named_with_a_reason() -> None:
+    parameters = list(_parameters())
+    parameters[1] = FitParameter("absorptance", 0.8, 0.95)
+    problem = _problem(noise=0.1)
+    fit = solve(CalibrationProblem(tuple(parameters), problem.sensors, Cell()))
+    assert fit.x[1] == 0.8
+    assert (
+        "on its lower bound 0.8: the data ask for less than the range allows" in fit.on_bound["absorptance"]
+    )
+    assert list(fit.on_bound) == ["absorptance"]
+    assert fit.table()["remark"].tolist()[1] == fit.on_bound["absorptance"]
+    assert fit.low[1] == 0.8
+
+
+def test_parameters_that_act_only_together_are_told() -> None:
+    rng = np.random.default_rng(2)
+    wave = np.sin(np.arange(200) / 10.0)
+
+    def model(x: Floats) -> Floats:
+        ratio = x[:, 0] / x[:, 1]
+        idle = 0.0 * x[:, 3]
+        return (np.tanh(ratio[:, None] * wave) + x[:, 2:3] * np.roll(wave, 15) + idle[:, None])[:, :, None]
+
+    truth = np.array([[0.04, 0.01, 1.0, 0.5]])
+    measured = model(truth)[0, :, 0] + 0.02 * rng.normal(size=200)
+    problem = CalibrationProblem(
+        (
+            FitParameter("gamma", 0.005, 0.06),
+            FitParameter("delta_t", 0.005, 0.05),
+            FitParameter("gain", 0.0, 2.0),
+            FitParameter("colour", 0.0, 1.0),
+        ),
+        (FitSensor("interface", measured, 0.02),),
+        model,
+    )
+    fit = solve(problem)
+    assert any("gamma and delta_t cannot be told apart" in w and "fix one" in w for w in fit.warnings)
+    assert "colour changes none of the compared sensors: fix it" in fit.warnings
+    assert not any(w.startswith("gain") for w in fit.warnings)
+    # What the data do not tell is as wide as the range; what they tell is not.
+    assert (fit.low[3], fit.high[3]) == (0.0, 1.0)
+    assert fit.high[2] - fit.low[2] < 0.05
+
+
+def test_a_prior_settles_what_the_data_leave_open() -> None:
+    def model(x: Floats) -> Floats:
+        return (x[:, :1] + x[:, 1:] + np.zeros(50))[:, :, None]
+
+    sensors = (FitSensor("s", 5.0 + 0.1 * np.random.default_rng(3).normal(size=50), 0.1),)
+    parameters = (FitParameter("a", 0.0, 10.0, prior=(2.0, 0.2)), FitParameter("b", 0.0, 10.0))
+    fit = solve(CalibrationProblem(parameters, sensors, model), rules=Rules(starts=1))
+    assert fit.x[0] == pytest.approx(2.0, abs=1e-3)
+    assert fit.x[1] == pytest.approx(3.0, abs=0.05)
+    assert fit.high[0] - fit.low[0] == pytest.approx(2.0 * 1.96 * 0.2, rel=0.05)
+
+
+def test_bias_costs_without_intervals() -> None:
+    fit = solve(_problem(noise=0.1), method="pattern_search", cost="nmbe", rules=Rules(agree=2, sequences=3))
+    assert np.isnan(fit.low).all()
+    assert fit.to_dict()["film"]["low"] is None
+    assert fit.warnings[0].startswith("the cost 'nmbe' compares means only")
+
+
+# --- record and interruption --------------------------------------------------------------------------
+
+
+class Killed(BaseException):
+    """Stands for the process being killed."""
+
+
+@pytest.mark.parametrize("method", ["least_squares", "pattern_search"])
+def test_an_interrupted_calibration_goes_on_and_ends_the_same(method: Any, tmp_path: Path) -> None:
+    keywords: dict[str, Any] = {
+        "method": method,
+        "cost": "nll" if method == "least_squares" else "rmse",
+        "rules": Rules(starts=2, agree=2, sequences=4, reductions=4),
+    }
+    whole = solve(_problem(noise=0.2), **keywords)
+    path = tmp_path / "deep" / "record.jsonl"
+
+    class Mortal(Cell):
+        def __call__(self, x: Floats) -> Floats:
+            if self.members > 60:
+                raise Killed
+            return super().__call__(x)
+
+    with pytest.raises(Killed):
+        solve(_problem(Mortal(), noise=0.2), record=path, **keywords)
+    kept = path.read_bytes()
+    path.write_bytes(kept + b'{"x": [1.0, 0.5')  # the line that was being written
+    cell = Cell()
+    fit = solve(_problem(cell, noise=0.2), record=path, **keywords)
+    np.testing.assert_array_equal(fit.x, whole.x)
+    np.testing.assert_array_equal(fit.high, whole.high)
+    assert fit.trace.replayed >= 60
+    assert cell.members <= whole.trace.x.shape[0] - fit.trace.replayed + 2 * 4 + 1
+    again = Cell()
+    solve(_problem(again, noise=0.2), record=path, **keywords)
+    assert again.members == 2 * 4 + 1  # the derivatives at the minimum alone
+    # Nothing is in the record twice.
+    lines = [json.loads(line) for line in path.read_text().splitlines()][1:]
+    assert len({tuple(line["x"]) for line in lines}) == len(lines) == whole.trace.x.shape[0]
+
+
+def test_a_larger_budget_goes_on_from_the_record(tmp_path: Path) -> None:
+    path = tmp_path / "record.jsonl"
+    keywords: dict[str, Any] = {"method": "pattern_search", "cost": "rmse", "record": path}
+    solve(_problem(noise=0.2), rules=Rules(agree=9, sequences=2, reductions=4), **keywords)
+    fit = solve(_problem(noise=0.2), rules=Rules(agree=9, sequences=4, reductions=4), **keywords)
+    assert 0 < fit.trace.replayed < fit.trace.x.shape[0]
+    assert len(fit.minima) == 4
+
+
+def test_members_that_fail_are_recorded_and_avoided(tmp_path: Path) -> None:
+    class Fragile(Cell):
+        def __call__(self, x: Floats) -> Floats:
+            out = super().__call__(x)
+            out[x[:, 0] > 9.0] = np.nan
+            return out
+
+    parameters = (FitParameter("film", 1.0, 20.0, start=8.0), *_parameters()[1:])
+    path = tmp_path / "record.jsonl"
+    for method, cost in (("pattern_search", "rmse"), ("least_squares", "nll")):
+        problem = CalibrationProblem(parameters, _problem(noise=0.05).sensors, Fragile())
+        record = path if method == "pattern_search" else None
+        fit = solve(
+            problem,
+            method=method,  # type: ignore[arg-type]
+            cost=cost,  # type: ignore[arg-type]
+            rules=Rules(starts=4, agree=1, sequences=4, reductions=6),
+            record=record,
+        )
+        assert fit.x[0] == pytest.approx(4.0, rel=0.1)
+        assert np.isinf(fit.trace.cost).any()
+    assert "null" in path.read_text()
+
+
+def test_foreign_and_damaged_records_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "record.jsonl"
+    rules = Rules(agree=1, sequences=1, reductions=2)
+    keywords: dict[str, Any] = {"method": "pattern_search", "rules": rules, "record": path}
+    solve(_problem(), cost="rmse", **keywords)
+    with pytest.raises(InputError, match=r"another calibration \(differing: cost\)"):
+        solve(_problem(), cost="sd", **keywords)
+    with pytest.raises(InputError, match=r"\(differing: problem\)"):
+        solve(_problem(identity="other"), cost="rmse", **keywords)
+    good = path.read_text()
+    path.write_text(good + "nonsense\n")
+    with pytest.raises(InputError, match=rf"record.jsonl:{good.count(chr(10)) + 1}: not a line of JSON"):
+        solve(_problem(), cost="rmse", **keywords)
+    path.write_text(good + '{"x": [1.0], "c": [1.0, 2.0]}\n')
+    with pytest.raises(InputError, match="not an evaluation of this problem"):
+        solve(_problem(), cost="rmse", **keywords)
+    path.write_text("a,b\n1,2\n")
+    with pytest.raises(InputError, match="not a line of JSON"):
+        solve(_problem(), cost="rmse", **keywords)
+    path.write_text('{"something": "else"}\n')
+    with pytest.raises(InputError, match="not a record of a calibration"):
+        solve(_problem(), cost="rmse", **keywords)
+
+
+# --- early errors -------------------------------------------------------------------------------------
+
+
+def test_a_cost_that_is_no_number_at_the_start_stops_at_once() -> None:
+    calls = 0
+
+    def model(x: Floats) -> Floats:
+        nonlocal calls
+        calls += x.shape[0]
+        out = np.zeros((x.shape[0], 3, 2))
+        out[:, 1, 1] = math.nan
+        return out
+
+    sensors = (FitSensor("room", np.arange(3.0)), FitSensor("gap", np.arange(3.0)))
+    problem = CalibrationProblem((FitParameter("film", 0.0, 1.0, unit="W/m2K"),), sensors, model)
+    with pytest.raises(
+        InputError, match=r"at the start \(film = 0.5 W/m2K\): the model gives no number for gap"
+    ):
+        solve(problem)
+    assert calls <= 2
+
+
+def test_unknown_method_and_costs_that_do_not_fit() -> None:
+    with pytest.raises(InputError, match="method 'newton' is not known"):
+        solve(_problem(), method="newton")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="for the cost 'sd' use the method 'pattern_search'"):
+        solve(_problem(), cost="sd")
+    with pytest.raises(InputError, match="between 0 and 1, such as"):
+        solve(_problem(), confidence=95.0)
+    with pytest.raises(InputError, match="agree: found 0"):
+        Rules(agree=0)
+    with pytest.raises(InputError, match="difference: found 2"):
+        Rules(difference=2.0)
+
+
+def test_no_derivative_next_to_the_minimum_is_said() -> None:
+    def model(x: Floats) -> Floats:
+        out = np.tile(x[:, :, None], (1, 4, 1))
+        out[x[:, 0] != 0.5] = np.nan
+        return out
+
+    problem = CalibrationProblem((FitParameter("p", 0.0, 1.0),), (FitSensor("s", np.arange(4.0)),), model)
+    with pytest.raises(SolverError, match=r"neighbourhood of p = 0\.5"):
+        solve(problem, rules=Rules(starts=1))
+
+
+def test_progress_counts_evaluations_and_shows_the_lowest_cost() -> None:
+    seen: list[tuple[int, float]] = []
+
+    def progress(count: int, lowest: float) -> None:
+        seen.append((count, lowest))
+
+    fit: Fit = solve(_problem(noise=0.2), rules=Rules(starts=1), progress=progress)
+    assert seen[-1][0] == fit.trace.x.shape[0]
+    assert seen[-1][1] == fit.trace.cost.min()
+    assert all(b[1] <= a[1] for a, b in itertools.pairwise(seen))
