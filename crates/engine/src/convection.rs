@@ -177,6 +177,12 @@ impl<S: Real> Film<S> {
     }
 }
 
+/// Sixth power by products: the compiler may round `powi` of a constant otherwise in lanes than in scalars.
+fn sixth(x: f64) -> f64 {
+    let cube = x * x * x;
+    cube * cube
+}
+
 /// Vertical `{[1.5 (d/H)^1/4]^6 + [1.23 d^1/3]^6}^1/6`; horizontal, unstable the same with 1.4 and 1.63 on D = 4A/P;
 /// stable `0.6 (d/D^2)^1/5`.
 fn alamdari_hammond<S: Real>(d: D<S>, length: S, unstable: S::Mask, upward: S) -> D<S> {
@@ -185,7 +191,7 @@ fn alamdari_hammond<S: Real>(d: D<S>, length: S, unstable: S::Mask, upward: S) -
     let laminar = ratio * ratio.sqrt();
     let turbulent = d * d;
     let blend = |a: f64, b: f64| {
-        let sum = laminar.scale(a.powi(6)) + turbulent.scale(b.powi(6));
+        let sum = laminar.scale(sixth(a)) + turbulent.scale(sixth(b));
         sum.cbrt().sqrt()
     };
     let horizontal = S::constant(HORIZONTAL).lt(upward.abs());
@@ -198,7 +204,7 @@ fn alamdari_hammond<S: Real>(d: D<S>, length: S, unstable: S::Mask, upward: S) -
 fn paper_eq5<S: Real>(d: D<S>, length: S) -> D<S> {
     let over = D::fixed(S::one() / length);
     let first = over * over * over * over * over * over * d * d.sqrt();
-    (first.scale(1.51_f64.powi(6)) + (d * d).scale(1.33_f64.powi(6))).cbrt().sqrt()
+    (first.scale(sixth(1.51)) + (d * d).scale(sixth(1.33))).cbrt().sqrt()
 }
 
 /// `9.482 d^1/3 / (7.283 - |cos S|)` unstable, `1.810 d^1/3 / (1.382 + |cos S|)` stable, `1.31 d^1/3` vertical.

@@ -149,7 +149,7 @@ fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], n: usize) {
 /// Downward emission of the sky on a horizontal plane [W/m2].
 pub fn sky_emission<S: Real>(values: &Values<'_, S>, sky: &Sky, cloud: [S; 3], row: &[f64]) -> S {
     let air = row[channel::AIR_TEMPERATURE];
-    let black = SIGMA * (air + KELVIN).powi(4);
+    let black = SIGMA * Real::pow4(air + KELVIN);
     let dew = row[channel::DEW_POINT];
     let emissivity = match sky {
         Sky::Measured { scale } => return values.get(*scale).scale(row[channel::INFRARED]),

@@ -101,7 +101,7 @@ fn perez_shares(up: f64, direct: f64, diffuse: f64, extra: f64) -> (f64, f64) {
         return (0.0, 0.0);
     }
     let zenith = up.clamp(-1.0, 1.0).acos().min(core::f64::consts::FRAC_PI_2);
-    let cube = 1.041 * zenith.powi(3);
+    let cube = 1.041 * zenith * zenith * zenith;
     let clearness = ((diffuse + direct) / diffuse + cube) / (1.0 + cube);
     let elevation = 90.0 - zenith.to_degrees();
     let air_mass = 1.0 / (zenith.cos() + 0.50572 * (elevation + 6.07995).powf(-1.6364));
