@@ -32,8 +32,6 @@ STAGES: Final[dict[str, tuple[tuple[float, ...], tuple[float, ...]]]] = {
 }
 """Stage times as parts of a step, and stage weights, of each scheme."""
 
-_POSITIVE: Final = frozenset({"wind_speed", "infrared", "cloud_cover", "pressure"})
-
 
 def forcing(
     climate: Climate,
@@ -82,21 +80,22 @@ def forcing(
     first = moment(start, climate.grid.zone, "start").timestamp()
     last = moment(end, climate.grid.zone, "end").timestamp()
     count = _steps(first, last, step_seconds)
-    edges = first + step_seconds * np.arange(count + 1)
+    # Times count from the period's start, so that sums over a year lose no digits.
+    edges = step_seconds * np.arange(count + 1)
     stage = edges[:-1, None] + step_seconds * np.array(nodes)
     climate.grid.require(first, last, climate.file)
     ready = climate.completed(site)
     out = np.empty((count, len(nodes), len(CHANNELS) + len(channels)))
     reach = 5.0 * ready.grid.interval + 3600.0
-    sun = SunPath.over(float(site.latitude), float(site.longitude), first - reach, last + reach)
-    _fill_sun(out, sun, stage, climate.grid)
+    sun = SunPath.over(float(site.latitude), float(site.longitude), first - reach, last + reach, first)
+    _fill_sun(out, sun, stage, first, climate.grid)
     for name in SOURCE_CHANNELS[:7]:
-        out[..., CHANNELS.index(name)] = _weather(ready, name, edges, stage, weights)
-    _fill_radiation(out, ready, sun, edges, stage, weights)
+        out[..., CHANNELS.index(name)] = _weather(ready, name, first, edges, stage, weights)
+    _fill_radiation(out, ready, sun, first, edges, stage, weights)
     for place, name in enumerate(channels, start=len(CHANNELS)):
         holder = _holder(climate, measurements, name)
         holder.grid.require(first, last, f"{holder.file}: {name}")
-        out[..., place] = _column(holder, name, edges, stage, weights)
+        out[..., place] = _column(holder, name, first, edges, stage, weights)
     return out
 
 
@@ -119,12 +118,12 @@ def _steps(first: float, last: float, step: float) -> int:
     return count
 
 
-def _fill_sun(out: Array, sun: SunPath, stage: Array, grid: Grid) -> None:
+def _fill_sun(out: Array, sun: SunPath, stage: Array, origin: float, grid: Grid) -> None:
     """Extraterrestrial irradiance, sun vector and day of the year."""
     out[..., CHANNELS.index("direct_normal_extra")] = sun.normal_irradiance(stage)
     east = CHANNELS.index("sun_east")
     out[..., east : east + 3] = sun.vector(stage)
-    out[..., CHANNELS.index("day_of_year")] = _day_of_year(stage, grid)
+    out[..., CHANNELS.index("day_of_year")] = _day_of_year(origin + stage, grid)
 
 
 def _day_of_year(stage: Array, grid: Grid) -> Array:
@@ -133,25 +132,33 @@ def _day_of_year(stage: Array, grid: Grid) -> Array:
     return np.asarray((local - year) / np.timedelta64(1, "D"), dtype=np.float64).reshape(stage.shape)
 
 
-def _weather(climate: Climate, name: str, edges: Array, stage: Array, weights: tuple[float, ...]) -> Array:
+def _weather(
+    climate: Climate, name: str, origin: float, edges: Array, stage: Array, weights: tuple[float, ...]
+) -> Array:
     if name in climate.data.columns:
-        return _column(climate, name, edges, stage, weights)
+        return _column(climate, name, origin, edges, stage, weights)
     if name in ("infrared", "pressure"):
         return np.full(stage.shape, np.nan)
     raise InputError(f"{climate.file}: the climate has no {name}; map a column or state that it is absent.")
 
 
 def _column(
-    holder: Climate | Measurements, name: str, edges: Array, stage: Array, weights: tuple[float, ...]
+    holder: Climate | Measurements,
+    name: str,
+    origin: float,
+    edges: Array,
+    stage: Array,
+    weights: tuple[float, ...],
 ) -> Array:
-    start, values, kind = window(holder, name, edges[0], edges[-1])
+    start, values, kind = window(holder, name, origin + edges[0], origin + edges[-1])
+    start -= origin
     interval = holder.grid.interval
     if kind == "instant":
         knots = start + interval * np.arange(len(values))
         if name == "wind_direction":
             return np.asarray(np.interp(stage, knots, np.unwrap(values, period=360.0)) % 360.0)
         return np.asarray(np.interp(stage, knots, values))
-    positive = name in _POSITIVE or bool(np.all(values >= 0.0))
+    positive = bool(holder.data[name].min() >= 0.0)
     if name == "wind_direction":
         values, positive = np.unwrap(values, period=360.0), False
     nodes = steady(values, pieces_for(interval), positive=positive)
@@ -241,18 +248,24 @@ def _held(values: Array) -> Array:
 
 
 def _fill_radiation(
-    out: Array, climate: Climate, sun: SunPath, edges: Array, stage: Array, weights: tuple[float, ...]
+    out: Array,
+    climate: Climate,
+    sun: SunPath,
+    origin: float,
+    edges: Array,
+    stage: Array,
+    weights: tuple[float, ...],
 ) -> None:
     basis = climate.radiation_basis()
     kept = {"direct+diffuse": RADIATION[:2], "global+diffuse": RADIATION[1:]}[basis]
     courses: dict[str, Array] = {}
     start, kind = 0.0, "mean"
     for name in kept:
-        start, courses[name], kind = window(climate, name, edges[0], edges[-1])
+        start, courses[name], kind = window(climate, name, origin + edges[0], origin + edges[-1])
     blank = np.zeros_like(courses["diffuse_horizontal"])
     direct, diffuse, total = (courses.get(name, blank) for name in RADIATION)
     make = from_means if kind == "mean" else from_instants
-    sky = make(sun, start, climate.grid.interval, direct, diffuse, total, basis)
+    sky = make(sun, start - origin, climate.grid.interval, direct, diffuse, total, basis)
     lit = out[..., CHANNELS.index("sun_up")] > 0.0
     for name in RADIATION:
         profile: Profile = getattr(sky, name)

@@ -207,9 +207,10 @@ def to_starts(
     at = "the end" if late else "the start"
     note = f"{table.where}: a stamp marks {at} of its interval; "
     note += f"means: {', '.join(means)}; " if means else "no means; "
-    note += "all other columns are values at the stamp" + (
-        ", means moved to the start." if late and means else "."
-    )
+    note += "all other columns are values at the stamp"
+    note += ", means moved to the start" if late and means else ""
+    held = "the first is held back to the start" if late else "the last is held to the end"
+    note += f"; of these {held} of the record."
     return columns, closing, grid, note
 
 

@@ -78,7 +78,7 @@ def from_means(
     sun : SunPath
         The sun over the span.
     start, interval : float
-        Start of the first interval, seconds since 1970-01-01 UTC, and length of one [s].
+        Start of the first interval, in the sun's time, and length of one [s].
     direct, diffuse, total : ndarray, shape (n,)
         Means of direct normal, diffuse horizontal and global horizontal irradiance; the one that the basis
         does not name is not read [W/m2].

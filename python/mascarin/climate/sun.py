@@ -35,7 +35,7 @@ class SunPath:
     latitude : float
         Positive north [deg].
     first : float
-        Time of the first node, seconds since 1970-01-01 UTC [s].
+        Time of the first node, seconds since the origin [s].
     slow : ndarray, shape (nodes, 3)
         Direction to the sun in axes (meridian, east, pole) that turn with the mean sun [-].
     extra : ndarray, shape (nodes,)
@@ -48,7 +48,9 @@ class SunPath:
     extra: Array
 
     @classmethod
-    def over(cls, latitude: float, longitude: float, start: float, end: float) -> SunPath:
+    def over(
+        cls, latitude: float, longitude: float, start: float, end: float, origin: float = 0.0
+    ) -> SunPath:
         """Prepare the sun for a span of time.
 
         Parameters
@@ -57,6 +59,8 @@ class SunPath:
             Positive north and east [deg].
         start, end : float
             Span, seconds since 1970-01-01 UTC [s].
+        origin : float
+            Time from which the times of the other methods count, seconds since 1970-01-01 UTC [s].
         """
         import pandas as pd
         from pvlib import solarposition
@@ -72,7 +76,7 @@ class SunPath:
             np.radians(position["azimuth"].to_numpy(dtype=np.float64)),
         )
         slow = _turn(_to_pole(vector, np.radians(latitude)), _TURN * (seconds - first))
-        return cls(latitude, first, slow, SOLAR_CONSTANT / distance**2)
+        return cls(latitude, first - origin, slow, SOLAR_CONSTANT / distance**2)
 
     def vector(self, time: Array) -> Array:
         """Unit vector to the centre of the sun, without refraction.
@@ -80,7 +84,7 @@ class SunPath:
         Parameters
         ----------
         time : ndarray, shape (...,)
-            Seconds since 1970-01-01 UTC, inside the span [s].
+            Seconds since the origin, inside the span [s].
 
         Returns
         -------
@@ -98,7 +102,7 @@ class SunPath:
         Parameters
         ----------
         time : ndarray, shape (...,)
-            Seconds since 1970-01-01 UTC, inside the span [s].
+            Seconds since the origin, inside the span [s].
 
         Returns
         -------
