@@ -69,7 +69,8 @@ class Simulation:
     outputs : sequence of str, optional
         What to record. Default: air and face temperatures, interfaces and sensors.
     scheme : str
-        ``sdirk2`` (default), ``backward-euler``, or ``apparent-capacity``, the paper's, which loses latent heat.
+        ``sdirk2`` (default), ``backward-euler``, or ``apparent-capacity``: the paper's, which loses latent
+        heat.
     initial : ``"repeat"`` or float
         ``repeat``: the first period is repeated until nothing changes by more than 0.01 K. A number: that
         temperature everywhere at the start. [degC]
@@ -103,7 +104,8 @@ class Simulation:
     ) -> None:
         if scheme not in SCHEMES:
             raise InputError(
-                f"scheme: found '{scheme}', expected one of {', '.join(SCHEMES)}. {did_you_mean(scheme, SCHEMES)}"
+                f"scheme: found '{scheme}', expected one of {', '.join(SCHEMES)}. "
+                f"{did_you_mean(scheme, SCHEMES)}"
             )
         self.building = building
         self.climate = climate
@@ -138,7 +140,7 @@ class Simulation:
     @property
     def values(self) -> Array:
         """Nominal value of each parameter, shape (P,). [unit of each]"""
-        return self._description.values
+        return self._description.values  # noqa: PD011 (ours, no pandas object)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -190,7 +192,8 @@ class Simulation:
         parameter = self.building.parameter(path)
         if parameter.path not in self._positions:
             raise InputError(
-                f"{path}: is structural ({parameter.reason}); give it in the building, for example with replace()"
+                f"{path}: is structural ({parameter.reason}); give it in the building, for example with "
+                "replace()"
             )
         return self._positions[parameter.path]
 
@@ -308,8 +311,8 @@ class Simulation:
         if self._initial is not None:
             return f"{self._initial:g} degC everywhere"
         return (
-            f"first {self._first_period / 3600.0:g} h repeated {raw['cycles']} times until nothing changed by more "
-            f"than {SETTLED:g} K (last change {raw['settled']:.4f} K)"
+            f"first {self._first_period / 3600.0:g} h repeated {raw['cycles']} times until nothing changed "
+            f"by more than {SETTLED:g} K (last change {raw['settled']:.4f} K)"
         )
 
 
@@ -406,7 +409,7 @@ def _finite(forcing: Array, channels: Sequence[str], building: Building) -> None
     absent = {"pressure"} | (set() if building.site.sky.kind == "measured" else {"infrared"})
     if building.site.sky.kind in ("offset", "measured"):
         absent.add("dew_point")
-    bad = np.isnan(forcing).any(axis=(0, 1)).tolist()
+    bad = [bool(np.isnan(forcing[..., k]).any()) for k in range(len(names))]
     missing = [name for name, empty in zip(names, bad, strict=True) if empty and name not in absent]
     if missing:
         raise InputError(

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 class StateSpace:
     """``dx/dt = A x + B u``, ``y = C x + D u``.
 
-    States are cell and air temperatures [degC]. Inputs are the outdoor air [degC], the emission of the sky [W/m2],
-    irradiances on faces [W/m2], measured temperatures [degC], and `one`, the constant 1 that carries what linearised
-    radiation leaves over. Outputs are air and face temperatures [degC].
+    States are cell and air temperatures [degC]. Inputs are the outdoor air [degC], the emission of the sky
+    [W/m2], irradiances on faces [W/m2], measured temperatures [degC], and `one`, the constant 1 that carries
+    what linearised radiation leaves over. Outputs are air and face temperatures [degC].
 
     Attributes
     ----------

@@ -6,6 +6,7 @@ evaluated in batches, `solve` finds the parameters, and the `Fit` says how certa
 
 from __future__ import annotations
 
+from mascarin.calibration.buildings import Sensor, calibrate
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.fit import Fit, Minimum
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor, require_known
@@ -22,8 +23,10 @@ __all__ = [
     "FitSensor",
     "Minimum",
     "Rules",
+    "Sensor",
     "Trace",
     "Uncertainty",
+    "calibrate",
     "require_known",
     "solve",
 ]

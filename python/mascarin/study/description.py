@@ -140,8 +140,8 @@ class IdentificationPlan(Part):
     )
     independent: str | None = Field(
         None,
-        description="Time after which residuals of a model count as independent; samples closer together share "
-        "one weight, so that priors are not drowned by an error that lasts",
+        description="Time after which residuals of a model count as independent; samples closer together "
+        "share one weight, so that priors are not drowned by an error that lasts",
     )
 
 

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import __version__
-from mascarin.study.observation import PERIODS
 from mascarin.study.pipeline import scores_of
+from mascarin.validation.observation import PERIODS
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
     from mascarin.model import Building
-    from mascarin.study.description import StudyFile
+    from mascarin.sensitivity.spectral import SpectralSensitivity
     from mascarin.study.pipeline import Findings, ModelRun, Study
 
 #: Parameters named in the spectra and shares over the day.
@@ -49,8 +49,8 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
     Returns
     -------
     dict
-        Ready for JSON. In ``sensors`` the metrics at the level of a period are those of the fitted model; those of
-        every model stand beside them under its name.
+        Ready for JSON. In ``sensors`` the metrics at the level of a period are those of the fitted model;
+        those of every model stand beside them under its name.
     """
     file = study.file
     models = {"nominal": findings.nominal, "fitted": findings.fitted, **findings.variants}
@@ -83,7 +83,7 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
         "notes": [{"title": "What a reader must know", "text": text} for text in findings.fit.warnings],
     }
     if findings.sensitivity is not None:
-        content |= _sensitivity(study, findings)
+        content |= _sensitivity(study, findings.sensitivity)
     return content
 
 
@@ -350,9 +350,7 @@ def _facing(side: Any) -> str:
 # --- sensitivity --------------------------------------------------------------------------------------------
 
 
-def _sensitivity(study: Study, findings: Findings) -> dict[str, Any]:
-    found = findings.sensitivity
-    assert found is not None
+def _sensitivity(study: Study, found: SpectralSensitivity) -> dict[str, Any]:
     hours = _hours(study, found.share_t.shape[1])
     return {
         "sensitivity": found.to_dict(),
@@ -373,13 +371,12 @@ def _hours(study: Study, count: int) -> npt.NDArray[np.float64]:
     """Hour of the day of each analysed time, local."""
     import pandas as pd
 
-    assert study.file.sensitivity is not None
-    step = pd.Timedelta(study.file.sensitivity.interval)
+    step = pd.Timedelta(seconds=(study.identification[1] - study.identification[0]).total_seconds() / count)
     times = pd.date_range(study.identification[0], periods=count, freq=step).tz_localize(None)
     return np.asarray(times.hour + times.minute / 60.0, dtype=np.float64)
 
 
-def _spectrum(found: Any, output: str) -> dict[str, Any]:
+def _spectrum(found: SpectralSensitivity, output: str) -> dict[str, Any]:
     spectrum = found.spectrum(output)
     return {
         "frequencies": list(range(1, len(spectrum.power) + 1)),

@@ -1,7 +1,7 @@
 """What a study keeps on disk while it works, so that a killed one goes on where it was.
 
-Every file appears complete or not at all: it is written under another name and then renamed. The manifest says
-which inputs the kept work belongs to.
+Every file appears complete or not at all: it is written under another name and then renamed. The manifest
+says which inputs the kept work belongs to.
 """
 
 from __future__ import annotations

@@ -26,11 +26,11 @@ from mascarin.simulation import Simulation
 from mascarin.study.description import StudyFile, Variant, read_study
 from mascarin.study.fitting import fit_parameters, identify
 from mascarin.study.keeping import Workspace
-from mascarin.study.observation import PERIODS, Observation, observe, require_comparable
 from mascarin.study.screening import factors, screen
 from mascarin.study.sources import find, open_climate, open_measurements
 from mascarin.validation.criteria import Criterion, Verdict, judge, parse_criteria
 from mascarin.validation.metrics import Metrics, compare
+from mascarin.validation.observation import PERIODS, Observation, observe, require_comparable
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -159,8 +159,9 @@ class Study:
 
     def _span(self, name: str) -> tuple[pd.Timestamp, pd.Timestamp] | None:
         span = getattr(self.file.periods, name)
-        if span is None:
-            return None
+        return None if span is None else self._moments(span, name)
+
+    def _moments(self, span: tuple[str, str], name: str) -> tuple[pd.Timestamp, pd.Timestamp]:
         return self._moment(span[0], name), self._moment(span[1], name)
 
     def _check_periods(self) -> None:
@@ -168,7 +169,8 @@ class Study:
             span = self._span(name)
             if span is not None and span[1] <= span[0]:
                 raise InputError(
-                    f"{self.path}: periods.{name}: found {span[0]} .. {span[1]}, expected the end after the start"
+                    f"{self.path}: periods.{name}: found {span[0]} .. {span[1]}, expected the end after the "
+                    "start"
                 )
         held, known = self._span("corroboration"), self.identification
         if held is not None and held[0] < known[1] and known[0] < held[1]:
@@ -180,9 +182,7 @@ class Study:
     @cached_property
     def identification(self) -> tuple[pd.Timestamp, pd.Timestamp]:
         """Start and end of the identification period."""
-        span = self._span("identification")
-        assert span is not None
-        return span
+        return self._moments(self.file.periods.identification, "identification")
 
     @cached_property
     def start(self) -> pd.Timestamp:
@@ -327,10 +327,9 @@ class Study:
         tell = _Teller(quiet)
         nominal = self._compared("nominal", self.simulation, self.simulation.values, None, "as described")
         sensitivity = self._screen(workspace, tell)
-        fitted = self._identified(
+        fitted, fit = self._identified(
             "fitted", self.building, workspace, tell, "after the identification, frozen on all other days"
         )
-        assert fitted.fit is not None
         variants = {
             name: self._variant(name, variant, workspace, tell)
             for name, variant in self.file.variants.items()
@@ -344,7 +343,7 @@ class Study:
             fitted,
             variants,
             sensitivity,
-            fitted.fit,
+            fit,
             verdicts,
             self.quality,
             time.monotonic() - began,
@@ -376,7 +375,7 @@ class Study:
 
     def _identified(
         self, label: str, building: Building, workspace: Workspace, tell: _Teller, note: str
-    ) -> ModelRun:
+    ) -> tuple[ModelRun, Fit]:
         short = self._short(building)
         with tell.about(f"identification ({label})") as progress:
             fit = identify(
@@ -389,13 +388,13 @@ class Study:
                 progress=_searching(progress),
             )
         whole = self._simulate(building, self.start, self.end)
-        return self._compared(label, whole, whole.vector(fit.values), fit, note)
+        return self._compared(label, whole, whole.vector(fit.values), fit, note), fit
 
     def _variant(self, name: str, variant: Variant, workspace: Workspace, tell: _Teller) -> ModelRun:
         building = self.building.replace(variant.changes)
         note = variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
         if variant.identify:
-            return self._identified(name, building, workspace, tell, note)
+            return self._identified(name, building, workspace, tell, note)[0]
         simulation = self._simulate(building, self.start, self.end)
         return self._compared(name, simulation, simulation.values, None, note)
 

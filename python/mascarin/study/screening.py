@@ -93,10 +93,10 @@ def screen(
         done[first : first + len(values)] = True
     positions = [simulation.position(path) for path in runs.paths]
     every = max(1, round(seconds_of(plan.interval) / simulation.step_seconds))
-    size = _FIRST_CHUNK
-    for first, samples in _missing(runs, done, lambda: size):
+    pace = _Pace()
+    for first, samples in _missing(runs, done, pace):
         began = time.monotonic()
-        vectors = np.repeat(simulation.values[None, :], len(samples), axis=0)
+        vectors = np.tile(simulation.vector({}), (len(samples), 1))
         vectors[:, positions] = samples
         records, _, failures = simulation.ensemble(
             vectors, record_from=round(lead_seconds / simulation.step_seconds), record_every=every
@@ -110,20 +110,24 @@ def screen(
         workspace.keep(_NAME, first, records)
         accumulator.add(first, records)
         done[first : first + len(samples)] = True
-        size = _next_size(size, time.monotonic() - began)
+        pace.learn(len(samples), time.monotonic() - began)
         progress.update(int(done.sum()), len(runs))
     return accumulator.result()
 
 
-def _next_size(size: int, seconds: float) -> int:
-    """Runs that fill a chunk, in whole packs of lanes."""
-    wanted = size * CHUNK_SECONDS / max(seconds, 1e-3)
-    return int(np.clip(8 * round(wanted / 8), 8, 2048))
+class _Pace:
+    """How many runs fill a chunk, in whole packs of lanes; learnt from the last one."""
+
+    def __init__(self) -> None:
+        self.size = _FIRST_CHUNK
+
+    def learn(self, runs: int, seconds: float) -> None:
+        wanted = runs * CHUNK_SECONDS / max(seconds, 1e-3)
+        self.size = int(np.clip(8 * round(wanted / 8), 8, 2048))
 
 
-def _missing(runs: Design, done: npt.NDArray[np.bool_], size: object) -> Iterator[tuple[int, Array]]:
+def _missing(runs: Design, done: npt.NDArray[np.bool_], pace: _Pace) -> Iterator[tuple[int, Array]]:
     """Runs that have not been made, in consecutive pieces of one replicate."""
-    assert callable(size)
     for replicate in range(runs.replicates):
         start = replicate * runs.runs
         samples = runs.samples(replicate)
@@ -132,7 +136,7 @@ def _missing(runs: Design, done: npt.NDArray[np.bool_], size: object) -> Iterato
             if done[start + row]:
                 row += 1
                 continue
-            stop = min(row + int(size()), runs.runs)
+            stop = min(row + pace.size, runs.runs)
             taken = done[start + row : start + stop]
             stop = row + (int(np.argmax(taken)) if taken.any() else stop - row)
             yield start + row, samples[row:stop]

@@ -10,7 +10,8 @@ from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.model import Building
-    from mascarin.study.description import ClimateSource, StudyFile, Table
+    from mascarin.model.site import Site
+    from mascarin.study.description import ClimateSource, MeasuredWeather, StudyFile, Table
 
 #: A file that the data module knows, by name.
 KNOWN = "data:"
@@ -55,10 +56,12 @@ def open_climate(source: ClimateSource, beside: Path, building: Building) -> Cli
         return Climate.from_epw(find(source.epw, beside))
     if source.tmy is not None:
         return Climate.from_tmy(find(source.tmy, beside))
-    table = source.measured
-    assert table is not None, "the description has exactly one source"
-    options = dict(table.options)
-    site = building.site
+    if source.measured is not None:
+        return _measured_climate(source.measured, beside, building.site)
+    raise InputError("climate: nothing given; expected one of epw, tmy, measured")
+
+
+def _measured_climate(table: MeasuredWeather, beside: Path, site: Site) -> Climate:
     return Climate.from_table(
         find(table.table, beside),
         columns={channel: _column(given) for channel, given in table.columns.items()},
@@ -66,7 +69,7 @@ def open_climate(source: ClimateSource, beside: Path, building: Building) -> Cli
         latitude=float(site.latitude),
         longitude=float(site.longitude),
         altitude=float(site.altitude),
-        **options,
+        **table.options,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
@@ -17,10 +17,19 @@ if TYPE_CHECKING:
 
     from mascarin.climate import Measurements
     from mascarin.simulation import Simulation
-    from mascarin.study.description import Sensor
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]
+
+
+class SensorLike(Protocol):
+    """What is compared: columns of a table whose mean one model output stands for."""
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of the measured table."""
+        ...
+
 
 PERIODS: Final = ("identification", "corroboration", "blind")
 
@@ -79,7 +88,7 @@ class Observation:
 
 
 def observe(
-    simulation: Simulation, measurements: Measurements, sensors: Mapping[str, Sensor], start: pd.Timestamp
+    simulation: Simulation, measurements: Measurements, sensors: Mapping[str, SensorLike], start: pd.Timestamp
 ) -> Observation:
     """Measured series where model and measurement can be compared.
 
@@ -89,7 +98,7 @@ def observe(
         Gives step and end.
     measurements : Measurements
         The table, masked as wished.
-    sensors : mapping of str to Sensor
+    sensors : mapping of str to SensorLike
         What to compare.
     start : pandas.Timestamp
         First instant.
@@ -113,7 +122,9 @@ def observe(
     return Observation(times, interval, np.stack(columns, axis=-1), kinds, tuple(sensors))
 
 
-def _measured(measurements: Measurements, sensor: Sensor, times: pd.DatetimeIndex, interval: float) -> Array:
+def _measured(
+    measurements: Measurements, sensor: SensorLike, times: pd.DatetimeIndex, interval: float
+) -> Array:
     """Mean of a sensor's columns; where one is missing the others stand for it."""
     parts = np.stack([measurements.at(column, times, interval) for column in sensor.columns])
     known = np.isfinite(parts)
@@ -165,6 +176,6 @@ def require_comparable(observation: Observation, use: Flags, what: str, sensors:
     for s, name in enumerate(observation.names):
         if name in sensors and not np.isfinite(observation.measured[use, s]).any():
             raise InputError(
-                f"sensors.{name}: has no values during the {what} (missing or masked); choose another period, "
-                "sensor or mask"
+                f"sensors.{name}: has no values during the {what} (missing or masked); choose another "
+                "period, sensor or mask"
             )
