@@ -72,6 +72,8 @@ class Program:
         self._templates = [_read_template(entry) for entry in project.template]
         self._text_names = self._check_names()
         self._words = _split_command(project)
+        files = (*project.input, *project.log, *project.output)
+        self._own_names = {Path(e.name).name for e in files}
         self._found: dict[str, int] = {}
         self._running: set[subprocess.Popen[bytes]] = set()
         self._lock = threading.Lock()
@@ -125,8 +127,7 @@ class Program:
             )
         for entry in (*project.input, *project.log, *project.output):
             stale = Path.cwd() / entry.name
-            named = any(w.text == entry.name for w in self._words)
-            if named and stale.exists():
+            if entry.name in words and stale.exists():
                 project.report.beyond(
                     project.command_place,
                     f"'{stale}' has the name of a file of the run, so GenOpt started in this directory would "
@@ -355,7 +356,8 @@ class Program:
         list of str
             Program and arguments.
         """
-        return [_place_word(w, self._variables(folder), self._project.folder) for w in self._words]
+        variables, base = self._variables(folder), self._project.folder
+        return [_place_word(w, variables, base, self._own_names) for w in self._words]
 
     def _variables(self, folder: Path) -> dict[str, str]:
         """Values of the variables of the command line."""
@@ -429,14 +431,15 @@ def _split_command(project: Project) -> list[_Word]:
     return [_Word(w) for w in words]
 
 
-def _place_word(word: _Word, variables: dict[str, str], folder: Path) -> str:
+def _place_word(word: _Word, variables: dict[str, str], folder: Path, own: set[str]) -> str:
     """A word with its variables replaced and its path made absolute where GenOpt does so."""
     text = functions.substitute(word.text, variables)
     if text.startswith(".") and not re.match(r"\.\d+\Z", text):
         return os.path.normpath(folder / text)
-    # A name that comes from the project's own files belongs to the run, whatever lies in the directory
-    # from which the optimisation was started.
-    if text == word.text and text and not Path(text).is_absolute() and Path(text).exists():
+    # The name of one of the run's own files means that file, whatever lies in the directory from which the
+    # optimisation was started.
+    literal = text == word.text and text not in own
+    if literal and text and not Path(text).is_absolute() and Path(text).exists():
         return str(Path(text).absolute())
     return text
 

@@ -72,7 +72,9 @@ class DifferentialEvolution(Optimiser):
         self._weight, self._crossover, self._tolerance = weight, crossover, tolerance
         self._random = Lcg48(seed)
         self._limits = [(c.lower, c.upper) for c in space.continuous] + [
-            (0.0, d.size - 1.0) for d in space.discrete
+            # Every value has an interval of the same length.
+            (-0.5, d.size - 0.5)
+            for d in space.discrete
         ]
 
     @property
@@ -139,7 +141,10 @@ class DifferentialEvolution(Optimiser):
     def _point(self, v: Sequence[float]) -> Point:
         """A point with discrete coordinates rounded."""
         n = len(self.space.continuous)
-        return Point(tuple(v[:n]), tuple(round(k) for k in v[n:]), self.step_number)
+        choices = tuple(
+            min(max(round(k), 0), d.size - 1) for k, d in zip(v[n:], self.space.discrete, strict=True)
+        )
+        return Point(tuple(v[:n]), choices, self.step_number)
 
     def _report(self, people: Sequence[Evaluation], generation: int) -> None:
         for e in people:

@@ -31,7 +31,9 @@ def levels(c: Continuous, intervals: int) -> list[float]:
     if n == 0:
         return [c.initial]
     if intervals < 0:
-        return [c.lower * math.exp(i * math.log(c.upper / c.lower) / n) for i in range(n + 1)]
+        # Rounding must not carry the last level beyond the bound.
+        ratio = math.log(c.upper / c.lower) / n
+        return [min(c.lower * math.exp(i * ratio), c.upper) for i in range(n + 1)]
     return [c.lower + i * (c.upper - c.lower) / n for i in range(n + 1)]
 
 
