@@ -1,0 +1,208 @@
+"""Each fault is put into a residual on purpose and must be found, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from mascarin.errors import InputError
+from mascarin.validation.residuals import Examination, Explanation, diagnose, examine, explain
+
+Floats = NDArray[np.float64]
+
+STEP = 900.0
+DAYS = 10
+HOUR = np.arange(96 * DAYS) * 0.25
+SUN = np.maximum(0.0, np.sin((HOUR % 24.0 - 6.0) / 12.0 * np.pi)) * np.repeat(
+    [800.0, 300.0, 900.0, 500.0, 850.0, 200.0, 700.0, 900.0, 400.0, 600.0], 96
+)
+
+
+def _red(seed: int, phi: float = 0.97) -> Floats:
+    """A slow series without a daily cycle, standard deviation 1."""
+    noise = np.random.default_rng(seed).normal(size=HOUR.size + 500)
+    return np.asarray(lfilter([math.sqrt(1.0 - phi**2)], [1.0, -phi], noise)[500:])
+
+
+WIND = np.maximum(0.0, 3.5 + 1.5 * _red(1))
+AIR = 24.0 + 4.0 * np.cos((HOUR - 15.0) / 12.0 * np.pi) + _red(2, 0.99)
+MEASURED = 26.0 + 5.0 * np.cos((HOUR - 15.0) / 12.0 * np.pi)
+NOISE = 0.2 * np.random.default_rng(3).normal(size=HOUR.size)
+
+
+def _examined(error: Floats, measured: Floats = MEASURED, **keywords: object) -> Examination:
+    return examine(
+        measured,
+        measured + NOISE + error,
+        step=STEP,
+        hour=HOUR % 24.0,
+        drivers={"sun": SUN, "wind": WIND, "outdoor air": AIR},
+        sensor="room",
+        **keywords,  # type: ignore[arg-type]
+    )
+
+
+def test_noise_is_called_noise() -> None:
+    e = _examined(np.zeros(HOUR.size))
+    assert e.white
+    assert not any(link.real for link in e.links)
+    assert e.effective == e.n == HOUR.size
+    assert abs(e.delay) < 1.0
+    assert diagnose([e]) == ["room: what is left is noise: nothing points to an error of the model."]
+
+
+def test_error_that_follows_the_sun() -> None:
+    e = _examined(0.002 * np.roll(SUN, 4))
+    first = e.links[0]
+    assert (first.driver, first.real) == ("sun", True)
+    assert first.lag == pytest.approx(1.0)
+    assert first.slope == pytest.approx(0.002, rel=0.1)
+    text = " ".join(diagnose([e]))
+    assert "goes with the sun 1 h later" in text
+    assert "too much of the sun's heat gets in" in text
+    assert "with the wind" not in text
+
+
+def test_error_that_follows_the_wind() -> None:
+    e = _examined(-0.3 * (WIND - WIND.mean()))
+    assert e.links[0].driver == "wind"
+    assert e.links[0].correlation < -0.8
+    text = " ".join(diagnose([e]))
+    assert "goes with the wind (correlation -0." in text
+    assert "takes too much heat away when it blows" in text
+
+
+def test_a_slow_error_of_unknown_origin_is_not_put_down_to_a_driver() -> None:
+    put_down = 0
+    for seed in range(20):
+        e = _examined(0.5 * _red(100 + seed))
+        assert not e.white
+        put_down += any(link.real for link in e.links)
+    assert put_down <= 4
+
+
+def test_memory_without_a_cause_is_said() -> None:
+    e = _examined(0.5 * _red(104))
+    (sentence,) = diagnose([e])
+    assert "what is left is not noise, errors last for about" in sentence
+    assert e.effective < 0.2 * e.n
+
+
+def test_hours_of_the_day() -> None:
+    burst = np.where((HOUR % 24.0 >= 14.0) & (HOUR % 24.0 < 15.0), 1.5, 0.0)
+    e = _examined(burst)
+    assert e.hour_mean[14] == pytest.approx(1.5, abs=0.1)
+    assert e.hour_mean[3] == pytest.approx(0.0, abs=0.1)
+    assert e.hour_sd[3] == pytest.approx(0.2, abs=0.05)
+    assert e.hour_share > 0.6 > e.hour_limit
+    assert "at 14 h" in " ".join(diagnose([e]))
+
+
+def test_daily_amplitude_and_phase() -> None:
+    late = 26.0 + 4.0 * np.cos((HOUR - 16.0) / 12.0 * np.pi) + 0.05 * HOUR
+    e = examine(MEASURED, late, step=STEP, hour=HOUR % 24.0, sensor="gap")
+    assert e.measured is not None
+    assert e.simulated is not None
+    assert (e.measured.amplitude, e.measured.peak) == pytest.approx((5.0, 15.0))
+    assert (e.simulated.amplitude, e.simulated.peak) == pytest.approx((4.0, 16.0))
+    assert e.delay == pytest.approx(60.0)
+    early = examine(late, MEASURED, step=STEP, hour=HOUR % 24.0, sensor="gap")
+    assert early.delay == pytest.approx(-60.0)
+    wrapped = examine(np.roll(MEASURED, 34), np.roll(MEASURED, 38), step=STEP, hour=HOUR % 24.0)
+    assert wrapped.delay == pytest.approx(60.0)
+
+
+def test_swing_and_delay_in_words() -> None:
+    swing = 26.0 + 6.5 * np.cos((HOUR - 16.0) / 12.0 * np.pi)
+    text = " ".join(diagnose([_examined(swing - MEASURED)]))
+    assert "swings more than measured, by 6.5 against 5 degC: too little storage" in text
+    assert "daily peak comes 60 min late" in text
+
+
+def test_bias_in_words() -> None:
+    assert "the model is 0.99 degC below the measurement on average" in " ".join(
+        diagnose([_examined(np.full(HOUR.size, -1.0))])
+    )
+
+
+def test_gaps_change_little() -> None:
+    error = 0.002 * SUN
+    gappy = MEASURED.copy()
+    gappy[200:260] = np.nan
+    gappy[::9] = np.nan
+    whole, holed = _examined(error), _examined(error, measured=gappy)
+    assert holed.n < whole.n
+    assert holed.links[0].correlation == pytest.approx(whole.links[0].correlation, abs=0.02)
+    assert holed.delay == pytest.approx(whole.delay, abs=3.0)
+    used = _examined(error, use=np.arange(HOUR.size) < 480)
+    assert used.n == 480
+
+
+def test_cumulative_periodogram_of_one_oscillation() -> None:
+    wave = np.cos(HOUR / 12.0 * np.pi)
+    e = examine(MEASURED, MEASURED + wave, step=STEP, hour=HOUR % 24.0)
+    at = np.searchsorted(e.frequency, 1.0)
+    assert e.frequency[at] == pytest.approx(1.0)
+    assert e.cumulative[at - 1] == pytest.approx(0.0, abs=1e-9)
+    assert e.cumulative[at] == pytest.approx(1.0)
+    assert not e.white
+
+
+def test_parameters_whose_effect_has_the_shape_of_the_residual() -> None:
+    effects = {
+        "absorptance": 0.01 * SUN,
+        "film": -0.01 * SUN + 0.5 * np.cos(HOUR / 12.0 * np.pi),
+        "wall": _red(5),
+        "idle": np.zeros(HOUR.size),
+        "weak": 1e-6 * SUN,
+    }
+    residual = 0.003 * SUN + 0.01 * NOISE
+    residual[:20] = np.nan
+    found = explain(residual, effects)
+    assert found[0].path == "absorptance"
+    assert found[0].change == pytest.approx(-0.3, abs=0.01)
+    assert found[0].share > 0.99
+    # An effect too small to explain it within its range is no explanation.
+    assert "weak" not in [x.path for x in explain(residual, effects, limit=9)]
+    e = _examined(0.003 * SUN)
+    text = diagnose([e], {"room": found})[-1]
+    assert "absorptance lower by 0.30 of its range (100 % of the squared error)" in text
+    assert diagnose([_examined(np.zeros(HOUR.size))], {"room": [Explanation("x", 0.9, 0.1)]})[0].endswith(
+        "error of the model."
+    )
+
+
+def test_dictionary_is_json() -> None:
+    e = _examined(0.002 * SUN)
+    data = json.loads(json.dumps(e.to_dict(), allow_nan=False))
+    assert len(data["hour_mean"]) == 24
+    assert data["acf"][0] == 1.0
+    assert data["acf_lags"][1] == 0.25
+    assert set(data["correlation"]) == {"sun", "wind", "outdoor air"}
+    assert data["daily_cycle"]["delay_minutes"] == pytest.approx(e.delay)
+    short = examine(MEASURED[:48], MEASURED[:48] + NOISE[:48], step=STEP, hour=HOUR[:48])
+    assert json.loads(json.dumps(short.to_dict(), allow_nan=False))["hour_mean"][20] is None
+    assert short.measured is None
+    assert math.isnan(short.delay)
+
+
+def test_a_driver_that_never_changes_is_no_link() -> None:
+    e = examine(MEASURED, MEASURED + NOISE, step=STEP, hour=HOUR % 24, drivers={"fan": np.ones(HOUR.size)})
+    assert math.isnan(e.links[0].correlation)
+    assert not e.links[0].real
+
+
+def test_series_that_cannot_be_examined_are_refused() -> None:
+    with pytest.raises(InputError, match="23 samples to examine"):
+        examine(MEASURED[:23], MEASURED[:23], step=STEP, hour=HOUR[:23])
+    with pytest.raises(InputError, match=r"sun \(5,\)"):
+        examine(MEASURED, MEASURED, step=STEP, hour=HOUR, drivers={"sun": np.ones(5)})
+    with pytest.raises(InputError, match="must be positive"):
+        examine(MEASURED, MEASURED, step=0.0, hour=HOUR)
+    with pytest.raises(InputError, match="3 values for 960"):
+        explain(MEASURED, {"a": np.ones(3)})
