@@ -64,6 +64,8 @@ pub struct Wall<S> {
     pub cells: Vec<Cell<S>>,
     /// Massless resistance in each link [m2 K/W].
     pub extra: Vec<S>,
+    /// Whether a massless layer lies in a link.
+    pub massless: Vec<bool>,
     /// Phase-change laws of its layers.
     pub pcm: Vec<PcmCoefficients<S>>,
     /// Resistance of each massless layer, zero for the others [m2 K/W].
@@ -216,7 +218,8 @@ impl<S: Real> Wall<S> {
             .iter()
             .map(|layers| layers.iter().fold(S::zero(), |sum, &layer| sum + layer_resistance[layer]));
         let extra = extra.collect();
-        Self { area: values.get(surface.area), extra, cells, pcm, layer_resistance }
+        let massless = wall.link_layers.iter().map(|layers| !layers.is_empty()).collect();
+        Self { area: values.get(surface.area), extra, massless, cells, pcm, layer_resistance }
     }
 }
 

@@ -190,12 +190,16 @@ impl<S: Real> Chain<S> {
             self.points[i] = Some(point);
         }
         for i in 0..self.links.len() {
-            self.linearise_link(wall, i, at);
+            self.linearise_link(wall, i, at, start);
         }
     }
 
-    /// Newton form of `K (T_left - T_right)` with K depending on the temperatures of its cells.
-    fn linearise_link(&mut self, wall: &Wall<S>, i: usize, at: &Iterate<'_, S>) {
+    /// Newton form of the flux along a link whose conductivity depends on temperature.
+    fn linearise_link(&mut self, wall: &Wall<S>, i: usize, at: &Iterate<'_, S>, start: &Start<'_, S>) {
+        if let Some(link) = self.link_in_pcm(wall, i, at, start) {
+            self.links[i] = link;
+            return;
+        }
         let n = wall.cells.len();
         let (left, left_temperature) =
             if i > 0 { (self.end(wall, i - 1), at.cells[i - 1]) } else { (End::face(), at.faces[0]) };
@@ -204,6 +208,7 @@ impl<S: Real> Chain<S> {
         if !left.varies && !right.varies {
             return;
         }
+        // `K (T_left - T_right)` with K from the half cells at their own temperatures.
         let conductance = S::one() / (left.resistance + wall.extra[i] + right.resistance);
         let square = conductance * conductance * (left_temperature - right_temperature);
         let (by_left, by_right) = (square * left.gain, square * right.gain);
@@ -216,6 +221,48 @@ impl<S: Real> Chain<S> {
             right: conductance - by_right,
             offset: -(by_left * left_temperature + by_right * right_temperature),
         };
+    }
+
+    /// The link between two points of one phase-change layer, or of its cell and a bare face.
+    ///
+    /// The flux is the difference of the integrals of the conductivity (Kirchhoff's transformation) over the
+    /// distance: exact in a steady state, however much the conductivity changes in between, and its derivatives
+    /// keep the sign of the conductivity, so that Newton's matrix stays an M-matrix.
+    fn link_in_pcm(
+        &self,
+        wall: &Wall<S>,
+        i: usize,
+        at: &Iterate<'_, S>,
+        start: &Start<'_, S>,
+    ) -> Option<Link<S>> {
+        let n = wall.cells.len();
+        // The face belongs to the layer behind it.
+        let (outer, inner) = (i.saturating_sub(1), i.min(n.saturating_sub(1)));
+        let (Matter::Pcm(law), Matter::Pcm(other)) =
+            (&wall.cells.get(outer)?.matter, &wall.cells[inner].matter)
+        else {
+            return None;
+        };
+        if law != other || wall.massless[i] {
+            return None;
+        }
+        let end = |cell: usize, face: Option<S>| match (face, self.points[cell]) {
+            (None, Some(point)) => Some((at.cells[cell], point)),
+            (Some(temperature), _) => {
+                Some((temperature, wall.pcm[*law].at(temperature, &start.memory[cell])))
+            }
+            (None, None) => None,
+        };
+        let (left_temperature, left) = end(outer, (i == 0).then_some(at.faces[0]))?;
+        let (right_temperature, right) = end(inner, (i == n).then_some(at.faces[1]))?;
+        let whole = wall.cells[outer].thickness.scale(if i == 0 || i == n { 0.5 } else { 1.0 });
+        let (by_left, by_right) = (left.conductivity / whole, right.conductivity / whole);
+        Some(Link {
+            left: by_left,
+            right: by_right,
+            offset: (left.potential - right.potential) / whole - by_left * left_temperature
+                + by_right * right_temperature,
+        })
     }
 
     /// The half of a cell that a link crosses.

@@ -20,6 +20,8 @@ pub struct PcmPoint<S> {
     pub conductivity: S,
     /// Slope of the conductivity [W/(m K2)].
     pub conductivity_slope: S,
+    /// Integral of the conductivity over temperature [W/m], from a temperature of the law's own.
+    pub potential: S,
 }
 
 /// What a phase-change cell remembers between steps. Changes once per accepted step;
@@ -117,6 +119,15 @@ impl<S: Real> PcmCoefficients<S> {
             Law::Tanh { centre, width, latent_heat } => self.tanh(temperature, *centre, *width, *latent_heat),
             Law::Table(table) => table.at(temperature, self.volumetric_heat),
         };
+        let molten = match &self.law {
+            Law::Tanh { centre, width, .. } => {
+                // The integral of the fraction, w/2 ln(1 + e^(2x)), from the fraction itself.
+                let excess = temperature - *centre;
+                let larger = fraction.max(S::one() - fraction);
+                excess.max(S::zero()) - (*width * larger.ln()).scale(0.5)
+            }
+            Law::Table(table) => table.molten(temperature),
+        };
         let spread = self.conductivity[1] - self.conductivity[0];
         PcmPoint {
             enthalpy,
@@ -124,6 +135,7 @@ impl<S: Real> PcmCoefficients<S> {
             liquid_fraction: fraction,
             conductivity: self.conductivity[0] + fraction * spread,
             conductivity_slope: spread * fraction_slope,
+            potential: self.conductivity[0] * temperature + spread * molten,
         }
     }
 
@@ -184,6 +196,20 @@ impl<S: Real> Table<S> {
         (enthalpy, slope * factor + outside, fraction, fraction_slope)
     }
 
+    /// Integral of the liquid fraction over temperature [K], from the solidus.
+    fn molten(&self, temperature: S) -> S {
+        let read = temperature - self.shift;
+        let solid = self.curve(self.solidus);
+        let melt = self.curve(self.liquidus) - solid;
+        let mut below = 0.0;
+        let mut sum = (read - S::constant(self.liquidus)).max(S::zero());
+        for segment in &self.segments {
+            sum += segment.integral(read, below - solid, [self.solidus, self.liquidus]).scale(1.0 / melt);
+            below += segment.linear + segment.square + segment.cube;
+        }
+        sum
+    }
+
     /// Specific enthalpy above the first point [J/kg] at an unshifted temperature.
     fn curve(&self, temperature: f64) -> f64 {
         self.segments.iter().map(|segment| segment.at(temperature).0).sum()
@@ -206,6 +232,19 @@ impl Segment {
         let slope =
             S::constant(self.linear) + u * (S::constant(2.0 * self.square) + u.scale(3.0 * self.cube));
         (rise, S::select(inside, slope.scale(1.0 / self.length), S::zero()))
+    }
+
+    /// Integral of `offset + rise` up to a temperature, over the part of the segment within a range.
+    fn integral<S: Real>(&self, temperature: S, offset: f64, range: [f64; 2]) -> S {
+        let [low, high] = range.map(|end| ((end - self.start) / self.length).clamp(0.0, 1.0));
+        let raw = (temperature - S::constant(self.start)).scale(1.0 / self.length);
+        let u = raw.max(S::constant(low)).min(S::constant(high));
+        self.antiderivative(u, offset) - self.antiderivative(S::constant(low), offset)
+    }
+
+    fn antiderivative<S: Real>(&self, u: S, offset: f64) -> S {
+        let cubic = S::constant(self.square / 3.0) + u.scale(self.cube / 4.0);
+        (u * (S::constant(offset) + u * (S::constant(self.linear / 2.0) + u * cubic))).scale(self.length)
     }
 }
 
@@ -263,6 +302,8 @@ mod tests {
             assert!((point.enthalpy.slope[0] / point.capacity.value - 1.0).abs() < 1e-9, "capacity at {t}");
             let slope = point.conductivity.slope[0] - point.conductivity_slope.value;
             assert!(slope.abs() < 1e-12, "conductivity at {t}");
+            let slope = point.potential.slope[0] - point.conductivity.value;
+            assert!(slope.abs() < 1e-12, "potential at {t}");
             assert!(point.enthalpy.value > last);
             last = point.enthalpy.value;
         }
