@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from mascarin.model import load
-from mascarin.report.describe import assumption_entries, building_entry
 from mascarin.report.payload import Column, Series
+
+if TYPE_CHECKING:
+    from mascarin.model import Building
 
 Array = npt.NDArray[np.float64]
 LGI = Path(__file__).resolve().parent.parent / "python" / "mascarin" / "examples" / "lgi"
@@ -120,8 +122,19 @@ def lgi() -> tuple[dict[str, Any], Series]:
                 for n, key in enumerate(SENSORS)
             },
         },
-        "building": building_entry(building),
-        "assumptions": assumption_entries(building),
+        "building": _building(building),
+        "assumptions": [
+            {
+                "path": p.path,
+                "value": p.value,
+                "unit": p.unit,
+                "low": p.low,
+                "high": p.high,
+                "source": p.source,
+            }
+            for p in building.parameters()
+            if p.assumed
+        ],
         "quality": [],
         "identification": [
             ["Method", "gradient least squares, 12 starts"],
@@ -147,6 +160,51 @@ def lgi() -> tuple[dict[str, Any], Series]:
     _add_residuals(study, series)
     _add_energy(study)
     return study, series
+
+
+def _building(building: Building) -> dict[str, Any]:
+    """The cell's description in the words of the payload."""
+
+    def layer(one: Any) -> dict[str, Any]:
+        material = building.materials[one.material]
+        entry: dict[str, Any] = {"name": one.name, "material": one.material, "kind": material.kind}
+        if one.thickness is not None:
+            entry["thickness"] = float(one.thickness)
+        for key in ("conductivity", "density", "resistance"):
+            value = getattr(material, key, None)
+            if value is not None:
+                pair = hasattr(value, "solid")
+                entry[key] = [float(value.solid), float(value.liquid)] if pair else float(value)
+        return entry
+
+    def facing(side: Any) -> str:
+        return "outdoors" if side.outdoors else side.zone or f"measured {side.measured}"
+
+    return {
+        "name": building.name,
+        "site": [["Latitude", "−21.34°"], ["Altitude", "55 m"]],
+        "zones": [{"name": name, "volume": float(zone.volume or 0)} for name, zone in building.zones.items()],
+        "constructions": [
+            {"name": name, "layers": [layer(one) for one in construction.layers]}
+            for name, construction in building.constructions.items()
+        ],
+        "surfaces": [
+            {
+                "name": name,
+                "construction": s.construction,
+                "area": float(s.area or 0),
+                "tilt": float(s.tilt or 0),
+                "azimuth": float(s.azimuth or 0),
+                "outside": facing(s.outside),
+                "inside": facing(s.inside),
+                "film_outside": s.outside.convection.kind if s.outside.convection else "",
+                "film_inside": s.inside.convection.kind if s.inside.convection else "",
+                "vertices": [[float(c) for c in vertex] for vertex in s.vertices or ()],
+            }
+            for name, s in building.surfaces.items()
+        ],
+        "choices": [["sky", building.site.sky.kind], ["long-wave in room", "radiosity"]],
+    }
 
 
 def _lgi_series() -> Series:
@@ -232,8 +290,14 @@ def _parameters() -> dict[str, Any]:
     entries: dict[str, Any] = {}
     for path, (nominal, fitted, low, high, unit, before, after) in FITTED.items():
         half = 0.03 * (high - low)
-        entry: dict[str, Any] = {"nominal": nominal, "fitted": fitted, "low": low, "high": high, "unit": unit,
-                                 "interval": [max(low, fitted - half), min(high, fitted + half)]}  # fmt: skip
+        entry: dict[str, Any] = {
+            "nominal": nominal,
+            "fitted": fitted,
+            "unit": unit,
+            "range": [low, high],
+            "low": max(low, fitted - half),
+            "high": min(high, fitted + half),
+        }
         if before is not None:
             entry |= {"reference_nominal": before, "reference_fitted": after}
         if fitted in (low, high):

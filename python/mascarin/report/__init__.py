@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from mascarin.report.payload import Series
 
-__all__ = ["render", "write"]
+__all__ = ["render", "write", "write_folder"]
 
 
 def render(study: Mapping[str, Any], series: Series) -> str:
@@ -38,10 +38,33 @@ def render(study: Mapping[str, Any], series: Series) -> str:
         The study has no title, or its parts do not fit together.
     """
     from mascarin.report.html import page
-    from mascarin.report.payload import check
+    from mascarin.report.payload import check, tidy
 
     check(study, series)
-    return page(study, series.thinned())
+    return page(tidy(study), series.thinned())
+
+
+def write_folder(out: Path) -> Path:
+    """Make the page of a study that has been run, next to its other results.
+
+    Parameters
+    ----------
+    out : Path
+        Folder with ``study.json`` and ``tables/series.csv``.
+
+    Returns
+    -------
+    Path
+        ``report.html`` in that folder.
+
+    Raises
+    ------
+    InputError
+        A file is missing or cannot be read.
+    """
+    from mascarin.report.folder import read_folder
+
+    return write(out / "report.html", *read_folder(out))
 
 
 def write(path: Path, study: Mapping[str, Any], series: Series) -> Path:

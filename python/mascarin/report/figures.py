@@ -441,7 +441,7 @@ def parameter_range(entry: Mapping[str, Any]) -> Markup:
         As in :class:`~mascarin.report.payload.ParameterEntry`.
     """
     svg = Svg(180.0, 22.0)
-    low, high = float(entry["low"]), float(entry["high"])
+    low, high = (float(end) for end in entry["range"])
     values = [low, high, *(float(entry[k]) for k in ("nominal", "fitted") if k in entry)]
     first, last = min(values), max(values)
     span = (last - first) or 1.0
@@ -452,9 +452,8 @@ def parameter_range(entry: Mapping[str, Any]) -> Markup:
     svg.line(place(low), 11.0, place(high), 11.0, "range")
     for end in (low, high):
         svg.line(place(end), 7.0, place(end), 15.0, "range")
-    interval = entry.get("interval")
-    if interval:
-        a, b = place(float(interval[0])), place(float(interval[1]))
+    if entry.get("low") is not None and entry.get("high") is not None:
+        a, b = place(float(entry["low"])), place(float(entry["high"]))
         svg.add("rect", x=a, y=5.0, width=max(b - a, 1.5), height=12.0, class_="interval")
     if "nominal" in entry:
         svg.add("circle", cx=place(float(entry["nominal"])), cy=11.0, r=4.0, class_="mark-nominal")

@@ -97,7 +97,7 @@ def _worst(study: Mapping[str, Any]) -> dict[str, str] | None:
         values = [
             (float(periods[period][model]["sd"]), sensor)
             for sensor, periods in sensors.items()
-            if model in periods.get(period, {}) and "sd" in periods[period][model]
+            if periods.get(period, {}).get(model, {}).get("sd") is not None
         ]
         if values:
             low, high = min(values), max(values)
@@ -245,7 +245,7 @@ def _model(study: Mapping[str, Any]) -> dict[str, Any] | None:
         ],
         "surfaces": [_surface(s) for s in building.get("surfaces", [])],
         "site": building.get("site", []),
-        "choices": building.get("choices", []),
+        "choices": [[text.plain_path(str(k)), text.choice(str(v))] for k, v in building.get("choices", [])],
         "assumptions": _assumptions(study),
     }
 
@@ -261,8 +261,8 @@ def _surface(surface: Mapping[str, Any]) -> dict[str, str]:
         else text.fixed(surface.get("azimuth"), 0),
         "outside": text.plain_path(str(surface.get("outside", ""))),
         "inside": text.plain_path(str(surface.get("inside", ""))),
-        "film_outside": str(surface.get("film_outside", "") or text.NONE),
-        "film_inside": str(surface.get("film_inside", "") or text.NONE),
+        "film_outside": text.choice(str(surface.get("film_outside", "") or text.NONE)),
+        "film_inside": text.choice(str(surface.get("film_inside", "") or text.NONE)),
     }
 
 
@@ -427,7 +427,8 @@ def _parameters(study: Mapping[str, Any]) -> dict[str, Any] | None:
     referenced = any("reference_fitted" in e or "reference_nominal" in e for e in entries.values())
     rows = []
     for path, entry in entries.items():
-        interval = entry.get("interval")
+        interval = [entry.get("low"), entry.get("high")]
+        allowed = entry.get("range")
         rows.append(
             {
                 "label": _parameter_label(study, path),
@@ -435,11 +436,9 @@ def _parameters(study: Mapping[str, Any]) -> dict[str, Any] | None:
                 "unit": text.unit(str(entry.get("unit", ""))),
                 "nominal": text.significant(entry.get("nominal")),
                 "fitted": text.significant(entry.get("fitted")),
-                "interval": f"{text.significant(interval[0])} to {text.significant(interval[1])}"
-                if interval
-                else "",
-                "range": f"{text.significant(entry.get('low'))} to {text.significant(entry.get('high'))}",
-                "drawing": figures.parameter_range(entry) if "low" in entry and "high" in entry else "",
+                "interval": _between(interval) if None not in interval else "",
+                "range": _between(allowed) if allowed else text.NONE,
+                "drawing": figures.parameter_range(entry) if allowed else "",
                 "reference_nominal": text.significant(entry.get("reference_nominal")),
                 "reference_fitted": text.significant(entry.get("reference_fitted")),
                 "at_bound": bool(entry.get("at_bound")),
@@ -453,6 +452,10 @@ def _parameters(study: Mapping[str, Any]) -> dict[str, Any] | None:
         "facts": study.get("identification", []),
         "correlation": _correlation(study),
     }
+
+
+def _between(ends: Sequence[Any]) -> str:
+    return f"{text.significant(ends[0])} to {text.significant(ends[1])}"
 
 
 def _correlation(study: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -497,7 +500,7 @@ def _period_table(
     published = False
     for sensor, periods in study.get("sensors", {}).items():
         metrics = periods.get(period, {}).get(model)
-        if metrics is None:
+        if metrics is None or metrics.get("sd") is None:
             continue
         paper = reference.get("sensors", {}).get(sensor, {}).get(period, {})
         published = published or bool(paper)
@@ -532,7 +535,11 @@ def _model_table(study: Mapping[str, Any]) -> dict[str, Any] | None:
     """Standard deviation of every model on the last period in which more than one has metrics."""
     sensors = study.get("sensors", {})
     for period in reversed(list(study.get("periods", {}))):
-        models = [m for m in study.get("models", {}) if any(m in p.get(period, {}) for p in sensors.values())]
+        models = [
+            m
+            for m in study.get("models", {})
+            if any(p.get(period, {}).get(m, {}).get("sd") is not None for p in sensors.values())
+        ]
         if len(models) < 2:
             continue
         table = {

@@ -83,10 +83,11 @@ class ParameterEntry(TypedDict, total=False):
     fitted: float
     low: float
     high: float
+    """Ends of the 95 % interval of the fitted value."""
+    range: list[float]
+    """Lowest and highest value that was allowed."""
     unit: str
     label: str
-    interval: list[float]
-    """95 % interval of the fitted value, in its unit."""
     at_bound: bool
     reason: str
     """Why the estimate lies on a bound, or is not identifiable."""
@@ -309,7 +310,7 @@ class Study(TypedDict, total=False):
     periods: dict[str, Period]
     models: dict[str, Model]
     sensors: dict[str, dict[str, dict[str, Metrics]]]
-    """sensor -> period -> model -> metrics."""
+    """sensor -> period -> model -> metrics; other keys beside the models are left alone."""
     reference: dict[str, Any]
     """A publication to read the numbers by: ``label``, ``note``, ``sensors`` (as above, without models)."""
     building: BuildingEntry
@@ -495,8 +496,8 @@ def check(study: Mapping[str, Any], series: Series) -> None:
     for sensor, periods in study.get("sensors", {}).items():
         _declared("sensor_info", [sensor], study)
         _declared("periods", periods, study)
-        for models in periods.values():
-            _declared("models", models, study)
+        for entries in periods.values():
+            _declared("models", (key for key, entry in entries.items() if isinstance(entry, dict)), study)
     for key, period in study.get("periods", {}).items():
         for span in period.get("spans", []):
             if len(span) != 2:
@@ -507,6 +508,32 @@ def check(study: Mapping[str, Any], series: Series) -> None:
         column = entry.get("column")
         if column is not None and column not in series.columns:
             raise InputError(f"study: phase_change names the series column '{column}', which is not there")
+
+
+def tidy(study: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out periods that hold the same instants as one before them.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`Study`.
+
+    Returns
+    -------
+    dict
+        The same without the repetitions, in periods, metrics and criteria.
+    """
+    kept: dict[str, Any] = {}
+    for key, period in study.get("periods", {}).items():
+        if not any(period.get("spans") == other.get("spans") for other in kept.values()):
+            kept[key] = period
+    sensors = {
+        sensor: {key: entries for key, entries in periods.items() if key in kept}
+        for sensor, periods in study.get("sensors", {}).items()
+    }
+    criteria = [c for c in study.get("criteria", []) if not c.get("period") or c["period"] in kept]
+    changed = {"periods": kept, "sensors": sensors, "criteria": criteria}
+    return {**study, **{key: value for key, value in changed.items() if key in study}}
 
 
 def _declared(where: str, names: Iterable[str], study: Mapping[str, Any]) -> None:

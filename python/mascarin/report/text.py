@@ -18,6 +18,24 @@ _UNITS = {
     "kg/m3": "kg/m³",
     "J/(kg K)": "J/(kg·K)",
 }
+#: Kinds of the description in words.
+_CHOICES = {
+    "linear_wind": "linear in wind",
+    "alamdari_hammond": "Alamdari and Hammond",
+    "paper_eq5": "eq. 5 as printed",
+    "tarp": "TARP",
+    "mowitt": "MoWiTT",
+    "power": "power law by direction",
+    "martin_berdahl": "Martin and Berdahl, with clouds",
+    "clark_allen": "Clark and Allen, with clouds",
+    "brunt": "Brunt, with clouds",
+    "offset": "a fixed step below the air",
+    "measured": "measured",
+    "perez": "Perez et al.",
+    "hay_davies": "Hay and Davies",
+    "radiosity": "radiosity, exact",
+    "none": "none of its own",
+}
 NONE = "–"
 MINUS = "−"
 
@@ -96,6 +114,11 @@ def plain_path(path: str) -> str:
         w for w in path.split(".") if w not in ("constructions", "layers", "materials", "surfaces", "zones")
     ]
     return " · ".join(words).replace("_", " ")
+
+
+def choice(kind: str) -> str:
+    """Kind of a model in words; unknown ones as they are."""
+    return _CHOICES.get(kind, kind)
 
 
 def duration(seconds: float) -> str:

@@ -1,0 +1,95 @@
+"""The report of a study from the folder that it left behind."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.report.payload import Array, Column, Series, read_json
+from mascarin.report.text import plain_path
+
+#: Climate channels by the words and units of a legend.
+_WEATHER: Final = {
+    "air_temperature": ("Outdoor air", "degC"),
+    "dew_point": ("Dew point", "degC"),
+    "cloud_cover": ("Cloud cover, tenths", ""),
+    "infrared": ("Infrared from the sky", "W/m2"),
+    "wind_speed": ("Wind", "m/s"),
+    "wind_direction": ("Wind direction", "deg"),
+    "pressure": ("Pressure", "Pa"),
+    "direct_normal": ("Direct normal radiation", "W/m2"),
+    "diffuse_horizontal": ("Diffuse horizontal radiation", "W/m2"),
+    "global_horizontal": ("Global horizontal radiation", "W/m2"),
+}
+
+
+def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
+    """Read what a study left behind.
+
+    Parameters
+    ----------
+    out : Path
+        Folder with ``study.json`` and ``tables/series.csv``. The table's columns are ``time`` and
+        ``SENSOR.measured``, ``SENSOR.MODEL``, and perhaps ``weather.CHANNEL`` and ``state.OUTPUT``.
+
+    Returns
+    -------
+    tuple of dict and Series
+        As :func:`mascarin.report.render` takes them.
+
+    Raises
+    ------
+    InputError
+        A file is missing or cannot be read.
+    """
+    study = read_json(out / "study.json")
+    return study, _series(out / "tables" / "series.csv", study)
+
+
+def _series(path: Path, study: Mapping[str, Any]) -> Series:
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            header, *rows = csv.reader(file)
+        times = [datetime.fromisoformat(row[0]).replace(tzinfo=None) for row in rows[:2]]
+        values = np.array([[_number(cell) for cell in row[1:]] for row in rows], dtype=np.float64)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; expected the series of a study; run it again") from error
+    except (ValueError, IndexError) as error:
+        raise InputError(f"{path}: {error}; expected the series of a study; run it again") from error
+    if len(times) < 2 or values.shape[1:] != (len(header) - 1,):
+        raise InputError(
+            f"{path}: {len(rows)} rows; expected at least two, as long as the header; run it again"
+        )
+    columns = _columns(header[1:], values, study)
+    return Series(times[0].isoformat(), (times[1] - times[0]).total_seconds(), columns)
+
+
+def _number(cell: str) -> float:
+    return float(cell) if cell else math.nan
+
+
+def _columns(names: Sequence[str], values: Array, study: Mapping[str, Any]) -> dict[str, Column]:
+    sensors = study.get("sensor_info", {})
+    found = {}
+    for name, column in zip(names, values.T, strict=True):
+        # A sensor's name may hold a dot; a model's label may not.
+        owner, _, what = (
+            name.partition(".") if name.startswith(("weather.", "state.")) else name.rpartition(".")
+        )
+        if owner in sensors:
+            info = sensors[owner]
+            key = f"{'observed' if what == 'measured' else what}/{owner}"
+            found[key] = Column(column, str(info.get("label", owner)), str(info.get("unit", "degC")))
+        elif owner == "weather":
+            label, unit = _WEATHER.get(what, (plain_path(what), ""))
+            found[f"weather/{what}"] = Column(column, label, unit)
+        elif owner == "state":
+            found[f"state/{what}"] = Column(column, plain_path(what), "degC" if "temperature" in what else "")
+    return found
