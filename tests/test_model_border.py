@@ -192,6 +192,14 @@ def test_a_shell_with_a_hole_is_refused() -> None:
         parse(cube(top=low), "cube.yaml")
 
 
+def test_a_zone_that_is_not_convex_needs_its_view_factors() -> None:
+    """A pillar in the room hides faces from each other."""
+    pillar = [[0.4, 0.4, 0], [0.4, 0.4, 1], [0.4, 0.6, 1], [0.4, 0.6, 0]]
+    text = cube(pillar=pillar).replace('"z": {}', '"z": {"volume": 1}')
+    with pytest.raises(InputError, match=r"^zones\.z: the zone is not convex"):
+        parse(text, "cube.yaml").to_engine()
+
+
 def test_a_mesh_warning_crosses_with_the_description() -> None:
     building = room().replace({"constructions.wall.layers.concrete.nodes": 2})
     assert building.to_engine(900).notes == (

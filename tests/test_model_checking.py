@@ -93,3 +93,10 @@ def test_sources_are_those_of_numbers_and_correlations() -> None:
     assert any("Martin & Berdahl" in source for source in found)
     assert len(set(found)) == len(found)
     assert not any("Yazdanian" in source for source in room().sources())
+
+
+def test_melting_is_shown_by_its_width() -> None:
+    lines = check(everything()[0], 900)
+    assert "material wax: 71000 J/kg about 23.4 degC, half-width 1 K" in lines
+    assert "material salt: 150000 J/kg about 27 degC, half-width 1.5 K" in lines
+    assert "material curve: melts between 20 and 22 degC, by its table" in lines

@@ -114,6 +114,13 @@ def test_what_was_derived_follows_structure_and_not_parameters() -> None:
     assert other.parameter(f"{length}.length").value == pytest.approx(3.0)
 
 
+def test_none_removes_a_key() -> None:
+    wide = room().replace({"surfaces.south.outside.area_factor": 1.2})
+    assert (
+        wide.replace({"surfaces.south.outside.area_factor": None}).to_engine().json == room().to_engine().json
+    )
+
+
 def test_a_whole_part_may_be_replaced() -> None:
     building = room().replace({"surfaces.south.outside.convection": {"kind": "tarp", "roughness": "smooth"}})
     assert building.parameter("surfaces.south.outside.convection.roughness").value == 1.11

@@ -357,6 +357,12 @@ FAULTS = {
         "surfaces.rest.vertices.0",
         ["another number of items"],
     ),
+    "a key without a value": (
+        "    azimuth: 180\n",
+        "    azimuth: # here\n",
+        "surfaces.south.azimuth",
+        ["found: nothing", "Write one or remove the key"],
+    ),
     "no volume": (
         "{volume: 30, infiltration: 0.5}",
         "{infiltration: 0.5} # here",

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from mascarin.errors import InputError
 from mascarin.model.convection import Convection, Power
 from mascarin.model.envelope import Side, Surface
 from mascarin.model.material import Material, PhaseChangeMaterial, Phases, TanhLaw
@@ -207,7 +208,10 @@ def view_weights(building: Building, zone: str) -> list[list[float]]:
         return []
     from mascarin.model.geometry import net_areas, view_factors
 
-    weights: list[list[float]] = (net_areas(polygons)[:, None] * view_factors(polygons)).tolist()
+    try:
+        weights: list[list[float]] = (net_areas(polygons)[:, None] * view_factors(polygons)).tolist()
+    except InputError as error:
+        raise InputError(f"zones.{zone}: {error}") from None
     return weights
 
 

@@ -78,7 +78,8 @@ class Building(Part):
         ----------
         values : mapping of str to float
             New values by path; a number keeps its range. A whole part may be replaced as well: its path and
-            what the YAML file would hold there (``surfaces.roof.outside.convection: tarp``).
+            what the YAML file would hold there (``surfaces.roof.outside.convection: tarp``). None removes
+            a key.
 
         Returns
         -------
@@ -201,6 +202,9 @@ def _put(plain: Any, path: list[str], value: Any) -> None:
     key = _index(plain, path[-1])
     key = path[-1] if key is None else key
     before = plain[key] if not isinstance(plain, Mapping) or key in plain else None
+    if value is None and isinstance(plain, dict):
+        plain.pop(key, None)
+        return
     if isinstance(before, Number) and isinstance(value, int | float) and not isinstance(value, Number | bool):
         value = Number(value, range=before.range)
     plain[key] = value

@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from mascarin.errors import InputError
 from mascarin.model.convection import SOURCES, Constant
 from mascarin.model.leaves import leaves
-from mascarin.model.material import Resistance, phase
+from mascarin.model.material import PhaseChangeMaterial, Resistance, TanhLaw, phase
 from mascarin.model.mesh import Mesh, choose
 from mascarin.model.settling import enclosure, faces_of
 
@@ -48,6 +49,7 @@ def check(building: Building, step_seconds: float = 900.0) -> list[str]:
         *_zones(building),
         *_surfaces(building),
         *_constructions(building, mesh),
+        *_melting(building),
         *(f"warning: {text}" for text in warnings(building, mesh, step_seconds)),
         *(f"assumed: {text}" for text in assumptions(building)),
     ]
@@ -103,6 +105,19 @@ def _constructions(building: Building, mesh: Mesh) -> Iterator[str]:
         least = time_constant(building, name, mesh)
         text = f", smallest time constant {least:.0f} s" if math.isfinite(least) else ""
         yield f"construction {name}: nodes {', '.join(layers)}{text}"
+
+
+def _melting(building: Building) -> Iterator[str]:
+    for name, material in building.materials.items():
+        if not isinstance(material, PhaseChangeMaterial):
+            continue
+        if isinstance(material.law, TanhLaw):
+            temperature, latent = material.melting_temperature or 0.0, material.latent_heat or 0.0
+            width = material.law.half_width
+            yield f"material {name}: {latent:g} J/kg about {temperature:g} degC, half-width {width:g} K"
+        else:
+            low, high = material.law.melting
+            yield f"material {name}: melts between {low:g} and {high:g} degC, by its table"
 
 
 def u_value(building: Building, surface: Surface) -> float:
@@ -234,7 +249,11 @@ def _odd_volumes(building: Building) -> Iterator[str]:
         if faces is not None:
             from mascarin.model.geometry import volume as enclosed
 
-            drawn = enclosed(faces)
+            try:
+                drawn = enclosed(faces)
+            except InputError as error:
+                yield f"zones.{name}: {error}"
+                continue
             if abs(drawn - volume) > 0.02 * volume:
                 yield f"zones.{name}: {volume:g} m3 are given, the vertices enclose {drawn:.2f} m3"
 

@@ -83,7 +83,7 @@ def parse(text: str, name: str) -> Building:
 
 def parse_as(kind: type[AnyPart], text: str, name: str) -> AnyPart:
     """Read a description of any kind from YAML text; ``name`` stands for the file in messages."""
-    document = _Document(name)
+    document = _Document(name, blanks=kind is not Building)
     plain = document.read(text)
     try:
         return kind.model_validate(plain)
@@ -165,9 +165,10 @@ def _dotted(place: Place, plain: Any) -> str:
 
 @dataclass
 class _Document:
-    """One YAML document being turned into plain values."""
+    """One YAML document being turned into plain values; ``blanks``: keys may stand without a value."""
 
     name: str
+    blanks: bool = False
     lines: dict[Place, int] = field(default_factory=dict)
     faults: list[tuple[int, str]] = field(default_factory=list)
     values: int = 0
@@ -250,7 +251,11 @@ class _Document:
     def _scalar(self, node: Any, place: Place) -> Any:
         kind = node.tag.removeprefix("tag:yaml.org,2002:")
         match kind:
+            case "null" if self.blanks:
+                return None
             case "null":
+                line = self.lines[place] - 1  # the key's: the value that is missing has no line
+                self._refuse(line, _text(place), "nothing", "a value", "Write one or remove the key.")
                 return None
             case "bool" | "int" | "float":
                 return getattr(self.scalars, f"construct_yaml_{kind}")(node)

@@ -82,7 +82,7 @@ class OffsetSky(Part):
 
     kind: Literal["offset"]
     depression: q.SkyDepression = Number(
-        11.0, source="ISO 13790:2008, 11.3.5: intermediate zones", assumed=True
+        11.0, source="ISO 13790:2008: between tropics and subpolar zones", assumed=True
     )
 
 
