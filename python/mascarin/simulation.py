@@ -168,6 +168,14 @@ class Simulation:
         )
         return digest.hexdigest()
 
+    def weather(self, channel: str) -> Array:
+        """A climate channel at the recorded times, as the engine saw it, shape (rows,). [its unit]"""
+        from mascarin.climate import CHANNELS
+
+        values = self._forcing[:, :, CHANNELS.index(channel)]
+        # The start has no stage of its own; the first one of the first step stands for it.
+        return np.concatenate([values[:1, 0], values[:, -1]])
+
     def vector(self, values: Mapping[str, float]) -> Array:
         """The nominal parameter vector with some values replaced.
 

@@ -38,10 +38,19 @@ def study(
 
     opened = Study(locate(file))
     findings = opened.run(out)
+    _report(out)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
     _tell(opened, findings, out)
     return 0 if findings.passed else 1
+
+
+def _report(out: Path) -> None:
+    """Make the report from what the study left in its folder."""
+    from mascarin.report import write
+    from mascarin.report.folder import read_folder
+
+    write(out / "report.html", *read_folder(out))
 
 
 def _tell(opened: Study, findings: Findings, out: Path) -> None:

@@ -80,7 +80,14 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
         "identification": _identification(findings),
         "criteria": _criteria(findings),
         "ledger": _ledger(findings.fitted),
-        "notes": [{"title": "What a reader must know", "text": text} for text in findings.fit.warnings],
+        "residuals": {
+            name: {**found.to_dict(), "period": "blind"} for name, found in findings.examinations.items()
+        },
+        "notes": [
+            *({"title": "The estimates", "text": text} for text in findings.fit.warnings),
+            *({"title": "What is left", "text": text} for text in findings.diagnosis),
+        ],
+        "phase_change": _phase_change(findings.fitted),
     }
     if findings.sensitivity is not None:
         content |= _sensitivity(study, findings.sensitivity)
@@ -219,6 +226,27 @@ def _criteria(findings: Findings) -> list[dict[str, Any]]:
         for model, verdicts in findings.verdicts.items()
         for verdict in verdicts
     ]
+
+
+def _phase_change(run: ModelRun) -> list[dict[str, Any]]:
+    """How far each phase-change layer melted over the record."""
+    entries = []
+    for k, output in enumerate(run.results.outputs):
+        if output.kind != "liquid_fraction":
+            continue
+        fraction = run.results.records[:, k]
+        entries.append(
+            {
+                "label": output.name.removesuffix("_liquid_fraction").replace(".", ": "),
+                "column": f"state/{output.name}",
+                "rows": [
+                    ["smallest liquid fraction", f"{fraction.min():.3f}"],
+                    ["largest liquid fraction", f"{fraction.max():.3f}"],
+                    ["mean liquid fraction", f"{fraction.mean():.3f}"],
+                ],
+            }
+        )
+    return entries
 
 
 def _ledger(run: ModelRun) -> dict[str, Any]:

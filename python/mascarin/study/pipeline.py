@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from mascarin.study.sources import find, open_climate, open_measurements
 from mascarin.validation.criteria import Criterion, Verdict, judge, parse_criteria
 from mascarin.validation.metrics import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe, require_comparable
+from mascarin.validation.residuals import Examination, diagnose, examine
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -40,6 +41,15 @@ if TYPE_CHECKING:
     from mascarin.sensitivity.spectral import SpectralSensitivity
 
     Flags = npt.NDArray[np.bool_]
+
+#: Channels that a residual is held against, by words.
+DRIVERS: Final = {
+    "outdoor air": "air_temperature",
+    "sun": "global_horizontal",
+    "wind": "wind_speed",
+}
+#: Fewer samples than this are not examined.
+FEWEST_EXAMINED: Final = 24
 
 Scores = dict[str, dict[str, Metrics]]
 """Metrics by sensor and period."""
@@ -89,6 +99,10 @@ class Findings:
         The identification.
     verdicts : dict of str to list of Verdict
         Criteria of the nominal and of the fitted model.
+    examinations : dict of str to Examination
+        What is left of each sensor on the blind days, after the identification.
+    diagnosis : list of str
+        The same in words, with the parameters that could account for it.
     quality : list of Stretch
         Suspicious stretches of the measured columns.
     seconds : float
@@ -100,6 +114,8 @@ class Findings:
     variants: dict[str, ModelRun]
     sensitivity: SpectralSensitivity | None
     fit: Fit
+    examinations: dict[str, Examination]
+    diagnosis: list[str]
     verdicts: dict[str, list[Verdict]]
     quality: list[Stretch]
     seconds: float = field(default=0.0)
@@ -237,18 +253,26 @@ class Study:
 
     # --- runs -------------------------------------------------------------------------------------------
 
-    def _simulate(self, building: Building, start: object, end: object) -> Simulation:
+    def _simulate(
+        self, building: Building, start: object, end: object, further: Sequence[str] = ()
+    ) -> Simulation:
+        """A model that records what the sensors see, then further outputs."""
         return Simulation(
             building,
             self.climate,
             step=self.file.step,
             start=start,
             end=end,
-            outputs=[sensor.output for sensor in self.file.sensors.values()],
+            outputs=[*(sensor.output for sensor in self.file.sensors.values()), *further],
             scheme=self.file.scheme,
             measurements=self.measurements,
             ranges=self._ranges,
         )
+
+    def _whole(self, building: Building) -> Simulation:
+        """A model over the whole record, with how far its phase-change layers have melted."""
+        states = [output.name for output in building.outputs() if output.kind == "liquid_fraction"]
+        return self._simulate(building, self.start, self.end, states)
 
     @cached_property
     def _ranges(self) -> dict[str, tuple[float, float]]:
@@ -261,7 +285,7 @@ class Study:
     @cached_property
     def simulation(self) -> Simulation:
         """The nominal model over the whole record."""
-        return self._simulate(self.building, self.start, self.end)
+        return self._whole(self.building)
 
     @cached_property
     def observation(self) -> Observation:
@@ -338,12 +362,15 @@ class Study:
             run.label: judge(self.criteria, run.scores, where=f"{self.path}: criteria")
             for run in (nominal, fitted)
         }
+        examinations = self._examined(fitted)
         findings = Findings(
             nominal,
             fitted,
             variants,
             sensitivity,
             fit,
+            examinations,
+            diagnose(examinations.values()),
             verdicts,
             self.quality,
             time.monotonic() - began,
@@ -387,7 +414,7 @@ class Study:
                 record=workspace.path(f"evaluations-{_safe(label)}.jsonl"),
                 progress=_searching(progress),
             )
-        whole = self._simulate(building, self.start, self.end)
+        whole = self._whole(building)
         return self._compared(label, whole, whole.vector(fit.values), fit, note), fit
 
     def _variant(self, name: str, variant: Variant, workspace: Workspace, tell: _Teller) -> ModelRun:
@@ -395,8 +422,37 @@ class Study:
         note = variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
         if variant.identify:
             return self._identified(name, building, workspace, tell, note)[0]
-        simulation = self._simulate(building, self.start, self.end)
+        simulation = self._whole(building)
         return self._compared(name, simulation, simulation.values, None, note)
+
+    def drivers(self) -> dict[str, npt.NDArray[np.float64]]:
+        """What acts on the building, at the instants of the comparison, by words for the report."""
+        run = self.simulation
+        return {
+            word: self.observation.sampled(run.index, run.weather(channel))
+            for word, channel in DRIVERS.items()
+            if np.ptp(run.weather(channel)) > 0.0
+        }
+
+    def _examined(self, run: ModelRun) -> dict[str, Examination]:
+        """What is left of each sensor on the blind days."""
+        observation, local = self.observation, self.observation.times.tz_localize(None)
+        simulated = observation.simulated(run.results.index, run.results.records)
+        hour = np.asarray(local.hour + local.minute / 60.0, dtype=np.float64)
+        return {
+            name: examine(
+                observation.measured[:, s],
+                simulated[:, s],
+                step=observation.interval,
+                hour=hour,
+                drivers=self.drivers(),
+                use=self.during["blind"],
+                sensor=name,
+                unit=run.results.outputs[s].unit,
+            )
+            for s, name in enumerate(observation.names)
+            if np.isfinite(observation.measured[self.during["blind"], s]).sum() >= FEWEST_EXAMINED
+        }
 
 
 class _Teller:

@@ -5,17 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mascarin.study.document import document
 from mascarin.study.keeping import Workspace, write_whole
+from mascarin.study.pipeline import DRIVERS
 
 if TYPE_CHECKING:
     from mascarin.study.pipeline import Findings, ModelRun, Study
-
-_DRIVERS: Final = ("air_temperature", "global_horizontal", "wind_speed")
 
 
 def write_all(study: Study, findings: Findings, workspace: Workspace) -> None:
@@ -74,17 +73,26 @@ def _runs(findings: Findings) -> Iterator[ModelRun]:
 
 
 def _series(study: Study, findings: Findings) -> Any:
-    """Measured, nominal and fitted series at the instants of the comparison."""
+    """Measured and simulated series, weather and states at the instants of the comparison."""
     import pandas as pd
 
     observation = study.observation
     table = pd.DataFrame({"time": observation.times.map(lambda stamp: stamp.isoformat())})
     for s, name in enumerate(observation.names):
         table[f"{name}.measured"] = observation.measured[:, s]
-    for run in (findings.nominal, findings.fitted):
+    for run in _runs(findings):
         simulated = observation.simulated(run.results.index, run.results.records)
         for s, name in enumerate(observation.names):
             table[f"{name}.{run.label}"] = np.round(simulated[:, s], 6)
+    fitted = findings.fitted
+    for channel in DRIVERS.values():
+        values = observation.sampled(fitted.results.index, fitted.simulation.weather(channel))
+        if np.ptp(values) > 0.0:
+            table[f"weather.{channel}"] = np.round(values, 4)
+    for k, output in enumerate(fitted.results.outputs):
+        if output.kind == "liquid_fraction":
+            values = observation.sampled(fitted.results.index, fitted.results.records[:, k])
+            table[f"state.{output.name}"] = np.round(values, 6)
     return table
 
 

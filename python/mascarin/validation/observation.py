@@ -82,6 +82,11 @@ class Observation:
         ]
         return np.stack(columns, axis=-1)
 
+    def sampled(self, index: pd.DatetimeIndex, values: Array) -> Array:
+        """A series of a run at the instants of the comparison, shape (rows,) -> (n,)."""
+        seconds, at = epoch_seconds(index), epoch_seconds(self.times)
+        return _instants(values, (at - seconds[0]) / (seconds[1] - seconds[0]))
+
     def during(self, start: pd.Timestamp, end: pd.Timestamp) -> Flags:
         """Instants from start up to but not including end, shape (n,)."""
         return np.asarray((self.times >= start) & (self.times < end))
