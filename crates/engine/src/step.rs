@@ -15,7 +15,8 @@ use crate::pcm::PcmMemory;
 use crate::plan::{FaceId, FaceRole, Plan};
 use crate::real::{Mask, Real};
 
-/// Largest change in the last Newton iteration [K]. Convergence is quadratic: the error left is its square.
+/// Root of the sum of squared changes in the last Newton iteration [K]. Convergence is quadratic: the error left is
+/// of the order of its square.
 const TOLERANCE: f64 = 1e-6;
 /// Iterations before a step counts as unsolvable.
 const MAX_ITERATIONS: usize = 60;
@@ -341,7 +342,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             self.linearise_faces(drive);
             self.solve_linear(drive, &sources, length);
             let change = self.change();
-            active = active & S::constant(TOLERANCE).lt(change);
+            active = active & !change.lt(S::constant(TOLERANCE * TOLERANCE));
             if active.any() {
                 self.advance(active);
             } else {
@@ -560,12 +561,13 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Largest change of the iterate, by lane [K].
+    /// Sum of the squared changes of the iterate, by lane [K2]. Not a number when any part of it is not one.
     fn change(&self) -> S {
-        let mut largest = S::zero();
+        let mut sum = S::zero();
         let mut compare = |new: &[S], old: &[S]| {
             for (a, b) in new.iter().zip(old) {
-                largest = largest.max((*a - *b).abs());
+                let change = *a - *b;
+                sum += change * change;
             }
         };
         compare(&self.solved.faces, &self.iterate.faces);
@@ -574,7 +576,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             let cells = wall.first_cell..wall.first_cell + wall.len();
             compare(&self.solved.cells[cells.clone()], &self.iterate.cells[cells]);
         }
-        largest
+        sum
     }
 
     /// Moves the iterate of the active lanes to the solution, limited where a melting range would be leapt over.
@@ -667,7 +669,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         let mut worst = (0.0, String::from("the building"));
         let mut look = |new: S, old: S, name: &dyn Fn() -> String| {
             let change = (new.lane(lane) - old.lane(lane)).abs();
-            if change > worst.0 || change.is_nan() {
+            // What is not a number comes first; of those, the first.
+            if change > worst.0 || (change.is_nan() && !worst.0.is_nan()) {
                 worst = (change, name());
             }
         };

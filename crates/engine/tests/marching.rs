@@ -1,0 +1,282 @@
+//! Properties of whole runs of a cell with every film, two zones and a phase-change ceiling.
+
+mod common;
+
+use common::{
+    SCHEMES, cell, cell_probes, cell_weather, forcing, options, position, run, try_run, values, warmup,
+};
+use mascarin_engine::batch::ensemble;
+use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::{Watch, march};
+use mascarin_engine::plan::Plan;
+use mascarin_engine::probe::Probe;
+use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::step::Scheme;
+
+const STEP: f64 = 900.0;
+
+/// Every scheme keeps the books, but the paper's.
+#[test]
+fn energy_closes() {
+    for (gamma, dt) in [(0.04, STEP), (1.0, STEP), (0.04, 3600.0), (100.0, 300.0)] {
+        let plan = Plan::new(cell(gamma)).unwrap();
+        for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
+            let rows = forcing(&plan, scheme, 480, dt, cell_weather);
+            let result = run(&plan, &rows, &options(scheme, dt, cell_probes()));
+            let closure = result.ledger.closure();
+            assert!(closure < 1e-10, "closure {closure} with {scheme:?}, gamma {gamma}, steps of {dt} s");
+            let sum: f64 = result.ledger.into.iter().sum();
+            assert!((sum - result.ledger.stored).abs() < 1e-10 * result.ledger.turnover);
+        }
+    }
+}
+
+/// The apparent capacity at the old temperature loses heat, the more the sharper the melting.
+#[test]
+fn apparent_capacity_loses_heat() {
+    let mut last = 0.0;
+    for gamma in [0.04, 1.0, 100.0] {
+        let plan = Plan::new(ceiling(gamma)).unwrap();
+        let rows = forcing(&plan, Scheme::ApparentCapacity, 10 * 96, STEP, ceiling_weather);
+        let result = run(&plan, &rows, &options(Scheme::ApparentCapacity, STEP, Vec::new()));
+        let closure = result.ledger.closure();
+        assert!(
+            closure > 1.5 * last + 0.01 && closure < 1.0,
+            "closure {closure} at gamma {gamma} after {last}"
+        );
+        last = closure;
+    }
+    assert!(last > 0.1, "closure {last} at gamma 100");
+}
+
+/// Members with other numbers (sharp and blunt melting, other films, other warm-ups) side by side.
+fn members(plan: &Plan, count: usize) -> Vec<f64> {
+    let nominal = values(plan);
+    let gamma = position(plan, "materials.energain.law.gamma");
+    let melting = position(plan, "materials.energain.melting_temperature");
+    let foam = position(plan, "materials.foam.conductivity");
+    let concrete = position(plan, "materials.concrete.density");
+    let tilt = position(plan, "surfaces.roof.tilt");
+    let mut all = Vec::new();
+    for member in 0..count {
+        let x = member as f64;
+        let mut numbers = nominal.clone();
+        numbers[gamma] = [0.01, 0.04, 0.5, 20.0][member % 4];
+        numbers[melting] += 0.7 * (1.3 * x).sin();
+        numbers[foam] *= 1.0 + 0.4 * (0.7 * x).cos();
+        numbers[concrete] *= 1.0 + 0.5 * (2.1 * x).sin();
+        numbers[tilt] += 3.0 * x;
+        all.extend(numbers);
+    }
+    all
+}
+
+/// A member's bits do not depend on whether it runs alone, in a pack, on where, or on how many threads.
+#[test]
+fn lanes_are_scalars() {
+    let plan = Plan::new(cell(0.04)).unwrap();
+    let width = plan.description.parameters.len();
+    for scheme in SCHEMES {
+        let rows = forcing(&plan, scheme, 3 * 96, STEP, cell_weather);
+        let mut options = options(scheme, STEP, cell_probes());
+        options.warmup = Some(warmup(STEP));
+        let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
+        let numbers = members(&plan, 19);
+        let watch = Watch::default();
+        let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
+        let row = together.records.len() / 19;
+        let (mut iterations, mut cycles) = (Vec::new(), Vec::new());
+        for (member, numbers) in numbers.chunks(width).enumerate() {
+            let alone = match march(&plan, numbers, &drive, &options, &watch) {
+                Ok(alone) => alone,
+                Err(error) => {
+                    // The paper's scheme never settles where the melting is sharp.
+                    assert!(scheme == Scheme::ApparentCapacity, "member {member}: {error}");
+                    assert!(together.failures.contains(&(member, error)), "member {member}");
+                    continue;
+                }
+            };
+            for (i, (a, b)) in alone.records.iter().zip(&together.records[member * row..]).enumerate() {
+                assert_eq!(
+                    a.to_bits(),
+                    b.to_bits(),
+                    "{a} is not {b}: member {member}, reading {i}, {scheme:?}"
+                );
+            }
+            assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
+            iterations.push(alone.iterations);
+            cycles.push(alone.cycles);
+        }
+        iterations.sort_unstable();
+        iterations.dedup();
+        cycles.sort_unstable();
+        cycles.dedup();
+        assert!(
+            iterations.len() > 5 && cycles.len() > 1,
+            "the members are too alike: {iterations:?} {cycles:?}"
+        );
+        // Another order puts each member at another place of another pack.
+        let turned: Vec<f64> = numbers.chunks(width).rev().flatten().copied().collect();
+        let backwards = ensemble(&plan, &turned, &drive, &options, &watch).unwrap();
+        for (a, b) in together.records.chunks(row).zip(backwards.records.chunks(row).rev()) {
+            assert!(a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits()), "{scheme:?}");
+        }
+        assert_eq!(together.failures.len(), backwards.failures.len());
+    }
+}
+
+/// Forward derivatives agree with central differences for every number of the cell.
+#[test]
+fn duals_are_differences() {
+    let plan = Plan::new(cell(0.04)).unwrap();
+    let mut numbers = values(&plan);
+    for (number, parameter) in numbers.iter_mut().zip(&plan.description.parameters) {
+        // Correlations jump where a face stops being vertical: lean the walls a little.
+        if parameter.path.rsplit('.').next() == Some("tilt") && *number == 90.0 {
+            *number = 88.0;
+        }
+    }
+    let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, cell_weather);
+    let options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
+    // One figure that all readings and times enter with different weights.
+    let weight = |row: usize| 1.0 + (0.37 * row as f64).sin();
+    let figure = |numbers: &[f64]| {
+        let records = try_run(&plan, numbers, &rows, &options).unwrap().records;
+        records.iter().enumerate().map(|(i, r)| scaled(i) * weight(i) * r).sum::<f64>() / records.len() as f64
+    };
+    let mut differ = Vec::new();
+    for (which, parameter) in plan.description.parameters.iter().enumerate() {
+        let duals: Vec<Dual<f64, 1>> = numbers
+            .iter()
+            .enumerate()
+            .map(|(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) })
+            .collect();
+        let records = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap().records;
+        let slope = records.iter().enumerate().map(|(i, r)| scaled(i) * weight(i) * r.slope[0]).sum::<f64>()
+            / records.len() as f64;
+        let step = 1e-5 * if numbers[which] == 0.0 { 1.0 } else { numbers[which].abs() };
+        let shifted = |sign: f64| {
+            let mut numbers = numbers.clone();
+            numbers[which] += sign * step;
+            figure(&numbers)
+        };
+        let difference = (shifted(1.0) - shifted(-1.0)) / (2.0 * step);
+        // Below this a difference of two figures of size 20 has no digits left.
+        let noise = 1e-10 / step;
+        if (slope - difference).abs() > 1e-5 * difference.abs() + noise {
+            differ.push(format!("{}: dual {slope:e}, difference {difference:e}", parameter.path));
+        }
+    }
+    assert!(differ.is_empty(), "{}", differ.join("\n"));
+}
+
+/// Brings readings of enthalpy and flux to the size of temperatures.
+fn scaled(index: usize) -> f64 {
+    match cell_probes()[index % cell_probes().len()] {
+        Probe::LayerEnthalpy { .. } => 1e-7,
+        Probe::LiquidFraction { .. } => 10.0,
+        _ => 1.0,
+    }
+}
+
+/// The order in which surfaces are written changes nothing beyond round-off.
+#[test]
+fn order_of_surfaces_does_not_matter() {
+    let forward = Plan::new(cell(0.04)).unwrap();
+    let mut description = cell(0.04);
+    description.surfaces.reverse();
+    let last = description.surfaces.len() - 1;
+    for sensor in &mut description.sensors {
+        sensor.surface = last - sensor.surface;
+    }
+    let backward = Plan::new(description).unwrap();
+    let rows = forcing(&forward, Scheme::Sdirk2, 480, STEP, cell_weather);
+    let probes = vec![
+        Probe::AirTemperature { zone: 0 },
+        Probe::AirTemperature { zone: 1 },
+        Probe::Sensor { sensor: 0 },
+    ];
+    let options = options(Scheme::Sdirk2, STEP, probes);
+    let (a, b) = (run(&forward, &rows, &options), run(&backward, &rows, &options));
+    for (a, b) in a.records.iter().zip(&b.records) {
+        assert!((a - b).abs() < 1e-6, "{a} is not {b}");
+    }
+}
+
+/// A phase-change ceiling between a hot gap and a room, everything else imposed.
+fn ceiling(gamma: f64) -> mascarin_engine::description::Description {
+    use common::{Builder, facing};
+    use mascarin_engine::description::{Facing, ZoneLongwave};
+    let mut b = Builder::new();
+    let board = b.solid("board", 0.16, 800.0, 1090.0);
+    let energain = b.energain(gamma);
+    let construction = b.construction("ceiling", &[(energain, 0.00526, 4), (board, 0.0125, 2)]);
+    let room = b.zone("room", 27.0, 0.5, ZoneLongwave::None);
+    let above = b.channel("above");
+    let (film_out, film_in) = (b.film(4.0), b.film(6.0));
+    let inside = b.inside(room, film_in, 0.9);
+    let outside = facing(Facing::Measured { channel: above }, Some(film_out));
+    b.surface("ceiling", construction, [9.0, 0.0, 0.0], outside, inside);
+    b.describe()
+}
+
+/// Swings that cross the melting range every day, with some jumps.
+fn ceiling_weather(time: f64, row: &mut [f64]) {
+    cell_weather(time, row);
+    let day = time / 86400.0;
+    let jump = if (3.0 * day).fract() < 0.1 { 6.0 } else { 0.0 };
+    common::set(row, 0, 24.0 + 9.0 * (core::f64::consts::TAU * day).sin() + jump);
+}
+
+/// No step fails for any sharpness and step length.
+#[test]
+fn melting_never_stops_a_run() {
+    let mut failures = Vec::new();
+    for gamma in [0.01, 0.04, 0.2, 1.0, 5.0, 10.0, 25.0, 100.0] {
+        for dt in [60.0, 300.0, 900.0, 1800.0, 3600.0] {
+            for (name, description, weather) in [
+                ("ceiling", ceiling(gamma), ceiling_weather as fn(f64, &mut [f64])),
+                ("cell", cell(gamma), cell_weather),
+            ] {
+                let plan = Plan::new(description).unwrap();
+                for scheme in SCHEMES {
+                    let rows = forcing(&plan, scheme, 1000, dt, weather);
+                    if let Err(error) =
+                        try_run(&plan, &values(&plan), &rows, &options(scheme, dt, Vec::new()))
+                    {
+                        failures.push(format!("{name}, gamma {gamma}, {dt} s, {scheme:?}: {error}"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{} runs failed:\n{}", failures.len(), failures.join("\n"));
+}
+
+/// A number that is not one stops the run and is named; it never passes for converged.
+#[test]
+fn not_a_number_is_no_solution() {
+    let plan = Plan::new(cell(0.04)).unwrap();
+    let rows = forcing(&plan, Scheme::Sdirk2, 10, STEP, |time, row| {
+        cell_weather(time, row);
+        if time > 4000.0 {
+            row[0] = f64::NAN;
+        }
+    });
+    let error =
+        try_run(&plan, &values(&plan), &rows, &options(Scheme::Sdirk2, STEP, Vec::new())).unwrap_err();
+    assert!(error.to_string().contains("step 4 (stage 2)"), "{error}");
+}
+
+/// The work of the solver, 960 steps after three repeated days. It grows when something in it gets worse; when it
+/// shrinks, write the new number here.
+#[test]
+fn solver_counters() {
+    let plan = Plan::new(cell(0.04)).unwrap();
+    let rows = forcing(&plan, Scheme::Sdirk2, 960, STEP, cell_weather);
+    let mut options = options(Scheme::Sdirk2, STEP, cell_probes());
+    options.warmup = Some(warmup(STEP));
+    let result = run(&plan, &rows, &options);
+    assert_eq!((result.cycles, result.iterations), (3, 8715));
+}
