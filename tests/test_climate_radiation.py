@@ -72,18 +72,21 @@ def test_hourly_steps_would_be_an_order_of_magnitude_worse(clear: ClearSky) -> N
 
 
 def test_global_is_direct_times_height_plus_diffuse_at_every_node(clear: ClearSky) -> None:
-    means = [clear.means(values, 60) for values in (clear.direct, clear.diffuse, clear.total)]
-    for basis in ("direct+diffuse", "global+diffuse"):
-        sky = from_means(clear.sun, 0.0, 3600.0, *means, basis)  # type: ignore[arg-type]
-        times = 3600.0 * np.arange(len(means[0]))[:, None] + 300.0 * np.arange(13)
+    direct, diffuse, total = (clear.means(x, 60) for x in (clear.direct, clear.diffuse, clear.total))
+    bases: tuple[Basis, Basis] = ("direct+diffuse", "global+diffuse")
+    for basis in bases:
+        sky = from_means(clear.sun, 0.0, 3600.0, direct, diffuse, total, basis)
+        times = 3600.0 * np.arange(len(total))[:, None] + 300.0 * np.arange(13)
         up = np.maximum(clear.sun.vector(times)[..., 2], 0.0)
         closure = sky.direct_normal.nodes * up + sky.diffuse_horizontal.nodes - sky.global_horizontal.nodes
         assert np.max(np.abs(closure)) < 1e-10
 
 
 def test_course_is_continuous_but_for_the_horizon(clear: ClearSky) -> None:
-    means = [clear.means(values, 60) for values in (clear.direct, clear.diffuse, clear.total)]
-    nodes = from_means(clear.sun, 0.0, 3600.0, *means, "global+diffuse").global_horizontal.nodes
+    direct, diffuse, total = (clear.means(x, 60) for x in (clear.direct, clear.diffuse, clear.total))
+    nodes = from_means(
+        clear.sun, 0.0, 3600.0, direct, diffuse, total, "global+diffuse"
+    ).global_horizontal.nodes
     assert np.max(np.abs(nodes[1:, 0] - nodes[:-1, -1])) < 4.0
 
 

@@ -37,11 +37,14 @@ def complete(climate: Climate, latitude: float, longitude: float) -> Climate:
     notes: list[str] = []
     basis = _fill_radiation(columns, up, extra, clear, climate.file, notes)
     if "cloud_cover" not in columns:
-        columns["cloud_cover"] = derive.cloud_cover(columns["global_horizontal"], up, grid.interval)
+        total = columns["global_horizontal"]
+        columns["cloud_cover"] = (
+            derive.cloud_cover(total, up, grid.interval) if total.any() else np.zeros(grid.count)
+        )
         notes.append(
             f"{climate.file}: cloud cover estimated from global irradiance (Kasten & Czeplak 1980, "
             "G/G_clear = 1 - 0.75 (N/8)^3.4), interpolated through the night."
-            if columns["global_horizontal"].any()
+            if total.any()
             else f"{climate.file}: cloud cover neither measured nor to be estimated; clear sky assumed."
         )
     kinds: dict[str, Kind] = dict(climate.kinds)

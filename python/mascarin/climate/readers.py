@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date, tzinfo
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -18,11 +18,12 @@ from .table import file_hash
 from .timezones import fixed_zone, zone_name
 
 if TYPE_CHECKING:
-    import pandas as pd
+    pass
 
 
 _HEADER = 8
 _FIELDS = 35
+_TMY_HEAD = 7
 _HOURS = 8760
 
 # Channel, pvlib's column, field number in the file, factor, entry from which on it means "no value".
@@ -38,16 +39,17 @@ _EPW: Final = (
     ("wind_speed", "wind_speed", 21, 1.0, 999.0),
     ("cloud_cover", "opaque_sky_cover", 23, 1.0, 99.0),
 )
+# Channel, pvlib's column, column in the file, factor.
 _TMY: Final = (
-    ("air_temperature", "temp_air", 1.0),
-    ("dew_point", "temp_dew", 1.0),
-    ("pressure", "pressure", 100.0),
-    ("global_horizontal", "ghi", 1.0),
-    ("direct_normal", "dni", 1.0),
-    ("diffuse_horizontal", "dhi", 1.0),
-    ("wind_direction", "wind_direction", 1.0),
-    ("wind_speed", "wind_speed", 1.0),
-    ("cloud_cover", "OpqCld", 1.0),
+    ("air_temperature", "temp_air", "Dry-bulb (C)", 1.0),
+    ("dew_point", "temp_dew", "Dew-point (C)", 1.0),
+    ("pressure", "pressure", "Pressure (mbar)", 100.0),
+    ("global_horizontal", "ghi", "GHI (W/m^2)", 1.0),
+    ("direct_normal", "dni", "DNI (W/m^2)", 1.0),
+    ("diffuse_horizontal", "dhi", "DHI (W/m^2)", 1.0),
+    ("wind_direction", "wind_direction", "Wdir (degrees)", 1.0),
+    ("wind_speed", "wind_speed", "Wspd (m/s)", 1.0),
+    ("cloud_cover", "OpqCld (tenths)", "OpqCld (tenths)", 1.0),
 )
 _MEANS: Final = frozenset({"global_horizontal", "direct_normal", "diffuse_horizontal"})
 
@@ -139,6 +141,8 @@ def read_tmy3(path: Path) -> Year:
 
     digest = file_hash(path)
     where = path.name
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    _check_tmy(text.splitlines(), where)
     try:
         frame, meta = iotools.read_tmy3(str(path), map_variables=True)
     except (ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
@@ -149,18 +153,16 @@ def read_tmy3(path: Path) -> Year:
         raise InputError(
             f"{where}: found {len(frame)} rows, expected 8760 hours; the file is cut or holds gaps."
         )
-    names = {str(column).lower(): column for column in frame.columns}
     values = {}
-    for channel, column, factor in _TMY:
-        if column.lower() in names:
-            values[channel] = _tmy_column(frame, str(names[column.lower()]), where) * factor
-    values = {name: np.where(column <= -9000.0, np.nan, column) for name, column in values.items()}
+    for channel, column, _, factor in _TMY:
+        raw = frame[column].to_numpy(dtype=np.float64)
+        values[channel] = np.where(raw <= -9000.0, np.nan, raw * factor)
     years = [int(stamp.year) for stamp in frame.index[12::24]]
     place = (
         float(meta["latitude"]),
         float(meta["longitude"]),
         float(meta["altitude"]),
-        str(meta.get("Name", "")),
+        str(meta.get("Name", "")).strip("\"' "),
     )
     zone = fixed_zone(float(meta["TZ"]))
     notes = (
@@ -177,14 +179,31 @@ def kind_of(channel: str) -> str:
     return "mean" if channel in _MEANS else "instant"
 
 
-def _tmy_column(frame: pd.DataFrame, column: str, where: str) -> Array:
-    series: pd.Series[Any] = frame[column]
-    try:
-        return series.to_numpy(dtype=np.float64).copy()
-    except (ValueError, TypeError) as error:
+def _check_tmy(lines: list[str], where: str) -> None:
+    """Check the head and every row of a TMY3 table."""
+    head = lines[0].count(",") + 1 if lines else 0
+    if head != _TMY_HEAD or len(lines) < 3:
         raise InputError(
-            f"{where}: column {column!r} holds an entry that is not a number ({error})."
-        ) from error
+            f"{where}:1: expected the seven fields of a TMY3 table (station, name, state, time zone, "
+            "latitude, "
+            f"longitude, altitude), found {head}; read other tables with from_table."
+        )
+    names = [name.strip() for name in lines[1].split(",")]
+    missing = [name for _, _, name, _ in _TMY if name not in names]
+    if missing:
+        raise InputError(
+            f"{where}:2: no column {missing[0]!r}, which TMY3 has; found {', '.join(names[:8])}, ..."
+        )
+    places = [(name, names.index(name)) for _, _, name, _ in _TMY]
+    for line, row in enumerate(lines[2:], start=3):
+        fields = row.split(",")
+        if len(fields) < len(names):
+            raise InputError(
+                f"{where}:{line}: found {len(fields)} fields, expected {len(names)}; the file is cut or "
+                "damaged here."
+            )
+        for name, place in places:
+            _check_number(fields[place], name, where, line)
 
 
 def _check_epw(lines: list[str], where: str) -> list[int]:
@@ -211,7 +230,7 @@ def _check_epw(lines: list[str], where: str) -> list[int]:
             )
         stamp = _integers(fields, where, line)
         for field in numbers:
-            _check_number(fields[field], field, where, line)
+            _check_number(fields[field], f"field {field + 1}", where, line)
         years.append(stamp[0])
         previous = _check_order(previous, stamp, where, line)
     if len(rows) not in (_HOURS, _HOURS + 24):
@@ -259,13 +278,13 @@ def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, 
     return year, month, day, hour
 
 
-def _check_number(text: str, field: int, where: str, line: int) -> None:
+def _check_number(text: str, field: str, where: str, line: int) -> None:
     try:
         value = float(text)
     except ValueError as error:
-        raise InputError(f"{where}:{line}: field {field + 1} is {text!r}, expected a number.") from error
+        raise InputError(f"{where}:{line}: {field} is {text!r}, expected a number.") from error
     if not np.isfinite(value):
-        raise InputError(f"{where}:{line}: field {field + 1} is {text!r}, expected a finite number.")
+        raise InputError(f"{where}:{line}: {field} is {text!r}, expected a finite number.")
 
 
 def _check_order(

@@ -451,8 +451,9 @@ def _regular(
     seconds = epoch_seconds(index)
     gaps = np.round(np.diff(seconds), 6)
     _ordered(gaps, index, lines, where, zone)
-    lengths, counts = np.unique(gaps, return_counts=True)
-    interval = expected if expected is not None else float(lengths[np.argmax(counts)])
+    lengths, place, counts = np.unique(gaps, return_index=True, return_counts=True)
+    commonest = np.lexsort((place, -counts))[0]  # the earlier of two that are equally common
+    interval = expected if expected is not None else float(lengths[commonest])
     ratio = gaps / interval
     odd = np.flatnonzero(np.abs(ratio - np.round(ratio)) > 1e-6)
     if len(odd):
