@@ -211,9 +211,7 @@ def test_bad_options_are_refused(options: dict[str, Any], words: str) -> None:
 
 
 def test_lgi_record_is_read_whole(repository: Path) -> None:
-    path = repository.parent / "shared" / "lgi_virtual" / "lgi_virtual.csv"
-    if not path.is_file():
-        pytest.skip(f"no virtual experiment at {path}")
+    path = repository / "python" / "mascarin" / "examples" / "lgi" / "lgi_virtual.csv"
     names = (
         "relative_humidity",
         "wind_speed",
