@@ -49,7 +49,10 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
     ),
     "Run": (Command("run", "mascarin.commands.run:run", "Run a building in a climate."),),
     "Prove": (
-        Command("study", "mascarin.commands.study:study", "Compare, identify and corroborate on measurements."),
+        Command(
+            "study", "mascarin.commands.study:study", "Compare, identify and corroborate on measurements."
+        ),
+        Command("verify", "mascarin.commands.verify:verify", "Hold the simulation against closed answers."),
     ),
     "Optimise": (
         Command(
