@@ -8,7 +8,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import tzinfo
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
@@ -57,6 +57,19 @@ ENERGIES: Mapping[str, float] = {
     "kWh/m2": 3.6e6,
 }
 """Energies per interval, in J/m2: divided by the interval they become W/m2."""
+
+
+_SECONDS: Final = {
+    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
+    **dict.fromkeys(("min", "minute", "minutes"), 60.0),
+    **dict.fromkeys(("h", "hour", "hours"), 3600.0),
+    **dict.fromkeys(("d", "day", "days"), 86400.0),
+}
+"""Units of a length of time."""
+
+_TIMES: Final = "a positive time such as 900, 15min or 1h"
+
+_LENGTH_OF_TIME: Final = re.compile(rf"(\d+\.?\d*(?:e[+-]?\d+)?)\s*({'|'.join(_SECONDS)})?", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -285,7 +298,9 @@ def seconds_of(step: str | float, where: str = "step") -> float:
     Parameters
     ----------
     step : str or float
-        Text such as `15min`, `1h`, `90s`, or a number of seconds [s].
+        Text such as `15min`, `1h`, `90s`, `3d`, or a number of seconds [s].
+    where : str
+        What the length belongs to, for the error.
 
     Returns
     -------
@@ -297,16 +312,12 @@ def seconds_of(step: str | float, where: str = "step") -> float:
     InputError
         No positive length can be read.
     """
-    import pandas as pd
-
-    try:
-        seconds = float(step) if isinstance(step, int | float) else pd.Timedelta(step).total_seconds()
-    except ValueError as error:
-        raise InputError(
-            f"{where}: step {step!r} is not a length of time; write 15min, 1h or 90s."
-        ) from error
-    if not seconds > 0.0:
-        raise InputError(f"{where}: step {step!r} must be longer than zero.")
+    match = _LENGTH_OF_TIME.fullmatch(str(step).strip())
+    if match is None or isinstance(step, bool):
+        raise InputError(f"{where}: found {step!r}; expected {_TIMES}")
+    seconds = float(match[1]) * _SECONDS[(match[2] or "s").lower()]
+    if not 0.0 < seconds < float("inf"):
+        raise InputError(f"{where}: found {step!r}; expected {_TIMES}")
     return seconds
 
 

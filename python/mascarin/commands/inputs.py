@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
@@ -25,8 +24,6 @@ Settings = Annotated[
 ]
 AsJson = Annotated[bool, Flag, Parameter(name="--json", help="Print the result as JSON.")]
 Step = Annotated[str, Parameter(help="Time step, such as 900, 15min or 1h.")]
-
-_SECONDS: Final = {"": 1.0, "s": 1.0, "min": 60.0, "h": 3600.0}
 
 
 def read_building(file: Path, settings: Sequence[str] | None) -> Building:
@@ -79,11 +76,6 @@ def seconds(text: str) -> float:
     InputError
         If it is no such text, or not positive.
     """
-    found = re.fullmatch(r"\s*([0-9.]+)\s*([a-z]*)\s*", text)
-    try:
-        step = float(found[1]) * _SECONDS[found[2]] if found else 0.0
-    except (KeyError, ValueError):
-        step = 0.0
-    if step <= 0.0:
-        raise InputError(f"--step: found '{text}'; expected a positive time such as 900, 15min or 1h")
-    return step
+    from mascarin.climate.table import seconds_of
+
+    return seconds_of(text, "--step")

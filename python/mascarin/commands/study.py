@@ -21,10 +21,11 @@ def study(
     out: Annotated[Path, Parameter(alias="-o")],
     as_json: AsJson = False,
 ) -> int:
-    """Compare, find what matters, identify, compare again, corroborate.
+    """Compare, identify and corroborate on measurements.
 
-    Survives interruption: started again with the same folder it goes on where it was, and ends with the same
-    result. Exits with 1 when the fitted model misses a criterion.
+    The five steps: compare, find what matters, identify, compare again, corroborate. Survives interruption:
+    started again with the same folder it goes on where it was, and ends with the same result. Exits with 1
+    when the fitted model misses a criterion.
 
     Parameters
     ----------
