@@ -44,6 +44,18 @@ def test_wall_bench_dead_sensor_and_filled_end_are_found(data_dir: Path) -> None
     assert len(stretches) == 1 + len(temperatures)
 
 
+@pytest.mark.parametrize("every", ["1min", "5min", "15min", "1h"])
+@pytest.mark.parametrize("digits", [1, 3, 12])
+def test_dead_sensor_is_found_in_coarser_copies_too(data_dir: Path, every: str, digits: int) -> None:
+    path = data_dir / "wall_bench" / "wall_bench_2024.csv"
+    data = Measurements.from_table(path, timezone="UTC").data
+    stretches = find(data.resample(every).mean().round(digits))
+    (dead,) = of_kind(stretches, "stuck")["T_ins_1"]
+    assert abs(dead.start - pd.Timestamp("2024-09-07 05:08", tz="UTC")) <= pd.Timedelta("2h")
+    assert {s.channel for s in stretches if s.kind not in ("stuck", "forward_filled")} == set()
+    assert list(of_kind(stretches, "stuck")) == ["T_ins_1"]
+
+
 def test_good_channels_of_the_virtual_experiment_raise_no_alarm(repository: Path) -> None:
     path = repository / "python" / "mascarin" / "examples" / "lgi" / "lgi_virtual.csv"
     assert Measurements.from_table(path, timezone="UTC+4").quality() == []

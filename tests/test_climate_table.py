@@ -77,6 +77,10 @@ def test_local_clock_with_daylight_saving_is_regular_in_true_time(tmp_path: Path
     table = read(tmp_path, rows(stamps), timezone="Europe/Paris")
     assert table.interval == 3600.0
     assert len(table.frame) == 4
+    assert table.notes[1] == (
+        "logger.csv: clocks of Europe/Paris go forward by 60 min between 2024-03-31 01:00 and "
+        "2024-03-31 03:00."
+    )
 
 
 def test_offsets_resolve_the_doubled_hour(tmp_path: Path) -> None:
@@ -139,6 +143,17 @@ def test_parquet_and_frames(tmp_path: Path) -> None:
             "logger.csv:5: .*daylight saving",
         ),
         (rows(["2024-09-04 00:00", "2024-09-04 00:15"]), {"step": "10min"}, "expected a multiple of 600 s"),
+        (
+            rows(["2024-09-04 00:00", "2024-09-04 00:15"]) + "2024-09-04 00:3",
+            {},
+            "logger.csv:4: the last line has 1 of 3",
+        ),
+        (
+            "time,T\n2024-09-04 00:00,1,2\n2024-09-04 00:15,1,2\n",
+            {},
+            "logger.csv:2: the row has more entries",
+        ),
+        ("time,T\n2024-09-04 00:00,1\n2024-09-04 00:15,1,2\n", {}, "Expected 2 fields in line 3, saw 3"),
         (rows(["2024-09-04 00:00"]), {}, "found 1 rows, expected at least two"),
         ("time T\n1 2\n", {}, "no separator found"),
         (

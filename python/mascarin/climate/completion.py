@@ -100,7 +100,9 @@ def _fill_radiation(
     if "diffuse_horizontal" not in names:
         columns["diffuse_horizontal"] = derive.diffuse_erbs(total, up, extra)
         if total.any():
-            notes.append(f"{where}: diffuse irradiance estimated from global (Erbs, Klein & Duffie 1982).")
+            notes.append(
+                f"{where}: diffuse irradiance estimated from global (Erbs et al. 1982, made for hours)."
+            )
     if "direct_normal" in names:
         return "direct+diffuse"
     columns["direct_normal"] = direct_by_closure(total, columns["diffuse_horizontal"], up, clear)

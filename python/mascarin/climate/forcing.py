@@ -83,7 +83,10 @@ def forcing(
     # Times count from the period's start, so that sums over a year lose no digits.
     edges = step_seconds * np.arange(count + 1)
     stage = edges[:-1, None] + step_seconds * np.array(nodes)
-    climate.grid.require(first, last, climate.file)
+    # One calendar year: perhaps a typical year whose months carry one number.
+    year = climate.grid.interval == 3600.0 and climate.grid.count in (8760, 8784)
+    hint = ", or, if this is a typical year, read it with typical=True" if year else ""
+    climate.grid.require(first, last, climate.file, hint)
     ready = climate.completed(site)
     out = np.empty((count, len(nodes), len(CHANNELS) + len(channels)))
     reach = 5.0 * ready.grid.interval + 3600.0

@@ -58,7 +58,7 @@ class Grid:
         first, last = stamps_of(np.array([self.start, self.end]), self.zone)
         return f"{first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M} ({zone_name(self.zone)})"
 
-    def require(self, start: float, end: float, where: str) -> None:
+    def require(self, start: float, end: float, where: str, hint: str = "") -> None:
         """Refuse a span that the grid does not cover.
 
         Raises
@@ -71,7 +71,7 @@ class Grid:
         first, last = stamps_of(np.array([start, end]), self.zone)
         raise InputError(
             f"{where}: the period {first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M} is outside the data, "
-            f"which cover {self.span()}; choose a period inside."
+            f"which cover {self.span()}; choose a period inside{hint}."
         )
 
     def rows(self, start: float, end: float) -> tuple[float, Rows]:

@@ -30,6 +30,8 @@ _SUPPORT: Final = 3
 """So many runs of about a length make that length ordinary."""
 _TURNING: Final = 6.0
 """A coarse logger at a turning point may exceed its ordinary longest run by this factor."""
+_HOPELESS: Final = 10.0
+"""Beyond this factor no turning point and no quiet spell explains a run."""
 _ALIKE: Final = 0.8
 """Runs of two channels are one event when they share this part of the rows that either covers."""
 _DAY: Final = 86400.0
@@ -251,10 +253,10 @@ def _runs_of_equal(values: Array) -> tuple[Lines, Lines]:
     return start, np.diff(np.concatenate([start, [len(values)]]))
 
 
-def _ordinary_longest(lengths: Lines) -> float:
-    """Longest run that is ordinary: two, or reached from short ones in strides that several runs support."""
+def _ordinary_longest(lengths: Lines, least: int = 2) -> float:
+    """Longest run that is ordinary: the least, or reached from it in strides that several runs support."""
     ordered = np.sort(lengths)
-    longest = float(max(2, np.quantile(ordered, 0.99)))
+    longest = float(max(least, np.quantile(ordered, 0.99, method="lower")))
     while True:
         within = ordered[(ordered > longest) & (ordered <= _LONGER * longest)]
         if len(within) < _SUPPORT:
@@ -279,7 +281,8 @@ def _stuck(values: Array, interval: float, bounds: Sequence[float]) -> list[tupl
     return [
         run
         for run in candidates
-        if _elsewhere_moves(values, candidates, run) and not _turns(values, run, longest)
+        if run[1] - run[0] > _HOPELESS * longest
+        or (_elsewhere_moves(values, candidates, run) and not _turns(values, run, longest))
     ]
 
 
@@ -384,7 +387,7 @@ def _still(columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int
     still = runs(~moving)
     lengths = np.ones(max(int(moving.sum()), 1), dtype=np.int64)
     lengths[: len(still)] = [last - first + 1 for first, last in still]
-    limit = max(_LONGER * _ordinary_longest(lengths), _FEWEST_TOGETHER - 1)
+    limit = max(_LONGER * _ordinary_longest(lengths, least=1), _FEWEST_TOGETHER - 1)
     return [
         block for block in still if block[1] - block[0] + 1 > limit and len(_free(columns, stuck, block)) >= 2
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+import warnings
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import tzinfo
@@ -355,27 +356,54 @@ def _read(path: Path, separator: str | None, decimal: str, skip_lines: int) -> t
     if path.suffix.lower() in {".parquet", ".pq"}:
         try:
             return _indexed(pd.read_parquet(path)), 1
+        except ImportError as error:
+            raise InputError(
+                f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet]."
+            ) from error
         except (ValueError, OSError) as error:
             raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
     found = separator or _separator(path, skip_lines)
     try:
-        frame = pd.read_csv(
-            path,
-            sep=found,
-            decimal=decimal,
-            skiprows=skip_lines,
-            skip_blank_lines=False,
-            skipinitialspace=True,
-            encoding="utf-8-sig",
-            low_memory=False,
-            index_col=False,
-        )
+        with warnings.catch_warnings():
+            # Rows with more entries than the header has names: which name they belong to is not known.
+            warnings.simplefilter("error", pd.errors.ParserWarning)
+            frame = pd.read_csv(
+                path,
+                sep=found,
+                decimal=decimal,
+                skiprows=skip_lines,
+                skip_blank_lines=False,
+                skipinitialspace=True,
+                encoding="utf-8-sig",
+                low_memory=False,
+                index_col=False,
+            )
+    except pd.errors.ParserWarning as error:
+        raise InputError(
+            f"{path.name}:{skip_lines + 2}: the row has more entries than the header has names; name "
+            "every column."
+        ) from error
     except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError, ValueError) as error:
         raise InputError(
             f"{path.name}: cannot be read as a table separated by {found!r}: {error}".strip()
         ) from error
     frame.columns = pd.Index([str(name).strip() for name in frame.columns])
+    _refuse_cut(path, found, len(frame.columns), skip_lines + 1 + len(frame))
     return frame, skip_lines + 2
+
+
+def _refuse_cut(path: Path, separator: str, fields: int, line: int) -> None:
+    """A last line without end and with fewer entries than the header is what is left of a longer file."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - 65536))
+        last = file.read().decode("utf-8", errors="replace").rsplit("\n", 1)[-1]
+    count = last.count(separator) + 1
+    if last.strip() and count < fields:
+        raise InputError(
+            f"{path.name}:{line}: the last line has {count} of {fields} entries and no end: the file is "
+            "cut; get it "
+            "whole, or remove that line."
+        )
 
 
 def _separator(path: Path, skip_lines: int) -> str:
@@ -479,6 +507,7 @@ def _regular(
         f"{where}: {len(frame)} rows of {_length(interval)}, {index[0]:%Y-%m-%d %H:%M} .. "
         f"{index[-1]:%Y-%m-%d %H:%M}, time zone {zone_name(zone)}."
     ]
+    notes += _clock_changes(index, where, zone)
     absent = int(place[-1]) + 1 - len(frame)
     if absent:
         row = int(np.argmax(ratio > 1.5))
@@ -491,6 +520,19 @@ def _regular(
         frame = frame.set_axis(stamps_of(seconds[0] + interval * place, zone), axis=0).reindex(grid)
         lines = whole
     return Table(frame, interval, zone, where, digest, lines, tuple(notes))
+
+
+def _clock_changes(index: pd.DatetimeIndex, where: str, zone: tzinfo) -> list[str]:
+    """Sentences on the changes of the clock inside a record."""
+    naive = index.tz_localize(None).to_numpy()
+    offset = (naive - index.tz_convert("UTC").tz_localize(None).to_numpy()) / np.timedelta64(60, "s")
+    changes = [int(k) for k in np.flatnonzero(np.diff(offset))]
+    return [
+        f"{where}: clocks of {zone_name(zone)} go {'forward' if offset[k + 1] > offset[k] else 'back'} by "
+        f"{abs(offset[k + 1] - offset[k]):g} min between {index[k]:%Y-%m-%d %H:%M} and "
+        f"{index[k + 1]:%Y-%m-%d %H:%M}."
+        for k in changes
+    ]
 
 
 def _ordered(gaps: Array, index: pd.DatetimeIndex, lines: Lines, where: str, zone: tzinfo) -> None:

@@ -173,4 +173,11 @@ def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:
         raise InputError(f"{what}: found {value!r}, expected a date such as 2012-09-20 06:30.")
     if stamp.tzinfo is not None:
         return stamp.tz_convert(zone)
-    return localise(pd.DatetimeIndex([stamp]), zone, what)[0]
+    try:
+        return localise(pd.DatetimeIndex([stamp]), zone, what)[0]
+    except InputError as error:
+        raise InputError(
+            f"{what}: {stamp:%Y-%m-%d %H:%M} does not exist or exists twice in {zone_name(zone)}, where "
+            "clocks change "
+            "then; write it with its offset, as in 2024-10-27T02:00+01:00."
+        ) from error
