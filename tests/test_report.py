@@ -168,9 +168,13 @@ def test_a_doi_becomes_a_link_and_nothing_else_does() -> None:
     study["sources"] = [
         {"text": "good", "doi": "10.3390/en9010009"},
         {"text": "bad", "doi": "javascript:alert(1)"},
+        {"text": "Li et al. 2017, doi:10.1016/j.solener.2017.01.006"},
     ]
     links = [a["href"] for a in Outline(render(study, series)).all("a") if not a["href"].startswith("#")]
-    assert links == ["https://doi.org/10.3390/en9010009"]
+    assert links == [
+        "https://doi.org/10.3390/en9010009",
+        "https://doi.org/10.1016/j.solener.2017.01.006",
+    ]
 
 
 def test_a_single_wall_makes_a_page() -> None:

@@ -538,8 +538,8 @@ def ledger_bars(ledger: Mapping[str, Any]) -> Markup | None:
     if not terms:
         return None
     largest = max(abs(float(t["value"])) for t in terms) or 1.0
-    svg = Svg(620.0, 8.0 + 26.0 * len(terms))
-    middle, half = 400.0, 130.0
+    svg = Svg(680.0, 8.0 + 26.0 * len(terms))
+    middle, half = 480.0, 100.0
     for row, term in enumerate(terms):
         value = float(term["value"])
         y = 4.0 + 26.0 * row

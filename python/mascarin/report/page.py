@@ -125,7 +125,7 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
         ("phase-change", "The phase change", _phase_change(study, series)),
         ("residuals", "What is left in the residuals", _residuals(study)),
         ("energy", "Where the heat went", _energy(study)),
-        ("notes", "What the numbers say", study.get("notes") or None),
+        ("notes", "What the numbers say", _notes(study)),
         ("reproduce", "How to get the same result", _reproduce(study)),
     ]
     found: list[dict[str, Any]] = []
@@ -181,7 +181,7 @@ def _criteria(study: Mapping[str, Any]) -> list[dict[str, Any]] | None:
         value, limit = criterion.get("value"), criterion.get("limit")
         groups.setdefault(key, []).append(
             {
-                "name": criterion.get("name", ""),
+                "name": str(criterion.get("name", "")).replace("<=", "≤"),
                 "sensor": figures.label_of(study, str(criterion.get("sensor", "")))
                 if criterion.get("sensor")
                 else "",
@@ -372,7 +372,9 @@ def _strongest(shares: Mapping[str, Mapping[str, Any]]) -> list[str]:
 
 
 def _parameter_label(study: Mapping[str, Any], path: str) -> str:
-    return str(study.get("parameters", {}).get(path, {}).get("label") or text.plain_path(path))
+    """Name of a parameter for people; of several when a peak belongs to a combination of them."""
+    label = study.get("parameters", {}).get(path, {}).get("label")
+    return str(label) if label else text.PATH.sub(lambda found: text.plain_path(found.group()), path)
 
 
 def _share(entry: Mapping[str, Any] | None, study: Mapping[str, Any], output: str) -> dict[str, Any]:
@@ -671,12 +673,25 @@ def _reproduce(study: Mapping[str, Any]) -> dict[str, Any] | None:
     }
 
 
+def _notes(study: Mapping[str, Any]) -> list[dict[str, Any]] | None:
+    """Notes under their titles, those of one title together."""
+    found: dict[str, list[str]] = {}
+    for note in study.get("notes", []):
+        found.setdefault(str(note.get("title", "")), []).extend(str(note.get("text", "")).split("\n\n"))
+    return [{"title": title, "paragraphs": paragraphs} for title, paragraphs in found.items()] or None
+
+
 def _source(source: Mapping[str, str]) -> Markup:
-    doi = str(source.get("doi", ""))
+    """Text of a source; its DOI, given or found in the text, becomes a link."""
+    words, doi = str(source.get("text", "")), str(source.get("doi", ""))
+    found = text.DOI.search(words)
+    if not doi.startswith("10.") and found:
+        doi = found.group(1)
+        words = words[: found.start()] + words[found.end() :]
     if not doi.startswith("10."):
-        return Markup("{}").format(source.get("text", ""))
+        return Markup("{}").format(words)
     return Markup('{} <a href="https://doi.org/{}" rel="noopener noreferrer">doi:{}</a>').format(
-        source.get("text", ""), doi, doi
+        words.rstrip(" ,;"), doi, doi
     )
 
 

@@ -26,7 +26,7 @@ from mascarin.errors import InputError
 Array = npt.NDArray[np.float64]
 
 #: Most values over all columns that a report carries; series beyond are thinned.
-MOST_VALUES = 400_000
+MOST_VALUES = 600_000
 _MISSING = -32768
 _LEVELS = 65_000
 

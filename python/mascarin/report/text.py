@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from datetime import datetime
 
 _UNITS = {
@@ -37,6 +38,17 @@ _CHOICES = {
     "none": "none of its own",
 }
 NONE = "–"
+#: A parameter path in a longer text.
+PATH = re.compile(r"[A-Za-z_][\w-]*(?:\.[\w-]+)+")
+#: A DOI in a longer text.
+DOI = re.compile(r"doi:\s*(10\.\d{4,9}/[^\s;,]+)")
+#: Ends of parameter paths in words.
+_ENDINGS = {
+    ".convection.factor": ".film factor",
+    ".convection.coefficient": ".film coefficient",
+    ".law.width": ".half-width of melting",
+    ".infiltration.constant": ".infiltration",
+}
 MINUS = "−"
 
 
@@ -110,6 +122,8 @@ def day(time: datetime) -> str:
 
 def plain_path(path: str) -> str:
     """Last parts of a parameter path that tell it from others: what it belongs to, and the property."""
+    for ending, words_for_it in _ENDINGS.items():
+        path = path.removesuffix(ending) + words_for_it if path.endswith(ending) else path
     words = [
         w for w in path.split(".") if w not in ("constructions", "layers", "materials", "surfaces", "zones")
     ]
