@@ -96,3 +96,13 @@ def test_results_of_other_points_are_refused() -> None:
     search.ask()
     with pytest.raises(ValueError, match="expected the evaluations of the 1 points asked"):
         search.tell([Evaluation(Point((0.0, 0.0)), 1.0)])
+
+
+def test_the_estimate_of_what_is_left_falls_to_one_round() -> None:
+    search = plane()
+    left = []
+    while points := search.ask():
+        search.tell([Evaluation(p, c) for p, c in zip(points, quadratic(points), strict=True)])
+        left.append(search.remaining)
+    assert left[0] == 7 * 4
+    assert left[-1] == 4

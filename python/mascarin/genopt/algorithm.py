@@ -207,17 +207,8 @@ def build(project: Project, observer: Observer, workers: int) -> Built:
         With every error in the section, each with file and line.
     """
     block, report = _second_seed(project.algorithm), project.report
-    main = block.get("Main")
-    if main is None:
-        report.error(block.end, "missing specification of 'Main' in 'Algorithm'")
-        report.raise_if_any()
-    name = main.value if main else ""
-    known = _known()
-    if name not in known:
-        place = main.place if main else block.place
-        report.error(place, f"algorithm '{name}' is not known. {did_you_mean(name, known)}".rstrip())
-        report.raise_if_any()
-    rule = known[name]
+    name = chosen(project)
+    rule = _known()[name]
     for inner in block.blocks:
         report.error(inner.place, f"unexpected section '{inner.name}' in 'Algorithm'")
     order = ["Main", *rule.keys]
@@ -236,6 +227,36 @@ def build(project: Project, observer: Observer, workers: int) -> Built:
     return Built(
         optimiser, name, keys.get("StopAtError", True), counts_equal=name == "NelderMeadONeill", own=rule.own
     )
+
+
+def chosen(project: Project) -> str:
+    """The name after ``Main =``.
+
+    Parameters
+    ----------
+    project : Project
+        The project.
+
+    Returns
+    -------
+    str
+        The name of an algorithm that there is.
+
+    Raises
+    ------
+    InputError
+        When it is missing or not known.
+    """
+    main, report = project.algorithm.get("Main"), project.report
+    known = _known()
+    if main is None:
+        place = project.algorithm.end or project.algorithm.place
+        report.error(place, "missing specification of 'Main' in 'Algorithm'")
+    elif main.value not in known:
+        hint = did_you_mean(main.value, known)
+        report.error(main.place, f"algorithm '{main.value}' is not known. {hint}".rstrip())
+    report.raise_if_any()
+    return main.value if main is not None else ""
 
 
 def _second_seed(block: Block) -> Block:

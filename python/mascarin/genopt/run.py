@@ -14,7 +14,7 @@ from pathlib import Path
 from mascarin import __version__
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import records
-from mascarin.genopt.algorithm import Built, build
+from mascarin.genopt.algorithm import Built, build, chosen
 from mascarin.genopt.evaluator import Evaluator, Policy, Runner
 from mascarin.genopt.listing import Listings, Row
 from mascarin.genopt.numbers import double_text
@@ -159,11 +159,10 @@ def optimise(path: str | Path, options: Options | None = None, *, run: Runner | 
     outcome = Outcome(project, "")
     try:
         # The listings exist even when the project turns out to be wrong, as GenOpt leaves them.
-        main = project.algorithm.get("Main")
-        listings.open(main.value if main else "", started)
+        outcome.algorithm = chosen(project)
+        listings.open(outcome.algorithm, started)
         workers = o.workers or project.settings.units or os.cpu_count() or 1
         built = build(project, listings, workers)
-        outcome.algorithm = built.name
         if built.counts_equal:
             listings.max_equal = project.settings.max_equal
         program = (
@@ -311,8 +310,8 @@ class _Watch:
     """Shows how far an optimisation is."""
 
     def __init__(self, project: Project, built: Built) -> None:
-        self._expected = built.optimiser.expected
-        self._total = self._expected or project.settings.max_iterations
+        self._optimiser = built.optimiser
+        self._most = project.settings.max_iterations
         self._progress = Progress("simulations")
         self._done = 0
         self._best: float | None = None
@@ -323,10 +322,12 @@ class _Watch:
         self._done += 1
         if record.costs is not None and (self._best is None or record.costs[0] < self._best):
             self._best = record.costs[0]
-        total = max(self._total, self._done)
-        most = "" if self._expected else ", at most"
+        left = self._optimiser.remaining
+        exact = self._optimiser.expected is not None
+        total = self._done + left if left is not None else max(self._most, self._done)
+        about = "" if exact else "about " if left is not None else "at most "
         best = "" if self._best is None else f", lowest {self._name} {self._best:.6g}"
-        self._progress.update(self._done, total, f"{self._done} of {total}{most}{best}")
+        self._progress.update(self._done, total, f"{self._done} of {about}{total}{best}")
 
     def close(self) -> None:
         """Wipe the line."""

@@ -110,6 +110,11 @@ class Optimiser(ABC):
         return None
 
     @property
+    def remaining(self) -> int | None:
+        """Estimate of the number of evaluations still to come, None when there is none [-]."""
+        return None if self.expected is None else max(self.expected - self._count, 0)
+
+    @property
     def done(self) -> bool:
         """Whether the search has ended."""
         self._start()

@@ -152,6 +152,8 @@ class PatternSearch(Optimiser):
         self._delta = self._mesh(exponent)
         self._scale: float | None = None
         self._current = 0
+        self._reduced = 0
+        self._before = 0
         self._plan: Callable[[], Iterable[Point]] = tuple
         self._shadows: dict[int, PatternSearch] = {}
 
@@ -164,6 +166,7 @@ class PatternSearch(Optimiser):
         lowest = math.inf
         for k, start in enumerate(self._starts):
             self._current = k
+            self._before = self._count
             self.step_number = 1
             if several:
                 self.observer.note(f"Start search for point number {k + 1}.")
@@ -175,7 +178,7 @@ class PatternSearch(Optimiser):
                     verb = "further decreased" if end.cost < lowest else "did not further decrease"
                     self.observer.note(f"Search {verb} the cost.")
             lowest = min(lowest, end.cost)
-        if several:
+        if several and self._minimum_at_end:
             self.observer.minimum("Minimum point.")
         return CONVERGED if converged else EXHAUSTED
 
@@ -197,6 +200,7 @@ class PatternSearch(Optimiser):
             candidates = near + far
             found = _lowest(candidates) if candidates else best
             iteration += 1
+            self._reduced = done
             previous = best
             if candidates and self._better(found, best):
                 where = "Local" if _index(candidates, found) < len(near) else "Global"
@@ -357,6 +361,16 @@ class PatternSearch(Optimiser):
         return (new.cost - old.cost) / scale < -rule.zeta * rule.phi(self._delta, self.step_number, new)
 
     # ------------------------------------------------------------------ small helpers
+
+    @property
+    def remaining(self) -> int | None:
+        """Estimate: a round of neighbours for each mesh size left; later starts cost what earlier ones did."""
+        around = 2 * len(self._signs) + sum(d.size - 1 for d in self.space.discrete if self._discrete_moves)
+        here = (self._reductions - self._reduced + 1) * around
+        used = self._before / self._current if self._current else self._count + here
+        later = (len(self._starts) - self._current - 1) * used
+        total = round(here + later)
+        return total if self._limit is None else min(total, max(self._limit - self._count, 0))
 
     @property
     def _failed(self) -> str:

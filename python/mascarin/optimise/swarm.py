@@ -17,7 +17,6 @@ from typing import Literal
 from mascarin.errors import InputError
 from mascarin.optimise.base import Observer, Optimiser, Steps
 from mascarin.optimise.pattern import (
-    CONVERGED,
     HookeJeeves,
     SufficientDecrease,
     decimal_rounding,
@@ -349,12 +348,21 @@ class SwarmThenPattern(ParticleSwarm):
         self._restarts = restarts
         self._sufficient = sufficient
         self._limit = max_evaluations
+        self._running: HookeJeeves | None = None
         self._text = text
 
     @property
     def expected(self) -> int | None:
         """Unknown: the pattern search ends when it is refined enough."""
         return None
+
+    @property
+    def remaining(self) -> int | None:
+        """Estimate: what is left of the swarm, and the pattern search's own estimate."""
+        if self._running is not None:
+            return self._running.remaining
+        swarm = self.rules.size * self.rules.generations - self._count
+        return max(swarm, 0) + (self._reductions + 1) * 2 * len(self.space.continuous)
 
     def _search(self) -> Steps:
         """The swarm, then the pattern search."""
@@ -366,12 +374,13 @@ class SwarmThenPattern(ParticleSwarm):
         search = self._pattern(best.point)
         # The inner search counts on from the evaluations made so far.
         search._count = self._count
+        self._running = search
         search._minimum_at_end = False
         while points := search.ask():
             self.step_number = search.step_number
             search.tell((yield points))
         self.observer.minimum("Minimum point.")
-        return CONVERGED
+        return search.reason
 
     def _pattern(self, start: Point) -> HookeJeeves:
         """The pattern search from the best point of the swarm."""
