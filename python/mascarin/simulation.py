@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.climate import Climate, Measurements
-    from mascarin.model import Building, EngineDescription, Output
+    from mascarin.model import Building, EngineDescription, Output, Parameter
 
     Array = npt.NDArray[np.float64]
 
@@ -368,6 +368,82 @@ def simulate(
         first_period=first_period,
         measurements=measurements,
     ).run()
+
+
+def unreached(
+    building: Building,
+    climate: Climate,
+    *,
+    step: str | float = "15min",
+    start: object = None,
+    end: object = None,
+    measurements: Measurements | None = None,
+) -> dict[str, str]:
+    """Find the numbers of a building that nothing in a run depends on.
+
+    Each number that is not structural is moved a little, one at a time; it is reached when any output or
+    the energy ledger changes by any bit.
+
+    Parameters
+    ----------
+    building, climate, step, measurements
+        As in `Simulation`.
+    start, end : str, datetime or pandas.Timestamp, optional
+        Period; by default the first three days of the climate, or all of a shorter one.
+
+    Returns
+    -------
+    dict of str to str
+        Path of each number that changed nothing, and why: what the description says of it, or that it did
+        not act in this period.
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used.
+    SolverError
+        The building cannot be simulated as it is.
+    """
+    import pandas as pd
+
+    begin, last = _period(climate, start, end)
+    if end is None:
+        last = min(last, begin + pd.Timedelta(days=3))
+    outputs = [output.name for output in building.outputs()]
+    trial = Simulation(
+        building,
+        climate,
+        step=step,
+        start=begin,
+        end=last,
+        outputs=outputs,
+        initial=20.0,
+        measurements=measurements,
+    )
+    samples = np.tile(trial.values, (len(trial.paths) + 1, 1))
+    for position, path in enumerate(trial.paths):
+        samples[position + 1, position] = _moved(building.parameter(path))
+    records, closure, failures = trial.ensemble(samples)
+    failed = {failure.member for failure in failures}
+    if 0 in failed:
+        raise SolverError(failures[0].reason)
+    found = {}
+    for member, path in enumerate(trial.paths, start=1):
+        same = np.array_equal(records[member], records[0]) and closure[member] == closure[0]
+        if same and member not in failed:
+            found[path] = building.parameter(path).reason or "did not act in this period"
+    return found
+
+
+def _moved(parameter: Parameter) -> float:
+    """A value a tenth of the way from the nominal one to an end of its range. [its unit]"""
+    value, low, high = parameter.value, parameter.low, parameter.high
+    if high > value:
+        return value + 0.1 * (high - value)
+    if low < value:
+        return value - 0.1 * (value - low)
+    nudge = 1e-3 * max(abs(value), 1.0)
+    return value + nudge if value + nudge <= parameter.upper else value - nudge
 
 
 @contextmanager

@@ -121,7 +121,7 @@ surfaces:
 
 EVERYTHING: Final = """\
 name: everything
-site: {latitude: -21.3, longitude: 0, altitude: 55, timezone: UTC, sky: martin_berdahl}
+site: {latitude: -35, longitude: 0, altitude: 55, timezone: UTC, sky: martin_berdahl}
 materials:
   board: {conductivity: 0.16, density: 800, specific_heat: 1090}
   concrete: {conductivity: 1.75, density: 2240, specific_heat: 900}
