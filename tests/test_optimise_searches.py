@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
 
 from mascarin.errors import InputError, SolverError
@@ -17,6 +19,7 @@ from mascarin.optimise import (
     GoldenSection,
     Grid,
     NelderMead,
+    Observer,
     OneAtATime,
     Optimiser,
     ParticleSwarm,
@@ -122,7 +125,19 @@ def test_intervals_shrink_by_golden_and_fibonacci_ratios() -> None:
     ):
         assert abs(minimise(search, cost).point.x[0] - 0.3) <= 2 * limit
     assert golden_points(0.01) == 11
-    assert fibonacci_points(0.01) == 10
+    assert fibonacci_points(0.01) == 11
+
+
+def test_a_fibonacci_search_ends_with_the_interval_it_promises() -> None:
+    said: list[str] = []
+
+    class Listener(Observer):
+        def summary(self, lines: Sequence[str]) -> None:
+            said.extend(lines)
+
+    search = FibonacciSearch(LINE, fibonacci_points(0.01), observer=Listener())
+    minimise(search, lambda points: [(p.x[0] - 0.3) ** 2 for p in points])
+    assert float(said[-1].split(": ")[1]) == pytest.approx(1 / 144, rel=1e-9)
 
 
 def test_a_line_without_effect_is_an_error() -> None:

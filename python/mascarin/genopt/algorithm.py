@@ -566,6 +566,7 @@ def _mesh(context: Context, keys: Keys) -> Optimiser:
         context.space,
         batch=context.workers,
         rounding=single_rounding,
+        fresh_step=0,
         observer=context.observer,
         remember=False,
     )

@@ -206,8 +206,8 @@ class Evaluator:
         others = [math.nan] * (len(self._project.objectives) - 1)
         if self._policy.penalty is not None:
             return Evaluation(replace(p, step=step), self._policy.penalty, tuple(others), number, failed=True)
-        # GenOpt records a failure that does not stop it as zeros with step number 0.
-        return Evaluation(replace(p, step=0), 0.0, tuple(0.0 for _ in others), number, failed=True)
+        # GenOpt records a failure that does not stop it as zeros with the step number the point came with.
+        return Evaluation(p, 0.0, tuple(0.0 for _ in others), number, failed=True)
 
     # ------------------------------------------------------------------ runs
 

@@ -48,6 +48,8 @@ class Grid(Optimiser):
         Number of points asked at once; all when absent [-].
     rounding : callable, optional
         Rounded value for a value and its parameter's index.
+    fresh_step : int
+        Step number that points carry before their evaluation [-].
     observer, remember
         See `Optimiser`.
     """
@@ -58,12 +60,14 @@ class Grid(Optimiser):
         *,
         batch: int | None = None,
         rounding: Callable[[float, int], float] | None = None,
+        fresh_step: int = 1,
         observer: Observer | None = None,
         remember: bool = True,
     ) -> None:
         super().__init__(space, observer=observer, remember=remember)
         space.require_bounds()
         self._batch = batch
+        self._fresh = fresh_step
         axes = [
             [rounding(v, i) for v in levels(c, int(c.step))] if rounding else levels(c, int(c.step))
             for i, c in enumerate(space.continuous)
@@ -82,7 +86,7 @@ class Grid(Optimiser):
         # product() varies its last argument fastest.
         combinations = itertools.product(*reversed(self._axes))
         points = (
-            Point(tuple(reversed(v))[:count], tuple(int(k) for k in tuple(reversed(v))[count:]))
+            Point(tuple(reversed(v))[:count], tuple(int(k) for k in tuple(reversed(v))[count:]), self._fresh)
             for v in combinations
         )
         while chunk := list(itertools.islice(points, self._batch or self.expected)):
@@ -132,6 +136,8 @@ class OneAtATime(Optimiser):
         results = yield self._points()
         for i, e in enumerate(results):
             comment = "Function evaluation successful." if i else "Initial point."
+            if e.failed:
+                comment = "Function evaluation failed."
             self.observer.sub(e, comment)
             self.observer.main(e, comment)
         return _DONE

@@ -132,7 +132,7 @@ class FibonacciSearch(IntervalSearch):
     """Interval search that keeps shares of Fibonacci numbers, best for a given number of points."""
 
     def _share(self, done: int) -> float:
-        """Ratio of two neighbouring Fibonacci numbers, counted down to the last reduction."""
+        """Ratio of two neighbouring Fibonacci numbers, counted down to one half at the last point."""
         n = self._points - done + 2
         return _fibonacci(n) / _fibonacci(n + 1)
 
@@ -173,8 +173,8 @@ def fibonacci_points(reduction: float) -> int:
 
 
 def _fibonacci(n: int) -> int:
-    """Fibonacci number with F(0) = F(1) = 1."""
-    a, b = 1, 1
+    """Fibonacci number with F(1) = F(2) = 1."""
+    a, b = 0, 1
     for _ in range(n):
         a, b = b, a + b
     return a

@@ -364,7 +364,7 @@ class PatternSearch(Optimiser):
 
     @property
     def remaining(self) -> int | None:
-        """Estimate: a round of neighbours for each mesh size left; later starts cost what earlier ones did."""
+        """Estimate: a round of neighbours for each mesh size left; later starts as earlier ones."""
         around = 2 * len(self._signs) + sum(d.size - 1 for d in self.space.discrete if self._discrete_moves)
         here = (self._reductions - self._reduced + 1) * around
         used = self._before / self._current if self._current else self._count + here
