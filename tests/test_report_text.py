@@ -55,3 +55,9 @@ def test_paths_become_words() -> None:
     )
     assert text.plain_path("surfaces.roof.inside.convection.factor") == "roof · inside · film factor"
     assert text.plain_path("surfaces.wall_north.outside.absorptance") == "wall north · outside · absorptance"
+
+
+def test_plain_signs_are_typeset() -> None:
+    assert text.typeset("|max error| <= 2 degC") == "|max error| ≤ 2\u00a0°C"
+    assert text.typeset("-1.51 deg") == "−1.51°"
+    assert text.typeset("2010-09-20 from -0.2 to 3") == "2010-09-20 from −0.2 to 3"

@@ -121,13 +121,14 @@ def _period_curves(
     x = time_axis(series.time(part.start), hours[-1] if len(hours) else 1.0)
     raw_unit = unit_of(study, sensor)
     label = label_of(study, sensor)
-    chart = Chart(x, Axis.over(seen, made), height=170.0, y_label=text.unit(raw_unit), bottom=22.0)
+    before = nominal.values[part] if nominal is not None else np.empty(0)
+    chart = Chart(x, Axis.over(seen, made, before), height=170.0, y_label=text.unit(raw_unit), bottom=22.0)
     band = float(study["sensor_info"][sensor].get("uncertainty", 0.0))
     pick = slice(None, None, every)
     if band > 0.0:
         chart.band(hours[pick], seen[pick] - band, seen[pick] + band, "sensor-band")
     if nominal is not None and main_model(study) != "nominal":
-        chart.curve(hours[pick], nominal.values[part][pick], "nominal")
+        chart.curve(hours[pick], before[pick], "nominal")
     chart.curve(hours[pick], seen[pick], "observed")
     chart.curve(hours[pick], made[pick], "fitted")
     error = made - seen

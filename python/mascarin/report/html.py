@@ -14,6 +14,7 @@ from markupsafe import Markup
 
 from mascarin.report.page import context, explorer
 from mascarin.report.payload import Series
+from mascarin.report.text import typeset
 
 
 def page(study: Mapping[str, Any], series: Series) -> str:
@@ -34,6 +35,7 @@ def page(study: Mapping[str, Any], series: Series) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    environment.filters["typeset"] = typeset
     template = environment.from_string(_asset("template.html"))
     return template.render(
         **context(study, series),

@@ -181,7 +181,7 @@ def _criteria(study: Mapping[str, Any]) -> list[dict[str, Any]] | None:
         value, limit = criterion.get("value"), criterion.get("limit")
         groups.setdefault(key, []).append(
             {
-                "name": str(criterion.get("name", "")).replace("<=", "≤"),
+                "name": text.typeset(str(criterion.get("name", ""))),
                 "sensor": figures.label_of(study, str(criterion.get("sensor", "")))
                 if criterion.get("sensor")
                 else "",
@@ -244,7 +244,7 @@ def _model(study: Mapping[str, Any]) -> dict[str, Any] | None:
             for z in building.get("zones", [])
         ],
         "surfaces": [_surface(s) for s in building.get("surfaces", [])],
-        "site": building.get("site", []),
+        "site": [[text.plain_path(str(k)), text.typeset(str(v))] for k, v in building.get("site", [])],
         "choices": [[text.plain_path(str(k)), text.choice(str(v))] for k, v in building.get("choices", [])],
         "assumptions": _assumptions(study),
     }

@@ -130,6 +130,13 @@ def plain_path(path: str) -> str:
     return " · ".join(words).replace("_", " ")
 
 
+def typeset(words: str) -> str:
+    """Plain signs and units in a text by their typographic ones."""
+    for plain, sign in (("<=", "≤"), (">=", "≥"), (" degC", "\u00a0°C"), (" deg", "°"), (" m2", "\u00a0m²")):
+        words = words.replace(plain, sign)
+    return re.sub(r"(^|\s)-(?=\d)", rf"\1{MINUS}", words)
+
+
 def choice(kind: str) -> str:
     """Kind of a model in words; unknown ones as they are."""
     return _CHOICES.get(kind, kind)
