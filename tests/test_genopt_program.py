@@ -58,6 +58,14 @@ def test_paths_with_blanks_work(tmp_path: Path) -> None:
     assert run(ini)[0] == pytest.approx(0.05**2 + 0.8**2)
 
 
+@pytest.mark.skipif(os.name != "posix", reason="GenOpt keeps quotes on Windows")
+def test_an_argument_with_blanks_is_said_to_go_beyond_genopt(tmp_path: Path) -> None:
+    project = load(write_project(tmp_path, command='echo \\"a b\\" c'))
+    words = Program(project).command(tmp_path / "tmp-genopt-run-1")
+    assert words == ["echo", "a b", "c"]
+    assert "accepted beyond GenOpt: 'a b' stays one argument" in project.report.notes[0]
+
+
 def test_the_extension_can_be_left_out(tmp_path: Path) -> None:
     ini = write_project(tmp_path, extension="false")
     words = Program(load(ini)).command(tmp_path / "tmp-genopt-run-1")

@@ -220,6 +220,8 @@ def build(project: Project, observer: Observer, workers: int) -> Built:
     keys = _values(found, report, own=rule.own)
     _groups(found, report)
     report.raise_if_any()
+    if rule.own:
+        report.notes.append(f"{block.place}: accepted beyond GenOpt: it has no algorithm '{name}'")
     space = _space(project, name, rule)
     _check_bounds(project, rule, bounds=rule.bounds or "MultiStart" in keys)
     context = Context(project, space, observer, workers)

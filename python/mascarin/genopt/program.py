@@ -125,6 +125,12 @@ class Program:
                 project.command_place,
                 f"the program '{words[0]}' is not found or cannot be executed; give its full path",
             )
+        for word in words:
+            if re.search(r"\s", word) and os.name == "posix":
+                project.report.notes.append(
+                    f"{project.command_place}: accepted beyond GenOpt: '{word}' stays one argument, "
+                    "GenOpt would split it at its blanks"
+                )
         for entry in (*project.input, *project.log, *project.output):
             stale = Path.cwd() / entry.name
             if entry.name in words and stale.exists():
