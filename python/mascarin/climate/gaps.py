@@ -30,7 +30,7 @@ def filled(climate: Climate, longest: str | float, columns: Iterable[str] | None
                 f"{climate.file}: no column {name!r} to fill. {did_you_mean(name, known)}".rstrip()
             )
         values = data[name].to_numpy(dtype=np.float64).copy()
-        count = _fill(values, limit, circular=name == "wind_direction")
+        count = fill_linearly(values, limit, circular=name == "wind_direction")
         if count:
             data[name] = values
             notes.append(f"{climate.file}: {count} missing values of {name} filled linearly on request.")
@@ -39,7 +39,23 @@ def filled(climate: Climate, longest: str | float, columns: Iterable[str] | None
     return replace(climate, data=data, closing=closing, provenance=tuple(notes), _ready={})
 
 
-def _fill(values: Array, limit: float, *, circular: bool) -> int:
+def fill_linearly(values: Array, limit: float, *, circular: bool = False) -> int:
+    """Fill gaps in place by straight lines; those at either end stay.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where missing.
+    limit : float
+        Longest gap to fill, in rows.
+    circular : bool
+        Whether the values are directions, which turn the shorter way. [deg]
+
+    Returns
+    -------
+    int
+        How many values were filled.
+    """
     count = 0
     for first, last in runs(np.isnan(values)):
         if last - first > limit + 1e-9 or first == 0 or last == len(values):

@@ -96,6 +96,13 @@ def plain(text: str, name: str) -> Any:
     return _Document(name).read(text)
 
 
+def lines(text: str, name: str) -> Mapping[Place, int]:
+    """Tell on which line each key and value of YAML text stands, by its place; ``name`` stands for its file."""
+    document = _Document(name, blanks=True)
+    document.read(text)
+    return document.lines
+
+
 def explained(
     error: ValidationError, plain: Any, name: str, lines: Mapping[Place, int] | None = None
 ) -> InputError:

@@ -3,27 +3,64 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
+from mascarin.errors import InputError
+from mascarin.model.names import Name
+from mascarin.model.number import problem
 from mascarin.model.part import Part, fault, insist
+from mascarin.validation.criteria import Criterion
 
 if TYPE_CHECKING:
     from typing import Self
 
+
+def _duration(text: str) -> str:
+    """A length of time that can be read."""
+    from mascarin.climate.table import seconds_of
+
+    try:
+        seconds_of(text)
+    except InputError:
+        raise problem(f"'{text}'", "a length of time", "Write 15min, 1h, 2d or 90s.") from None
+    return text
+
+
+def _timezone(text: str) -> str:
+    """A time zone that exists."""
+    from mascarin.climate.timezones import parse_timezone
+
+    try:
+        parse_timezone(text)
+    except InputError as error:
+        _, _, hint = str(error).rpartition("'. ")
+        expected = "an IANA name such as Europe/Paris, or a fixed offset such as UTC+4"
+        raise problem(f"'{text}'", expected, hint if hint.startswith("Did") else "") from None
+    return text
+
+
 #: A local time, ISO 8601, with or without an offset.
 Time = str
 Span = tuple[Time, Time]
+Duration = Annotated[str, AfterValidator(_duration)]
+TimeZone = Annotated[str, AfterValidator(_timezone)]
 Columns = str | tuple[str, ...] | dict[str, Any]
+
+#: Names that the results give to models and metrics, so that no variant may bear them.
+TAKEN: Final = (
+    "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
+    "max_error_percent", "measured_range",
+)  # fmt: skip
 
 
 class Table(Part):
     """A table of measured columns."""
 
     table: str = Field(description="CSV or Parquet file beside the study, or data:NAME of a known data set")
-    timezone: str | None = Field(
-        None, description="IANA name or fixed offset (UTC+4) of the stamps; required"
+    timezone: TimeZone = Field(
+        description="Time zone that the logger's clock kept: IANA name (Europe/Paris) or offset (UTC+4)"
     )
     stamps: Literal["start", "end"] = Field("start", description="Which end of its interval a stamp marks")
     mean: tuple[str, ...] = Field((), description="Columns that are means over their interval")
@@ -32,6 +69,12 @@ class Table(Part):
     time: str | tuple[str, ...] | None = Field(None, description="Time column or columns; found when absent")
     time_format: str | None = Field(None, description="How stamps are written, as in strptime")
     skip_lines: int = Field(0, ge=0, description="Lines before the header")
+    missing: tuple[str | float, ...] = Field((), description="Entries that stand for no value, such as -999")
+    fill_gaps: Duration | None = Field(
+        None,
+        description="Gaps up to this length are filled by straight lines in what drives the model, never in "
+        "what it is compared with",
+    )
     inspect: tuple[str, ...] = Field(
         (), description="Further columns whose quality is judged, though not used"
     )
@@ -39,7 +82,17 @@ class Table(Part):
     @property
     def options(self) -> dict[str, Any]:
         """Options that every table reader takes."""
-        keys = ("timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "mean")
+        keys = (
+            "timezone",
+            "stamps",
+            "separator",
+            "decimal",
+            "time",
+            "time_format",
+            "skip_lines",
+            "mean",
+            "missing",
+        )
         return {key: getattr(self, key) for key in keys}
 
 
@@ -70,7 +123,9 @@ class Sensor(Part):
 
     column: str | tuple[str, ...] = Field(description="Column, or several whose mean is taken")
     output: str = Field(description="Output of the model")
-    uncertainty: float = Field(0.5, gt=0, description="Half-width of the 95 % band of the sensor [degC]")
+    uncertainty: float = Field(
+        0.5, gt=0, description="Half-width of the 95 % band of the sensor [unit of the output]"
+    )
     label: str | None = Field(None, description="What the report calls it")
     use: bool = Field(True, description="Whether it takes part in the identification")
 
@@ -81,12 +136,16 @@ class Sensor(Part):
 
 
 class Periods(Part):
-    """Which part of the record is for what; local time of the building. Ends are not included."""
+    """Which part of the record is for what; local time of the weather. Ends are not included."""
 
-    warm_up: Span | None = Field(None, description="Run but not compared; starts the run")
-    identification: Span = Field(description="Parameters are identified here")
+    warm_up: Span | None = Field(
+        None, description="Start and end of what is run but not compared; the run starts here"
+    )
+    identification: Span = Field(description="Start and end of what the parameters are identified on")
     corroboration: Span | None = Field(
-        None, description="Held back and named; all days after the identification when absent"
+        None,
+        description="Start and end of what is held back and named; all that follows the identification when "
+        "absent",
     )
     end: Time | None = Field(None, description="End of the record to use; its end when absent")
 
@@ -105,7 +164,7 @@ class SensitivityPlan(Part):
     replicates: int = Field(8, ge=3, description="Independent repetitions of the design")
     order: int | None = Field(None, ge=1, description="Harmonics counted as a parameter's own")
     seed: int = Field(1, description="Of the random numbers")
-    interval: str = Field("1h", description="Spacing of the outputs that are analysed")
+    interval: Duration = Field("1h", description="Spacing of the outputs that are analysed")
     ranges: dict[str, tuple[float, float]] = Field(
         default_factory=dict, description="Ranges that replace those of the building"
     )
@@ -129,20 +188,39 @@ class Free(Part):
 class IdentificationPlan(Part):
     """Which parameters to identify, and how."""
 
-    parameters: dict[str, Free | None] = Field(min_length=1, description="Path -> bounds")
+    parameters: dict[str, Free | None] = Field(
+        min_length=1, description="Path -> what is known of it; nothing after the colon for the usual"
+    )
     method: Literal["least-squares", "hooke-jeeves"] = Field("least-squares", description="Optimiser")
     starts: int = Field(4, ge=1, description="Starts of the multi-start")
     seed: int = Field(1, description="Of the random starts")
-    lead: str = Field("3d", description="Run before the identification period starts to be compared")
+    lead: Duration = Field("3d", description="Run before the identification period starts to be compared")
     budget: int | None = Field(None, ge=1, description="Largest number of evaluations of a pattern search")
     cost: Literal["nll", "sd", "rmse", "cv_rmse"] = Field(
         "nll", description="What is minimised; least squares knows nll only, priors need it"
     )
-    independent: str | None = Field(
+    independent: Duration | None = Field(
         None,
         description="Time after which residuals of a model count as independent; samples closer together "
         "share one weight, so that priors are not drowned by an error that lasts",
     )
+
+    @model_validator(mode="after")
+    def _together(self) -> Self:
+        if self.cost == "nll":
+            return self
+        if self.method == "least-squares":
+            expected = "nll, the only cost that least squares knows"
+            insist(fault(("cost",), self.cost, expected, "Write method: hooke-jeeves, or leave cost out."))
+        weighed = [path for path, free in self.parameters.items() if free is not None and free.prior]
+        if weighed:
+            found = f"{self.cost} and a prior on {weighed[0]}"
+            insist(fault(("cost",), found, "nll, which weighs priors", "Write cost: nll, or leave it out."))
+        return self
+
+
+class Limit(Criterion, Part):
+    """One limit on one metric, for some or all sensors and periods."""
 
 
 class Variant(Part):
@@ -167,15 +245,26 @@ class StudyFile(Part):
     )
     climate: ClimateSource = Field(description="The weather")
     measurements: Table = Field(description="The measured table")
-    sensors: dict[str, Sensor] = Field(min_length=1, description="Sensors by name")
-    step: str = Field("15min", description="Time step")
+    sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
+    step: Duration = Field("15min", description="Time step")
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field("sdirk2", description="Scheme")
     periods: Periods = Field(description="Which part of the record is for what")
     quality: Quality = Field(default_factory=lambda: Quality(mask=()), description="Suspicious stretches")
-    criteria: tuple[dict[str, Any], ...] = Field((), description="Limits on metrics, see docs/studies.md")
+    criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit 1 when one is missed")
     sensitivity: SensitivityPlan | None = Field(None, description="Which parameters matter")
     identification: IdentificationPlan = Field(description="Which parameters to identify")
     variants: dict[str, Variant] = Field(default_factory=dict, description="Other model choices")
+
+    @model_validator(mode="after")
+    def _named(self) -> Self:
+        insist(
+            *(
+                fault(("variants", name), f"'{name}'", "another name", "Results use this one already.")
+                for name in self.variants
+                if name in TAKEN
+            )
+        )
+        return self
 
 
 def read_study(path: str | Path) -> StudyFile:

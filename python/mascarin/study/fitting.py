@@ -2,51 +2,64 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from mascarin.calibration import Fit, FitParameter, Rules, solve
+import numpy as np
+
+from mascarin.calibration import CalibrationProblem, Fit, FitParameter, Rules, solve
 from mascarin.calibration.buildings import fit_parameter, problem_of
 from mascarin.climate.table import seconds_of
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
 
     from mascarin.model import Building
     from mascarin.simulation import Simulation
-    from mascarin.study.description import IdentificationPlan, Sensor
+    from mascarin.study.description import Free, IdentificationPlan, Sensor
     from mascarin.validation.observation import Observation
 
 
-def fit_parameters(building: Building, plan: IdentificationPlan) -> list[FitParameter]:
-    """Parameters with their bounds: the study's, else the building's ranges.
+#: So much work may be lost when a study is killed. [s]
+CHUNK_SECONDS: Final = 1.0
+_MOST: Final = 64
+_PACK: Final = 8
+
+
+def free_parameter(building: Building, path: str, free: Free | None) -> FitParameter:
+    """A parameter with its bounds: the study's, else the building's range.
 
     Raises
     ------
     InputError
         Unknown path, or bounds outside of what the parameter can be.
     """
-    return [
-        fit_parameter(building, path)
-        if free is None
-        else fit_parameter(building, path, (free.low, free.high), free.prior)
-        for path, free in plan.parameters.items()
-    ]
+    if free is None:
+        return fit_parameter(building, path)
+    return fit_parameter(building, path, (free.low, free.high), free.prior)
 
 
-def identify(
+def fit_parameters(building: Building, plan: IdentificationPlan) -> list[FitParameter]:
+    """All parameters of a plan.
+
+    Raises
+    ------
+    InputError
+        As for `free_parameter`.
+    """
+    return [free_parameter(building, path, free) for path, free in plan.parameters.items()]
+
+
+def problem(
     simulation: Simulation,
     observation: Observation,
     use: npt.NDArray[np.bool_],
     sensors: Mapping[str, Sensor],
     plan: IdentificationPlan,
-    *,
-    record: Path | None,
-    progress: Callable[[int, float], object] | None = None,
-) -> Fit:
-    """Find the parameters of a plan.
+) -> CalibrationProblem:
+    """What a plan asks for.
 
     Parameters
     ----------
@@ -60,15 +73,16 @@ def identify(
         Uncertainties, and which take part.
     plan : IdentificationPlan
         What to find and how.
-    record : Path, optional
-        File in which every evaluation is kept.
-    progress : callable, optional
-        Called with the number of evaluations and the lowest cost so far.
+
+    Raises
+    ------
+    InputError
+        A parameter or a sensor that cannot be used.
     """
     weight = 1.0
     if plan.independent is not None:
         weight = min(1.0, observation.interval / seconds_of(plan.independent, "identification.independent"))
-    problem = problem_of(
+    return problem_of(
         simulation,
         observation,
         use,
@@ -76,12 +90,46 @@ def identify(
         {name: sensor.uncertainty for name, sensor in sensors.items() if sensor.use},
         weight,
     )
+
+
+def identify(
+    simulation: Simulation,
+    stated: CalibrationProblem,
+    plan: IdentificationPlan,
+    *,
+    record: Path | None,
+    progress: Callable[[int, float], object] | None = None,
+) -> Fit:
+    """Find the parameters of a plan.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What the problem runs.
+    stated : CalibrationProblem
+        From `problem`.
+    plan : IdentificationPlan
+        How to find them.
+    record : Path, optional
+        File in which every evaluation is kept.
+    progress : callable, optional
+        Called with the number of evaluations and the lowest cost so far.
+    """
     return solve(
-        problem,
+        stated,
         method="least_squares" if plan.method == "least-squares" else "pattern_search",
         cost=plan.cost,
         seed=plan.seed,
         rules=Rules(starts=plan.starts, sequences=max(plan.starts, 10), evaluations=plan.budget),
         record=record,
+        batch=_batch(simulation),
         progress=progress,
     )
+
+
+def _batch(simulation: Simulation) -> int:
+    """How many evaluations to keep at a time; it changes how much work can be lost and no result."""
+    began = time.monotonic()
+    simulation.ensemble(np.tile(simulation.vector({}), (_PACK, 1)))
+    seconds = max(time.monotonic() - began, 1e-6)
+    return int(np.clip(_PACK * CHUNK_SECONDS / seconds, 1, _MOST))

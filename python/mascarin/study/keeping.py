@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -47,7 +48,7 @@ class Workspace:
     Raises
     ------
     InputError
-        The folder holds work on other inputs, or is no folder.
+        The folder is no folder.
     """
 
     def __init__(self, out: Path, inputs: Mapping[str, Any]) -> None:
@@ -57,13 +58,20 @@ class Workspace:
         self.folder = out / _FOLDER
         self.folder.mkdir(parents=True, exist_ok=True)
         manifest, text = self.folder / "manifest.json", json.dumps(inputs, indent=1, sort_keys=True)
-        if manifest.exists() and manifest.read_text(encoding="utf-8") != text:
-            self._clear()
+        changed = _changed(manifest, inputs)
+        if changed:
+            warnings.warn(
+                f"{out}: holds work on other inputs (different: {', '.join(changed)}); it cannot be "
+                "continued, so everything is done anew",
+                stacklevel=3,
+            )
+            self._clear("*")
+        # What was being written when the last run was killed.
+        self._clear("*.part")
         write_whole(manifest, text)
 
-    def _clear(self) -> None:
-        """Drop work on other inputs: its results could not be used."""
-        for file in self.folder.iterdir():
+    def _clear(self, names: str) -> None:
+        for file in self.folder.glob(names):
             file.unlink()
 
     def path(self, name: str) -> Path:
@@ -90,3 +98,14 @@ class Workspace:
         """Forget outputs that are no longer needed."""
         for file in self.folder.glob(f"{name}-*.npy"):
             file.unlink()
+
+
+def _changed(manifest: Path, inputs: Mapping[str, Any]) -> list[str]:
+    """Inputs that are not those of the work that is there."""
+    if not manifest.exists():
+        return []
+    try:
+        before = json.loads(manifest.read_text(encoding="utf-8"))
+        return [key for key in sorted({*before, *inputs}) if before.get(key) != inputs.get(key)]
+    except (ValueError, TypeError, AttributeError):
+        return ["manifest"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,30 +14,31 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import __version__
-from mascarin.calibration import Fit
+from mascarin.calibration import CalibrationProblem, Fit
 from mascarin.climate import Climate, Measurements
 from mascarin.climate.quality import mask
 from mascarin.climate.table import file_hash, seconds_of
 from mascarin.climate.timezones import moment
-from mascarin.errors import InputError
 from mascarin.model import Building, load
 from mascarin.progress import Progress
 from mascarin.results import Results
 from mascarin.simulation import Simulation
 from mascarin.study.description import StudyFile, Variant, read_study
-from mascarin.study.fitting import fit_parameters, identify
+from mascarin.study.fitting import fit_parameters, identify, problem
 from mascarin.study.keeping import Workspace
+from mascarin.study.places import Places
 from mascarin.study.screening import factors, screen
-from mascarin.study.sources import find, open_climate, open_measurements
-from mascarin.validation.criteria import Criterion, Verdict, judge, parse_criteria
+from mascarin.study.sources import filled, find, open_climate, open_measurements
+from mascarin.validation.criteria import Criterion, Verdict, judge
 from mascarin.validation.metrics import Metrics, compare
-from mascarin.validation.observation import PERIODS, Observation, observe, require_comparable
+from mascarin.validation.observation import PERIODS, Observation, observe
 from mascarin.validation.residuals import Examination, diagnose, examine
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
+    from mascarin.climate.grid import Grid
     from mascarin.climate.quality import Stretch
     from mascarin.sensitivity.spectral import SpectralSensitivity
 
@@ -141,24 +143,29 @@ class Study:
     """
 
     def __init__(self, path: str | Path) -> None:
+        from mascarin.study.checking import check
+
         self.path = Path(path)
         self.file: StudyFile = read_study(self.path)
-        beside = self.path.parent
-        self.building: Building = load(find(self.file.building, beside)).replace(self.file.set)
-        self.climate: Climate = open_climate(self.file.climate, beside, self.building)
-        read = open_measurements(self.file, beside, self.building)
+        self.places = Places(self.path)
+        beside, blame = self.path.parent, self.places.blame
+        with blame("building"):
+            described = find(self.file.building, beside)
+        self.building_hash = file_hash(described)
+        as_described = load(described)
+        with blame("set"):
+            self.building: Building = as_described.replace(self.file.set)
+        self.climate: Climate = open_climate(self.file.climate, beside, self.building, self.places)
+        read = open_measurements(self.file, beside, self.building, self.places, Places(described))
         self.quality: list[Stretch] = read.quality()
-        self.measurements: Measurements = self._masked(read)
-        self.criteria: tuple[Criterion, ...] = parse_criteria(
-            self.file.criteria, where=f"{self.path}: criteria"
-        )
-        fit_parameters(self.building, self.file.identification)
-        self._check_periods()
+        self.measurements: Measurements = self._masked(self._filled(read))
+        self.criteria: tuple[Criterion, ...] = self.file.criteria
         # Everything that can be refused is refused here, before the first run.
-        _ = (self.simulation, self.observation)
-        for period in ("identification", "corroboration"):
-            used = [name for name, sensor in self.file.sensors.items() if sensor.use]
-            require_comparable(self.observation, self.during[period], period, used)
+        check(self)
+
+    def _filled(self, read: Measurements) -> Measurements:
+        longest = self.file.measurements.fill_gaps
+        return read if longest is None else filled(read, self.building, longest)
 
     def _masked(self, read: Measurements) -> Measurements:
         kinds = self.file.quality.mask
@@ -171,29 +178,16 @@ class Study:
     # --- periods ----------------------------------------------------------------------------------------
 
     def _moment(self, text: str, what: str) -> pd.Timestamp:
-        return moment(text, self.climate.grid.zone, f"periods.{what}")
+        with self.places.blame("periods", what):
+            return moment(text, self.climate.grid.zone, what)
 
-    def _span(self, name: str) -> tuple[pd.Timestamp, pd.Timestamp] | None:
+    def span(self, name: str) -> tuple[pd.Timestamp, pd.Timestamp] | None:
+        """Start and end of a period as the study gives it."""
         span = getattr(self.file.periods, name)
         return None if span is None else self._moments(span, name)
 
     def _moments(self, span: tuple[str, str], name: str) -> tuple[pd.Timestamp, pd.Timestamp]:
         return self._moment(span[0], name), self._moment(span[1], name)
-
-    def _check_periods(self) -> None:
-        for name in ("warm_up", "identification", "corroboration"):
-            span = self._span(name)
-            if span is not None and span[1] <= span[0]:
-                raise InputError(
-                    f"{self.path}: periods.{name}: found {span[0]} .. {span[1]}, expected the end after the "
-                    "start"
-                )
-        held, known = self._span("corroboration"), self.identification
-        if held is not None and held[0] < known[1] and known[0] < held[1]:
-            raise InputError(
-                f"{self.path}: periods.corroboration overlaps the identification; data that the fit has seen "
-                "corroborate nothing: move one of the two"
-            )
 
     @cached_property
     def identification(self) -> tuple[pd.Timestamp, pd.Timestamp]:
@@ -203,36 +197,55 @@ class Study:
     @cached_property
     def start(self) -> pd.Timestamp:
         """Start of the run: that of the warm-up, else of the record."""
-        span = self._span("warm_up")
-        return span[0] if span is not None else self._record()[0]
+        span = self.span("warm_up")
+        return span[0] if span is not None else self.record[0]
 
     @cached_property
     def compared_from(self) -> pd.Timestamp:
         """First instant that is compared."""
-        span = self._span("warm_up")
+        span = self.span("warm_up")
         return span[1] if span is not None else self.start
 
-    def _record(self) -> tuple[pd.Timestamp, pd.Timestamp]:
+    @cached_property
+    def record(self) -> tuple[pd.Timestamp, pd.Timestamp]:
         """What climate and measurements both cover."""
         import pandas as pd
 
-        grids = [self.measurements.grid] + ([] if self.climate.grid.periodic else [self.climate.grid])
-        first, last = max(grid.start for grid in grids), min(grid.end for grid in grids)
-        # Instants at the very end of a table have no value to interpolate to.
-        interval = max(grid.interval for grid in grids)
+        first, last = max(grid.start for grid in self._grids), min(grid.end for grid in self._grids)
         zone = self.climate.grid.zone
-        step = seconds_of(self.file.step)
-        steps = int((last - interval - first) // step)
         return (
             pd.Timestamp(first, unit="s", tz="UTC").tz_convert(zone),
-            pd.Timestamp(first + steps * step, unit="s", tz="UTC").tz_convert(zone),
+            pd.Timestamp(last, unit="s", tz="UTC").tz_convert(zone),
         )
+
+    @property
+    def _grids(self) -> list[Grid]:
+        return [self.measurements.grid] + ([] if self.climate.grid.periodic else [self.climate.grid])
+
+    @cached_property
+    def moment_of_end(self) -> pd.Timestamp | None:
+        """End of the record to use, as the study gives it."""
+        given = self.file.periods.end
+        return None if given is None else self._moment(given, "end")
 
     @cached_property
     def end(self) -> pd.Timestamp:
-        """End of the run."""
-        given = self.file.periods.end
-        return self._record()[1] if given is None else self._moment(given, "end")
+        """End of the run: that of the study, else of the record, a whole number of steps after the start."""
+        import pandas as pd
+
+        # Instants at the very end of a table have no value to interpolate to.
+        interval = max(grid.interval for grid in self._grids)
+        last = self.record[1] - pd.Timedelta(seconds=interval)
+        if self.moment_of_end is not None:
+            last = min(last, self.moment_of_end)
+        return self.start + self._whole_steps((last - self.start).total_seconds())
+
+    def _whole_steps(self, seconds: float) -> pd.Timedelta:
+        """The longest whole number of steps in so much time."""
+        import pandas as pd
+
+        step = seconds_of(self.file.step)
+        return pd.Timedelta(seconds=step * math.floor(seconds / step + 1e-9))
 
     @cached_property
     def during(self) -> dict[str, Flags]:
@@ -242,7 +255,7 @@ class Study:
         corroboration period; where that leaves nothing, it is the corroboration period itself.
         """
         seen = self.observation.during(*self.identification)
-        held = self._span("corroboration")
+        held = self.span("corroboration")
         named = ~seen & (
             self.observation.during(*held)
             if held is not None
@@ -266,26 +279,68 @@ class Study:
             outputs=[*(sensor.output for sensor in self.file.sensors.values()), *further],
             scheme=self.file.scheme,
             measurements=self.measurements,
-            ranges=self._ranges,
+            ranges=self._ranges(building),
         )
 
-    def _whole(self, building: Building) -> Simulation:
+    def building_of(self, variant: str | None) -> Building:
+        """The building of a variant; the study's own for None."""
+        if variant is None:
+            return self.building
+        with self.places.blame("variants", variant, "changes"):
+            return self.building.replace(self.file.variants[variant].changes)
+
+    def whole(self, variant: str | None = None) -> Simulation:
         """A model over the whole record, with how far its phase-change layers have melted."""
+        building = self.building_of(variant)
         states = [output.name for output in building.outputs() if output.kind == "liquid_fraction"]
-        return self._simulate(building, self.start, self.end, states)
+        return self._once(("whole", variant), lambda: self._simulate(building, self.start, self.end, states))
+
+    def short(self, variant: str | None = None) -> Simulation:
+        """A model over the lead and the identification period."""
+        import pandas as pd
+
+        building, (first, last) = self.building_of(variant), self.identification
+        start = first - pd.Timedelta(seconds=self.lead_seconds)
+        end = start + self._whole_steps((min(last, self.end) - start).total_seconds())
+        return self._once(("short", variant), lambda: self._simulate(building, start, end))
+
+    def _once(self, key: tuple[str, str | None], make: Callable[[], Simulation]) -> Simulation:
+        if key not in self._simulations:
+            self._simulations[key] = make()
+        return self._simulations[key]
 
     @cached_property
-    def _ranges(self) -> dict[str, tuple[float, float]]:
+    def _simulations(self) -> dict[tuple[str, str | None], Simulation]:
+        return {}
+
+    def _ranges(self, building: Building) -> dict[str, tuple[float, float]]:
         """Ranges that parameters move in: the mesh is chosen once, for their worst end."""
-        ranges = {p.path: (p.low, p.high) for p in self.building.parameters() if not p.structural}
+        ranges = {p.path: (p.low, p.high) for p in building.parameters() if not p.structural}
+        if self.file.sensitivity is not None:
+            for path, span in self.file.sensitivity.ranges.items():
+                known = self.building.parameter(path).path
+                if known in ranges:
+                    low, high = ranges[known]
+                    ranges[known] = (min(low, span[0]), max(high, span[1]))
         for free in fit_parameters(self.building, self.file.identification):
-            ranges[free.path] = (free.lower, free.upper)
+            if free.path in ranges:
+                ranges[free.path] = (free.lower, free.upper)
         return ranges
 
     @cached_property
     def simulation(self) -> Simulation:
         """The nominal model over the whole record."""
-        return self._whole(self.building)
+        return self.whole()
+
+    def problem(self, variant: str | None = None) -> CalibrationProblem:
+        """What is to be identified, and on what."""
+        return problem(
+            self.short(variant),
+            self.observation,
+            self.during["identification"],
+            self.file.sensors,
+            self.file.identification,
+        )
 
     @cached_property
     def observation(self) -> Observation:
@@ -293,18 +348,11 @@ class Study:
         return observe(self.simulation, self.measurements, self.file.sensors, self.compared_from)
 
     @cached_property
-    def _lead_seconds(self) -> float:
-        """Length of the run before the identification period, as long as the record allows."""
+    def lead_seconds(self) -> float:
+        """Length of the run before the identification period, as long as the record allows. [s]"""
         available = (self.identification[0] - self.start).total_seconds()
-        step = seconds_of(self.file.step)
-        return step * (min(seconds_of(self.file.identification.lead, "lead"), available) // step)
-
-    def _short(self, building: Building) -> Simulation:
-        """A model over the lead and the identification period."""
-        import pandas as pd
-
-        start = self.identification[0] - pd.Timedelta(seconds=self._lead_seconds)
-        return self._simulate(building, start, self.identification[1])
+        lead = min(seconds_of(self.file.identification.lead, "lead"), available)
+        return self._whole_steps(lead).total_seconds()
 
     def scores(self, results: Results) -> Scores:
         """Metrics of a run by sensor and period."""
@@ -324,6 +372,7 @@ class Study:
         return {
             "mascarin_version": __version__,
             "study": file_hash(self.path),
+            "building": self.building_hash,
             "model": self.simulation.identity,
             "measurements": self.measurements.sha256,
             "climate": self.climate.sha256,
@@ -352,7 +401,7 @@ class Study:
         nominal = self._compared("nominal", self.simulation, self.simulation.values, None, "as described")
         sensitivity = self._screen(workspace, tell)
         fitted, fit = self._identified(
-            "fitted", self.building, workspace, tell, "after the identification, frozen on all other days"
+            "fitted", None, workspace, tell, "after the identification, frozen on all other days"
         )
         variants = {
             name: self._variant(name, variant, workspace, tell)
@@ -391,38 +440,34 @@ class Study:
             return None
         with tell.about("sensitivity") as progress:
             return screen(
-                self._short(self.building),
+                self.short(),
                 plan,
                 factors(self.building, plan),
-                self._lead_seconds,
+                self.lead_seconds,
                 self.observation.names,
                 workspace,
                 progress,
             )
 
     def _identified(
-        self, label: str, building: Building, workspace: Workspace, tell: _Teller, note: str
+        self, label: str, variant: str | None, workspace: Workspace, tell: _Teller, note: str
     ) -> tuple[ModelRun, Fit]:
-        short = self._short(building)
         with tell.about(f"identification ({label})") as progress:
             fit = identify(
-                short,
-                self.observation,
-                self.during["identification"],
-                self.file.sensors,
+                self.short(variant),
+                self.problem(variant),
                 self.file.identification,
                 record=workspace.path(f"evaluations-{_safe(label)}.jsonl"),
                 progress=_searching(progress),
             )
-        whole = self._whole(building)
+        whole = self.whole(variant)
         return self._compared(label, whole, whole.vector(fit.values), fit, note), fit
 
     def _variant(self, name: str, variant: Variant, workspace: Workspace, tell: _Teller) -> ModelRun:
-        building = self.building.replace(variant.changes)
         note = variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
         if variant.identify:
-            return self._identified(name, building, workspace, tell, note)[0]
-        simulation = self._whole(building)
+            return self._identified(name, name, workspace, tell, note)[0]
+        simulation = self.whole(name)
         return self._compared(name, simulation, simulation.values, None, note)
 
     def drivers(self) -> dict[str, npt.NDArray[np.float64]]:

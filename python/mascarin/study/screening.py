@@ -21,13 +21,39 @@ if TYPE_CHECKING:
     from mascarin.simulation import Simulation
     from mascarin.study.description import SensitivityPlan
     from mascarin.study.keeping import Workspace
+    from mascarin.study.places import Places
 
     Array = npt.NDArray[np.float64]
 
 #: At most so much work is lost when a study is killed. [s]
 CHUNK_SECONDS: Final = 1.0
-_FIRST_CHUNK: Final = 16
+_FIRST_CHUNK: Final = 8
 _NAME: Final = "sensitivity"
+
+
+def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> None:
+    """Refuse what a plan says about parameters that are none, or cannot be so.
+
+    Raises
+    ------
+    InputError
+        Unknown or structural path, a range the wrong way round or beyond what the parameter can be.
+    """
+    for path, (low, high) in plan.ranges.items():
+        with places.blame("sensitivity", "ranges", path):
+            parameter = building.parameter(path)
+            if parameter.structural:
+                raise InputError(f"is structural ({parameter.reason}) and cannot be varied; leave it out")
+            if not parameter.lower <= low < high <= parameter.upper:
+                raise InputError(
+                    f"found [{low:g}, {high:g}] {parameter.unit}, expected a lower and a higher value from "
+                    f"{parameter.lower:g} to {parameter.upper:g}; correct the range"
+                )
+    for path in plan.leave_out:
+        with places.blame("sensitivity", "leave_out"):
+            building.parameter(path)
+    with places.blame("sensitivity"):
+        factors(building, plan)
 
 
 def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
@@ -47,7 +73,7 @@ def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
             found.append(Factor(parameter.path, low, high, parameter.unit))
     if not found:
         raise InputError(
-            "sensitivity: no parameter of the building has a range; give ranges: {path: [low, high]}"
+            "found no parameter with a range, expected at least one; give ranges: {path: [low, high]}"
         )
     return found
 
@@ -116,14 +142,15 @@ def screen(
 
 
 class _Pace:
-    """How many runs fill a chunk, in whole packs of lanes; learnt from the last one."""
+    """How many runs fill a chunk, in whole packs of lanes where they fit; learnt from the last one."""
 
     def __init__(self) -> None:
         self.size = _FIRST_CHUNK
 
     def learn(self, runs: int, seconds: float) -> None:
         wanted = runs * CHUNK_SECONDS / max(seconds, 1e-3)
-        self.size = int(np.clip(8 * round(wanted / 8), 8, 2048))
+        whole = 8 * round(wanted / 8) if wanted >= 8 else int(wanted)
+        self.size = int(np.clip(whole, 1, 2048))
 
 
 def _missing(runs: Design, done: npt.NDArray[np.bool_], pace: _Pace) -> Iterator[tuple[int, Array]]:

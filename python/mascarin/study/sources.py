@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +14,7 @@ if TYPE_CHECKING:
     from mascarin.model import Building
     from mascarin.model.site import Site
     from mascarin.study.description import ClimateSource, MeasuredWeather, StudyFile, Table
+    from mascarin.study.places import Places
 
 #: A file that the data module knows, by name.
 KNOWN = "data:"
@@ -39,12 +42,23 @@ def find(name: str, beside: Path) -> Path:
     path = beside / name
     if not path.is_file():
         raise InputError(
-            f"{path}: no such file, though the study names it; paths are relative to the study file"
+            f"found no file {path}; expected a file, its path counted from the folder of the study. "
+            + _neighbours(path)
         )
     return path
 
 
-def open_climate(source: ClimateSource, beside: Path, building: Building) -> Climate:
+def _neighbours(path: Path) -> str:
+    """What a mistyped name may have meant."""
+    from mascarin.errors import did_you_mean
+
+    if not path.parent.is_dir():
+        return f"There is no folder {path.parent} either: correct the path."
+    same = [other.name for other in path.parent.iterdir() if other.suffix == path.suffix]
+    return did_you_mean(path.name, same) or "Correct the path."
+
+
+def open_climate(source: ClimateSource, beside: Path, building: Building, places: Places) -> Climate:
     """The weather of a study.
 
     Raises
@@ -53,24 +67,32 @@ def open_climate(source: ClimateSource, beside: Path, building: Building) -> Cli
         A file, column or time zone is missing, or a value cannot be used.
     """
     if source.epw is not None:
-        return Climate.from_epw(find(source.epw, beside))
+        with places.blame("climate", "epw"):
+            return Climate.from_epw(find(source.epw, beside))
     if source.tmy is not None:
-        return Climate.from_tmy(find(source.tmy, beside))
+        with places.blame("climate", "tmy"):
+            return Climate.from_tmy(find(source.tmy, beside))
     if source.measured is not None:
-        return _measured_climate(source.measured, beside, building.site)
+        return _measured_climate(source.measured, beside, building.site, places)
     raise InputError("climate: nothing given; expected one of epw, tmy, measured")
 
 
-def _measured_climate(table: MeasuredWeather, beside: Path, site: Site) -> Climate:
-    return Climate.from_table(
-        find(table.table, beside),
-        columns={channel: _column(given) for channel, given in table.columns.items()},
-        absent=table.absent,
-        latitude=float(site.latitude),
-        longitude=float(site.longitude),
-        altitude=float(site.altitude),
-        **table.options,
-    )
+def _measured_climate(table: MeasuredWeather, beside: Path, site: Site, places: Places) -> Climate:
+    with places.blame("climate", "measured", "table"):
+        path = find(table.table, beside)
+    with places.blame("climate", "measured", "columns"):
+        columns = {channel: _column(given) for channel, given in table.columns.items()}
+    with places.blame("climate", "measured"):
+        climate = Climate.from_table(
+            path,
+            columns=columns,
+            absent=table.absent,
+            latitude=float(site.latitude),
+            longitude=float(site.longitude),
+            altitude=float(site.altitude),
+            **table.options,
+        )
+    return climate if table.fill_gaps is None else climate.fill_gaps(table.fill_gaps)
 
 
 def _column(given: object) -> str | dict[str, object]:
@@ -78,22 +100,90 @@ def _column(given: object) -> str | dict[str, object]:
         return given
     if isinstance(given, dict):
         return {str(key): value for key, value in given.items()}
-    raise InputError(f"climate.columns: found {given!r}, expected a column's name or a mapping with 'column'")
+    raise InputError(f"found {given!r}, expected a column's name or a mapping with 'column'")
 
 
-def open_measurements(study: StudyFile, beside: Path, building: Building) -> Measurements:
+def open_measurements(
+    study: StudyFile, beside: Path, building: Building, places: Places, of_building: Places
+) -> Measurements:
     """The measured columns that sensors and boundaries need.
+
+    Parameters
+    ----------
+    study : StudyFile
+        Names table and sensors.
+    beside : Path
+        Folder of the study.
+    building : Building
+        Names the columns that drive it.
+    places, of_building : Places
+        Lines of the study and of the building, for errors.
 
     Raises
     ------
     InputError
         A file, column or time zone is missing, or a value cannot be used.
     """
-    table: Table = study.measurements
     from mascarin.model.border import channels
 
-    wanted = [column for sensor in study.sensors.values() for column in sensor.columns]
-    wanted += [*channels(building), *table.inspect]
-    return Measurements.from_table(
-        find(table.table, beside), columns=list(dict.fromkeys(wanted)), **table.options
-    )
+    table: Table = study.measurements
+    with places.blame("measurements", "table"):
+        path = find(table.table, beside)
+    driving = channels(building)
+    # What asks for each column, for errors.
+    asks = {name: places.at("measurements", "inspect") for name in table.inspect}
+    for name in driving:
+        line = of_building.find("measured", name) or of_building.find("irradiance", name)
+        asks[name] = f"{line or of_building.path}: measured column"
+    for sensor, entry in study.sensors.items():
+        asks |= dict.fromkeys(entry.columns, places.at("sensors", sensor, "column"))
+    try:
+        return Measurements.from_table(path, columns=list(asks), **table.options)
+    except InputError as error:
+        raise InputError(f"{_asking(path, table, asks, places)}: {error}") from None
+
+
+def _asking(path: Path, table: Table, asks: Mapping[str, str], places: Places) -> str:
+    """Which entry asks for what cannot be read: that of the first column that cannot, else the table's."""
+    plain = {**table.options, "mean": ()}
+
+    def readable(*columns: str) -> bool:
+        try:
+            Measurements.from_table(path, columns=columns, **plain)
+        except InputError:
+            return False
+        return True
+
+    if not readable():
+        return places.at("measurements")
+    column = next((column for column in asks if not readable(column)), None)
+    return asks[column] if column is not None else places.at("measurements", "mean")
+
+
+def filled(read: Measurements, building: Building, longest: str) -> Measurements:
+    """The same with short gaps filled in the columns that drive the building.
+
+    Parameters
+    ----------
+    read : Measurements
+        As they were read.
+    building : Building
+        Names the columns.
+    longest : str
+        Longest gap to fill, such as ``2h``.
+    """
+    import numpy as np
+
+    from mascarin.climate.gaps import fill_linearly
+    from mascarin.climate.table import seconds_of
+    from mascarin.model.border import channels
+
+    limit = seconds_of(longest, "fill_gaps") / read.step_seconds
+    data, notes = read.data.copy(), list(read.provenance)
+    for name in channels(building):
+        values = data[name].to_numpy(dtype=np.float64).copy()
+        count = fill_linearly(values, limit)
+        if count:
+            data[name] = values
+            notes.append(f"{read.file}: {count} missing values of {name} filled linearly on request.")
+    return replace(read, data=data, provenance=tuple(notes))

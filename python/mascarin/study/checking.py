@@ -1,0 +1,144 @@
+"""Everything that can be refused in a study, refused before the first run and before anything is written."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from mascarin.errors import InputError, did_you_mean
+from mascarin.study.fitting import free_parameter
+from mascarin.study.screening import check_plan
+from mascarin.validation.observation import PERIODS, require_comparable
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.study.pipeline import Study
+
+#: A sensor that repeats itself over more than this part of the identification is not fitted to.
+_MOST_DEAD: Final = 0.5
+_DEAD: Final = ("stuck", "forward_filled")
+
+
+def check(study: Study) -> None:
+    """Refuse what cannot be used.
+
+    Parameters
+    ----------
+    study : Study
+        Its files are open.
+
+    Raises
+    ------
+    InputError
+        File, line and place in the study, what was found, what was expected, what to do.
+    """
+    _names(study)
+    _periods(study)
+    _alive(study)
+    _runs(study)
+
+
+def _names(study: Study) -> None:
+    """Outputs, parameters, criteria: whatever is called by a name that must exist."""
+    file, blame = study.file, study.places.blame
+    for name, sensor in file.sensors.items():
+        with blame("sensors", name, "output"):
+            study.building.output(sensor.output)
+    if not any(sensor.use for sensor in file.sensors.values()):
+        with blame("sensors"):
+            raise InputError("found use: false on every sensor, expected one at least that takes part")
+    for path, free in file.identification.parameters.items():
+        with blame("identification", "parameters", path):
+            free_parameter(study.building, path, free)
+    for k, criterion in enumerate(file.criteria):
+        for key, known in (("sensors", tuple(file.sensors)), ("periods", PERIODS)):
+            for name in getattr(criterion, key) or ():
+                if name not in known:
+                    with blame("criteria", k, key):
+                        hint = did_you_mean(name, known)
+                        raise InputError(f"found '{name}', expected one of {', '.join(known)}. {hint}")
+    if file.sensitivity is not None:
+        check_plan(study.building, file.sensitivity, study.places)
+    for variant in file.variants:
+        study.building_of(variant)
+
+
+def _periods(study: Study) -> None:
+    blame, (first, last) = study.places.blame, study.record
+    given = study.moment_of_end
+    with blame("periods", "end"):
+        if given is not None and not first < given <= last:
+            raise InputError(
+                f"found {given:%Y-%m-%d %H:%M}, expected a time inside what climate and measurements both "
+                f"cover, {_words(first, last)} ({study.climate.timezone}); leave it out, or move it"
+            )
+    last = last if given is None else given
+    covered = (
+        f"and periods.end leave, {_words(first, last)}" if given else f"both cover, {_words(first, last)}"
+    )
+    spans = {name: study.span(name) for name in ("warm_up", "identification", "corroboration")}
+    for name, span in spans.items():
+        with blame("periods", name):
+            if span is not None and span[1] <= span[0]:
+                raise InputError(
+                    f"found {_words(*span)}, expected the end after the start; exchange the two times"
+                )
+            if span is not None and not (first <= span[0] and span[1] <= last):
+                raise InputError(
+                    f"found {_words(*span)}, expected a period inside what climate and measurements "
+                    f"{covered} ({study.climate.timezone}); move it"
+                )
+    known, held, warm_up = study.identification, spans["corroboration"], spans["warm_up"]
+    with blame("periods", "corroboration"):
+        if held is not None and held[0] < known[1] and known[0] < held[1]:
+            raise InputError(
+                f"found {_words(*held)}, which overlaps the identification {_words(*known)}; expected days "
+                "that the fit has not seen, for only they corroborate anything: move one of the two"
+            )
+    with blame("periods", "identification"):
+        if warm_up is not None and known[0] < warm_up[1]:
+            raise InputError(
+                f"found {_words(*known)}, expected a start not before the warm-up ends, "
+                f"{warm_up[1]:%Y-%m-%d %H:%M}: nothing is compared until then; move one of the two"
+            )
+
+
+def _words(first: pd.Timestamp, last: pd.Timestamp) -> str:
+    return f"{first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M}"
+
+
+def _alive(study: Study) -> None:
+    """Refuse to fit to a sensor that repeats itself and that nobody asked to mask."""
+    start, end = study.identification
+    for name, sensor in study.file.sensors.items():
+        kinds = [kind for kind in _DEAD if kind not in study.file.quality.mask]
+        for stretch in study.quality:
+            if not sensor.use or stretch.channel not in sensor.columns or stretch.kind not in kinds:
+                continue
+            shared = (min(end, stretch.end) - max(start, stretch.start)).total_seconds()
+            if shared > _MOST_DEAD * (end - start).total_seconds():
+                with study.places.blame("sensors", name, "column"):
+                    raise InputError(
+                        f"found column {stretch.channel} {stretch.kind.replace('_', '-')} from "
+                        f"{stretch.start:%Y-%m-%d %H:%M} to {stretch.end:%Y-%m-%d %H:%M} ({stretch.detail}), "
+                        "over most of the identification; expected a sensor that measures: write "
+                        f"quality: {{mask: [{stretch.kind}]}}, use: false, or choose another period"
+                    )
+
+
+def _runs(study: Study) -> None:
+    """Compile every model, and state every problem: what they refuse is refused now."""
+    file, blame = study.file, study.places.blame
+    with blame("periods"):
+        _ = study.simulation
+    for period in ("identification", "corroboration"):
+        for name in (name for name, sensor in file.sensors.items() if sensor.use):
+            with blame("sensors", name):
+                require_comparable(study.observation, study.during[period], period, [name])
+    with blame("identification"):
+        _ = study.problem()
+    for name, variant in file.variants.items():
+        with blame("variants", name):
+            study.whole(name)
+            if variant.identify:
+                study.problem(name)

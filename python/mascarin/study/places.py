@@ -1,0 +1,57 @@
+"""Where in its file each entry of a study stands, so that a late complaint can still point at it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from mascarin.errors import InputError
+
+
+class Places:
+    """Lines of the entries of a YAML file.
+
+    Parameters
+    ----------
+    path : Path
+        A file that has been read before.
+    """
+
+    def __init__(self, path: Path) -> None:
+        from mascarin.model.reading import lines
+
+        self.path = path
+        self._lines = lines(path.read_text(encoding="utf-8"), str(path))
+
+    def at(self, *place: str | int) -> str:
+        """File, line and dotted place of an entry; the line of what holds it when it is not written."""
+        written = next((place[:n] for n in range(len(place), -1, -1) if place[:n] in self._lines and n), ())
+        line = self._lines.get(written)
+        where = f"{self.path}:{line}" if line else str(self.path)
+        return f"{where}: {'.'.join(map(str, place))}"
+
+    def find(self, key: str, value: str) -> str | None:
+        """File and line of the first line that gives a key this value, None when there is none."""
+        import re
+
+        wanted = re.compile(rf"\b{re.escape(key)}:\s*[\"']?{re.escape(value)}\b")
+        for number, line in enumerate(self.path.read_text(encoding="utf-8").splitlines(), start=1):
+            if wanted.search(line):
+                return f"{self.path}:{number}"
+        return None
+
+    @contextmanager
+    def blame(self, *place: str | int) -> Iterator[None]:
+        """Put file, line and place in front of what an InputError says inside."""
+        try:
+            yield
+        except InputError as error:
+            raise self.blamed(error, *place) from None
+
+    def blamed(self, error: InputError, *place: str | int) -> InputError:
+        """The same error with file, line and place in front, the place not said twice."""
+        text = str(error)
+        for said in (".".join(map(str, place)), *map(str, place[-1:])):
+            text = text.removeprefix(f"{said}: ")
+        return InputError(f"{self.at(*place)}: {text}")
