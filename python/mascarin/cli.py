@@ -52,6 +52,17 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command(
             "study", "mascarin.commands.study:study", "Compare, identify and corroborate on measurements."
         ),
+        Command(
+            "sensitivity",
+            "mascarin.commands.study:sensitivity",
+            "Find which parameters of a study matter.",
+        ),
+        Command("calibrate", "mascarin.commands.study:calibrate", "Identify the parameters of a study."),
+        Command(
+            "validate",
+            "mascarin.commands.study:validate",
+            "Hold a building as described against measurements.",
+        ),
         Command("verify", "mascarin.commands.verify:verify", "Hold the simulation against closed answers."),
     ),
     "Optimise": (
@@ -59,6 +70,16 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "optimize",
             "mascarin.commands.genopt:optimize",
             "Run a GenOpt project with any simulation program.",
+        ),
+        Command(
+            "genopt",
+            "mascarin.commands.coupling:genopt",
+            "Write a study's identification as a GenOpt project.",
+        ),
+        Command(
+            "cost",
+            "mascarin.commands.coupling:cost",
+            "Evaluate the cost of a study's identification once.",
         ),
     ),
 }

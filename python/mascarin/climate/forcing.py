@@ -233,8 +233,7 @@ def _refuse_gaps(
         f"{where}: {name} has no value (NaN) at "
         f"{shown}{more}, "
         "expected a number at every time of the period; choose a period without gaps, repair the file, "
-        "or fill "
-        "short gaps with fill_gaps('2h')."
+        "or fill short gaps (fill_gaps: 2h in a study, fill_gaps('2h') in Python)."
     )
 
 

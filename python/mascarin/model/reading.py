@@ -97,7 +97,7 @@ def plain(text: str, name: str) -> Any:
 
 
 def lines(text: str, name: str) -> Mapping[Place, int]:
-    """Tell on which line each key and value of YAML text stands, by its place; ``name`` stands for its file."""
+    """Tell on which line each key and value of YAML text stands, by place; ``name`` stands for its file."""
     document = _Document(name, blanks=True)
     document.read(text)
     return document.lines

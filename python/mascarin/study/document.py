@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
+    from mascarin.calibration import Fit
     from mascarin.model import Building
     from mascarin.sensitivity.spectral import SpectralSensitivity
     from mascarin.study.pipeline import Findings, ModelRun, Study
+    from mascarin.validation.criteria import Verdict
 
 #: Parameters named in the spectra and shares over the day.
 _SHOWN: Final = 8
@@ -52,34 +54,11 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
         Ready for JSON. In ``sensors`` the metrics at the level of a period are those of the fitted model;
         those of every model stand beside them under its name.
     """
-    file = study.file
     models = {"nominal": findings.nominal, "fitted": findings.fitted, **findings.variants}
-    content: dict[str, Any] = {
-        "mascarin_version": __version__,
-        "title": file.name,
-        "intro": [part.strip() for part in file.about.split("\n\n") if part.strip()],
-        "observed": {"label": file.observed},
-        "seed": file.identification.seed,
-        "timezone": study.climate.timezone,
-        "command": [f"mascarin study {study.path.name} -o out/"],
-        "inputs": _inputs(study),
-        "versions": _versions(),
-        "sources": [{"text": text} for text in study.building.sources()],
-        "sensor_info": _sensor_info(study),
-        "periods": _periods(study),
-        "models": {name: {"label": run.label, "note": run.note} for name, run in models.items()},
-        "sensors": _scores(models),
-        "building": _building(study.building),
-        "assumptions": _assumptions(study.building),
-        "quality": _quality(study),
-        "parameters": _parameters(study, findings),
-        "correlation": {
-            "paths": list(findings.fit.problem.paths),
-            "matrix": _plain(findings.fit.correlation),
-        },
-        "identification": _identification(findings),
-        "criteria": _criteria(findings),
-        "ledger": _ledger(findings.fitted),
+    content = {
+        **header(study, "study"),
+        **comparison(models, findings.verdicts),
+        **estimates(study, findings.fit),
         "residuals": {
             name: {**found.to_dict(), "period": "blind"} for name, found in findings.examinations.items()
         },
@@ -90,8 +69,66 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
         "phase_change": _phase_change(findings.fitted),
     }
     if findings.sensitivity is not None:
-        content |= _sensitivity(study, findings.sensitivity)
+        content |= importance(study, findings.sensitivity)
     return content
+
+
+def header(study: Study, command: str) -> dict[str, Any]:
+    """What every result says of its inputs.
+
+    Parameters
+    ----------
+    study : Study
+        The inputs.
+    command : str
+        What was asked for.
+    """
+    file = study.file
+    return {
+        "mascarin_version": __version__,
+        "title": file.name,
+        "intro": [part.strip() for part in file.about.split("\n\n") if part.strip()],
+        "observed": {"label": file.observed},
+        "seed": file.identification.seed,
+        "timezone": study.climate.timezone,
+        "command": [f"mascarin {command} {study.path.name} -o out/"],
+        "inputs": _inputs(study),
+        "versions": _versions(),
+        "sources": [{"text": text} for text in study.building.sources()],
+        "sensor_info": _sensor_info(study),
+        "periods": _periods(study),
+        "building": _building(study.building),
+        "assumptions": _assumptions(study.building),
+        "quality": _quality(study),
+    }
+
+
+def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdict]]) -> dict[str, Any]:
+    """Models against measurements; the ledger is that of the fitted one, where there is one.
+
+    Parameters
+    ----------
+    models : mapping of str to ModelRun
+        ``nominal``, perhaps ``fitted`` and variants.
+    verdicts : mapping of str to list of Verdict
+        Criteria by model.
+    """
+    main = "fitted" if "fitted" in models else "nominal"
+    return {
+        "models": {name: {"label": run.label, "note": run.note} for name, run in models.items()},
+        "sensors": _scores(models, main),
+        "criteria": _criteria(verdicts),
+        "ledger": _ledger(models[main]),
+    }
+
+
+def estimates(study: Study, fit: Fit) -> dict[str, Any]:
+    """Parameters with their uncertainty, and how they were found."""
+    return {
+        "parameters": _parameters(study, fit),
+        "correlation": {"paths": list(fit.problem.paths), "matrix": _plain(fit.correlation)},
+        "identification": _identification(fit),
+    }
 
 
 def for_report(content: Mapping[str, Any]) -> dict[str, Any]:
@@ -117,6 +154,7 @@ def _plain(values: Any) -> Any:
 def _inputs(study: Study) -> list[dict[str, str]]:
     named = [
         ("study", study.path.name, study.inputs()["study"]),
+        ("building", study.file.building, study.building_hash),
         ("climate", study.climate.file, study.climate.sha256),
         ("measurements", study.measurements.file, study.measurements.sha256),
     ]
@@ -175,18 +213,18 @@ def _spans(times: pd.DatetimeIndex, use: npt.NDArray[np.bool_], interval: float)
     ]
 
 
-def _scores(models: Mapping[str, ModelRun]) -> dict[str, dict[str, dict[str, Any]]]:
+def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, dict[str, Any]]]:
     return {
         sensor: {
-            period: {**by_model["fitted"].to_dict(), **{m: found.to_dict() for m, found in by_model.items()}}
+            period: {**by_model[main].to_dict(), **{m: found.to_dict() for m, found in by_model.items()}}
             for period, by_model in periods.items()
         }
         for sensor, periods in scores_of(models).items()
     }
 
 
-def _parameters(study: Study, findings: Findings) -> dict[str, dict[str, Any]]:
-    fit, plan = findings.fit, study.file.identification.parameters
+def _parameters(study: Study, fit: Fit) -> dict[str, dict[str, Any]]:
+    plan = study.file.identification.parameters
     given = {study.building.parameter(path).path: free for path, free in plan.items()}
     entries = {}
     for parameter, entry in zip(fit.problem.parameters, fit.to_dict().values(), strict=True):
@@ -205,8 +243,7 @@ def _parameters(study: Study, findings: Findings) -> dict[str, dict[str, Any]]:
     return entries
 
 
-def _identification(findings: Findings) -> list[list[str]]:
-    fit = findings.fit
+def _identification(fit: Fit) -> list[list[str]]:
     return [
         ["method", fit.method.replace("_", " ")],
         ["cost", fit.cost_name],
@@ -220,11 +257,9 @@ def _identification(findings: Findings) -> list[list[str]]:
     ]
 
 
-def _criteria(findings: Findings) -> list[dict[str, Any]]:
+def _criteria(judged: Mapping[str, list[Verdict]]) -> list[dict[str, Any]]:
     return [
-        {**verdict.to_dict(), "model": model}
-        for model, verdicts in findings.verdicts.items()
-        for verdict in verdicts
+        {**verdict.to_dict(), "model": model} for model, verdicts in judged.items() for verdict in verdicts
     ]
 
 
@@ -378,7 +413,8 @@ def _facing(side: Any) -> str:
 # --- sensitivity --------------------------------------------------------------------------------------------
 
 
-def _sensitivity(study: Study, found: SpectralSensitivity) -> dict[str, Any]:
+def importance(study: Study, found: SpectralSensitivity) -> dict[str, Any]:
+    """Which parameters matter: shares, spectra, shares over the day."""
     hours = _hours(study, found.share_t.shape[1])
     return {
         "sensitivity": found.to_dict(),

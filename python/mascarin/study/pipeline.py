@@ -23,7 +23,7 @@ from mascarin.model import Building, load
 from mascarin.progress import Progress
 from mascarin.results import Results
 from mascarin.simulation import Simulation
-from mascarin.study.description import StudyFile, Variant, read_study
+from mascarin.study.description import SensitivityPlan, StudyFile, Variant, read_study
 from mascarin.study.fitting import fit_parameters, identify, problem
 from mascarin.study.keeping import Workspace
 from mascarin.study.places import Places
@@ -397,20 +397,16 @@ class Study:
 
         began = time.monotonic()
         workspace = Workspace(Path(out), self.inputs())
-        tell = _Teller(quiet)
-        nominal = self._compared("nominal", self.simulation, self.simulation.values, None, "as described")
-        sensitivity = self._screen(workspace, tell)
-        fitted, fit = self._identified(
-            "fitted", None, workspace, tell, "after the identification, frozen on all other days"
-        )
+        tell = Teller(quiet)
+        nominal = self.nominal()
+        plan = self.file.sensitivity
+        sensitivity = None if plan is None else self.screened(plan, workspace, tell)
+        fitted, fit = self.fitted(workspace, tell)
         variants = {
             name: self._variant(name, variant, workspace, tell)
             for name, variant in self.file.variants.items()
         }
-        verdicts = {
-            run.label: judge(self.criteria, run.scores, where=f"{self.path}: criteria")
-            for run in (nominal, fitted)
-        }
+        verdicts = self.judged(nominal, fitted)
         examinations = self._examined(fitted)
         findings = Findings(
             nominal,
@@ -434,10 +430,27 @@ class Study:
         results = simulation.run(values)
         return ModelRun(label, simulation, results, self.scores(results), fit, note)
 
-    def _screen(self, workspace: Workspace, tell: _Teller) -> SpectralSensitivity | None:
-        plan = self.file.sensitivity
-        if plan is None:
-            return None
+    def nominal(self) -> ModelRun:
+        """The model as described, over the whole record."""
+        return self._compared("nominal", self.simulation, self.simulation.values, None, "as described")
+
+    def judged(self, *runs: ModelRun) -> dict[str, list[Verdict]]:
+        """The criteria, model by model."""
+        where = f"{self.path}: criteria"
+        return {run.label: judge(self.criteria, run.scores, where=where) for run in runs}
+
+    def screened(self, plan: SensitivityPlan, workspace: Workspace, tell: Teller) -> SpectralSensitivity:
+        """Which parameters matter on the days of the identification.
+
+        Parameters
+        ----------
+        plan : SensitivityPlan
+            What varies, and how often.
+        workspace : Workspace
+            Keeps the runs.
+        tell : Teller
+            Shows progress.
+        """
         with tell.about("sensitivity") as progress:
             return screen(
                 self.short(),
@@ -449,8 +462,13 @@ class Study:
                 progress,
             )
 
+    def fitted(self, workspace: Workspace, tell: Teller) -> tuple[ModelRun, Fit]:
+        """The model after the identification, and how its parameters were found."""
+        note = "after the identification, frozen on all other days"
+        return self._identified("fitted", None, workspace, tell, note)
+
     def _identified(
-        self, label: str, variant: str | None, workspace: Workspace, tell: _Teller, note: str
+        self, label: str, variant: str | None, workspace: Workspace, tell: Teller, note: str
     ) -> tuple[ModelRun, Fit]:
         with tell.about(f"identification ({label})") as progress:
             fit = identify(
@@ -463,7 +481,7 @@ class Study:
         whole = self.whole(variant)
         return self._compared(label, whole, whole.vector(fit.values), fit, note), fit
 
-    def _variant(self, name: str, variant: Variant, workspace: Workspace, tell: _Teller) -> ModelRun:
+    def _variant(self, name: str, variant: Variant, workspace: Workspace, tell: Teller) -> ModelRun:
         note = variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
         if variant.identify:
             return self._identified(name, name, workspace, tell, note)[0]
@@ -500,13 +518,20 @@ class Study:
         }
 
 
-class _Teller:
-    """Makes progress lines, or silent ones."""
+class Teller:
+    """Makes progress lines, or silent ones.
+
+    Parameters
+    ----------
+    quiet : bool
+        Whether they are silent.
+    """
 
     def __init__(self, quiet: bool) -> None:
         self._quiet = quiet
 
     def about(self, label: str) -> Progress:
+        """The line of one piece of work."""
         import io
 
         return Progress(label, stream=io.StringIO() if self._quiet else None)

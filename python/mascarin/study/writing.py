@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,11 @@ from mascarin.study.keeping import Workspace, write_whole
 from mascarin.study.pipeline import DRIVERS
 
 if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.climate.quality import Stretch
     from mascarin.study.pipeline import Findings, ModelRun, Study
+    from mascarin.validation.criteria import Verdict
 
 
 def write_all(study: Study, findings: Findings, workspace: Workspace) -> None:
@@ -41,30 +45,64 @@ def _folder(path: Path) -> Path:
 
 
 def _tables(study: Study, findings: Findings, folder: Path) -> None:
-    import pandas as pd
-
-    rows = [
-        {"sensor": sensor, "period": period, "model": run.label, **metrics.to_dict()}
-        for run in _runs(findings)
-        for sensor, periods in run.scores.items()
-        for period, metrics in periods.items()
-    ]
     tables = {
-        "metrics": pd.DataFrame(rows),
+        "metrics": metrics_table(list(_runs(findings))),
         "parameters": findings.fit.table(),
-        "criteria": pd.DataFrame(
-            [{"model": m, **v.to_dict()} for m, vs in findings.verdicts.items() for v in vs]
-        ),
-        "quality": pd.DataFrame(
-            [(s.channel, s.kind, s.start, s.end, s.count, s.detail) for s in findings.quality],
-            columns=["channel", "kind", "start", "end", "count", "detail"],
-        ),
+        "criteria": criteria_table(findings.verdicts),
+        "quality": quality_table(findings.quality),
         "series": _series(study, findings),
     }
     if findings.sensitivity is not None:
         tables["sensitivity"] = findings.sensitivity.table()
+    write_tables(folder, tables)
+
+
+def write_tables(folder: Path, tables: Mapping[str, pd.DataFrame]) -> None:
+    """Write tables as CSV; each appears when it is complete.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to; made when it is missing.
+    tables : mapping of str to DataFrame
+        By name without ending.
+    """
+    _folder(folder)
     for name, table in tables.items():
         write_whole(folder / f"{name}.csv", table.to_csv(index=False, lineterminator="\n"))
+
+
+def metrics_table(runs: Sequence[ModelRun]) -> pd.DataFrame:
+    """One row for each model, sensor and period."""
+    import pandas as pd
+
+    return pd.DataFrame(
+        [
+            {"sensor": sensor, "period": period, "model": run.label, **metrics.to_dict()}
+            for run in runs
+            for sensor, periods in run.scores.items()
+            for period, metrics in periods.items()
+        ]
+    )
+
+
+def criteria_table(verdicts: Mapping[str, Sequence[Verdict]]) -> pd.DataFrame:
+    """One row for each model, criterion, sensor and period."""
+    import pandas as pd
+
+    columns = ["model", "name", "sensor", "period", "metric", "value", "limit", "unit", "passed"]
+    rows = [{"model": model, **verdict.to_dict()} for model, found in verdicts.items() for verdict in found]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def quality_table(stretches: Sequence[Stretch]) -> pd.DataFrame:
+    """One row for each suspicious stretch."""
+    import pandas as pd
+
+    return pd.DataFrame(
+        [(s.channel, s.kind, s.start, s.end, s.count, s.detail) for s in stretches],
+        columns=["channel", "kind", "start", "end", "count", "detail"],
+    )
 
 
 def _runs(findings: Findings) -> Iterator[ModelRun]:

@@ -1,0 +1,128 @@
+"""One step of a study alone: the same inputs, the same work, the same pieces of the result.
+
+Unfinished work is kept where the whole study keeps it: a study goes on from what a step has done.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mascarin.study.description import SensitivityPlan
+from mascarin.study.document import comparison, estimates, header, importance
+from mascarin.study.keeping import Workspace, write_whole
+from mascarin.study.pipeline import Study, Teller
+from mascarin.study.writing import criteria_table, metrics_table, quality_table, write_tables
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def sensitivity(study: Study, out: Path, *, quiet: bool = False) -> dict[str, Any]:
+    """Which parameters matter.
+
+    Parameters
+    ----------
+    study : Study
+        Without a ``sensitivity`` of its own it gets the usual one.
+    out : Path
+        Folder for sensitivity.json, tables/sensitivity.csv and the figures.
+    quiet : bool
+        No progress on stderr.
+
+    Returns
+    -------
+    dict
+        What sensitivity.json holds.
+    """
+    from mascarin.sensitivity.plots import save, spectrum, tornado
+
+    workspace = Workspace(out, study.inputs())
+    # A default of pydantic's own, so that every other key is the usual one.
+    plan = study.file.sensitivity or SensitivityPlan.model_validate({})
+    found = study.screened(plan, workspace, Teller(quiet))
+    for name in found.outputs:
+        save(spectrum(found, name), out / "figures" / f"{name}-spectrum.svg")
+        save(tornado(found, name), out / "figures" / f"{name}-tornado.svg")
+    content = {**header(study, "sensitivity"), **importance(study, found)}
+    _write(out, "sensitivity", content, {"sensitivity": found.table()})
+    return content
+
+
+def calibration(study: Study, out: Path, *, quiet: bool = False) -> dict[str, Any]:
+    """The parameters that bring the model closest to the measurements, and how close that is on other days.
+
+    Parameters
+    ----------
+    study : Study
+        Says what to identify.
+    out : Path
+        Folder for calibration.json and its tables.
+    quiet : bool
+        No progress on stderr.
+
+    Returns
+    -------
+    dict
+        What calibration.json holds.
+    """
+    workspace = Workspace(out, study.inputs())
+    nominal = study.nominal()
+    fitted, fit = study.fitted(workspace, Teller(quiet))
+    models, verdicts = {"nominal": nominal, "fitted": fitted}, study.judged(nominal, fitted)
+    content = {
+        **header(study, "calibrate"),
+        **comparison(models, verdicts),
+        **estimates(study, fit),
+        "notes": [{"title": "The estimates", "text": text} for text in fit.warnings],
+    }
+    tables = {
+        "parameters": fit.table(),
+        "calibration_metrics": metrics_table([nominal, fitted]),
+        "calibration_criteria": criteria_table(verdicts),
+        "quality": quality_table(study.quality),
+    }
+    _write(out, "calibration", content, tables)
+    return content
+
+
+def validation(study: Study, out: Path | None) -> dict[str, Any]:
+    """The building as described against the measurements.
+
+    Parameters
+    ----------
+    study : Study
+        Its identification is not carried out.
+    out : Path, optional
+        Folder for validation.json and its tables; without it nothing is written.
+
+    Returns
+    -------
+    dict
+        What validation.json holds.
+    """
+    if out is not None:
+        Workspace(out, study.inputs())  # refuses what is no folder before anything is run
+    nominal = study.nominal()
+    verdicts = study.judged(nominal)
+    content = {**header(study, "validate"), **comparison({"nominal": nominal}, verdicts)}
+    if out is not None:
+        tables = {
+            "validation_metrics": metrics_table([nominal]),
+            "validation_criteria": criteria_table(verdicts),
+            "quality": quality_table(study.quality),
+        }
+        _write(out, "validation", content, tables)
+    return content
+
+
+def _write(out: Path, name: str, content: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> None:
+    write_tables(out / "tables", tables)
+    write_whole(out / f"{name}.json", as_json(content))
+
+
+def as_json(content: Mapping[str, Any]) -> str:
+    """The text of a result file."""
+    return json.dumps(content, indent=1, allow_nan=False) + "\n"
