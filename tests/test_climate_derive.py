@@ -37,10 +37,15 @@ def test_erbs_limits() -> None:
     assert overcast[0] == pytest.approx(50.0 * (1.0 - 0.09 * 50.0 / (1361.0 * 0.9)))
 
 
+def clear_sky(up: np.ndarray) -> np.ndarray:
+    """Haurwitz's clear sky by hand; nothing below the horizon. [W/m2]"""
+    return np.where(up > 0.0, 1098.0 * up * np.exp(-0.057 / np.maximum(up, 1e-3)), 0.0)
+
+
 def test_cloud_cover_inverts_kasten_and_czeplak() -> None:
     up = np.maximum(np.sin(np.linspace(-np.pi, 3.0 * np.pi, 96)), 0.0)
     oktas = 6.0
-    total = np.maximum(910.0 * up - 30.0, 0.0) * (1.0 - 0.75 * (oktas / 8.0) ** 3.4)
+    total = clear_sky(up) * (1.0 - 0.75 * (oktas / 8.0) ** 3.4)
     tenths = cloud_cover(total, up, 3600.0)
     assert tenths == pytest.approx(np.full(96, 7.5), abs=1e-9)
     assert cloud_cover(np.zeros(10), np.zeros(10), 3600.0) == pytest.approx(np.zeros(10))
@@ -49,6 +54,6 @@ def test_cloud_cover_inverts_kasten_and_czeplak() -> None:
 
 def test_cloud_cover_is_linear_through_the_night() -> None:
     up = np.array([0.5, 0.5, 0.0, 0.0, 0.0, 0.5, 0.5])
-    clear = 910.0 * 0.5 - 30.0
+    clear = float(clear_sky(up)[0])
     tenths = cloud_cover(np.array([clear, clear, 0.0, 0.0, 0.0, 0.25 * clear, 0.25 * clear]), up, 3600.0)
     assert tenths == pytest.approx([0.0, 0.0, 2.5, 5.0, 7.5, 10.0, 10.0])

@@ -42,8 +42,8 @@ def complete(climate: Climate, latitude: float, longitude: float) -> Climate:
             derive.cloud_cover(total, up, grid.interval) if total.any() else np.zeros(grid.count)
         )
         notes.append(
-            f"{climate.file}: cloud cover estimated from global irradiance (Kasten & Czeplak 1980, "
-            "G/G_clear = 1 - 0.75 (N/8)^3.4), interpolated through the night."
+            f"{climate.file}: cloud cover estimated from global irradiance (Kasten & Czeplak 1980 "
+            "with Haurwitz's clear sky, G/G_clear = 1 - 0.75 (N/8)^3.4), interpolated through the night."
             if total.any()
             else f"{climate.file}: cloud cover neither measured nor to be estimated; clear sky assumed."
         )

@@ -5,6 +5,7 @@ References
 Alduchov & Eskridge 1996, Journal of Applied Meteorology 35(4), 601-609,
 doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2 (Magnus form over water).
 Erbs, Klein & Duffie 1982, Solar Energy 28(4), 293-302, doi:10.1016/0038-092X(82)90302-4.
+Haurwitz 1945, Journal of Meteorology 2(3), 154-166, doi:10.1175/1520-0469(1945)002<0154:IIRTCA>2.0.CO;2.
 Kasten & Czeplak 1980, Solar Energy 24(2), 177-189, doi:10.1016/0038-092X(80)90391-6.
 """
 
@@ -23,8 +24,8 @@ MAGNUS_C: Final = 243.04
 
 _CLOUD_EXPONENT: Final = 3.4
 _CLOUD_LOSS: Final = 0.75
-_CLEAR_SLOPE: Final = 910.0
-_CLEAR_OFFSET: Final = -30.0
+_CLEAR_GAIN: Final = 1098.0
+_CLEAR_DECAY: Final = -0.057
 _LOWEST_SUN: Final = float(np.sin(np.radians(10.0)))
 
 
@@ -82,8 +83,10 @@ def diffuse_erbs(total: Array, up: Array, extra: Array) -> Array:
 def cloud_cover(total: Array, up: Array, interval: float) -> Array:
     """Cloud cover from global irradiance, Kasten & Czeplak's relation the other way round.
 
-    G / G_clear = 1 - 0.75 (N/8)^3.4 with G_clear = 910 sin h - 30 W/m2, N in oktas, on running means of an
-    hour; with the sun below 10 deg, and at night, linear between the last and the next value.
+    G / G_clear = 1 - 0.75 (N/8)^3.4, N in oktas, on running means of an hour; with the sun below 10 deg, and
+    at night, linear between the last and the next value. G_clear is Haurwitz's 1098 sin h exp(-0.057 / sin h)
+    W/m2: Kasten and Czeplak's own, from Hamburg, is a quarter too low under a high sun, so that cloud would
+    seem to come and go with the hour.
 
     Parameters
     ----------
@@ -100,7 +103,8 @@ def cloud_cover(total: Array, up: Array, interval: float) -> Array:
         Cloud cover [tenths].
     """
     width = max(1, round(3600.0 / interval))
-    clear = np.where(up > _LOWEST_SUN, _CLEAR_SLOPE * up + _CLEAR_OFFSET, np.nan)
+    high = np.maximum(up, _LOWEST_SUN)
+    clear = np.where(up > _LOWEST_SUN, _CLEAR_GAIN * up * np.exp(_CLEAR_DECAY / high), np.nan)
     usable = np.isfinite(clear) & np.isfinite(total)
     if not usable.any():
         return np.zeros(len(total))
