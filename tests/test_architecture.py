@@ -21,6 +21,7 @@ ORDER = [
     {"genopt"},
     {"examples"},
     {"study"},
+    {"coupling"},
     {"report"},
     {"commands", "cli"},
 ]
