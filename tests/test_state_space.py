@@ -94,7 +94,7 @@ def differences(step: float, folder: Path) -> dict[str, float]:
 
 def test_the_matrices_answer_like_the_engine(tmp_path: Path) -> None:
     coarse, fine = (differences(step, tmp_path) for step in (120.0, 60.0))
-    # Where the sun's path has a kink, at its rise and at grazing incidence, a lit face follows at first order.
+    # Where the sun's path has a kink, rising or grazing the wall, a lit face follows at first order.
     lit = {"north.outside_temperature", "roof.outside_temperature"}
     assert max(value for name, value in fine.items() if name not in lit) < 2e-5
     assert max(fine.values()) < 1e-3

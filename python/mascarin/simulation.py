@@ -267,10 +267,20 @@ class Simulation:
             Energy closure of each member. [-]
         failures : list of Failure
             Members that failed, and why.
+
+        Raises
+        ------
+        InputError
+            The samples do not have a column for each parameter.
         """
         probes, recipes = _probes(self.outputs)
         options = self._options(probes, record_from, record_every)
         members: Array = np.ascontiguousarray(samples, dtype=np.float64)
+        if members.ndim != 2 or members.shape[1] != len(self.paths):
+            raise InputError(
+                f"samples: found an array of shape {members.shape}, expected (members, {len(self.paths)}): "
+                "one value for each parameter"
+            )
         with _told_apart():
             raw, closure, failed = self._plan.ensemble(members, self._forcing, options, report)
         return _derive(raw, recipes), closure, [Failure(member, reason) for member, reason in failed]
@@ -282,19 +292,23 @@ class Simulation:
 
     def _options(self, probes: str, record_from: int, record_every: int) -> dict[str, Any]:
         repeat = self._initial is None
-        steps = min(max(round(self._first_period / self.step_seconds), 1), len(self._forcing))
         return {
             "dt": self.step_seconds,
             "scheme": self.scheme,
             # Where the repetition starts from matters only for its length.
             "initial": float(self._forcing[:, -1, 0].mean()) if self._initial is None else self._initial,
-            "warmup_steps": steps if repeat else 0,
+            "warmup_steps": self._repeated_steps if repeat else 0,
             "warmup_tolerance": SETTLED,
             "warmup_max_cycles": MAX_CYCLES,
             "probes": probes,
             "record_from": record_from,
             "record_every": record_every,
         }
+
+    @property
+    def _repeated_steps(self) -> int:
+        """Steps of the first period, which is no longer than the run."""
+        return min(max(round(self._first_period / self.step_seconds), 1), len(self._forcing))
 
     def _provenance(self, raw: Mapping[str, Any], vector: Array) -> Provenance:
         from mascarin.climate import summary
@@ -318,8 +332,9 @@ class Simulation:
     def _start_note(self, raw: Mapping[str, Any]) -> str:
         if self._initial is not None:
             return f"{self._initial:g} degC everywhere"
+        hours = self._repeated_steps * self.step_seconds / 3600.0
         return (
-            f"first {self._first_period / 3600.0:g} h repeated {raw['cycles']} times until nothing changed "
+            f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
             f"by more than {SETTLED:g} K (last change {raw['settled']:.4f} K)"
         )
 

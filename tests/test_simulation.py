@@ -1,0 +1,354 @@
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import mascarin as mc
+from mascarin.climate import Climate, Measurements
+from mascarin.errors import InputError, SolverError
+from mascarin.model import Building
+from mascarin.simulation import Simulation, globe_temperature, simulate, unreached
+from mascarin.validation.cases import bench, zones
+from simulation_samples import LINEAR, hours, measured, read, weather
+
+
+@pytest.fixture(scope="module")
+def linear(tmp_path_factory: pytest.TempPathFactory) -> Building:
+    return read(LINEAR, tmp_path_factory.mktemp("linear"))
+
+
+@pytest.fixture(scope="module")
+def climate() -> Climate:
+    return weather(3, **measured(3))
+
+
+@pytest.fixture(scope="module")
+def everything() -> Building:
+    return bench.building(zones.EVERYTHING)
+
+
+@pytest.fixture(scope="module")
+def island() -> Climate:
+    return bench.climate(bench.HOUR, zones.island_weather(4))
+
+
+# --- period, step, outputs ---
+
+
+def test_rows_are_the_start_and_the_end_of_every_step(linear: Building, climate: Climate) -> None:
+    run = simulate(linear, climate, start="2001-01-02", end="2001-01-03", step="15min")
+    assert len(run.index) == len(run.records) == 97
+    assert run.index[0] == pd.Timestamp("2001-01-02", tz="UTC")
+    assert run.index[-1] == pd.Timestamp("2001-01-03", tz="UTC")
+
+
+def test_step_in_words_and_seconds_are_the_same(linear: Building, climate: Climate) -> None:
+    words, number = (
+        simulate(linear, climate, step=step, end="2001-01-02").records for step in ("30min", 1800)
+    )
+    assert np.array_equal(words, number)
+
+
+def test_usual_outputs(everything: Building, island: Climate) -> None:
+    run = simulate(everything, island, step="1h", end="2001-01-02", initial=23.0)
+    names = list(run)
+    assert names[:2] == ["gap.air_temperature", "room.air_temperature"]
+    assert "ceiling.energain_liquid_fraction" in names
+    assert "ceiling.interface_1_temperature" in names
+    assert not any(name.endswith("_flux") for name in names)
+
+
+def test_an_output_by_its_alias(everything: Building, island: Climate) -> None:
+    name = "ceiling.energain_board_temperature"
+    run = simulate(everything, island, step="1h", end="2001-01-02", initial=23.0, outputs=[name])
+    assert list(run) == ["ceiling.interface_1_temperature"]
+    assert np.array_equal(run[name].to_numpy(), run["ceiling.interface_1_temperature"].to_numpy())
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"outputs": ["room.air_temprature"]}, "Did you mean 'room.air_temperature'"),
+        ({"scheme": "sdirk"}, "Did you mean 'sdirk2'?"),
+        ({"start": "2001-01-02", "end": "2001-01-01"}, "expected the end after the start"),
+        ({"end": "2001-02-01"}, "is outside the data"),
+        ({"end": "2001-01-02 00:10"}, "not a whole number of steps"),
+        ({"step": "soon"}, "expected a positive time"),
+        ({"step": -60}, "expected a positive time"),
+        ({"initial": "warm"}, "expected 'repeat' or a temperature"),
+        ({"initial": True}, "expected 'repeat' or a temperature"),
+        ({"initial": 500.0}, "expected 'repeat' or a temperature"),
+    ],
+)
+def test_what_cannot_be_used_is_refused(
+    options: dict[str, Any], words: str, everything: Building, island: Climate
+) -> None:
+    with pytest.raises(InputError) as caught:
+        Simulation(everything, island, **options)
+    assert words in str(caught.value)
+
+
+def test_a_measured_column_that_is_missing_is_named(linear: Building) -> None:
+    columns = measured(3)
+    del columns["yard"]
+    with pytest.raises(InputError, match="'yard', which the building needs"):
+        Simulation(linear, weather(3, **columns))
+
+
+def test_measured_columns_may_stand_in_a_table_of_their_own(linear: Building, climate: Climate) -> None:
+    index = pd.date_range("2001-01-01", periods=73, freq="1h", tz="UTC")
+    beside = Measurements.from_table(pd.DataFrame(measured(3), index=index), timezone="UTC")
+    together = simulate(linear, climate, step="1h", end="2001-01-03").records
+    apart = simulate(linear, weather(3), measurements=beside, step="1h", end="2001-01-03").records
+    assert np.array_equal(apart, together)
+
+
+# --- start ---
+
+
+def test_a_number_is_the_temperature_everywhere(linear: Building, climate: Climate) -> None:
+    outputs = ["sunny.air_temperature", "shady.air_temperature", "deep.temperature"]
+    run = simulate(linear, climate, step="1h", initial=31.5, outputs=outputs)
+    assert run.records[0] == pytest.approx(31.5, abs=1.5)  # the sensor stands between a volume and a face
+    assert run["sunny.air_temperature"][0] == 31.5
+    assert run.provenance.start == "31.5 degC everywhere"
+
+
+def test_repeat_starts_where_the_first_period_ends(linear: Building, climate: Climate) -> None:
+    run = simulate(
+        linear, climate, step="1h", outputs=["sunny.air_temperature", "between.inside_temperature"]
+    )
+    # Settled to 0.01 K: a day later all is as at the start, but for the weather's slow part.
+    assert run.records[24] == pytest.approx(run.records[0], abs=0.011)
+    assert "first 24 h repeated" in run.provenance.start
+
+
+def test_repeat_does_not_depend_on_where_it_started(linear: Building, climate: Climate) -> None:
+    outputs = ["shady.air_temperature"]
+    settled = simulate(linear, climate, step="1h", outputs=outputs).records[:24]
+    twice = [
+        simulate(
+            linear, climate, step="1h", outputs=outputs, initial=start, start="2001-01-01", end="2001-01-03"
+        )
+        for start in (0.0, 40.0)
+    ]
+    # Two days wipe out 40 K of difference; what is left of it is far below what settling leaves.
+    assert abs(float(twice[0].records[-1, 0] - twice[1].records[-1, 0])) < 0.05
+    assert np.ptp(settled) > 1.0
+
+
+def test_a_first_period_longer_than_the_run_is_the_run(linear: Building, climate: Climate) -> None:
+    outputs = ["sunny.air_temperature", "shady.air_temperature", "between.inside_temperature"]
+    run = simulate(linear, climate, step="1h", end="2001-01-01 12:00", first_period="2d", outputs=outputs)
+    assert "first 12 h" in run.provenance.start
+    assert run.records[0] == pytest.approx(run.records[-1], abs=0.011)
+
+
+# --- numbers ---
+
+
+def test_a_vector_changes_one_number(linear: Building, climate: Climate) -> None:
+    bench_of_linear = Simulation(linear, climate, step="1h", outputs=["sunny.air_temperature"])
+    path = "zones.sunny.infiltration"
+    vector = bench_of_linear.vector({path: 5.0})
+    position = bench_of_linear.position(path)
+    assert bench_of_linear.paths[position] == "zones.sunny.infiltration.constant"
+    assert np.flatnonzero(vector != bench_of_linear.vector({})).tolist() == [position]
+    drafty = bench_of_linear.run(vector)
+    assert drafty.provenance.changed == {"zones.sunny.infiltration.constant": 5.0}
+    direct = simulate(linear.replace({path: 5.0}), climate, step="1h", outputs=["sunny.air_temperature"])
+    assert np.array_equal(drafty.records, direct.records)
+
+
+def test_an_unknown_or_structural_number_is_refused(linear: Building, climate: Climate) -> None:
+    run = Simulation(linear, climate, step="1h")
+    with pytest.raises(InputError, match=r"Did you mean 'zones\.sunny\.volume'"):
+        run.vector({"zones.sunny.volum": 1.0})
+    with pytest.raises(InputError, match="is structural"):
+        run.vector({"site.latitude": 1.0})
+
+
+def test_vectors_of_the_wrong_length_are_refused(linear: Building, climate: Climate) -> None:
+    run = Simulation(linear, climate, step="1h")
+    with pytest.raises(InputError, match="parameter"):
+        run.run(run.vector({})[:-1])
+    for members in (3, len(run.paths)):
+        with pytest.raises(InputError, match="one value for each parameter"):
+            run.ensemble(np.tile(run.vector({})[:-1], (members, 1)))
+
+
+def test_members_are_the_same_bits_alone_and_together(everything: Building, island: Climate) -> None:
+    run = Simulation(everything, island, step="15min", end="2001-01-02", initial=23.0)
+    samples = np.tile(run.vector({}), (9, 1))
+    samples[:, run.position("materials.energain.latent_heat")] *= np.linspace(0.5, 1.5, 9)
+    told: list[int] = []
+    records, closure, failures = run.ensemble(samples, report=told.append)
+    assert failures == []
+    for member in (0, 4, 8):
+        alone = run.run(samples[member])
+        assert np.array_equal(alone.records, records[member])
+        assert alone.energy.closure == closure[member]
+
+
+def test_only_some_rows_are_recorded(everything: Building, island: Climate) -> None:
+    run = Simulation(everything, island, step="1h", end="2001-01-03", initial=23.0)
+    every, _, _ = run.ensemble(run.vector({})[None])
+    some, _, _ = run.ensemble(run.vector({})[None], record_from=24, record_every=6)
+    assert np.array_equal(some[0], every[0, 24::6])
+
+
+def test_a_member_that_fails_leaves_the_others(everything: Building, island: Climate) -> None:
+    run = Simulation(everything, island, step="1h", end="2001-01-02", initial=23.0)
+    samples = np.tile(run.vector({}), (3, 1))
+    samples[1, run.position("zones.room.volume")] = np.nan
+    records, closure, failures = run.ensemble(samples)
+    assert [failure.member for failure in failures] == [1]
+    assert np.isnan(records[1]).all()
+    assert np.isnan(closure[1])
+    assert np.array_equal(records[0], records[2])
+    assert np.array_equal(records[0], run.run().records)
+    with pytest.raises(SolverError):
+        run.run(samples[1])
+
+
+# --- what is derived from what the engine records ---
+
+
+def test_operative_temperature_is_the_mean_of_air_and_radiant(everything: Building, island: Climate) -> None:
+    names = ["room.operative_temperature", "room.air_temperature", "room.mean_radiant_temperature"]
+    run = simulate(everything, island, step="1h", end="2001-01-02", initial=23.0, outputs=names)
+    operative, air, radiant = run.records.T
+    assert operative == pytest.approx(0.5 * (air + radiant), abs=1e-12)
+    # In any order, and without the parts it is made of.
+    alone = simulate(everything, island, step="1h", end="2001-01-02", initial=23.0, outputs=names[:1])
+    assert np.array_equal(alone.records[:, 0], operative)
+
+
+def test_globe_balances_radiation_and_convection() -> None:
+    air, radiant = np.array([20.0, 20.0, 30.0]), np.array([40.0, 20.0, 10.0])
+    globe = globe_temperature(air, radiant)
+    emitted = 0.95 * 5.670374419e-8 * ((radiant + 273.15) ** 4 - (globe + 273.15) ** 4)
+    carried = 1.4 * (np.abs(globe - air) / 0.15) ** 0.25 * (globe - air)
+    assert emitted == pytest.approx(carried, rel=2e-3, abs=1e-6)
+    assert globe[1] == pytest.approx(20.0)
+
+
+def test_faces_of_equal_temperature_make_that_mean_radiant(tmp_path: Path) -> None:
+    building = read(LINEAR, tmp_path)
+    run = simulate(building, weather(1, **measured(1)), step="1h", outputs=["shady.mean_radiant_temperature",
+        "between.inside_temperature", "south.inside_temperature", "floor.inside_temperature"])  # fmt: skip
+    radiant, *faces = run.records[-1]
+    assert radiant == pytest.approx(np.average(faces, weights=[10.0, 8.0, 10.0]), abs=1e-12)
+
+
+def test_weather_as_the_engine_saw_it(linear: Building, climate: Climate) -> None:
+    run = Simulation(linear, climate, step="1h", end="2001-01-02")
+    expected = np.interp(hours(1), hours(3), climate.data["air_temperature"])
+    assert run.weather("air_temperature")[1:] == pytest.approx(expected[1:], abs=1e-9)
+
+
+# --- units across the border ---
+
+
+def test_heat_into_a_zone_is_in_joules(tmp_path: Path) -> None:
+    """100 W/m2 on 2 m2 of absorptance 0.5 for an hour, with next to no film: 360 kJ, and stored."""
+    text = bench.SITE + (
+        "materials: {slab: {conductivity: 1, density: 2000, specific_heat: 1000}}\n"
+        "constructions: {slab: {layers: [{material: slab, thickness: 0.1}]}}\n"
+        "surfaces:\n  slab: {construction: slab, area: 2, tilt: 90, inside: {adiabatic: true},\n"
+        "    outside: {outdoors: true, convection: 1e-9, emissivity: 0.9, absorptance: 0.5, longwave: none,\n"
+        "              irradiance: sun}}\n"
+    )
+    text = text.replace("1e-9", "0.001")
+    run = simulate(
+        read(text, tmp_path), bench.climate(3600.0, {"sun": np.full(2, 100.0)}), step=60, initial=20.0,
+        end="2001-01-01 01:00", outputs=["slab.outside_flux"],
+    )  # fmt: skip
+    assert run.energy.into["solar"] == pytest.approx(360e3, rel=1e-12)
+    assert run.energy.stored == pytest.approx(360e3, rel=1e-3)
+    assert run.energy.closure < 1e-10
+
+
+def test_provenance_says_what_made_the_run(linear: Building, climate: Climate) -> None:
+    run = simulate(linear, climate, step="30min", end="2001-01-02", scheme="backward-euler")
+    told = run.provenance.to_dict()
+    assert told["mascarin_version"] == mc.__version__
+    assert told["building"] == "linear"
+    assert told["step_seconds"] == 1800.0
+    assert told["scheme"] == "backward-euler"
+    assert told["changed"] == {}
+    assert told["newton_iterations"] >= 48
+    assert told["climate"]["timezone"] == "UTC"
+    other = simulate(linear.replace({"zones.sunny.volume": 31.0}), climate, step="30min", end="2001-01-02")
+    assert other.provenance.building_hash != run.provenance.building_hash
+
+
+def test_identity_tells_runs_apart(linear: Building, climate: Climate) -> None:
+    def identity(**options: Any) -> str:
+        given: dict[str, Any] = {"step": "1h", "end": "2001-01-02", **options}
+        return Simulation(linear, climate, **given).identity
+
+    same = identity()
+    assert identity() == same
+    others: list[dict[str, Any]] = [
+        {"step": "30min"},
+        {"end": "2001-01-03"},
+        {"scheme": "backward-euler"},
+        {"initial": 20.0},
+        {"outputs": ["sunny.air_temperature"]},
+        {"first_period": "12h"},
+    ]
+    assert len({same, *(identity(**options) for options in others)}) == len(others) + 1
+
+
+# --- every number reaches the engine ---
+
+
+def claimed(building: Building) -> dict[str, str]:
+    """Numbers that the description itself calls idle."""
+    return {p.path: p.reason for p in building.parameters() if p.reason is not None and not p.structural}
+
+
+def columns_for(building: Building) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+    """Something that moves for every measured column of a building."""
+    day = 2.0 * np.pi * hours(3) / 86400.0
+    return {
+        name: np.maximum(-500.0 * np.cos(day), 0.0) if name == "Pyr" else 22.0 + np.sin(day + k)
+        for k, name in enumerate(building.to_engine().channels)
+    }
+
+
+@pytest.mark.parametrize("name", ["everything", "linear", "wall_bench", "lgi"])
+def test_every_number_is_reached_or_says_why_not(name: str, linear: Building, everything: Building) -> None:
+    if name in ("linear", "everything"):
+        building = linear if name == "linear" else everything
+    else:
+        package = Path(mc.__file__).parent / "examples" / name / "building.yaml"
+        building = mc.load(package)
+    columns = columns_for(building)
+    climate = weather(3, **columns) if name == "linear" else _anywhere(columns)
+    found = unreached(building, climate, step="30min")
+    assert found == claimed(building)
+    assert len(found) < 0.5 * len(building.to_engine().paths)
+
+
+def _anywhere(columns: dict[str, Any]) -> Climate:
+    """Weather in which all moves, wherever the building stands; in March the sun sees north and south."""
+    t = hours(3)
+    air = zones.island_weather(3)
+    index = pd.date_range("2001-03-05", periods=len(t), freq="1h", tz="UTC")
+    return Climate.from_table(
+        pd.DataFrame({**air, **columns}, index=index), timezone="UTC", columns={one: one for one in air},
+        extra=list(columns), instant=list(air), check_sun=False,
+    )  # fmt: skip
+
+
+def test_a_number_that_only_the_period_keeps_idle_is_told(linear: Building) -> None:
+    """At night the absorptance of a wall does nothing."""
+    found = unreached(linear, weather(1, **measured(1)), step="1h", end="2001-01-01 03:00")
+    assert found["surfaces.north.outside.absorptance"] == "did not act in this period"
+    assert "surfaces.north.area" not in found
