@@ -259,14 +259,15 @@ def open_case(path: Path, study: str) -> Case | None:
         The study it must belong to: absolute path of its file.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # From memory, because numpy leaves the file open when it turns out to be no archive.
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
             header = json.loads(file["header"].tobytes())
             inputs = header["inputs"]
             if header["format"] != _FORMAT or inputs != inputs_of(study, inputs["files"]):
                 return None
             arrays = {name: file[name] for name in _ARRAYS}
         return _case(header, arrays)
-    except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+    except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
         # Whatever is wrong with it, it can be made again.
         return None
 
