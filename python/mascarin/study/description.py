@@ -228,7 +228,23 @@ class Variant(Part):
 
     changes: dict[str, Any] = Field(description="Path -> value or part")
     identify: bool = Field(True, description="Whether its parameters are identified too")
+    candidate: bool = Field(
+        False,
+        description="Whether it may become the fitted model: of all candidates and the building as "
+        "described, the one with the lowest cost on the identification period does",
+    )
+    parameters: dict[str, Free | None] = Field(
+        default_factory=dict,
+        description="Path -> bounds of what it adds to the identification; what it has not is left out",
+    )
     note: str | None = Field(None, description="What it is")
+
+    @model_validator(mode="after")
+    def _identified(self) -> Self:
+        if not self.identify and (self.candidate or self.parameters):
+            what = "candidate" if self.candidate else "parameters"
+            insist(fault((what,), "identify: false", "identify: true", "A candidate has to be identified."))
+        return self
 
 
 class StudyFile(Part):

@@ -226,9 +226,11 @@ def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, di
 def _parameters(study: Study, fit: Fit) -> dict[str, dict[str, Any]]:
     plan = study.file.identification.parameters
     given = {study.building.parameter(path).path: free for path, free in plan.items()}
+    # A candidate may have parameters that the building as described has not.
+    sources = {parameter.path: parameter.source for parameter in study.building.parameters()}
     entries = {}
     for parameter, entry in zip(fit.problem.parameters, fit.to_dict().values(), strict=True):
-        free, path = given[parameter.path], parameter.path
+        free, path = given.get(parameter.path), parameter.path
         more: dict[str, Any] = {
             "interval": [entry["low"], entry["high"]],
             "range": [parameter.lower, parameter.upper],
@@ -238,7 +240,7 @@ def _parameters(study: Study, fit: Fit) -> dict[str, dict[str, Any]]:
             more |= {"at_bound": True, "reason": reason}
         if free is not None and free.reference is not None:
             more |= {"reference_nominal": free.reference[0], "reference_fitted": free.reference[1]}
-        source = study.building.parameter(path).source
+        source = sources.get(path)
         entries[path] = {**entry, **more, **({"source": source} if source else {})}
     return entries
 

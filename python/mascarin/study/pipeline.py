@@ -6,7 +6,7 @@ import hashlib
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -23,7 +23,7 @@ from mascarin.model import Building, load
 from mascarin.progress import Progress
 from mascarin.results import Results
 from mascarin.simulation import Simulation
-from mascarin.study.description import SensitivityPlan, StudyFile, Variant, read_study
+from mascarin.study.description import IdentificationPlan, SensitivityPlan, StudyFile, Variant, read_study
 from mascarin.study.fitting import fit_parameters, identify, problem
 from mascarin.study.keeping import Workspace
 from mascarin.study.places import Places
@@ -339,8 +339,21 @@ class Study:
             self.observation,
             self.during["identification"],
             self.file.sensors,
-            self.file.identification,
+            self.plan_of(variant),
         )
+
+    def plan_of(self, variant: str | None) -> IdentificationPlan:
+        """What is identified in a variant: the study's parameters that it has, and its own."""
+        plan = self.file.identification
+        if variant is None:
+            return plan
+        known = {parameter.path for parameter in self.building_of(variant).parameters()}
+        shared = {
+            path: free
+            for path, free in plan.parameters.items()
+            if self.building.parameter(path).path in known
+        }
+        return plan.model_copy(update={"parameters": shared | self.file.variants[variant].parameters})
 
     @cached_property
     def observation(self) -> Observation:
@@ -402,10 +415,7 @@ class Study:
         plan = self.file.sensitivity
         sensitivity = None if plan is None else self.screened(plan, workspace, tell)
         fitted, fit = self.fitted(workspace, tell)
-        variants = {
-            name: self._variant(name, variant, workspace, tell)
-            for name, variant in self.file.variants.items()
-        }
+        variants = self._varied(workspace, tell)
         verdicts = self.judged(nominal, fitted)
         examinations = self._examined(fitted)
         findings = Findings(
@@ -463,9 +473,50 @@ class Study:
             )
 
     def fitted(self, workspace: Workspace, tell: Teller) -> tuple[ModelRun, Fit]:
-        """The model after the identification, and how its parameters were found."""
+        """The model after the identification, and how its parameters were found.
+
+        Where the study names candidates, the identification period chooses between them as well.
+        """
+        runs = {name: self.candidate(name, workspace, tell) for name in self.candidates}
+        chosen = min(runs, key=lambda name: runs[name][1].cost)
+        run, fit = runs[chosen]
         note = "after the identification, frozen on all other days"
-        return self._identified("fitted", None, workspace, tell, note)
+        if len(runs) > 1:
+            what = "the building as described" if chosen is None else f"'{chosen}'"
+            note += f"; of {len(runs)} candidates {what} has the lowest cost on the identification period"
+        return replace(run, label="fitted", note=note), fit
+
+    @property
+    def candidates(self) -> list[str | None]:
+        """What may become the fitted model; None is the building as described."""
+        return [None, *(name for name, variant in self.file.variants.items() if variant.candidate)]
+
+    def candidate(self, name: str | None, workspace: Workspace, tell: Teller) -> tuple[ModelRun, Fit]:
+        """A variant, or the building as described for None, identified once."""
+        if name not in self._identifications:
+            note = "the building as described" if name is None else self._note(name)
+            label = "as described" if name is None else name
+            self._identifications[name] = self._identified(label, name, workspace, tell, note)
+        return self._identifications[name]
+
+    @cached_property
+    def _identifications(self) -> dict[str | None, tuple[ModelRun, Fit]]:
+        return {}
+
+    def _varied(self, workspace: Workspace, tell: Teller) -> dict[str, ModelRun]:
+        """Other model choices; among them the building as described, where a candidate was better."""
+        found = {}
+        if len(self.candidates) > 1:
+            base, fit = self.candidate(None, workspace, tell)
+            if any(self.candidate(n, workspace, tell)[1].cost < fit.cost for n in self.candidates[1:]):
+                found[base.label] = base
+        for name, variant in self.file.variants.items():
+            found[name] = self._variant(name, variant, workspace, tell)
+        return found
+
+    def _note(self, name: str) -> str:
+        variant = self.file.variants[name]
+        return variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
 
     def _identified(
         self, label: str, variant: str | None, workspace: Workspace, tell: Teller, note: str
@@ -482,11 +533,10 @@ class Study:
         return self._compared(label, whole, whole.vector(fit.values), fit, note), fit
 
     def _variant(self, name: str, variant: Variant, workspace: Workspace, tell: Teller) -> ModelRun:
-        note = variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
         if variant.identify:
-            return self._identified(name, name, workspace, tell, note)[0]
+            return self.candidate(name, workspace, tell)[0]
         simulation = self.whole(name)
-        return self._compared(name, simulation, simulation.values, None, note)
+        return self._compared(name, simulation, simulation.values, None, self._note(name))
 
     def drivers(self) -> dict[str, npt.NDArray[np.float64]]:
         """What acts on the building, at the instants of the comparison, by words for the report."""
