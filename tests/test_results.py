@@ -23,9 +23,12 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Results:
     index = pd.date_range("2001-10-27", periods=len(t), freq="1h", tz="Europe/Paris")
     columns = {"air_temperature": 12.0 - 4.0 * np.cos(t / 13751.0), **measured(2)}
     climate = Climate.from_table(
-        pd.DataFrame(columns, index=index), timezone="Europe/Paris",
-        columns={"air_temperature": "air_temperature"}, extra=list(measured(2)), absent=["dew_point", "wind_speed", "wind_direction", "radiation"],
-    )  # fmt: skip
+        pd.DataFrame(columns, index=index),
+        timezone="Europe/Paris",
+        columns={"air_temperature": "air_temperature"},
+        extra=list(measured(2)),
+        absent=["dew_point", "wind_speed", "wind_direction", "radiation"],
+    )
     building = read(LINEAR, tmp_path_factory.mktemp("results"))
     names = [
         "sunny.air_temperature",

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,7 @@ import pandas as pd
 import pytest
 
 import mascarin as mc
+from mascarin import cli
 from mascarin.climate import Climate, Measurements
 from mascarin.errors import InputError, SolverError
 from mascarin.model import Building
@@ -352,3 +354,25 @@ def test_a_number_that_only_the_period_keeps_idle_is_told(linear: Building) -> N
     found = unreached(linear, weather(1, **measured(1)), step="1h", end="2001-01-01 03:00")
     assert found["surfaces.north.outside.absorptance"] == "did not act in this period"
     assert "surfaces.north.area" not in found
+
+
+def test_the_command_lists_what_is_not_reached(
+    data_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "everything.yaml"
+    denver = "latitude: 39.83, longitude: -104.65"
+    file.write_text(zones.EVERYTHING.replace("latitude: -35, longitude: 0", denver), encoding="utf-8")
+    weather_file = str(data_dir / "bestest" / "725650TYCST.epw")
+    assert cli.main(["parameters", str(file), "--reach", "--weather", weather_file, "--json"]) == 0
+    out, err = capsys.readouterr()
+    listed = {row["path"]: row["reason"] for row in json.loads(out)}
+    assert listed["surfaces.floor.azimuth"] == "a horizontal surface has no direction"
+    assert "surfaces.roof.area" not in listed
+    assert err == f"96 parameters, {len(listed)} without effect\n"
+
+
+def test_the_command_needs_weather_for_that(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "everything.yaml"
+    file.write_text(zones.EVERYTHING, encoding="utf-8")
+    assert cli.main(["parameters", str(file), "--reach"]) == 2
+    assert "--weather" in capsys.readouterr().err

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from mascarin.commands.inputs import AsJson, Flag, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
 from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from mascarin.model import Building
 
 
 def schema() -> None:
@@ -55,13 +59,16 @@ def parameters(
     /,
     *patterns: str,
     varying: Annotated[bool, Flag] = False,
+    reach: Annotated[bool, Flag] = False,
+    weather: Path | None = None,
     settings: Settings = None,
     as_json: AsJson = False,
 ) -> None:
     """List every parameter of a building.
 
     Each with its path, value, unit and the range in which its true value is believed to lie. A note says
-    why a parameter has no effect or cannot vary.
+    why a parameter has no effect or cannot vary. With --reach each one is moved a little in a run of three
+    days, and only those are listed that no output and no flow of heat depends on.
 
     Parameters
     ----------
@@ -71,13 +78,21 @@ def parameters(
         Only paths like these, such as "surfaces.roof.*".
     varying : bool
         Only parameters that have a range and act on a result.
+    reach : bool
+        Only parameters that nothing depended on when they were moved; needs --weather.
+    weather : Path
+        Weather file for --reach: EPW, or TMY3 as CSV.
     """
     from mascarin.model import parameter_table
 
     described = read_building(building, settings)
     table = parameter_table(described)
+    if reach:
+        idle = _unreached(described, weather)
+        table = [row | {"reason": idle[row["path"]]} for row in table if row["path"] in idle]
+        print(f"{len(described.parameters())} parameters, {len(table)} without effect", file=sys.stderr)
     shown = [row for row in table if _matches(row["path"], patterns)]
-    if not shown:
+    if not shown and not reach:
         paths = [row["path"] for row in table]
         hint = did_you_mean(patterns[0], paths) if patterns else ""
         raise InputError(f"found no parameter like {' '.join(patterns)}; expected a path. {hint}".rstrip())
@@ -91,6 +106,16 @@ def parameters(
         for row in shown
     ]
     print_table(("path", "value", "unit", "low", "high", "note"), rows)
+
+
+def _unreached(building: Building, weather: Path | None) -> dict[str, str]:
+    """Parameters that nothing depends on, each with the reason."""
+    if weather is None:
+        raise InputError("--reach: found no --weather; expected a weather file to run the building in")
+    from mascarin.commands.run import read_weather
+    from mascarin.simulation import unreached
+
+    return unreached(building, read_weather(weather))
 
 
 def _matches(path: str, patterns: tuple[str, ...]) -> bool:
