@@ -47,9 +47,13 @@ def _names(study: Study) -> None:
     if not any(sensor.use for sensor in file.sensors.values()):
         with blame("sensors"):
             raise InputError("found use: false on every sensor, expected one at least that takes part")
+    seen: dict[str, str] = {}
     for path, free in file.identification.parameters.items():
         with blame("identification", "parameters", path):
-            free_parameter(study.building, path, free)
+            found = free_parameter(study.building, path, free).path
+            if found in seen:
+                raise InputError(f"is the same as {seen[found]}, expected each parameter once; remove one")
+            seen[found] = path
     for k, criterion in enumerate(file.criteria):
         for key, known in (("sensors", tuple(file.sensors)), ("periods", PERIODS)):
             for name in getattr(criterion, key) or ():
