@@ -11,7 +11,6 @@ import hashlib
 import io
 import json
 import os
-import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -239,13 +238,13 @@ class Case:
             measured=self.problem.measured,
             mask=self.problem.mask,
         )
-        handle, draft = tempfile.mkstemp(prefix=f"{path.name}.", suffix=".part", dir=path.parent)
+        # Of one process alone: several runs at a time may find that there is no case yet.
+        draft = path.with_name(f"{path.name}.{os.getpid()}.part")
         try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(buffer.getvalue())
-            Path(draft).replace(path)
+            draft.write_bytes(buffer.getvalue())
+            draft.replace(path)
         finally:
-            Path(draft).unlink(missing_ok=True)
+            draft.unlink(missing_ok=True)
 
 
 def open_case(path: Path, study: str) -> Case | None:

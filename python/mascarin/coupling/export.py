@@ -218,7 +218,7 @@ def variable(parameter: FitParameter, study: Path, *, intervals: bool = False) -
 
 
 def _short(value: float, rounding: str, digits: int = _DIGITS) -> Decimal:
-    return Context(prec=digits, rounding=rounding).create_decimal(repr(value))
+    return Context(prec=digits, rounding=rounding).create_decimal(repr(value)).normalize()
 
 
 def _program(given: str | None) -> str:
@@ -246,7 +246,9 @@ def _program(given: str | None) -> str:
 
 def _reference(given: str, path: Path, out: Path) -> str:
     """How the project names its study: relative to its folder, by the name of a shipped one, or in full."""
-    if not Path(given).exists():
+    from mascarin.examples import STUDIES
+
+    if STUDIES.get(given) == path:
         return given
     try:
         return Path(os.path.relpath(path.resolve(), out.resolve())).as_posix()
