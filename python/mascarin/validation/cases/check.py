@@ -60,7 +60,7 @@ class Check:
         """Whether the number keeps its bounds; what is no number keeps none."""
         low = -math.inf if self.low is None else self.low
         high = math.inf if self.high is None else self.high
-        return math.isfinite(self.value) and low <= self.value <= high
+        return bool(math.isfinite(self.value) and low <= self.value <= high)
 
     def to_dict(self) -> dict[str, Any]:
         """The row as it stands in ``mascarin verify --json``."""
@@ -68,12 +68,17 @@ class Check:
             "name": self.name,
             "quantity": self.quantity,
             "unit": self.unit,
-            "value": self.value,
-            "min": self.low,
-            "max": self.high,
-            "expected": self.expected,
+            "value": float(self.value),
+            "min": _plain(self.low),
+            "max": _plain(self.high),
+            "expected": _plain(self.expected),
             "passed": self.passed,
         }
+
+
+def _plain(value: float | None) -> float | None:
+    """A number as JSON knows it: what numpy computed is no plain float."""
+    return None if value is None else float(value)
 
 
 @dataclass(frozen=True)
