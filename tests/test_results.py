@@ -128,3 +128,18 @@ def test_the_ledger_in_words_and_for_json() -> None:
     assert lines[0].split() == ["solar", "1.000", "kWh"]
     assert lines[-2].split() == ["stored", "15.000", "kWh"]
     assert lines[-1] == "closure 2.0e-13"
+
+
+def test_another_spacing_keeps_states_and_heat(run: Results) -> None:
+    hourly = run.every("1h")
+    assert len(hourly.index) == 38
+    assert hourly.index[1] - hourly.index[0] == pd.Timedelta("1h")
+    flux = run.frame()["north.outside_flux"].to_numpy()
+    means = flux[1:].reshape(-1, 4).mean(axis=1)
+    np.testing.assert_allclose(hourly.frame()["north.outside_flux"].to_numpy()[1:], means, rtol=1e-12)
+    air = run.frame()["sunny.air_temperature"].to_numpy()
+    np.testing.assert_allclose(hourly.frame()["sunny.air_temperature"].to_numpy(), air[::4], rtol=1e-12)
+    between = run.every("10min").frame()["sunny.air_temperature"].to_numpy()
+    assert between[1] == pytest.approx(air[0] + (air[1] - air[0]) * 10 / 15)
+    with pytest.raises(InputError, match="shorter than the run"):
+        run.every("3d")

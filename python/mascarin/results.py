@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
@@ -169,6 +169,44 @@ class Results:
     def __len__(self) -> int:
         return len(self.outputs)
 
+    def every(self, interval: str | float) -> Results:
+        """The same series at another spacing, from the start of the run.
+
+        Parameters
+        ----------
+        interval : str or float
+            Spacing, such as ``1h`` or seconds. [s]
+
+        Returns
+        -------
+        Results
+            States interpolated to the new times. A heat flux at a time is its mean over the interval that
+            ends there, so that its sum keeps the heat; that of the first time is the first recorded one.
+
+        Raises
+        ------
+        InputError
+            The interval is no positive time or longer than the run.
+        """
+        import numpy as np
+        import pandas as pd
+
+        from mascarin.climate.table import seconds_of
+
+        seconds = seconds_of(interval, "interval")
+        place = np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64)
+        times = np.arange(0.0, place[-1] + 1e-6, seconds)
+        if len(times) < 2:
+            raise InputError(f"interval: found {interval!r}; expected a time shorter than the run")
+        columns = [
+            _means(place, self.records[:, k], times)
+            if output.unit == "W/m2"
+            else np.interp(times, place, self.records[:, k])
+            for k, output in enumerate(self.outputs)
+        ]
+        index = self.index[0] + pd.to_timedelta(times, unit="s")
+        return replace(self, index=index, records=np.stack(columns, axis=-1))
+
     def frame(self) -> pd.DataFrame:
         """All series as a table in local time, one column an output."""
         import pandas as pd
@@ -240,3 +278,13 @@ class Results:
         raise InputError(
             f"{name}: not recorded in this run; name it in outputs=. {did_you_mean(name, known)}".rstrip()
         )
+
+
+def _means(place: Array, values: Array, times: Array) -> Array:
+    """Means over the intervals that end at the times, of a flux recorded at the end of each step."""
+    import numpy as np
+
+    # A recorded flux stands for the step that it ends.
+    heat = np.concatenate([[0.0], np.cumsum(values[1:] * np.diff(place))])
+    at = np.interp(times, place, heat)
+    return np.concatenate([values[:1], np.diff(at) / np.diff(times)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -229,7 +230,8 @@ class Simulation:
         """
         probes, recipes = _probes(self.outputs)
         vector: Array = np.array(self.values if values is None else values, dtype=np.float64)
-        with _told_apart():
+        self._require_possible(vector[None, :])
+        with _told_apart(self._in_time):
             raw = self._plan.simulate(vector, self._forcing, self._options(probes, 0, 1))
         records = _derive(raw["records"], recipes)
         return Results(
@@ -276,19 +278,54 @@ class Simulation:
         probes, recipes = _probes(self.outputs)
         options = self._options(probes, record_from, record_every)
         members: Array = np.ascontiguousarray(samples, dtype=np.float64)
-        if members.ndim != 2 or members.shape[1] != len(self.paths):
-            raise InputError(
-                f"samples: found an array of shape {members.shape}, expected (members, {len(self.paths)}): "
-                "one value for each parameter"
-            )
-        with _told_apart():
+        self._require_possible(members)
+        with _told_apart(self._in_time):
             raw, closure, failed = self._plan.ensemble(members, self._forcing, options, report)
-        return _derive(raw, recipes), closure, [Failure(member, reason) for member, reason in failed]
+        failures = [Failure(member, self._in_time(reason)) for member, reason in failed]
+        return _derive(raw, recipes), closure, failures
 
     def state_space(self) -> dict[str, Any]:
         """Matrices and names of a linear building; see `mascarin.state_space`."""
-        with _told_apart():
+        with _told_apart(self._in_time):
             return self._plan.state_space(self.values)
+
+    def _require_possible(self, vectors: Array) -> None:
+        """Refuse parameter vectors of the wrong length, or with a value that its parameter cannot have.
+
+        Raises
+        ------
+        InputError
+            Naming the parameter, the value and the limits.
+        """
+        if vectors.ndim != 2 or vectors.shape[1] != len(self.paths):
+            raise InputError(
+                f"samples: found an array of shape {vectors.shape}, expected (members, {len(self.paths)}): "
+                "one value for each parameter"
+            )
+        lower, upper = self._limits
+        bad = np.argwhere(~((vectors >= lower) & (vectors <= upper)))
+        if bad.size:
+            member, k = (int(i) for i in bad[0])
+            parameter = self.building.parameter(self.paths[k])
+            raise InputError(
+                f"samples: {parameter.path} of member {member}: found {vectors[member, k]:g} "
+                f"{parameter.unit}; expected a value from {parameter.lower:g} to {parameter.upper:g}"
+            )
+
+    @cached_property
+    def _limits(self) -> tuple[Array, Array]:
+        """Hard limits of each parameter, shapes (P,). [unit of each]"""
+        parameters = [self.building.parameter(path) for path in self.paths]
+        return np.array([p.lower for p in parameters]), np.array([p.upper for p in parameters])
+
+    def _in_time(self, reason: str) -> str:
+        """An engine's message with the local time beside the number of the step."""
+
+        def said(match: re.Match[str]) -> str:
+            step = min(int(match[1]), len(self._forcing) - 1)
+            return f"step {step} from {self.index[step]:%Y-%m-%d %H:%M:%S}"
+
+        return re.sub(r"step (\d+)", said, reason, count=1)
 
     def _options(self, probes: str, record_from: int, record_every: int) -> dict[str, Any]:
         repeat = self._initial is None
@@ -462,14 +499,14 @@ def _moved(parameter: Parameter) -> float:
 
 
 @contextmanager
-def _told_apart() -> Iterator[None]:
-    """Engine errors as Mascarin's: what was given, or what could not be solved."""
+def _told_apart(in_time: Callable[[str], str] = str) -> Iterator[None]:
+    """Engine errors as Mascarin's: what was given, or what could not be solved, and when."""
     try:
         yield
     except _engine.EngineInputError as error:
         raise InputError(str(error)) from None
     except _engine.EngineSolverError as error:
-        raise SolverError(str(error)) from None
+        raise SolverError(in_time(str(error))) from None
 
 
 def _period(climate: Climate, start: object, end: object) -> tuple[pd.Timestamp, pd.Timestamp]:

@@ -31,6 +31,7 @@ def run(
     start: str | None = None,
     end: str | None = None,
     step: Step = "15min",
+    interval: str | None = None,
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
     settings: Settings = None,
@@ -52,6 +53,8 @@ def run(
         First moment, such as 2012-09-20 or "2012-09-20 12:00", local time. Default: where the weather starts.
     end : str
         Last moment. Default: where the weather ends.
+    interval : str
+        Spacing of the series that are written, such as 1h; independent of the step. Default: the step.
     outputs : list of str
         What to record, such as room.air_temperature or "roof.*"; may be given again. Default: the
         temperatures of air, faces, interfaces and sensors.
@@ -75,6 +78,8 @@ def run(
     for note in simulation.notes:
         print(f"warning: {note}", file=sys.stderr)
     results = simulation.run()
+    if interval is not None:
+        results = results.every(interval)
     if out is not None:
         _write(results, out)
     if as_json:
