@@ -12,7 +12,8 @@ import io
 import json
 import os
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
@@ -24,7 +25,7 @@ from mascarin import __version__, _engine
 from mascarin.calibration.cost import Cost, CostName
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.simulation import _derive, _told_apart
+from mascarin.simulation import _derive
 from mascarin.validation.observation import _instants, _means
 
 if TYPE_CHECKING:
@@ -136,7 +137,7 @@ class Case:
 
     @cached_property
     def _plan(self) -> _engine.Plan:
-        with _told_apart():
+        with _told():
             return _engine.Plan(self.run.description)
 
     @cached_property
@@ -147,7 +148,7 @@ class Case:
     def _model(self, x: Array) -> Array:
         vectors = np.tile(self.values, (len(x), 1))
         vectors[:, self.positions] = x
-        with _told_apart():
+        with _told():
             raw, _, failed = self._plan.ensemble(vectors, self.forcing, self.run.options, None)
         self._reasons[:] = [reason for _, reason in failed]
         records = _derive(raw, self.run.recipes)
@@ -245,6 +246,17 @@ class Case:
             draft.replace(path)
         finally:
             draft.unlink(missing_ok=True)
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Engine errors as Mascarin's."""
+    try:
+        yield
+    except _engine.EngineInputError as error:
+        raise InputError(str(error)) from None
+    except _engine.EngineSolverError as error:
+        raise SolverError(str(error)) from None
 
 
 def open_case(path: Path, study: str) -> Case | None:
