@@ -303,7 +303,8 @@ class Simulation:
                 "one value for each parameter"
             )
         lower, upper = self._limits
-        bad = np.argwhere(~((vectors >= lower) & (vectors <= upper)))
+        # A value that is no number makes its own member fail and leaves the others.
+        bad = np.argwhere((vectors < lower) | (vectors > upper))
         if bad.size:
             member, k = (int(i) for i in bad[0])
             parameter = self.building.parameter(self.paths[k])
