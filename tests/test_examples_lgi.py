@@ -164,3 +164,16 @@ def test_the_study_chooses_its_film_outside_on_the_identification_period() -> No
         "surfaces.roof.outside.convection.constant",
         "surfaces.roof.outside.convection.wind",
     }
+
+
+def test_tables_5_and_6_of_the_paper_stand_beside_ours_as_a_scale() -> None:
+    from mascarin.study.description import read_study
+
+    file = read_study(STUDIES["lgi"])
+    assert file.reference is not None
+    published = file.reference.sensors
+    assert list(published) == list(file.sensors)
+    assert [p["identification"].sd for p in published.values()] == [0.2, 0.4, 0.4, 0.5, 1.0, 1.3]
+    assert [p["corroboration"].sd for p in published.values()] == [0.2, 0.5, 0.5, 0.5, 1.3, 1.6]
+    assert "virtual experiment" in file.reference.note
+    assert file.observed == "virtual experiment"

@@ -61,6 +61,11 @@ def _names(study: Study) -> None:
                     with blame("criteria", k, key):
                         hint = did_you_mean(name, known)
                         raise InputError(f"found '{name}', expected one of {', '.join(known)}. {hint}")
+    for name in {} if file.reference is None else file.reference.sensors:
+        if name not in file.sensors:
+            with blame("reference", "sensors", name):
+                hint = did_you_mean(name, tuple(file.sensors))
+                raise InputError(f"found '{name}', expected one of {', '.join(file.sensors)}. {hint}")
     if file.sensitivity is not None:
         check_plan(study.building, file.sensitivity, study.places)
     for variant in file.variants:

@@ -223,6 +223,25 @@ class Limit(Criterion, Part):
     """One limit on one metric, for some or all sensors and periods."""
 
 
+class Published(Part):
+    """One sensor and period of a publication."""
+
+    sd: float = Field(ge=0.0, description="Standard deviation of the error [degC]")
+    max_error: float = Field(description="Largest error, with its sign [degC]")
+    max_error_percent: float = Field(description="The same as a share of the measured range [%]")
+    mean_error_percent: float = Field(description="Mean of the magnitudes as a share of the range [%]")
+
+
+class Reference(Part):
+    """What a publication reached: a scale to read the numbers by, shown beside them."""
+
+    label: str = Field(description="What the report calls it")
+    note: str = Field(description="What it was compared with, and what the two can say of each other")
+    sensors: dict[str, dict[Literal["identification", "corroboration", "blind"], Published]] = Field(
+        description="Sensor -> period -> numbers"
+    )
+
+
 class Variant(Part):
     """Another choice of model, compared on the blind days."""
 
@@ -269,6 +288,7 @@ class StudyFile(Part):
     criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit 1 when one is missed")
     sensitivity: SensitivityPlan | None = Field(None, description="Which parameters matter")
     identification: IdentificationPlan = Field(description="Which parameters to identify")
+    reference: Reference | None = Field(None, description="Numbers of a publication, shown as a scale")
     variants: dict[str, Variant] = Field(default_factory=dict, description="Other model choices")
 
     @model_validator(mode="after")

@@ -97,6 +97,7 @@ def header(study: Study, command: str) -> dict[str, Any]:
         "sources": [{"text": text} for text in study.building.sources()],
         "sensor_info": _sensor_info(study),
         "periods": _periods(study),
+        **({} if file.reference is None else {"reference": file.reference.model_dump()}),
         "building": _building(study.building),
         "assumptions": _assumptions(study.building),
         "quality": _quality(study),
