@@ -13,7 +13,7 @@ import pytest
 
 from genopt_support import body
 from mascarin import cli
-from mascarin.calibration import Cost, Evaluator
+from mascarin.calibration import Cost, Evaluator, Rules, solve
 from mascarin.calibration.problem import FitParameter
 from mascarin.coupling.algorithms import ALGORITHMS, Plan
 from mascarin.coupling.algorithms import chosen as chosen_algorithm
@@ -341,6 +341,35 @@ def test_the_project_is_searched_like_the_study_evaluation_by_evaluation(
     inside = search(ini)
     assert [(r.key, r.costs) for r in inside.records] == [(r.key, r.costs) for r in outcome.records]
     assert listed(ini.parent) == rows.rows
+
+
+def test_the_project_is_searched_like_a_calibration(
+    copy: Path, tmp_path: Path, without_processes: list[Path]
+) -> None:
+    # Ranges from 0 to 1 and steps of a power of two are the same numbers for GenOpt, which searches in the
+    # units of the parameters with seven digits, and for a calibration, which searches in shares of the range.
+    emissivity = "surfaces.wall.outside.emissivity"
+    edit(
+        copy / "study.yaml",
+        "building: building.yaml",
+        f"building: building.yaml\nset: {{{emissivity}: 0.75}}",
+    )
+    edit(copy / "study.yaml", "{low: 0.2, high: 0.8}", "{low: 0, high: 1}")
+    edit(
+        copy / "study.yaml", f"{INSULATION}: {{low: 0.02, high: 0.06}}", f"{emissivity}: {{low: 0, high: 1}}"
+    )
+    ini = write_project(str(copy / "study.yaml"), tmp_path / "project", replace(SHORT, starts=1))
+    command = ini.parent / "command.txt"
+    command.write_text(
+        command.read_text(encoding="utf-8").replace("Step = 0.1;", "Step = 0.125;"), encoding="utf-8"
+    )
+    outcome = optimise(ini, RunOptions(workers=1))
+    rules = Rules(sequences=1, agree=1, step=0.125, reductions=3)
+    fit = solve(Study(copy / "study.yaml").problem(), method="pattern_search", cost="sd", rules=rules)
+    assert len(fit.trace.x) == len(without_processes) > 20
+    assert [r.key[1] for r in outcome.records] == [tuple(x) for x in fit.trace.x]
+    assert [r.costs[0] for r in outcome.records if r.costs] == list(fit.trace.cost)
+    assert outcome.values()[ABSORPTANCE] == fit.values[ABSORPTANCE]
 
 
 def test_the_program_itself_gives_the_same_numbers(bench: Path, tmp_path: Path) -> None:
