@@ -1,6 +1,6 @@
 # Mascarin. Two commands set up and go, each making its own environment in .venv:
 #
-#   make demo   build, run a study on measured data, print where the result is
+#   make demo   build, run the study of the LGI cell on shipped data, print where the report is
 #   make test   build, run formatting, lints, types and every test
 #
 # Both need Python 3.11 or later, cargo and make, and nothing else.
@@ -29,11 +29,11 @@ export PYO3_PYTHON := $(CURDIR)/$(PY)
 .DELETE_ON_ERROR:
 
 help:
-	@echo "make demo   build, run a study on measured data, print where the result is"
+	@echo "make demo   build, run the study of the LGI cell on shipped data, print where the report is"
 	@echo "make test   build, run formatting, lints, types and every test"
 
 demo: $(BUILT)
-	$(BIN)/mascarin study wall-bench -o demo
+	$(BIN)/mascarin study lgi -o demo
 
 test: check-rust check-python pytest
 

@@ -76,7 +76,9 @@ class Table(Part):
         "what it is compared with",
     )
     inspect: tuple[str, ...] = Field(
-        (), description="Further columns whose quality is judged, though not used"
+        (),
+        description="Further columns whose quality is judged, though not used; every column of numbers when "
+        "absent",
     )
 
     @property

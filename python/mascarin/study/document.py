@@ -438,7 +438,9 @@ def _hours(study: Study, count: int) -> npt.NDArray[np.float64]:
     """Hour of the day of each analysed time, local."""
     import pandas as pd
 
-    step = pd.Timedelta(seconds=(study.identification[1] - study.identification[0]).total_seconds() / count)
+    step = pd.Timedelta(
+        seconds=(study.identification[1] - study.identification[0]).total_seconds() / max(count - 1, 1)
+    )
     times = pd.date_range(study.identification[0], periods=count, freq=step).tz_localize(None)
     return np.asarray(times.hour + times.minute / 60.0, dtype=np.float64)
 

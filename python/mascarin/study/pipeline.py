@@ -28,7 +28,7 @@ from mascarin.study.fitting import fit_parameters, identify, problem
 from mascarin.study.keeping import Workspace
 from mascarin.study.places import Places
 from mascarin.study.screening import factors, screen
-from mascarin.study.sources import filled, find, open_climate, open_measurements
+from mascarin.study.sources import filled, find, open_climate, open_measurements, require_one_clock
 from mascarin.validation.criteria import Criterion, Verdict, judge
 from mascarin.validation.metrics import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
@@ -155,13 +155,21 @@ class Study:
         as_described = load(described)
         with blame("set"):
             self.building: Building = as_described.replace(self.file.set)
+        require_one_clock(self.file, self.places)
         self.climate: Climate = open_climate(self.file.climate, beside, self.building, self.places)
         read = open_measurements(self.file, beside, self.building, self.places, Places(described))
-        self.quality: list[Stretch] = read.quality()
+        self.quality: list[Stretch] = read.quality() + self._weather_quality()
         self.measurements: Measurements = self._masked(self._filled(read))
         self.criteria: tuple[Criterion, ...] = self.file.criteria
         # Everything that can be refused is refused here, before the first run.
         check(self)
+
+    def _weather_quality(self) -> list[Stretch]:
+        """Suspicious stretches of weather that was measured, unless it stands in the measurements' table."""
+        weather = self.file.climate.measured
+        if weather is None or weather.table == self.file.measurements.table:
+            return []
+        return self.climate.quality()
 
     def _filled(self, read: Measurements) -> Measurements:
         longest = self.file.measurements.fill_gaps

@@ -57,7 +57,10 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
 
 
 def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
-    """All parameters that have a range, with the study's own ranges in place of the building's.
+    """All parameters that act and have a range, with the study's own ranges in place of the building's.
+
+    A number that the description knows to be idle (a wind exponent where no film depends on wind) takes no
+    part: its share is zero, and an estimate could only add noise to that.
 
     Raises
     ------
@@ -69,7 +72,7 @@ def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
     found = []
     for parameter in building.parameters():
         low, high = ranges.get(parameter.path, (parameter.low, parameter.high))
-        if not parameter.structural and parameter.path not in fixed and low < high:
+        if parameter.reason is None and parameter.path not in fixed and low < high:
             found.append(Factor(parameter.path, low, high, parameter.unit))
     if not found:
         raise InputError(

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mascarin.climate import Climate, Measurements
+from mascarin.climate.table import read_table
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -95,6 +99,28 @@ def _measured_climate(table: MeasuredWeather, beside: Path, site: Site, places: 
     return climate if table.fill_gaps is None else climate.fill_gaps(table.fill_gaps)
 
 
+def require_one_clock(study: StudyFile, places: Places) -> None:
+    """Refuse one table that is read as if it had two clocks.
+
+    Raises
+    ------
+    InputError
+        Climate and measurements name the same table with another time zone or other stamps.
+    """
+    weather, measured = study.climate.measured, study.measurements
+    if weather is None or weather.table != measured.table:
+        return
+    for key in ("timezone", "stamps"):
+        mine, theirs = getattr(weather, key), getattr(measured, key)
+        if mine != theirs:
+            with places.blame("measurements", key):
+                raise InputError(
+                    f"found {theirs}, but the climate reads the same table with {key} {mine} "
+                    f"({places.at('climate', 'measured', key)}); expected one clock for one table: write the "
+                    "same in both"
+                )
+
+
 def _column(given: object) -> str | dict[str, object]:
     if isinstance(given, str):
         return given
@@ -137,10 +163,27 @@ def open_measurements(
         asks[name] = f"{line or of_building.path}: measured column"
     for sensor, entry in study.sensors.items():
         asks |= dict.fromkeys(entry.columns, places.at("sensors", sensor, "column"))
+    others = () if table.inspect else _other_columns(path, table, asks)
     try:
-        return Measurements.from_table(path, columns=list(asks), **table.options)
+        return Measurements.from_table(path, columns=[*asks, *others], **table.options)
     except InputError as error:
         raise InputError(f"{_asking(path, table, asks, places)}: {error}") from None
+
+
+def _other_columns(path: Path, table: Table, asks: Mapping[str, str]) -> list[str]:
+    """Columns of numbers that nothing asks for: their quality is judged all the same."""
+    options = {key: value for key, value in table.options.items() if key not in ("stamps", "mean")}
+    try:
+        read = read_table(path, **options)
+    except InputError:
+        # What is wrong is said where the columns that are asked for are read.
+        return []
+    others = []
+    for column in map(str, read.frame.columns):
+        with contextlib.suppress(InputError):
+            if column not in asks and np.isfinite(read.numbers(column, column)).any():
+                others.append(column)
+    return others
 
 
 def _asking(path: Path, table: Table, asks: Mapping[str, str], places: Places) -> str:
