@@ -88,7 +88,12 @@ TRUTH = {
     "surfaces.wall.outside.absorptance": 0.62,
     "surfaces.wall.inside.convection.coefficient": 6.5,
 }
+#: Ranges so wide that the mesh of the wall that makes the table is several times finer than that of a study.
+FINE = {"materials.insulation.conductivity": (0.001, 0.06), "materials.brick.conductivity": (0.01, 1.2)}
 NOISE = 0.03  # K
+ABSENT = (
+    "wind_speed", "wind_direction", "dew_point", "global_horizontal", "diffuse_horizontal", "direct_normal",
+)  # fmt: skip
 
 
 def drivers(days: int = 9) -> pd.DataFrame:
@@ -108,26 +113,24 @@ def drivers(days: int = 9) -> pd.DataFrame:
     return pd.DataFrame({"air": air, "sun": sun, "room": room}, index=index.rename("time"))
 
 
-def logger_table(building: Path, *, noise: float = NOISE) -> pd.DataFrame:
-    """What a logger in the wall would have written; local stamps."""
-    table = drivers()
-    measured = Measurements.from_table(table, timezone="UTC+1")
-    climate = Climate.from_table(
+def open_climate(table: pd.DataFrame) -> Climate:
+    """The weather of the drivers."""
+    return Climate.from_table(
         table,
         timezone="UTC+1",
         columns={"air_temperature": "air"},
-        absent=[
-            "wind_speed",
-            "wind_direction",
-            "dew_point",
-            "global_horizontal",
-            "diffuse_horizontal",
-            "direct_normal",
-        ],
+        absent=ABSENT,
         latitude=45.0,
         longitude=5.0,
         altitude=200.0,
     )
+
+
+def logger_table(building: Path, *, noise: float = NOISE) -> pd.DataFrame:
+    """What a logger in the wall would have written; local stamps."""
+    table = drivers()
+    measured = Measurements.from_table(table, timezone="UTC+1")
+    climate = open_climate(table)
     run = Simulation(
         load(building).replace(TRUTH),
         climate,
@@ -135,6 +138,7 @@ def logger_table(building: Path, *, noise: float = NOISE) -> pd.DataFrame:
         end=table.index[-1],
         outputs=["wall.interface_1_temperature", "core.temperature"],
         measurements=measured,
+        ranges=FINE,
     ).run()
     random = np.random.default_rng(7)
     for k, name in enumerate(("joint", "core")):

@@ -1,0 +1,152 @@
+"""Calibration of a building against a table that it made itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mascarin.calibration import Rules
+from mascarin.calibration.buildings import Sensor, calibrate, fit_parameter
+from mascarin.climate import Climate, Measurements
+from mascarin.errors import InputError
+from mascarin.model import Building, load
+from study_support import BUILDING, FINE, NOISE, TRUTH, logger_table, open_climate
+
+SENSORS = {
+    "joint": Sensor("wall.interface_1_temperature", "joint", 0.06),
+    "core": Sensor("core.temperature", "core", 0.06),
+}
+SPAN: dict[str, Any] = {"start": "2023-03-02", "end": "2023-03-06", "step": "10min", "lead": "1d"}
+
+
+@pytest.fixture(scope="module")
+def building(tmp_path_factory: pytest.TempPathFactory) -> Building:
+    path = tmp_path_factory.mktemp("building") / "building.yaml"
+    path.write_text(BUILDING, encoding="utf-8")
+    return load(path)
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> pd.DataFrame:
+    path = tmp_path_factory.mktemp("table") / "building.yaml"
+    path.write_text(BUILDING, encoding="utf-8")
+    return logger_table(path)
+
+
+@pytest.fixture(scope="module")
+def climate(table: pd.DataFrame) -> Climate:
+    return open_climate(table)
+
+
+@pytest.fixture(scope="module")
+def measured(table: pd.DataFrame) -> Measurements:
+    return Measurements.from_table(table, timezone="UTC+1")
+
+
+def test_the_truth_lies_in_the_interval(building: Building, climate: Climate, measured: Measurements) -> None:
+    # The conductivities go together (correlation 0.97): only on the mesh of the wall that made the table are
+    # they as good as their intervals. A bound that is far away asks for that mesh.
+    free = {path: FINE.get(path, (0.2, 12.0)) for path in TRUTH} | {
+        "surfaces.wall.outside.absorptance": (0.2, 0.8)
+    }
+    fit = calibrate(
+        building, climate, measured, parameters=free, sensors=SENSORS, rules=Rules(starts=1), **SPAN
+    )
+    assert fit.reason == "1 starts searched"
+    for k, parameter in enumerate(fit.problem.parameters):
+        half = (fit.high[k] - fit.low[k]) / 2.0
+        assert abs(fit.x[k] - TRUTH[parameter.path]) < 1.5 * half, parameter.path
+    # What is left is the noise of the logger.
+    assert np.nanstd(fit.residuals, axis=0) == pytest.approx([NOISE, NOISE], rel=0.1)
+    assert fit.residuals.shape == (4 * 144, 2)
+
+
+def test_a_record_is_continued_and_bounds_hold(
+    building: Building, climate: Climate, measured: Measurements, tmp_path: Path
+) -> None:
+    # The true absorptance, 0.62, lies outside: the estimate ends on the bound, and it is said.
+    told: list[int] = []
+    record = tmp_path / "record.jsonl"
+
+    def fit() -> Any:
+        return calibrate(
+            building, climate, measured,
+            parameters={"surfaces.wall.outside.absorptance": (0.3, 0.55)},
+            sensors=SENSORS, rules=Rules(starts=1), record=record,
+            progress=lambda done, lowest: told.append(done), **SPAN | {"step": "1h"},
+        )  # fmt: skip
+
+    first = fit()
+    assert first.x[0] == 0.55
+    assert "surfaces.wall.outside.absorptance" in first.on_bound
+    count, before = len(told), record.read_bytes()
+    again = fit()
+    assert again.x[0] == first.x[0]
+    assert record.read_bytes() == before
+    assert len(told) == count
+
+
+def test_output_and_column_are_enough_for_a_sensor(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
+    fit = calibrate(
+        building, climate, measured,
+        parameters=["surfaces.wall.outside.absorptance"], sensors={"core.temperature": "core"},
+        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+    )  # fmt: skip
+    assert [sensor.name for sensor in fit.problem.sensors] == ["core.temperature"]
+    assert fit.problem.sensors[0].uncertainty == pytest.approx(0.5 / 1.96)
+
+
+def test_bounds_come_from_the_building_where_none_are_given(building: Building) -> None:
+    found = fit_parameter(building, "surfaces.wall.outside.absorptance", (None, 0.7), prior=0.1)
+    assert (found.lower, found.upper) == (0.2, 0.7)
+    assert found.nominal == 0.5
+    assert found.prior == (0.5, 0.1)
+    assert found.unit == "-"
+    # A short way to write a path leads to the parameter itself.
+    short = fit_parameter(building, "constructions.wall.layers.brick.conductivity")
+    assert short.path == "materials.brick.conductivity"
+
+
+def test_several_columns_are_averaged_and_stand_for_each_other(
+    building: Building, climate: Climate, table: pd.DataFrame
+) -> None:
+    more = table.assign(twin=table["core"] + 0.2)
+    more.loc[more.index[144:432], "core"] = np.nan
+    measured = Measurements.from_table(more, timezone="UTC+1")
+    fit = calibrate(
+        building, climate, measured,
+        parameters=["surfaces.wall.outside.absorptance"],
+        sensors={"core": Sensor("core.temperature", ["core", "twin"])},
+        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+    )  # fmt: skip
+    shown = fit.problem.sensors[0].measured
+    want = table["core"].resample("1h").first()["2023-03-02":"2023-03-05"].to_numpy()
+    assert len(shown) == 96
+    np.testing.assert_allclose(shown[:48], want[:48] + 0.2, atol=1e-9)
+    np.testing.assert_allclose(shown[48:], want[48:] + 0.1, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"parameters": ["materials.brick.condctivity"]}, "Did you mean 'materials.brick.conductivity'"),
+        ({"parameters": ["site.latitude"]}, "structural .* cannot be fitted; choose another"),
+        ({"parameters": {"materials.brick.conductivity": (-1.0, 1.0)}}, "reaches beyond what the parameter"),
+        ({"sensors": {"core.temprature": "core"}}, "Did you mean 'core.temperature'"),
+        ({"sensors": {"core.temperature": "cor"}}, "no measured column 'cor'. Did you mean 'core'"),
+        ({"start": "2023-04-02", "end": "2023-04-06"}, "outside the data"),
+        ({"start": "2023-03-06", "end": "2023-03-02"}, "expected the end after the start"),
+    ],
+)
+def test_what_cannot_be_used_is_refused(
+    change: dict[str, Any], says: str, building: Building, climate: Climate, measured: Measurements
+) -> None:
+    given: dict[str, Any] = {"parameters": ["materials.brick.conductivity"], "sensors": SENSORS, **SPAN}
+    with pytest.raises(InputError, match=says):
+        calibrate(building, climate, measured, **(given | change))

@@ -1,0 +1,136 @@
+"""One step of a study on the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from mascarin import cli
+from study_support import BUILDING, STUDY, TRUTH, Bench, logger_table
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
+    folder = tmp_path_factory.mktemp("bench")
+    (folder / "building.yaml").write_text(BUILDING, encoding="utf-8")
+    text = STUDY.replace("step: 30min", "step: 1h").replace("starts: 2", "starts: 1")
+    (folder / "study.yaml").write_text(text, encoding="utf-8")
+    logger_table(folder / "building.yaml").to_csv(folder / "logger.csv")
+    return Bench(folder)
+
+
+def run(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
+    capsys.readouterr()
+    code = cli.main(list(words))
+    printed = capsys.readouterr()
+    return code, printed.out, printed.err
+
+
+def test_sensitivity_ranks_every_parameter(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, printed, _ = run(capsys, "sensitivity", str(bench.study), "-o", str(tmp_path), "--json")
+    assert code == 0
+    content = json.loads(printed)
+    assert content == json.loads((tmp_path / "sensitivity.json").read_text(encoding="utf-8"))
+    joint = content["sensitivity"]["joint"]
+    assert max(joint, key=lambda path: joint[path]["share"]) == "materials.insulation.conductivity"
+    table = pd.read_csv(tmp_path / "tables" / "sensitivity.csv")
+    assert len(table) == 2 * len(joint)
+    assert {path.name for path in (tmp_path / "figures").iterdir()} == {
+        f"{sensor}-{kind}.svg" for sensor in ("joint", "core") for kind in ("spectrum", "tornado")
+    }
+    # Again, from what was kept: the same, as a table.
+    code, printed, _ = run(capsys, "sensitivity", str(bench.study), "-o", str(tmp_path))
+    lines = printed.splitlines()
+    assert lines[0].split() == ["sensor", "parameter", "share", "low", "high"]
+    assert lines[1].split()[:2] == ["joint", "materials.insulation.conductivity"]
+
+
+def test_sensitivity_needs_no_plan_of_its_own(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = bench.folder / "plain.yaml"
+    study.write_text(
+        bench.study.read_text("utf-8").replace("sensitivity: {replicates: 3, interval: 1h}\n", ""), "utf-8"
+    )
+    code, printed, _ = run(capsys, "sensitivity", str(study), "-o", str(tmp_path), "--json")
+    assert code == 0
+    assert ["replicates", "8"] in json.loads(printed)["sensitivity_design"]
+
+
+def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, printed, said = run(capsys, "calibrate", str(bench.study), "-o", str(tmp_path), "--json")
+    assert code == 0
+    content = json.loads(printed)
+    assert content == json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
+    assert set(content["parameters"]) == set(TRUTH)
+    assert content["sensors"]["joint"]["corroboration"]["fitted"]["rmse"] < 0.05
+    assert content["sensors"]["joint"]["corroboration"]["nominal"]["rmse"] > 0.4
+    assert "criteria kept: 6 of 6" in said
+    assert {path.name for path in (tmp_path / "tables").iterdir()} == {
+        "parameters.csv", "calibration_metrics.csv", "calibration_criteria.csv", "quality.csv",
+    }  # fmt: skip
+    record = next((tmp_path / ".work").glob("evaluations-*.jsonl"))
+    before = record.read_bytes()
+    code, _, _ = run(capsys, "study", str(bench.study), "-o", str(tmp_path))
+    assert code == 0
+    assert record.read_bytes() == before
+    study = json.loads((tmp_path / "study.json").read_text(encoding="utf-8"))
+    assert study["parameters"] == content["parameters"]
+    assert study["criteria"] == content["criteria"]
+
+
+def test_validate_compares_the_building_as_described(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = sorted(bench.folder.rglob("*"))
+    code, printed, said = run(capsys, "validate", str(bench.study), "--json")
+    assert code == 1
+    assert sorted(bench.folder.rglob("*")) == before  # nothing is written unasked
+    content = json.loads(printed)
+    assert list(content["models"]) == ["nominal"]
+    assert (
+        content["sensors"]["core"]["blind"]["rmse"] == content["sensors"]["core"]["blind"]["nominal"]["rmse"]
+    )
+    assert "parameters" not in content
+    assert "criteria kept: 0 of 6" in said
+    assert said.count("missed: ") == 6
+    code, printed, _ = run(capsys, "validate", str(bench.study), "-o", str(tmp_path / "out"))
+    assert code == 1
+    assert json.loads((tmp_path / "out" / "validation.json").read_text(encoding="utf-8")) == content
+    assert printed.splitlines()[0].split() == ["sensor", "period", "model", "rmse", "sd", "bias", "max"]
+    metrics = pd.read_csv(tmp_path / "out" / "tables" / "validation_metrics.csv")
+    assert len(metrics) == 6
+    assert set(metrics["model"]) == {"nominal"}
+
+
+def test_validate_ends_with_0_when_every_criterion_is_kept(
+    bench: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = bench.folder / "loose.yaml"
+    study.write_text(bench.study.read_text("utf-8").replace("limit: 0.25", "limit: 5"), "utf-8")
+    code, _, said = run(capsys, "validate", str(study))
+    assert code == 0
+    assert "criteria kept: 6 of 6" in said
+
+
+@pytest.mark.parametrize("command", ["sensitivity", "calibrate", "validate"])
+def test_a_step_refuses_what_a_study_refuses(
+    command: str, bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = bench.folder / "bad.yaml"
+    study.write_text(bench.study.read_text("utf-8").replace("column: joint", "column: jiont"), "utf-8")
+    code, printed, said = run(capsys, command, str(study), "-o", str(tmp_path / "out"))
+    assert (code, printed) == (2, "")
+    assert "bad.yaml:13: sensors.joint.column" in said
+    assert not (tmp_path / "out").exists()
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    code, _, said = run(capsys, command, str(bench.study), "-o", str(tmp_path / "file"))
+    assert code == 2
+    assert "is a file; expected a folder" in said
