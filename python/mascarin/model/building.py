@@ -139,8 +139,8 @@ class Building(Part):
         return find(self, name)
 
     def sources(self) -> list[str]:
-        """Where the numbers and correlations of this building come from, without repetition."""
-        from mascarin.model.checking import sources
+        """Where the numbers that act in this building and the methods of a run come from, once each."""
+        from mascarin.model.sources import sources
 
         return sources(self)
 

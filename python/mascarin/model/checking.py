@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError
-from mascarin.model.convection import SOURCES, Constant
+from mascarin.model.air import SPECIFIC_HEAT, density
+from mascarin.model.convection import Constant
 from mascarin.model.leaves import leaves
 from mascarin.model.material import PhaseChangeMaterial, Resistance, TanhLaw, phase
 from mascarin.model.mesh import Mesh, choose
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
 #: SDIRK2 keeps the maximum principle only for steps below so many times the smallest time constant.
 SDIRK2_BOUND = 2.4
-#: Heat capacity of air at 20 degC and sea level [J/(m3 K)].
-_AIR = 1.204 * 1006.0
+#: Diffusivities of what walls are made of, from dense polymers to copper and silver [m2/s].
+_DIFFUSIVITIES = (1e-8, 2e-4)
 #: Film resistances of ISO 6946:2017, table 7 [m2 K/W]: heat upwards, horizontal, downwards; and outdoors.
 _ISO_UP, _ISO_LEVEL, _ISO_DOWN, _ISO_OUTDOORS = 0.10, 0.13, 0.17, 0.04
 
@@ -68,10 +69,12 @@ def _zones(building: Building) -> Iterator[str]:
         area = sum(surface.area or 0.0 for surface in surfaces)
         shell = [surface for surface in surfaces if not surface.internal_mass]
         total = sum((surface.area or 0.0) * u_value(building, surface) for surface in shell)
-        air = zone.infiltration.constant * (zone.volume or 0.0) * _AIR / 3600.0
+        heavy = density(building.site)
+        air = zone.infiltration.constant * (zone.volume or 0.0) * heavy * SPECIFIC_HEAT / 3600.0
         yield (
             f"zone {name}: {zone.volume:g} m3, {_count(len(surfaces), 'face')} of {area:.2f} m2, "
-            f"UA {total:.2f} W/K, infiltration {air:.2f} W/K, {_exchange(building, name)}"
+            f"UA {total:.2f} W/K by the U values below, "
+            f"infiltration {air:.2f} W/K (air of {heavy:.3f} kg/m3), {_exchange(building, name)}"
         )
 
 
@@ -91,7 +94,7 @@ def _surfaces(building: Building) -> Iterator[str]:
         yield (
             f"surface {name}: {surface.construction}, {surface.area:.2f} m2, tilt {surface.tilt:g}, "
             f"azimuth {surface.azimuth:g}, {_facing(surface.outside)} -> {_facing(surface.inside)}, "
-            f"U {u_value(building, surface):.3f} W/(m2 K)"
+            f"U {u_value(building, surface):.3f} W/(m2 K), {_film_words(building, surface)}"
         )
 
 
@@ -121,7 +124,10 @@ def _melting(building: Building) -> Iterator[str]:
 
 
 def u_value(building: Building, surface: Surface) -> float:
-    """Thermal transmittance between the two sides, with the film resistances of ISO 6946.
+    """Thermal transmittance between the two sides.
+
+    A film is taken as described where it is a constant that stands for all heat exchanged on its side;
+    else, also where it varies or radiation is exchanged apart from it, the film of ISO 6946 is taken.
 
     Parameters
     ----------
@@ -133,11 +139,11 @@ def u_value(building: Building, surface: Surface) -> float:
     Returns
     -------
     float
-        U value; infinite where nothing resists. [W/(m2 K)]
+        U value; infinite where nothing resists, 0 where a side is adiabatic. [W/(m2 K)]
     """
     layers = building.constructions[surface.construction].layers
     resistance = sum(_resistance(building.materials[layer.material], layer.thickness) for layer in layers)
-    resistance += sum(_film(side, surface) for side in surface.sides)
+    resistance += sum(_film(building, side, surface)[0] for side in surface.sides)
     return 1.0 / resistance if resistance > 0.0 else math.inf
 
 
@@ -147,7 +153,38 @@ def _resistance(material: Material, thickness: float | None) -> float:
     return (thickness or 0.0) / phase(material.conductivity, "solid")
 
 
-def _film(side: Side, surface: Surface) -> float:
+_ISO, _DESCRIBED, _NONE, _CLOSED = "ISO 6946", "described", "no", "adiabatic"
+
+
+def _film(building: Building, side: Side, surface: Surface) -> tuple[float, str]:
+    """Resistance of a film [m2 K/W], and where it was taken from."""
+    if side.adiabatic:
+        return math.inf, _CLOSED
+    if side.convection is None:
+        return 0.0, _NONE
+    if isinstance(side.convection, Constant) and _stands_alone(building, side):
+        conductance = side.convection.coefficient * (side.area_factor or 1.0)
+        return (1.0 / conductance if conductance > 0.0 else math.inf), _DESCRIBED
+    return _iso_film(side, surface), _ISO
+
+
+def _stands_alone(building: Building, side: Side) -> bool:
+    """Tell whether no radiation is exchanged beside the film."""
+    if side.zone is not None:
+        return building.zones[side.zone].longwave.kind == "none"
+    return not side.outdoors or (side.longwave is not None and side.longwave.kind == "none")
+
+
+def _film_words(building: Building, surface: Surface) -> str:
+    outside, inside = (_film(building, side, surface)[1] for side in surface.sides)
+    if _CLOSED in (outside, inside):
+        return "adiabatic"
+    if outside == inside:
+        return f"{outside} films"
+    return f"{outside} film outside, {inside} film inside"
+
+
+def _iso_film(side: Side, surface: Surface) -> float:
     if side.convection is None:
         return 0.0
     if side.outdoors:
@@ -212,7 +249,7 @@ def _nominal_film(side: Side, surface: Surface) -> float:
         return math.inf
     if isinstance(side.convection, Constant) and side.convection.coefficient > 0.0:
         return 1.0 / side.convection.coefficient
-    return _film(side, surface)
+    return _iso_film(side, surface)
 
 
 # --- what to watch out for ----------------------------------------------------------------------------------
@@ -231,8 +268,55 @@ def warnings(building: Building, mesh: Mesh, step_seconds: float) -> Iterator[st
             f"a step of {step_seconds:g} s is above {SDIRK2_BOUND} times the smallest time constant of "
             f"{', '.join(quick)}: SDIRK2 may overshoot there after a jump (backward-euler never does)"
         )
+    yield from _odd_materials(building)
     yield from _odd_volumes(building)
+    yield from _odd_faces(building)
     yield from _odd_areas(building)
+
+
+def _odd_materials(building: Building) -> Iterator[str]:
+    """Find properties that do not go together, as when one of them is in another unit."""
+    low, high = _DIFFUSIVITIES
+    for name, material in building.materials.items():
+        if isinstance(material, Resistance):
+            continue
+        for state in ("solid", "liquid") if isinstance(material, PhaseChangeMaterial) else ("solid",):
+            conductivity, weight, heat = (
+                phase(value, state)
+                for value in (material.conductivity, material.density, material.specific_heat)
+            )
+            diffusivity = conductivity / (weight * heat)
+            where = f"materials.{name}" + (f" ({state})" if isinstance(material, PhaseChangeMaterial) else "")
+            if conductivity > 1.0 and weight < 100.0:
+                yield (
+                    f"{where}: nothing of {weight:g} kg/m3 conducts {conductivity:g} W/(m K): "
+                    "write the conductivity in W/(m K), not mW/(m K), and the density in kg/m3"
+                )
+            elif not low <= diffusivity <= high:
+                yield (
+                    f"{where}: a diffusivity of {diffusivity:.2g} m2/s lies outside {low:g} to {high:g}: "
+                    "check the units of conductivity [W/(m K)], density [kg/m3] and specific_heat [J/(kg K)]"
+                )
+
+
+def _odd_faces(building: Building) -> Iterator[str]:
+    """Find zones one face of which is larger than all others together: no closed shape has such a face."""
+    for name in building.zones:
+        areas = {
+            surface: float(building.surfaces[surface].area or 0.0)
+            for surface, _ in faces_of(name, building.surfaces)
+            if not building.surfaces[surface].internal_mass
+        }
+        if not areas:
+            continue
+        largest = max(areas, key=lambda surface: areas[surface])
+        others = sum(areas.values()) - areas[largest]
+        if areas[largest] > others * (1.0 + 1e-6):
+            yield (
+                f"zones.{name}: the faces cannot enclose it, {largest} has {areas[largest]:.2f} m2 and the "
+                f"others together {others:.2f} m2: add the missing faces, correct the area, or split "
+                f"{largest} if it stands for several walls"
+            )
 
 
 def _odd_volumes(building: Building) -> Iterator[str]:
@@ -284,11 +368,3 @@ def assumptions(building: Building) -> Iterator[str]:
     for name in building.zones:
         if "approximated" in _exchange(building, name):
             yield f"zones.{name}: every face sees every other one by its area, except those in one plane"
-
-
-def sources(building: Building) -> list[str]:
-    """Where the numbers and correlations of a building come from; see :meth:`Building.sources`."""
-    found = dict.fromkeys(source for _, number, source in leaves(building) if source and not number.settled)
-    films = (side.convection for surface in building.surfaces.values() for side in surface.sides)
-    kinds: Mapping[str, None] = dict.fromkeys(film.kind for film in films if film is not None)
-    return [*found, *(SOURCES[kind] for kind in kinds if kind in SOURCES)]

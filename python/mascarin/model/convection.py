@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from mascarin.model import quantities as q
-from mascarin.model.number import Number
+from mascarin.model.number import Number, Remark
 from mascarin.model.part import Part, Shorthand
 
-_AS_PUBLISHED = "the correlation as published"
+_AS_PUBLISHED = Remark("the correlation as published")
 
 
 class Constant(Part):
@@ -63,11 +63,11 @@ class Mowitt(Part):
 class PowerLaw(Part):
     """``a + b |dT|^n + c V^m`` for one direction of heat flow."""
 
-    a: q.PowerConstant = Number(0.0, source="not written: no constant part")
-    b: q.PowerBuoyant = Number(0.0, source="not written: no buoyant part")
-    n: q.PowerExponent = Number(1.0 / 3.0, source="turbulent free convection")
-    c: q.PowerForced = Number(0.0, source="not written: no forced part")
-    m: q.PowerWindExponent = Number(0.8, source="turbulent flow along a plate")
+    a: q.PowerConstant = Number(0.0, source=Remark("not written: no constant part"))
+    b: q.PowerBuoyant = Number(0.0, source=Remark("not written: no buoyant part"))
+    n: q.PowerExponent = Number(1.0 / 3.0, source=Remark("turbulent free convection"))
+    c: q.PowerForced = Number(0.0, source=Remark("not written: no forced part"))
+    m: q.PowerWindExponent = Number(0.8, source=Remark("turbulent flow along a plate"))
 
 
 class Power(Part):
@@ -87,7 +87,7 @@ Convection = Annotated[
 #: Where the correlations come from.
 SOURCES = {
     "alamdari_hammond": "Alamdari & Hammond 1983, doi:10.1177/014362448300400304",
-    "paper_eq5": "Guichard et al., empirical validation of a complex roof with PCM, eq. 5 as printed",
+    "paper_eq5": "Guichard et al. 2016, doi:10.3390/en9010009, eq. 5 as printed",
     "tarp": "Walton 1983, Thermal Analysis Research Program Reference Manual, NBSIR 83-2655",
     "mowitt": "Yazdanian & Klems 1994, ASHRAE Transactions 100(1)",
 }

@@ -11,7 +11,7 @@ from pydantic_core import InitErrorDetails
 from mascarin.model import quantities as q
 from mascarin.model.convection import Convection, Mowitt, Tarp
 from mascarin.model.names import ConstructionName, MaterialName, Name, SurfaceName, ZoneName
-from mascarin.model.number import Number, problem
+from mascarin.model.number import Number, Remark, problem
 from mascarin.model.part import Part, Shorthand, fault, insist, refuse
 
 FACINGS = ("outdoors", "zone", "ground", "measured", "adiabatic")
@@ -70,7 +70,7 @@ class Linearised(Part):
     """Exchange linearised about a reference temperature."""
 
     kind: Literal["linearised"]
-    reference: q.ReferenceTemperature = Number(20.0, source="usual room temperature", assumed=True)
+    reference: q.ReferenceTemperature = Number(20.0, source=Remark("usual room temperature"), assumed=True)
 
 
 class NoLongwave(Part):
@@ -101,8 +101,8 @@ class Ground(Part):
     model_config = ConfigDict(json_schema_extra=_or_temperature)
 
     mean: q.GroundTemperature
-    amplitude: q.GroundAmplitude = Number(0.0, source="not written: the same all year")
-    coldest_day: q.ColdestDay = Number(15.0, source="mid-January, for want of better", assumed=True)
+    amplitude: q.GroundAmplitude = Number(0.0, source=Remark("not written: the same all year"))
+    coldest_day: q.ColdestDay = Number(15.0, source=Remark("mid-January, for want of better"), assumed=True)
 
     @model_validator(mode="before")
     @classmethod

@@ -21,7 +21,7 @@ Reasons = Iterator[tuple[str, str]]
 
 
 @dataclass(frozen=True)
-class _Face:
+class Face:
     """One side of a surface and the tilt of its own normal [deg]."""
 
     path: str
@@ -52,10 +52,10 @@ class _Face:
 
 def without_effect(building: Building) -> dict[str, str]:
     """Paths of the numbers that do not act in this building, each with the reason."""
-    faces = [face for name, surface in building.surfaces.items() for face in _faces(name, surface)]
+    every = faces(building)
     found = dict(_unused(building))
-    found.update(_in_site(building, faces))
-    for face in faces:
+    found.update(_in_site(building, every))
+    for face in every:
         found.update(_on_side(face))
     for name, surface in building.surfaces.items():
         found.update(_in_direction(building, name, surface))
@@ -63,10 +63,15 @@ def without_effect(building: Building) -> dict[str, str]:
     return found
 
 
-def _faces(name: str, surface: Surface) -> Iterator[_Face]:
+def faces(building: Building) -> list[Face]:
+    """Both sides of every surface, in the order of the description."""
+    return [face for name, surface in building.surfaces.items() for face in _faces(name, surface)]
+
+
+def _faces(name: str, surface: Surface) -> Iterator[Face]:
     tilt = float(surface.tilt or 0.0)
-    yield _Face(f"surfaces.{name}.outside", surface.outside, tilt)
-    yield _Face(f"surfaces.{name}.inside", surface.inside, 180.0 - tilt)
+    yield Face(f"surfaces.{name}.outside", surface.outside, tilt)
+    yield Face(f"surfaces.{name}.inside", surface.inside, 180.0 - tilt)
 
 
 def _unused(building: Building) -> Reasons:
@@ -80,16 +85,16 @@ def _unused(building: Building) -> Reasons:
             yield from _all_of(f"materials.{name}", material, "no surface contains this material")
 
 
-def _in_site(building: Building, faces: list[_Face]) -> Reasons:
+def _in_site(building: Building, every: list[Face]) -> Reasons:
     site = building.site
-    seeing = [face for face in faces if face.sees_sky]
-    if not any(face.sunlit and face.tilt > 0.0 for face in faces):
+    seeing = [face for face in every if face.sees_sky]
+    if not any(face.sunlit and face.tilt > 0.0 for face in every):
         yield "site.ground_reflectance", "no face takes its irradiance from the climate and sees the ground"
     if not seeing:
         yield from _all_of("site.sky", site.sky, "no face exchanges long-wave with the sky")
     if not seeing or site.sky.kind in ("measured", "offset"):
         yield from _all_of("site.cloud", site.cloud, "no emissivity of the sky is used")
-    if not any(face.windy and face.side.height is not None for face in faces):
+    if not any(face.windy and face.side.height is not None for face in every):
         reason = "no film depends on wind at the height of its face: mast wind is used as it is"
         yield from _all_of("site.wind", site.wind, reason)
     if not building.zones:
@@ -99,7 +104,7 @@ def _in_site(building: Building, faces: list[_Face]) -> Reasons:
         yield "site.altitude", "the density of the air is written"
 
 
-def _on_side(face: _Face) -> Reasons:
+def _on_side(face: Face) -> Reasons:
     side, path = face.side, face.path
     if side.ground is not None and side.ground.amplitude == 0.0:
         yield f"{path}.ground.coldest_day", "the amplitude is 0"
@@ -115,7 +120,7 @@ def _on_side(face: _Face) -> Reasons:
         yield from _in_power(face, side.convection)
 
 
-def _in_power(face: _Face, film: Power) -> Reasons:
+def _in_power(face: Face, film: Power) -> Reasons:
     for direction, law in (("upward", film.upward), ("downward", film.downward)):
         path = f"{face.path}.convection.{direction}"
         # A vertical face always takes the upward law.

@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.model import quantities as q
-from mascarin.model.number import Number, problem
+from mascarin.model.number import Number, Remark, problem
 from mascarin.model.part import Part, fault, insist
 
 
@@ -73,8 +73,8 @@ class PhaseDensities(Phases):
 class PhaseSpecificHeats(Phases):
     """Specific heat of the solid and of the liquid; short form ``[solid, liquid]``."""
 
-    solid: q.SpecificHeat
-    liquid: q.SpecificHeat
+    solid: q.PhaseSpecificHeat
+    liquid: q.PhaseSpecificHeat
 
 
 def _one_or_two(raw: Any) -> str:
@@ -90,7 +90,7 @@ DensityByPhase = Annotated[
     Annotated[q.Density, Tag("both")] | Annotated[PhaseDensities, Tag("phases")], _EITHER
 ]
 SpecificHeatByPhase = Annotated[
-    Annotated[q.SpecificHeat, Tag("both")] | Annotated[PhaseSpecificHeats, Tag("phases")], _EITHER
+    Annotated[q.PhaseSpecificHeat, Tag("both")] | Annotated[PhaseSpecificHeats, Tag("phases")], _EITHER
 ]
 
 
@@ -134,8 +134,8 @@ class TableLaw(Part):
     melting_range: tuple[q.CurveTemperature, q.CurveTemperature] | None = Field(
         None, description="Temperatures at which melting starts and is complete; none: the ends of the table"
     )
-    temperature_shift: q.TemperatureShift = Number(0.0, source="the curve as measured")
-    enthalpy_scale: q.EnthalpyScale = Number(1.0, source="the curve as measured")
+    temperature_shift: q.TemperatureShift = Number(0.0, source=Remark("the curve as measured"))
+    enthalpy_scale: q.EnthalpyScale = Number(1.0, source=Remark("the curve as measured"))
 
     @model_validator(mode="after")
     def _monotone(self) -> TableLaw:

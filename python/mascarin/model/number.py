@@ -23,6 +23,12 @@ if TYPE_CHECKING:
 Interval = tuple[float, float]
 
 
+class Remark(str):
+    """In place of a source: why a number was left as it is, or what it follows from; nothing to cite."""
+
+    __slots__ = ()
+
+
 class Number(float):
     """A float that remembers where it comes from.
 
@@ -282,7 +288,7 @@ class Quantity:
 
     def _bare(self, raw: object) -> Number:
         if isinstance(raw, str) and raw in self.words:
-            return Number(self.words[raw], source=f"'{raw}'")
+            return Number(self.words[raw], source=Remark(f"'{raw}'"))
         if isinstance(raw, bool) or not isinstance(raw, int | float):
             raise problem(shown(raw), self.expectation, self._advice(raw))
         return raw if isinstance(raw, Number) else Number(raw)

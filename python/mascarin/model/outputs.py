@@ -40,6 +40,10 @@ _SIDES = ("outside", "inside")
 class Output:
     """A result of a run.
 
+    The mean radiant temperature of a zone is the mean of the temperatures of its faces, weighted by area:
+    no view factors to a point and no emissivities enter. The operative temperature is the mean of air and
+    mean radiant temperature; the globe temperature is that of a black globe of 0.15 m between the two.
+
     Attributes
     ----------
     name : str

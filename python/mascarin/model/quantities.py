@@ -125,7 +125,12 @@ Conductivity = Annotated[
 Density = Annotated[
     Number, Quantity("kg/m3", "Density", Percent(10, "batch and moisture"), Limits(above=0, at_most=25000))
 ]
+# Lead and gold, the lowest in use, have 130 J/(kg K); a value in kJ/(kg K) lies far below the limit.
 SpecificHeat = Annotated[
+    Number, Quantity("J/(kg K)", "Specific heat", Percent(10, _TABLES), Limits(at_least=100, at_most=20000))
+]
+# A phase may have next to none of its own where the latent heat or the enthalpy table holds it all.
+PhaseSpecificHeat = Annotated[
     Number, Quantity("J/(kg K)", "Specific heat", Percent(10, _TABLES), Limits(above=0, at_most=20000))
 ]
 Resistance = Annotated[

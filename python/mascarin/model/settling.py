@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from mascarin.errors import InputError
 from mascarin.model.convection import AlamdariHammond, Convection, PaperEq5, Tarp
 from mascarin.model.envelope import Side, Surface
-from mascarin.model.number import Number
+from mascarin.model.number import Number, Remark
 from mascarin.model.part import Location, fault, insist, refuse, settled
 from mascarin.model.zone import Zone
 
 if TYPE_CHECKING:
     from mascarin.model.geometry import Polygon
 
-_FROM_VERTICES = "from the vertices"
+_FROM_VERTICES = Remark("from the vertices")
 #: Roughness of plaster, concrete and brick in Walton 1983.
 _USUAL_ROUGHNESS = 1.52
 
@@ -86,7 +86,11 @@ def _settled_surface(surface: Surface, polygon: Polygon | None, area: float | No
             if getattr(surface, key) is None
         }
     elif surface.azimuth is None:
-        shape = {"azimuth": settled(Surface, "azimuth", 0.0, "not written: the direction does not act here")}
+        shape = {
+            "azimuth": settled(
+                Surface, "azimuth", 0.0, Remark("not written: the direction does not act here")
+            )
+        }
     placed = surface.model_copy(update=shape)
     sides = {name: _settled_side(getattr(placed, name), placed, polygon) for name in ("outside", "inside")}
     return placed.model_copy(update=sides)
@@ -97,7 +101,9 @@ def _settled_side(side: Side, surface: Surface, polygon: Polygon | None) -> Side
     if side.convection is not None:
         update["convection"] = _settled_convection(side.convection, side, surface, polygon)
     if polygon is not None and side.outdoors and side.height is None and polygon.centroid[2] > 0.0:
-        update["height"] = settled(Side, "height", float(polygon.centroid[2]), "centroid of the vertices")
+        update["height"] = settled(
+            Side, "height", float(polygon.centroid[2]), Remark("centroid of the vertices")
+        )
     return side.model_copy(update=update)
 
 
@@ -118,11 +124,11 @@ def _length(surface: Surface, polygon: Polygon | None) -> tuple[float, str]:
     """Height of a vertical face, 4 A/P of a horizontal one [m]; both are the edge of a square."""
     area = float(surface.area or 0.0)
     if polygon is None:
-        return math.sqrt(area), "edge of a square of this area"
+        return math.sqrt(area), Remark("edge of a square of this area")
     if surface.tilt is not None and 45.0 < surface.tilt < 135.0:
         heights = polygon.points[:, 2]
-        return float(heights.max() - heights.min()), "height of the vertices"
-    return 4.0 * polygon.area / polygon.perimeter, "4 area/perimeter of the vertices"
+        return float(heights.max() - heights.min()), Remark("height of the vertices")
+    return 4.0 * polygon.area / polygon.perimeter, Remark("4 area/perimeter of the vertices")
 
 
 def _wind_facts(tarp: Tarp, surface: Surface, polygon: Polygon | None) -> dict[str, Number]:
@@ -133,7 +139,7 @@ def _wind_facts(tarp: Tarp, surface: Surface, polygon: Polygon | None) -> dict[s
     if tarp.perimeter is None:
         edge = 4.0 * math.sqrt(surface.area or 0.0)
         facts["perimeter"] = (
-            settled(Tarp, "perimeter", edge, "perimeter of a square of this area")
+            settled(Tarp, "perimeter", edge, Remark("perimeter of a square of this area"))
             if polygon is None
             else settled(Tarp, "perimeter", polygon.perimeter, _FROM_VERTICES)
         )

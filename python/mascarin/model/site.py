@@ -9,12 +9,12 @@ from pydantic import AfterValidator, Field, model_validator
 
 from mascarin.errors import did_you_mean
 from mascarin.model import quantities as q
-from mascarin.model.number import Number, problem
+from mascarin.model.number import Number, Remark, problem
 from mascarin.model.part import Part, Shorthand
 
-_ASHRAE = "ASHRAE Handbook of Fundamentals 2017, ch. 24, table 1"
-_MARTIN = "Martin & Berdahl 1984, doi:10.1016/0038-092X(84)90162-2"
-_CLARK = "Clark & Allen 1978, Proc. 2nd National Passive Solar Conference, Philadelphia"
+ASHRAE_WIND = "ASHRAE Handbook of Fundamentals 2017, ch. 24, table 1"
+MARTIN = "Martin & Berdahl 1984, doi:10.1016/0038-092X(84)90162-2"
+CLARK = "Clark & Allen 1978, Proc. 2nd National Passive Solar Conference, Philadelphia"
 _LI = "Li, Jiang & Coimbra 2017, doi:10.1016/j.solener.2017.01.006"
 
 #: Exponent and thickness [m] of the boundary layer over a kind of terrain.
@@ -28,8 +28,8 @@ class Wind(Part):
         "open", description="Terrain around the building: gives exponent and layer where they are not written"
     )
     mast_height: q.MastHeight = Number(10.0, source="WMO-No. 8: standard height of anemometers")
-    mast_exponent: q.WindExponent = Number(0.14, source=f"{_ASHRAE}: open terrain")
-    mast_layer: q.BoundaryLayer = Number(270.0, source=f"{_ASHRAE}: open terrain")
+    mast_exponent: q.WindExponent = Number(0.14, source=f"{ASHRAE_WIND}: open terrain")
+    mast_layer: q.BoundaryLayer = Number(270.0, source=f"{ASHRAE_WIND}: open terrain")
     exponent: q.WindExponent | None = None
     layer: q.BoundaryLayer | None = None
 
@@ -40,7 +40,7 @@ class Wind(Part):
             return raw
         terrain = raw.get("terrain", "open")
         exponent, layer = (
-            Number(value, source=f"{_ASHRAE}: {terrain}", settled=True) for value in TERRAINS[terrain]
+            Number(value, source=f"{ASHRAE_WIND}: {terrain}", settled=True) for value in TERRAINS[terrain]
         )
         return {"exponent": exponent, "layer": layer} | raw
 
@@ -49,24 +49,24 @@ class MeasuredSky(Part):
     """Horizontal infrared of the climate, times a scale."""
 
     kind: Literal["measured"]
-    scale: q.SkyScale = Number(1.0, source="the measurement as it is")
+    scale: q.SkyScale = Number(1.0, source=Remark("the measurement as it is"))
 
 
 class ClarkAllenSky(Part):
     """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K."""
 
     kind: Literal["clark_allen"]
-    a: q.SkyCoefficient = Number(0.787, source=_CLARK)
-    b: q.SkyCoefficient = Number(0.764, source=_CLARK)
+    a: q.SkyCoefficient = Number(0.787, source=CLARK)
+    b: q.SkyCoefficient = Number(0.764, source=CLARK)
 
 
 class MartinBerdahlSky(Part):
     """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC."""
 
     kind: Literal["martin_berdahl"]
-    a: q.SkyCoefficient = Number(0.711, source=_MARTIN)
-    b: q.SkyCoefficient = Number(0.56, source=_MARTIN)
-    c: q.SkyCoefficient = Number(0.73, source=_MARTIN)
+    a: q.SkyCoefficient = Number(0.711, source=MARTIN)
+    b: q.SkyCoefficient = Number(0.56, source=MARTIN)
+    c: q.SkyCoefficient = Number(0.73, source=MARTIN)
 
 
 class BruntSky(Part):
@@ -96,9 +96,9 @@ Sky = Annotated[
 class Cloud(Part):
     """Factor ``1 + c1 N + c2 N^2 + c3 N^3`` on the clear sky's emissivity, cloud cover N in tenths."""
 
-    c1: q.CloudCoefficient = Number(0.0224, source=_CLARK)
-    c2: q.CloudCoefficient = Number(-0.0035, source=_CLARK)
-    c3: q.CloudCoefficient = Number(0.00028, source=_CLARK)
+    c1: q.CloudCoefficient = Number(0.0224, source=CLARK)
+    c2: q.CloudCoefficient = Number(-0.0035, source=CLARK)
+    c3: q.CloudCoefficient = Number(0.00028, source=CLARK)
 
 
 def _timezone(text: str) -> str:

@@ -8,16 +8,18 @@ from pydantic import Field
 
 from mascarin.model import quantities as q
 from mascarin.model.envelope import Linearised, NoLongwave
-from mascarin.model.number import Number
+from mascarin.model.number import Number, Remark
 from mascarin.model.part import Part, Shorthand
 
 
 class Infiltration(Part):
     """Outdoor air that enters unasked: ``constant + temperature |dT| + wind V`` air changes per hour."""
 
-    constant: q.AirChange = Number(0.0, source="not written: airtight", assumed=True)
-    temperature: q.AirChangePerKelvin = Number(0.0, source="not written: no stack effect", assumed=True)
-    wind: q.AirChangePerSpeed = Number(0.0, source="not written: no effect of wind", assumed=True)
+    constant: q.AirChange = Number(0.0, source=Remark("not written: airtight"), assumed=True)
+    temperature: q.AirChangePerKelvin = Number(
+        0.0, source=Remark("not written: no stack effect"), assumed=True
+    )
+    wind: q.AirChangePerSpeed = Number(0.0, source=Remark("not written: no effect of wind"), assumed=True)
 
 
 class Radiosity(Part):
@@ -35,7 +37,7 @@ class Zone(Part):
     """A volume of well-mixed air."""
 
     volume: q.Volume | None = None
-    capacity_factor: q.CapacityFactor = Number(1.0, source="air alone, no furniture", assumed=True)
+    capacity_factor: q.CapacityFactor = Number(1.0, source=Remark("air alone, no furniture"), assumed=True)
     infiltration: Annotated[Infiltration, Shorthand(number="constant")] = Field(
         default_factory=Infiltration,
         description="Outdoor air that enters unasked: a number, or its three parts",
