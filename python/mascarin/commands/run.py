@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from mascarin.climate import Climate
     from mascarin.model import Building
     from mascarin.results import Results
+    from mascarin.simulation import Simulation
 
 FORMATS = (".nc", ".csv")
 
@@ -75,8 +76,7 @@ def run(
         outputs=_matching(described, outputs),
         scheme=scheme,
     )
-    for note in simulation.notes:
-        print(f"warning: {note}", file=sys.stderr)
+    _tell(described, simulation)
     results = simulation.run()
     if interval is not None:
         results = results.every(interval)
@@ -86,6 +86,19 @@ def run(
         print_json(_summary(results))
     elif out is None:
         _print(results)
+
+
+def _tell(building: Building, simulation: Simulation) -> None:
+    """Warn of what may be wrong, and say how much was assumed."""
+    from mascarin.model import check
+
+    lines = check(building, simulation.step_seconds)
+    for line in lines:
+        if line.startswith("warning: "):
+            print(line, file=sys.stderr)
+    assumed = sum(line.startswith("assumed: ") for line in lines)
+    if assumed:
+        print(f"{assumed} values were assumed: 'mascarin check' lists them", file=sys.stderr)
 
 
 def read_weather(file: Path) -> Climate:
@@ -115,6 +128,13 @@ def _can_be_written(out: Path) -> None:
         raise InputError(f"--out: found '{out}'; expected a file ending in {' or '.join(FORMATS)}")
     if not out.parent.is_dir():
         raise InputError(f"--out: found '{out}'; expected an existing folder; make '{out.parent}' first")
+    attempt = out.with_name(f"{out.name}.part")
+    try:
+        attempt.touch()
+        attempt.unlink()
+    except OSError as error:
+        why = f"cannot be written ({error.strerror})"
+        raise InputError(f"--out: found '{out}', which {why}; choose another folder") from None
 
 
 def _matching(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
