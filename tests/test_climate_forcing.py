@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from mascarin.climate import CHANNELS, STAGES, Climate, Measurements, Place
+from mascarin.climate import CHANNELS, IRRADIANCES, STAGES, TEMPERATURES, Climate, Measurements, Place
 from mascarin.climate.sun import SunPath
 from mascarin.climate.table import epoch_seconds
 from mascarin.errors import InputError
@@ -255,3 +255,18 @@ def test_a_year_takes_less_than_a_second(data_dir: Path) -> None:
     assert step_means(forcing, "sdirk2", BEAM).sum() * 0.25e-3 == pytest.approx(1977.6, abs=0.05)
     assert step_means(forcing, "sdirk2", SKY).sum() * 0.25e-3 == pytest.approx(556.5, abs=0.05)
     assert step_means(forcing, "sdirk2", ALL).sum() * 0.25e-3 == pytest.approx(1670.2, rel=0.005)
+
+
+def test_measured_boundaries_have_the_limits_of_what_they_are_used_for() -> None:
+    weather = climate(sky())
+    index = pd.date_range("2010-09-20", periods=121, freq="1h", tz="Indian/Reunion")
+    kelvin = pd.DataFrame({"slab": 295.15}, index=index)
+    measured = Measurements.from_table(kelvin, timezone="Indian/Reunion")
+    arguments: tuple[str, str, float, str] = ("2010-09-20", "2010-09-21", 900.0, "sdirk2")
+    limits = {"slab": TEMPERATURES, "plane": IRRADIANCES}
+    words = r"table:1: slab is 295.15 at 2010-09-20 00:00.*expected -90 .. 150; convert the column to degC"
+    with pytest.raises(InputError, match=words):
+        weather.forcing(REUNION, *arguments, ["plane", "slab"], measured, limits)
+    # The same numbers are an irradiance that may well be.
+    kept = weather.forcing(REUNION, *arguments, ["slab"], measured, {"slab": IRRADIANCES})
+    assert kept[..., len(CHANNELS)] == pytest.approx(295.15)

@@ -238,3 +238,72 @@ def test_lgi_record_is_read_whole(repository: Path) -> None:
     total = forcing[..., CHANNELS.index("global_horizontal")] @ weights
     assert np.max(np.abs(total - climate.data["global_horizontal"].to_numpy())) < 1e-10
     assert forcing[..., CHANNELS.index("direct_normal")].max() < 1100.0
+
+
+def logger(folder: Path, row: int, name: str, entry: float, **options: Any) -> Climate:
+    """Two days of hours, one entry changed; row 0 stands in line 2."""
+    index = pd.date_range("2024-06-01", periods=48, freq="1h")
+    frame = pd.DataFrame({"T": 20.0, "RH": 60.0, "d": 90.0, "L": 300.0}, index=index)
+    frame.loc[index[row], name] = entry
+    path = folder / "logger.csv"
+    frame.to_csv(path, index_label="time")
+    columns: dict[str, Any] = {
+        "air_temperature": "T",
+        "relative_humidity": "RH",
+        "wind_direction": "d",
+        "infrared": "L",
+    } | options.pop("columns", {})
+    absent = ["wind_speed", "radiation"]
+    return Climate.from_table(path, timezone="UTC", columns=columns, absent=absent, **options)
+
+
+@pytest.mark.parametrize(("name", "channel"), [("T", "air_temperature"), ("L", "infrared")])
+@pytest.mark.parametrize("stamps", ["start", "end"])
+@pytest.mark.parametrize("row", [10, 46])
+def test_lines_are_those_of_the_file_whichever_end_a_stamp_marks(
+    tmp_path: Path, row: int, stamps: str, name: str, channel: str
+) -> None:
+    end = "2024-06-02 23:00" if stamps == "end" else "2024-06-03"
+    start = "2024-05-31 23:00" if stamps == "end" else "2024-06-01"
+    for entry, words in ((np.nan, "has no value"), (2730.0, "is 2730 at")):
+        climate = logger(tmp_path, row, name, entry, stamps=stamps)
+        with pytest.raises(InputError, match=rf"^logger.csv:{row + 2}: {channel} {words}") as caught:
+            climate.forcing(Place(45.0, 0.0), start, end, 3600.0)
+        # A spot value stays at its stamp; a mean moves to the start of its interval.
+        shift = pd.Timedelta(hours=int(stamps == "end" and name == "L"))
+        assert f"{pd.Timestamp('2024-06-01') + pd.Timedelta(hours=row) - shift:%Y-%m-%d %H:%M}" in str(
+            caught.value
+        )
+
+
+@pytest.mark.parametrize("stamps", ["start", "end"])
+def test_line_of_an_impossible_humidity(tmp_path: Path, stamps: str) -> None:
+    with pytest.raises(InputError, match=r"^logger.csv:12: relative humidity 160 %"):
+        logger(tmp_path, 10, "RH", 160.0, stamps=stamps)
+
+
+def test_kelvin_without_a_unit_is_refused_and_with_it_taken(tmp_path: Path) -> None:
+    frame = pd.DataFrame({"T": 283.15}, index=pd.date_range("2024-06-01", periods=48, freq="1h", name="time"))
+    frame.to_csv(tmp_path / "kelvin.csv")
+    absent = ["dew_point", "wind_speed", "wind_direction", "radiation"]
+
+    def read(column: dict[str, object]) -> np.ndarray:
+        climate = Climate.from_table(
+            tmp_path / "kelvin.csv", timezone="UTC", columns={"air_temperature": column}, absent=absent
+        )
+        return np.asarray(climate.forcing(Place(45.0, 0.0), "2024-06-01", "2024-06-02", 3600.0)[..., 0])
+
+    words = (
+        r"^kelvin.csv:2: air_temperature is 283.15 at 2024-06-01 00:00, .* more, expected -90 .. 65 degC; "
+        "if the column is in another unit, write it .unit: K or"
+    )
+    with pytest.raises(InputError, match=words):
+        read({"column": "T"})
+    assert read({"column": "T", "unit": "K"}) == pytest.approx(10.0)
+
+
+def test_a_code_for_variable_wind_is_not_a_direction(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"^logger.csv:12: wind_direction is 990 at"):
+        logger(tmp_path, 10, "d", 990.0).forcing(Place(45.0, 0.0), "2024-06-01", "2024-06-02", 3600.0)
+    west = logger(tmp_path, 10, "d", -90.0)
+    assert west.data["wind_direction"].iloc[10] == 270.0

@@ -172,8 +172,39 @@ def test_missing_values_and_codes_out_of_range() -> None:
     assert [(s.channel, s.kind, s.count) for s in stretches] == [
         ("T0", "missing", 10),
         ("T1", "out_of_range", 3),
+        ("T1", "spike", 3),
     ]
     assert "-999 is outside" in stretches[1].detail
+
+
+@pytest.mark.parametrize("limits", [None, {"T2": (-50.0, 60.0)}, {"T2": (-50.0, 40.0)}])
+def test_a_lone_jump_is_a_spike_even_where_it_is_out_of_range(
+    limits: dict[str, tuple[float, float]] | None,
+) -> None:
+    data = made(900.0, 20.0, 0.1)
+    data.iloc[700, 2] = data["T2"].iloc[700] + 25.0
+    stretches = find(data, limits=limits)
+    assert [(s.start, s.count) for s in of_kind(stretches, "spike")["T2"]] == [(data.index[700], 1)]
+    beyond = limits != {"T2": (-50.0, 60.0)}
+    assert [s.kind for s in stretches] == (["out_of_range"] if beyond else []) + ["spike"]
+    hidden = mask(data, stretches, kinds=["stuck", "spike"])
+    assert hidden.iloc[700, 2]
+    assert hidden.to_numpy().sum() == 1
+
+
+def test_good_values_between_codes_are_no_spikes() -> None:
+    data = made(900.0, 20.0, 0.1)
+    data.iloc[300:330, 1] = -999.0
+    data.iloc[332:360, 1] = -999.0
+    assert [(s.kind, s.count) for s in find(data)] == [("out_of_range", 30), ("out_of_range", 28)]
+
+
+def test_a_spike_beside_a_code_is_found_too() -> None:
+    data = made(900.0, 20.0, 0.1)
+    data.iloc[300, 1] = -999.0
+    data.iloc[301, 1] = data["T1"].iloc[301] + 12.0
+    spikes = of_kind(find(data), "spike")
+    assert [(s.start, s.count) for s in spikes["T1"]] == [(data.index[301], 1)]
 
 
 def test_given_limits_are_used() -> None:

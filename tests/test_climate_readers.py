@@ -117,13 +117,22 @@ def set_field(place: int, text: str) -> Callable[[list[str]], None]:
 
 
 DAMAGES: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
-    "cut inside a line": (lambda x: [*x[:500], x[500][:40]], r"site.epw:501: found \d+ fields, expected 35"),
-    "cut between lines": (lambda x: x[:4000], "site.epw:4000: the file ends after 3992 hours, expected 8760"),
+    "cut inside a line": (
+        lambda x: [*x[:500], x[500][:40]],
+        r"site.epw:501: found \d+ fields, expected 35.*get it whole",
+    ),
+    "cut between lines": (
+        lambda x: x[:4000],
+        "site.epw:4000: the file ends after 3992 hours, expected 8760.*get it whole",
+    ),
     "a word for a number": (
         lambda x: changed(x, 99, set_field(6, "warm")),
-        "site.epw:100: field 7 is 'warm', expected a number",
+        r"site.epw:100: air_temperature \(field 7\) is 'warm', expected a number; correct it, or write 99.9,",
     ),
-    "not a number": (lambda x: changed(x, 99, set_field(13, "nan")), "site.epw:100: field 14 is 'nan'"),
+    "not a number": (
+        lambda x: changed(x, 99, set_field(13, "nan")),
+        r"site.epw:100: global_horizontal \(field 14\) is 'nan', expected a finite number; .* write 9999,",
+    ),
     "a row missing": (
         lambda x: [*x[:99], *x[100:]],
         r"site.epw:100: found 1/4 hour 21, expected 1/4 "
@@ -208,8 +217,54 @@ def test_damaged_tmy3_is_refused(epw_lines: list[str], tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"tmy.csv: found 2998 rows, expected 8760"):
         Climate.from_tmy(path)
     path.write_text("\n".join(changed(lines, 700, set_field(6, "warm"))), encoding="utf-8")
-    with pytest.raises(InputError, match=r"tmy.csv:701: Dry-bulb \(C\) is 'warm', expected a number"):
+    with pytest.raises(
+        InputError, match=r"tmy.csv:701: air_temperature \(Dry-bulb \(C\)\) is 'warm', expected"
+    ):
         Climate.from_tmy(path)
     path.write_text("time;T\n2024-01-01;3\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"tmy\.csv:1: expected the seven fields"):
         Climate.from_tmy(path)
+
+
+def changed_epw(lines: list[str], line: int, place: int, text: str, folder: Path) -> Climate:
+    path = folder / "site.epw"
+    path.write_text("\n".join(changed(lines, line - 1, set_field(place, text))), encoding="utf-8")
+    return Climate.from_epw(path)
+
+
+@pytest.mark.parametrize(("line", "time"), [(100, "2001-01-04 20:00"), (8768, "2001-01-01 00:00")])
+@pytest.mark.parametrize(("place", "channel"), [(6, "air_temperature"), (15, "diffuse_horizontal")])
+def test_a_missing_value_is_named_with_its_own_line(
+    epw_lines: list[str], tmp_path: Path, line: int, time: str, place: int, channel: str
+) -> None:
+    climate = changed_epw(epw_lines, line, place, "99.9" if place == 6 else "9999", tmp_path)
+    assert climate.site is not None
+    with pytest.raises(InputError, match=rf"^site.epw:{line}: {channel} has no value") as caught:
+        climate.forcing(climate.site, "2001-01-01", "2002-01-01", 3600.0)
+    assert place != 6 or time in str(caught.value)
+    assert "or repair the file or fill it (in Python: fill_gaps('2h'))" in str(caught.value)
+
+
+def test_impossible_values_are_refused_where_they_are_used(epw_lines: list[str], tmp_path: Path) -> None:
+    climate = changed_epw(epw_lines, 100, 6, "83.15", tmp_path)
+    assert climate.site is not None
+    words = r"^site.epw:100: air_temperature is 83.15 at 2001-01-04 20:00, expected -90 .. 65 degC; correct"
+    with pytest.raises(InputError, match=words):
+        climate.forcing(climate.site, "2001-01-01", "2001-02-01", 3600.0)
+    assert climate.forcing(climate.site, "2001-02-01", "2001-03-01", 3600.0).shape[0] == 28 * 24
+    assert [stretch.kind for stretch in climate.quality()] == ["out_of_range", "spike"]
+
+
+def test_infrared_of_zero_is_none(epw_lines: list[str], tmp_path: Path) -> None:
+    climate = changed_epw(epw_lines, 100, 12, "0", tmp_path)
+    assert climate.site is not None
+    with pytest.raises(InputError, match=r"^site.epw:100: infrared has no value"):
+        climate.forcing(climate.site, "2001-01-01", "2001-02-01", 3600.0)
+
+
+def test_a_leap_year_without_its_day_names_a_remedy_in_the_file(epw_lines: list[str], tmp_path: Path) -> None:
+    rows = [",".join(["2024", *line.split(",")[1:]]) for line in epw_lines[8:]]
+    path = tmp_path / "site.epw"
+    path.write_text("\n".join([*epw_lines[:8], *rows]), encoding="utf-8")
+    with pytest.raises(InputError, match=r"2024 has a 29 February.*write a year without one, such as 2023"):
+        Climate.from_epw(path)

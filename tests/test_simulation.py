@@ -360,8 +360,9 @@ def test_the_command_lists_what_is_not_reached(
     data_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "everything.yaml"
-    denver = "latitude: 39.83, longitude: -104.65"
-    file.write_text(zones.EVERYTHING.replace("latitude: -35, longitude: 0", denver), encoding="utf-8")
+    island = "latitude: -35, longitude: 0, altitude: 55, timezone: UTC,"
+    denver = "latitude: 39.83, longitude: -104.65, altitude: 1650, timezone: UTC-7,"
+    file.write_text(zones.EVERYTHING.replace(island, denver), encoding="utf-8")
     weather_file = str(data_dir / "bestest" / "725650TYCST.epw")
     assert cli.main(["parameters", str(file), "--reach", "--weather", weather_file, "--json"]) == 0
     out, err = capsys.readouterr()

@@ -7,17 +7,20 @@ and radiation follows the sun inside the interval. What readers convert, derive 
 
 from __future__ import annotations
 
-from .channels import CHANNELS, RADIATION, UNITS
+from .channels import CHANNELS, IRRADIANCES, RADIATION, TEMPERATURES, UNITS
 from .forcing import STAGES, forcing
 from .measurements import Measurements
+from .place import require_place
 from .table import Column
 from .timezones import parse_timezone
 from .weather import Climate, Place, SiteLike, summary
 
 __all__ = [
     "CHANNELS",
+    "IRRADIANCES",
     "RADIATION",
     "STAGES",
+    "TEMPERATURES",
     "UNITS",
     "Climate",
     "Column",
@@ -26,5 +29,6 @@ __all__ = [
     "SiteLike",
     "forcing",
     "parse_timezone",
+    "require_place",
     "summary",
 ]

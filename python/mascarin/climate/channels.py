@@ -69,3 +69,9 @@ SOURCE_CHANNELS: Final[tuple[str, ...]] = CHANNELS[:10]
 
 RADIATION: Final[tuple[str, ...]] = ("direct_normal", "diffuse_horizontal", "global_horizontal")
 """The three short-wave channels."""
+
+TEMPERATURES: Final = (-90.0, 150.0)
+"""Limits of a measured temperature that drives a boundary [degC]."""
+
+IRRADIANCES: Final = (-50.0, 2000.0)
+"""Limits of a measured irradiance on a plane [W/m2]."""

@@ -65,7 +65,8 @@ def check_clock(climate: Climate, latitude: float, longitude: float) -> None:
         "whether "
         "stamps mark the start or the end of their interval, and the sign of the longitude (east is "
         "positive). "
-        "If all of these are right, read the table with check_sun=False."
+        "If all of these are right, the record itself is wrong: repair the file (in Python it can be read "
+        "as it is: from_table(..., check_sun=False))."
     )
 
 

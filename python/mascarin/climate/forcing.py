@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
 
-from .arrays import Array, Flags, Lines
-from .channels import CHANNELS, RADIATION, SOURCE_CHANNELS
+from .arrays import Array, Flags
+from .channels import BY_NAME, CHANNELS, RADIATION, SOURCE_CHANNELS
+from .checks import require_range, require_values
 from .grid import Grid, course
+from .place import require_place
 from .profile import Profile, pieces_for, steady
 from .radiation import from_instants, from_means
 from .sun import SunPath
@@ -42,6 +44,7 @@ def forcing(
     scheme: str = "sdirk2",
     channels: Sequence[str] = (),
     measurements: Measurements | None = None,
+    limits: Mapping[str, tuple[float, float]] | None = None,
 ) -> Array:
     """Channels at the stages of every step of a period.
 
@@ -65,6 +68,9 @@ def forcing(
         Measured columns to append, from the climate's extra columns or the measurements.
     measurements : Measurements, optional
         Where to look for columns that the climate does not hold.
+    limits : mapping of str to (float, float), optional
+        Lowest and highest possible value of measured columns, by what each is used for: `TEMPERATURES` or
+        `IRRADIANCES` [unit of the column].
 
     Returns
     -------
@@ -74,8 +80,10 @@ def forcing(
     Raises
     ------
     InputError
-        The period is outside the data, a value in it is missing, a column is unknown.
+        The climate is of another place, the period is outside the data, a value in it is missing or
+        impossible, a column is unknown.
     """
+    require_place(climate, site)
     nodes, weights = _stages(scheme)
     first = moment(start, climate.grid.zone, "start").timestamp()
     last = moment(end, climate.grid.zone, "end").timestamp()
@@ -83,10 +91,11 @@ def forcing(
     # Times count from the period's start, so that sums over a year lose no digits.
     edges = step_seconds * np.arange(count + 1)
     stage = edges[:-1, None] + step_seconds * np.array(nodes)
-    # One calendar year: perhaps a typical year whose months carry one number.
-    year = climate.grid.interval == 3600.0 and climate.grid.count in (8760, 8784)
-    hint = ", or, if this is a typical year, read it with typical=True" if year else ""
+    hint = " (in Python, a year that stands for any other: typical=True)" if climate.of_year else ""
     climate.grid.require(first, last, climate.file, hint)
+    for name in SOURCE_CHANNELS:
+        if name in climate.data.columns:
+            require_range(climate, name, (BY_NAME[name].low, BY_NAME[name].high), first, last)
     ready = climate.completed(site)
     out = np.empty((count, len(nodes), len(CHANNELS) + len(channels)))
     reach = 5.0 * ready.grid.interval + 3600.0
@@ -98,6 +107,8 @@ def forcing(
     for place, name in enumerate(channels, start=len(CHANNELS)):
         holder = _holder(climate, measurements, name)
         holder.grid.require(first, last, f"{holder.file}: {name}")
+        if limits is not None and name in limits:
+            require_range(holder, name, limits[name], first, last)
         out[..., place] = _column(holder, name, first, edges, stage, weights)
     return out
 
@@ -202,39 +213,9 @@ def window(holder: Climate | Measurements, name: str, first: float, last: float)
     )
     gaps = np.isnan(values)
     if gaps.any():
-        _refuse_gaps(holder, name, kind, start, rows, gaps, first, last)
+        require_values(holder, name, start, rows, gaps, first, last)
         values = _held(values)
     return start, values, kind
-
-
-def _refuse_gaps(
-    holder: Climate | Measurements,
-    name: str,
-    kind: str,
-    start: float,
-    rows: Lines,
-    gaps: Flags,
-    first: float,
-    last: float,
-) -> None:
-    interval = holder.grid.interval
-    times = start + interval * np.arange(len(gaps))
-    reach = interval if kind == "mean" else 0.0
-    # Instants: the two stamps around each end of the span are needed; means: every interval it touches.
-    near = (times + reach > first - (interval - reach) + 1e-6) & (times < last + (interval - reach) - 1e-6)
-    bad = np.flatnonzero(gaps & near)
-    if not len(bad):
-        return
-    more = f" and {len(bad) - 3} more" if len(bad) > 3 else ""
-    shown = ", ".join(f"{stamp:%Y-%m-%d %H:%M}" for stamp in stamps_of(times[bad[:3]], holder.grid.zone))
-    line = int(holder.lines[rows[bad[0]]]) if rows[bad[0]] < len(holder.lines) else 0
-    where = f"{holder.file}:{line}" if line else holder.file
-    raise InputError(
-        f"{where}: {name} has no value (NaN) at "
-        f"{shown}{more}, "
-        "expected a number at every time of the period; choose a period without gaps, repair the file, "
-        "or fill short gaps (fill_gaps: 2h in a study, fill_gaps('2h') in Python)."
-    )
 
 
 def _held(values: Array) -> Array:

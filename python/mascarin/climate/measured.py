@@ -11,8 +11,9 @@ import numpy as np
 from mascarin.errors import InputError, did_you_mean
 
 from . import derive
-from .arrays import Array
+from .arrays import Array, Lines
 from .channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS, Kind
+from .checks import line_of
 from .grid import Grid, frame_of
 from .table import Column, Table, epoch_seconds
 from .weather import NEUTRAL, Climate
@@ -145,7 +146,9 @@ def _values(chosen: Mapping[str, Column], table: Table) -> tuple[dict[str, Array
         if note:
             notes.append(f"{table.where}: {note}")
         if name == "wind_direction":
-            values[name] = values[name] % 360.0
+            # Within a turn of the compass; a code such as 990 stays what it is and is refused when needed.
+            turn = values[name]
+            values[name] = np.where((turn >= -360.0) & (turn <= 720.0), turn % 360.0, turn)
     return values, notes
 
 
@@ -156,6 +159,7 @@ def _on_grid(
     return Climate(
         data=frame_of(columns, grid), kinds=kinds, grid=grid, closing=closing, site=None, file=table.where,
         sha256=table.sha256, provenance=(*table.notes, note, *notes), lines=table.lines,
+        knots=knot_lines(table.lines, stamps),
     )  # fmt: skip
 
 
@@ -214,6 +218,24 @@ def to_starts(
     return columns, closing, grid, note
 
 
+def knot_lines(lines: Lines, stamps: str) -> Lines:
+    """Line of the instants at the start of each interval and at the end of the last.
+
+    Parameters
+    ----------
+    lines : ndarray, shape (n,)
+        Line of each row of the table.
+    stamps : str
+        `start` or `end`; with the latter the instants moved on by one interval.
+
+    Returns
+    -------
+    ndarray, shape (n + 1,)
+        Lines.
+    """
+    return np.concatenate([lines[:1], lines] if stamps == "end" else [lines, lines[-1:]])
+
+
 def _with_neutral(climate: Climate, stated: Mapping[str, float]) -> Climate:
     data, kinds, closing = climate.data.copy(), dict(climate.kinds), dict(climate.closing)
     notes = list(climate.provenance)
@@ -238,15 +260,16 @@ def _with_humidity(climate: Climate) -> Climate:
         return climate
     data, kinds, closing = climate.data.copy(), dict(climate.kinds), dict(climate.closing)
     humidity = data.pop("relative_humidity").to_numpy(dtype=np.float64)
-    kind = kinds.pop("relative_humidity")
     air = data["air_temperature"].to_numpy(dtype=np.float64)
     bad = np.flatnonzero((humidity < 0.0) | (humidity > 110.0))
     if len(bad):
+        line = line_of(climate, "relative_humidity", int(bad[0]))
         raise InputError(
-            f"{climate.file}:{climate.lines[bad[0]]}: relative humidity {humidity[bad[0]]:g} %, "
+            f"{climate.file}:{line}: relative humidity {humidity[bad[0]]:g} %, "
             "expected 0 .. 100; "
             "a column between 0 and 1 has unit: '1'."
         )
+    kind = kinds.pop("relative_humidity")
     data["dew_point"] = derive.dew_point(air, humidity)
     kinds["dew_point"] = kind
     if "relative_humidity" in closing:

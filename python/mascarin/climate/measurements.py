@@ -46,6 +46,9 @@ class Measurements:
         What was read and converted, as sentences.
     lines : ndarray
         Line of each row in the file; 0 where the row was missing.
+    knots : ndarray, optional
+        Line of the instants at the start of each interval and at the end of the last; without it that of
+        the row, shape (n + 1,).
     """
 
     data: pd.DataFrame
@@ -56,6 +59,12 @@ class Measurements:
     sha256: str | None
     provenance: tuple[str, ...]
     lines: Lines
+    knots: Lines | None = None
+
+    @property
+    def of_year(self) -> bool:
+        """Never a weather file of a year; a climate may be one."""
+        return False
 
     @classmethod
     def from_table(
@@ -101,7 +110,7 @@ class Measurements:
         InputError
             A column or the time zone is missing, an entry or a time cannot be used.
         """
-        from .measured import to_starts
+        from .measured import knot_lines, to_starts
 
         table = read_table(
             source, timezone=timezone, time=time, time_format=time_format, separator=separator,
@@ -125,7 +134,10 @@ class Measurements:
             notes.append(column.sentence(name, ""))
         data, closing, grid, note = to_starts(table, values, kinds, stamps)
         said = (*table.notes, note, *(f"{table.where}: {text}" for text in notes if text))
-        return cls(frame_of(data, grid), kinds, grid, closing, table.where, table.sha256, said, table.lines)
+        return cls(
+            frame_of(data, grid), kinds, grid, closing, table.where, table.sha256, said, table.lines,
+            knot_lines(table.lines, stamps),
+        )  # fmt: skip
 
     @property
     def index(self) -> pd.DatetimeIndex:

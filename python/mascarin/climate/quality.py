@@ -108,7 +108,7 @@ def find(
         for _, first, last, _ in outside:
             kept[first:last] = np.nan
         stuck[name] = _stuck(kept, interval, (limits or {}).get(name, ()))
-        found[name] += _spikes(_unwound(kept), kept)
+        found[name] += _spikes(_unwound(kept), values)
     for name, stretches in _repeated(columns, stuck).items():
         found[name] += stretches
     return [
@@ -196,35 +196,52 @@ def _usual_range(values: Array) -> tuple[float, float]:
 # ---------------------------------------------------------------------- spikes
 
 
-def _spikes(values: Array, shown: Array) -> list[tuple[Defect, int, int, str]]:
-    """Excursions of at most three rows that come back to where they started; values as they are shown."""
-    there = np.flatnonzero(~np.isnan(values))
-    series = values[there]
-    if len(series) < 20:
-        return []
-    steps = np.abs(np.diff(series))
-    steps = steps[steps > 0.0]
-    if len(steps) < 10:
-        return []
-    low, high = np.quantile(series, [0.01, 0.99])
-    least = max(_SPIKE * float(np.quantile(steps, 0.99)), _SPIKE_RANGE * float(high - low))
-    taken = np.zeros(len(series), dtype=bool)
-    for width in range(1, _SPIKE_WIDTH + 1):
-        before, after = series[: -width - 1], series[width + 1 :]
-        inner = np.stack([series[1 + k : len(series) - width + k] for k in range(width)])
-        base = np.maximum(before, after), np.minimum(before, after)
-        above = np.min(inner, axis=0) - base[0] > least
-        below = base[1] - np.max(inner, axis=0) > least
-        back = np.abs(after - before) < 0.5 * least
-        for place in np.flatnonzero((above | below) & back):
-            taken[place + 1 : place + 1 + width] = True
+def _spikes(kept: Array, shown: Array) -> list[tuple[Defect, int, int, str]]:
+    """Excursions of at most three rows that come back to where they started.
+
+    What is an excursion is learnt from the values that are possible (`kept`, NaN elsewhere). An excursion may
+    itself be impossible: it is then a spike as well as out of range. Values are told as they are `shown`.
+    """
+    least = _least_spike(kept[~np.isnan(kept)])
+    possible = ~np.isnan(kept)
+    every = np.where(possible, kept, shown)
+    flags = np.zeros(len(kept), dtype=bool)
+    # Without the impossible values, so that a spike beside one is seen; then with them.
+    for values in (kept, every):
+        there = np.flatnonzero(~np.isnan(values))
+        flags[there[_excursions(values[there], possible[there], least)]] = True
+    there = np.flatnonzero(~np.isnan(every))
     found: list[tuple[Defect, int, int, str]] = []
-    for first, last in runs(taken):
-        row = there[first + int(np.argmax(np.abs(series[first:last] - series[first - 1])))]
-        after = there[min(last, len(series) - 1)]
+    for first, last in runs(flags[there]):
+        row = there[first + int(np.argmax(np.abs(every[there[first:last]] - every[there[first - 1]])))]
+        after = there[min(last, len(there) - 1)]
         text = f"{shown[row]:g} between {shown[there[first - 1]]:g} and {shown[after]:g}"
         found.append(("spike", int(there[first]), int(there[last - 1]) + 1, text))
     return found
+
+
+def _least_spike(series: Array) -> float:
+    """Height from which on an excursion is a spike; infinite where too little is known of the column."""
+    steps = np.abs(np.diff(series))
+    steps = steps[steps > 0.0]
+    if len(series) < 20 or len(steps) < 10:
+        return np.inf
+    low, high = np.quantile(series, [0.01, 0.99])
+    return max(_SPIKE * float(np.quantile(steps, 0.99)), _SPIKE_RANGE * float(high - low))
+
+
+def _excursions(series: Array, possible: Flags, least: float) -> Lines:
+    """Rows of excursions; what comes before and after one must be possible."""
+    taken = np.zeros(len(series), dtype=bool)
+    for width in range(1, min(_SPIKE_WIDTH, len(series) - 2) + 1):
+        before, after = series[: -width - 1], series[width + 1 :]
+        inner = np.stack([series[1 + k : len(series) - width + k] for k in range(width)])
+        above = np.min(inner, axis=0) - np.maximum(before, after) > least
+        below = np.minimum(before, after) - np.max(inner, axis=0) > least
+        back = (np.abs(after - before) < 0.5 * least) & possible[: -width - 1] & possible[width + 1 :]
+        for place in np.flatnonzero((above | below) & back):
+            taken[place + 1 : place + 1 + width] = True
+    return np.flatnonzero(taken)
 
 
 def _unwound(values: Array) -> Array:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date, tzinfo
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -16,10 +16,6 @@ from mascarin.errors import InputError
 from .arrays import Array, Lines
 from .table import file_hash
 from .timezones import fixed_zone, zone_name
-
-if TYPE_CHECKING:
-    pass
-
 
 _HEADER = 8
 _FIELDS = 35
@@ -52,6 +48,12 @@ _TMY: Final = (
     ("cloud_cover", "OpqCld (tenths)", "OpqCld (tenths)", 1.0),
 )
 _MEANS: Final = frozenset({"global_horizontal", "direct_normal", "diffuse_horizontal"})
+
+_WHOLE: Final = (
+    "get it whole from its source; a shorter record can be used as a measured table (measured in a study, "
+    "Climate.from_table in Python)"
+)
+_NO_VALUE_TMY: Final = -9900.0
 
 _STAMPS_NOTE: Final = (
     "{where}: stamps are hour-ending. Radiation stamped h is the mean of the hour before and was put at "
@@ -116,7 +118,9 @@ def read_epw(path: Path) -> Year:
     values = {}
     for channel, column, _, factor, limit in _EPW:
         raw = frame[column].to_numpy(dtype=np.float64)
-        values[channel] = np.where(raw >= limit, np.nan, raw * factor)
+        # Many files write 0 where no infrared was known.
+        unknown = (raw >= limit) | ((raw <= 0.0) & (channel == "infrared"))
+        values[channel] = np.where(unknown, np.nan, raw * factor)
     name = ", ".join(str(meta[key]) for key in ("city", "country") if meta.get(key))
     place = (float(meta["latitude"]), float(meta["longitude"]), float(meta["altitude"]), name)
     zone = fixed_zone(float(meta["TZ"]))
@@ -151,7 +155,7 @@ def read_tmy3(path: Path) -> Year:
         ) from error
     if len(frame) not in (_HOURS, _HOURS + 24):
         raise InputError(
-            f"{where}: found {len(frame)} rows, expected 8760 hours; the file is cut or holds gaps."
+            f"{where}: found {len(frame)} rows, expected 8760 hours; the file is cut or holds gaps: {_WHOLE}."
         )
     values = {}
     for channel, column, _, factor in _TMY:
@@ -194,16 +198,16 @@ def _check_tmy(lines: list[str], where: str) -> None:
         raise InputError(
             f"{where}:2: no column {missing[0]!r}, which TMY3 has; found {', '.join(names[:8])}, ..."
         )
-    places = [(name, names.index(name)) for _, _, name, _ in _TMY]
+    places = [(f"{channel} ({name})", names.index(name)) for channel, _, name, _ in _TMY]
     for line, row in enumerate(lines[2:], start=3):
         fields = row.split(",")
         if len(fields) < len(names):
             raise InputError(
                 f"{where}:{line}: found {len(fields)} fields, expected {len(names)}; the file is cut or "
-                "damaged here."
+                f"damaged here: {_WHOLE}."
             )
         for name, place in places:
-            _check_number(fields[place], name, where, line)
+            _check_number(fields[place], name, where, line, _NO_VALUE_TMY)
 
 
 def _check_epw(lines: list[str], where: str) -> list[int]:
@@ -217,7 +221,6 @@ def _check_epw(lines: list[str], where: str) -> list[int]:
     rows = lines[_HEADER:]
     while rows and not rows[-1].strip():
         rows.pop()
-    numbers = [field for _, _, field, _, _ in _EPW]
     years = []
     previous: tuple[int, int, int] | None = None
     for count, row in enumerate(rows):
@@ -226,17 +229,17 @@ def _check_epw(lines: list[str], where: str) -> list[int]:
         if len(fields) < _FIELDS - 3:
             raise InputError(
                 f"{where}:{line}: found {len(fields)} fields, expected {_FIELDS}; the file is cut or "
-                "damaged here."
+                f"damaged here: {_WHOLE}."
             )
         stamp = _integers(fields, where, line)
-        for field in numbers:
-            _check_number(fields[field], f"field {field + 1}", where, line)
+        for channel, _, field, _, code in _EPW:
+            _check_number(fields[field], f"{channel} (field {field + 1})", where, line, code)
         years.append(stamp[0])
         previous = _check_order(previous, stamp, where, line)
     if len(rows) not in (_HOURS, _HOURS + 24):
         raise InputError(
             f"{where}:{_HEADER + len(rows)}: the file ends after {len(rows)} hours, expected 8760 "
-            "(or 8784 in a leap year); it is cut or holds gaps."
+            f"(or 8784 in a leap year); it is cut or holds gaps: {_WHOLE}."
         )
     return years
 
@@ -278,13 +281,17 @@ def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, 
     return year, month, day, hour
 
 
-def _check_number(text: str, field: str, where: str, line: int) -> None:
+def _check_number(text: str, what: str, where: str, line: int, code: float) -> None:
+    """Refuse an entry that is no number; `code` is how the format says that there is none."""
     try:
-        value = float(text)
-    except ValueError as error:
-        raise InputError(f"{where}:{line}: {field} is {text!r}, expected a number.") from error
-    if not np.isfinite(value):
-        raise InputError(f"{where}:{line}: {field} is {text!r}, expected a finite number.")
+        finite, wanted = bool(np.isfinite(float(text))), "a finite number"
+    except ValueError:
+        finite, wanted = False, "a number"
+    if not finite:
+        raise InputError(
+            f"{where}:{line}: {what} is {text.strip()!r}, expected {wanted}; correct it, or "
+            f"write {code:.15g}, which stands for no value, and choose a period without this hour."
+        )
 
 
 def _check_order(

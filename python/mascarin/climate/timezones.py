@@ -124,7 +124,7 @@ def localise(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeI
 def _clock_text(stamps: pd.DatetimeIndex, zone: tzinfo, where: str, verb: str, when: str) -> str:
     shown = ", ".join(f"{stamp:%Y-%m-%d %H:%M}" for stamp in stamps[:3])
     more = f" and {len(stamps) - 3} more, up to {stamps[-1]:%Y-%m-%d %H:%M}" if len(stamps) > 3 else ""
-    winter = _standard_offset(zone, stamps[0].year)
+    winter = standard_offset(zone, stamps[0].year)
     return (
         f"{where}: {zone_name(zone)} {verb} the local stamps {shown}{more} ({when}), so the time of "
         "these rows is "
@@ -134,7 +134,16 @@ def _clock_text(stamps: pd.DatetimeIndex, zone: tzinfo, where: str, verb: str, w
     )
 
 
-def _standard_offset(zone: tzinfo, year: int) -> timedelta:
+def standard_offset(zone: tzinfo, year: int) -> timedelta:
+    """Offset of winter time.
+
+    Parameters
+    ----------
+    zone : datetime.tzinfo
+        The zone.
+    year : int
+        Calendar year; zones change.
+    """
     offsets = [datetime(year, month, 1, tzinfo=zone).utcoffset() or timedelta() for month in (1, 7)]
     return min(offsets)
 

@@ -107,6 +107,13 @@ class Climate:
         Line of each row in the file; 0 where the row was missing.
     check_sun : bool
         Refuse radiation that does not follow the sun.
+    knots : ndarray, optional
+        Line of the instants at the start of each interval and at the end of the last; without it that of
+        the row, shape (n + 1,).
+    of_year : bool
+        Read from a weather file of a year, whose clock is that of its place.
+    elsewhere : bool
+        May be used for a building at another place than where it was measured.
     """
 
     data: pd.DataFrame
@@ -119,12 +126,22 @@ class Climate:
     provenance: tuple[str, ...]
     lines: Lines
     check_sun: bool = True
+    knots: Lines | None = None
+    of_year: bool = False
+    elsewhere: bool = False
     _ready: dict[tuple[float, float], Climate] = field(default_factory=dict, repr=False)
 
     # ------------------------------------------------------------------ readers
 
     @classmethod
-    def from_epw(cls, path: str | Path, *, typical: bool | None = None, year: int | None = None) -> Climate:
+    def from_epw(
+        cls,
+        path: str | Path,
+        *,
+        typical: bool | None = None,
+        year: int | None = None,
+        elsewhere: bool = False,
+    ) -> Climate:
         """Read an EnergyPlus weather file.
 
         Parameters
@@ -136,6 +153,8 @@ class Climate:
             says. Default: True where the file's months come from different years.
         year : int, optional
             Year to label a typical file with; default 2001.
+        elsewhere : bool
+            The weather may be used for a building at another place, which is otherwise refused.
 
         Returns
         -------
@@ -150,10 +169,17 @@ class Climate:
         from .readers import read_epw
         from .yearly import climate_of
 
-        return climate_of(read_epw(Path(path)), typical, year)
+        return replace(climate_of(read_epw(Path(path)), typical, year), elsewhere=elsewhere, _ready={})
 
     @classmethod
-    def from_tmy(cls, path: str | Path, *, typical: bool | None = None, year: int | None = None) -> Climate:
+    def from_tmy(
+        cls,
+        path: str | Path,
+        *,
+        typical: bool | None = None,
+        year: int | None = None,
+        elsewhere: bool = False,
+    ) -> Climate:
         """Read a TMY3 CSV file.
 
         Parameters, result and errors are those of `from_epw`. TMY3 gives no infrared: that channel is NaN.
@@ -161,7 +187,7 @@ class Climate:
         from .readers import read_tmy3
         from .yearly import climate_of
 
-        return climate_of(read_tmy3(Path(path)), typical, year)
+        return replace(climate_of(read_tmy3(Path(path)), typical, year), elsewhere=elsewhere, _ready={})
 
     @classmethod
     def from_table(
@@ -334,11 +360,12 @@ class Climate:
         scheme: str = "sdirk2",
         channels: Sequence[str] = (),
         measurements: Measurements | None = None,
+        limits: Mapping[str, tuple[float, float]] | None = None,
     ) -> Array:
         """The engine's forcing; see `forcing.forcing`."""
         from .forcing import forcing
 
-        return forcing(self, site, start, end, step_seconds, scheme, channels, measurements)
+        return forcing(self, site, start, end, step_seconds, scheme, channels, measurements, limits)
 
 
 def summary(climate: Climate) -> dict[str, Any]:

@@ -71,7 +71,9 @@ def _check_length(count: int, year: int, where: str) -> None:
         raise InputError(f"{where}: found {count} hours for the year {year}, expected {days * 24}.")
     if count != days * 24:
         raise InputError(
-            f"{where}: the year {year} has a 29 February and the file has none; read it with typical=True."
+            f"{where}: the year {year} has a 29 February and the file has none; add that day, or write "
+            "a year without one, such as 2023, in every row (in Python: typical=True, if the year "
+            "stands for any)."
         )
 
 
@@ -97,4 +99,5 @@ def _of_year(
     return Climate(
         data=frame_of(columns, grid), kinds=kinds, grid=grid, closing=closing, site=Place(*read.place),
         file=read.where, sha256=read.sha256, provenance=tuple(notes), lines=lines,
+        knots=np.concatenate([lines[-1:] if grid.periodic else lines[:1], lines]), of_year=True,
     )  # fmt: skip
