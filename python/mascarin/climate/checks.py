@@ -161,7 +161,7 @@ def _correction(holder: Climate | Measurements, unit: str) -> str:
         return "correct the file, whose format knows no other unit, or choose a period without such values"
     if not unit:
         return (
-            "convert the column to degC or W/m2 in the file (in Python: the column's unit, such as unit='K'), "
+            "convert the column to degC or W/m2 in the file (in Python: the column's unit, unit='K'), "
             "or correct it there"
         )
     slip = _UNIT_SLIPS.get(unit)
