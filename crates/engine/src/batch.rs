@@ -6,14 +6,13 @@ use core::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
+use crate::dispatch::{Packed, WIDTH, run};
+use crate::drive::Weather;
 use crate::error::EngineError;
 use crate::forcing::Forcing;
-use crate::march::{Options, Watch, march};
+use crate::march::{Options, Watch, check, march_in};
 use crate::plan::Plan;
-use crate::real::{Lanes, Real};
-
-/// Members in one pack.
-const WIDTH: usize = 8;
+use crate::real::Real;
 
 /// What an ensemble leaves behind, by member.
 #[derive(Debug)]
@@ -38,9 +37,11 @@ pub fn ensemble(
     watch: &Watch,
 ) -> Result<Ensemble, EngineError> {
     let width = plan.description.parameters.len();
-    if width == 0 || numbers.len() % width != 0 {
+    if width == 0 || !numbers.len().is_multiple_of(width) {
         return Err(EngineError::Input(format!("member rows must hold {width} parameters")));
     }
+    check(plan, width, forcing, options)?;
+    let weather = Weather::new(plan, forcing);
     let members = numbers.len() / width;
     let row = options.rows(forcing.steps()) * options.probes.len();
     let mut result = Ensemble {
@@ -55,7 +56,7 @@ pub fn ensemble(
             let first = pack * WIDTH;
             let members = &numbers[first * width..(first + closure.len()) * width];
             let mut target = Target { records, closure, row };
-            let failed = run_pack(plan, members, forcing, options, watch, &mut target)?;
+            let failed = run_pack(plan, members, &weather, options, watch, &mut target)?;
             Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
         })
         .collect();
@@ -70,36 +71,56 @@ struct Target<'a> {
     row: usize,
 }
 
+/// A pack on its way into lanes.
+struct Pack<'a> {
+    plan: &'a Plan,
+    numbers: &'a [f64],
+    members: usize,
+    weather: &'a Weather<'a>,
+    options: &'a Options,
+    watch: &'a Watch,
+}
+
+impl Packed for Pack<'_> {
+    /// Records and closure of each member.
+    type Output = Result<Vec<(Vec<f64>, f64)>, EngineError>;
+
+    fn run<S: Real>(self, pack: fn([f64; WIDTH]) -> S) -> Self::Output {
+        let width = self.plan.description.parameters.len();
+        let lanes: Vec<S> = (0..width)
+            // A short pack repeats its last member.
+            .map(|p| pack(core::array::from_fn(|lane| self.numbers[lane.min(self.members - 1) * width + p])))
+            .collect();
+        let run = march_in(self.plan, &lanes, self.weather, self.options, self.watch)?;
+        let closure = run.ledger.closure();
+        let of = |member| (run.records.iter().map(|r| r.lane(member)).collect(), closure.lane(member));
+        Ok((0..self.members).map(of).collect())
+    }
+}
+
 /// Runs a pack in lanes; when a lane fails, its members one by one.
 fn run_pack(
     plan: &Plan,
     numbers: &[f64],
-    forcing: &Forcing<'_>,
+    weather: &Weather<'_>,
     options: &Options,
     watch: &Watch,
     target: &mut Target<'_>,
 ) -> Result<Vec<(usize, EngineError)>, EngineError> {
     let width = plan.description.parameters.len();
     let members = target.closure.len();
-    let lanes: Vec<Lanes<WIDTH>> = (0..width)
-        // A short pack repeats its last member.
-        .map(|p| Lanes(core::array::from_fn(|lane| numbers[lane.min(members - 1) * width + p])))
-        .collect();
     let mut failures = Vec::new();
-    match march(plan, &lanes, forcing, options, watch) {
-        Ok(run) => {
-            for member in 0..members {
-                let into = &mut target.records[member * target.row..(member + 1) * target.row];
-                for (value, record) in into.iter_mut().zip(&run.records) {
-                    *value = record.lane(member);
-                }
-                target.closure[member] = run.ledger.closure().lane(member);
+    match run(Pack { plan, numbers, members, weather, options, watch }) {
+        Ok(results) => {
+            for (member, (records, closure)) in results.into_iter().enumerate() {
+                target.records[member * target.row..(member + 1) * target.row].copy_from_slice(&records);
+                target.closure[member] = closure;
             }
         }
         Err(EngineError::NotConverged { .. } | EngineError::NotSettled { .. }) => {
             for member in 0..members {
                 let numbers = &numbers[member * width..(member + 1) * width];
-                match march(plan, numbers, forcing, options, watch) {
+                match march_in(plan, numbers, weather, options, watch) {
                     Ok(run) => {
                         target.records[member * target.row..(member + 1) * target.row]
                             .copy_from_slice(&run.records);

@@ -1,6 +1,6 @@
 //! A plan with the numbers of one run (or of a pack of members in lanes).
 
-use crate::convection::Film;
+use crate::convection::{Exposure, Film};
 use crate::description::{Facing, Infiltration, Material, OutdoorLongwave, ParamId, Side, ZoneLongwave};
 use crate::forcing::CLIMATE_CHANNELS;
 use crate::parameters::Values;
@@ -92,8 +92,8 @@ pub struct Outdoors<S> {
     pub plane: Plane<S>,
     /// Unit azimuth vector (north, east) of the normal, for the wind.
     pub heading: [S; 2],
-    /// Wind at the face over wind at the mast [-].
-    pub wind_factor: S,
+    /// Weight of the sky in the long-wave radiation that arrives; the rest comes from the air and the ground [-].
+    pub to_sky: S,
     /// Long-wave law; none: the film is combined.
     pub emission: Option<Emission<S>>,
 }
@@ -144,6 +144,8 @@ pub struct Zone<S> {
     pub infiltration: [S; 3],
     /// Exchange areas between its faces [m2]; empty without separate exchange.
     pub exchange: Vec<S>,
+    /// Sum of each face's exchange areas with the others [m2].
+    pub exchange_sums: Vec<S>,
     /// Law of emission.
     pub emission: Emission<S>,
     /// Areas of its faces [m2].
@@ -236,12 +238,16 @@ impl<S: Real> Face<S> {
         let surface = &plan.description.surfaces[index / 2];
         let side = plan.side(index);
         let tilt = radians(values.get(surface.tilt));
-        let outward = if index % 2 == 0 { S::one() } else { -S::one() };
-        let area = values.get(surface.area);
-        Self {
-            film: side.convection.as_ref().map(|law| Film::new(values, law, area)),
-            area_factor: values.get_or(side.area_factor, 1.0),
+        let outward = if index.is_multiple_of(2) { S::one() } else { -S::one() };
+        let exposure = Exposure {
+            area: values.get(surface.area),
             upward: outward * tilt.cos(),
+            wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
+        };
+        Self {
+            film: side.convection.as_ref().map(|law| Film::new(values, law, &exposure)),
+            area_factor: values.get_or(side.area_factor, 1.0),
+            upward: exposure.upward,
             emissivity: values.get_or(side.emissivity, 0.0),
             absorptance: values.get_or(side.absorptance, 0.0),
             irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),
@@ -268,7 +274,7 @@ fn outdoors<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_
     let surface = &plan.description.surfaces[index / 2];
     let (tilt, azimuth) = (radians(values.get(surface.tilt)), radians(values.get(surface.azimuth)));
     // The inside face of a surface that looks outdoors looks the other way.
-    let outward = if index % 2 == 0 { S::one() } else { -S::one() };
+    let outward = if index.is_multiple_of(2) { S::one() } else { -S::one() };
     let (sin_tilt, cos_tilt) = (tilt.sin(), tilt.cos() * outward);
     let heading = [azimuth.cos() * outward, azimuth.sin() * outward];
     let sky_view = side.sky_view.map_or_else(|| (S::one() + cos_tilt).scale(0.5), |id| values.get(id));
@@ -280,7 +286,8 @@ fn outdoors<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_
             ground_view: (S::one() - cos_tilt).scale(0.5),
         },
         heading,
-        wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
+        // F_sky sqrt(F_sky): the sky near the horizon is as warm as the air (Walton 1983).
+        to_sky: sky_view * sky_view.max(S::constant(1e-300)).sqrt(),
         emission: match side.longwave {
             OutdoorLongwave::Exact => Some(Emission::Exact),
             OutdoorLongwave::Linearised { reference } => Some(Emission::Linearised(values.get(reference))),
@@ -321,6 +328,10 @@ impl<S: Real> Zone<S> {
         } else {
             exchange_areas(&areas, &emissivities, &view_weights(plan, index, &areas))
         };
+        let n = zone_faces.len();
+        let others = |row: usize| (0..exchange.len() / n.max(1)).filter(move |&column| column != row);
+        let sum = |row: usize| others(row).fold(S::zero(), |sum, column| sum + exchange[row * n + column]);
+        let exchange_sums = (0..n).map(sum).collect();
         let air_capacity = values.get(definition.volume) * density.scale(AIR_SPECIFIC_HEAT);
         let Infiltration { constant, temperature, wind } = &definition.infiltration;
         Self {
@@ -328,6 +339,7 @@ impl<S: Real> Zone<S> {
             air_capacity,
             infiltration: [constant, temperature, wind].map(|id| values.get(*id)),
             exchange,
+            exchange_sums,
             emission,
             areas,
         }
@@ -362,7 +374,7 @@ fn same_plane(plan: &Plan, a: FaceId, b: FaceId) -> bool {
         let surface = &plan.description.surfaces[face / 2];
         let value = |id: ParamId| plan.description.parameters[id.0 as usize].value.to_radians();
         let (tilt, azimuth) = (value(surface.tilt), value(surface.azimuth));
-        let sign = if face % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
         [azimuth.sin() * tilt.sin() * sign, azimuth.cos() * tilt.sin() * sign, tilt.cos() * sign]
     };
     let dot: f64 = normal(a).iter().zip(normal(b)).map(|(x, y)| x * y).sum();

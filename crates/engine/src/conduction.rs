@@ -23,6 +23,7 @@ pub struct Link<S> {
 
 impl<S: Real> Link<S> {
     /// Flux between two temperatures.
+    #[inline(always)]
     pub fn flux(&self, left: S, right: S) -> S {
         self.left * left - self.right * right + self.offset
     }
@@ -40,6 +41,7 @@ pub struct Storage<S> {
 
 impl<S: Real> Storage<S> {
     /// Enthalpy at a temperature.
+    #[inline(always)]
     pub fn at(&self, temperature: S) -> S {
         self.offset + self.capacity * temperature
     }
@@ -63,7 +65,11 @@ pub struct Chain<S> {
     path: Vec<S>,
     /// Response of the first cell to the two faces.
     first: [S; 2],
-    points: Vec<Option<PcmPoint<S>>>,
+    /// Properties of the phase-change cells at the iterate.
+    points: Vec<PcmPoint<S>>,
+    ways: Vec<Way>,
+    /// One over the distance between the ends of each link within a phase-change layer [1/m].
+    inverse_lengths: Vec<S>,
 }
 
 /// Heat that the wall sends into its faces, `source_e + sum_o response_eo T_o` [W/m2].
@@ -112,12 +118,39 @@ pub struct Start<'a, S> {
 struct End<S> {
     resistance: S,
     gain: S,
-    varies: bool,
+}
+
+/// What a link runs through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Constant properties.
+    Solid,
+    /// One phase-change layer, from cell to cell or from a cell to a bare face: index of the law.
+    Pcm(usize),
+    /// Half cells of two layers, or a massless layer, with phase change at one end or both.
+    Mixed,
+}
+
+impl Way {
+    fn of<S>(wall: &Wall<S>, i: usize) -> Self {
+        let law = |cell: usize| match wall.cells[cell].matter {
+            Matter::Pcm(law) => Some(law),
+            Matter::Solid { .. } => None,
+        };
+        let Some(last) = wall.cells.len().checked_sub(1) else { return Self::Solid };
+        // The face belongs to the layer behind it.
+        match (law(i.saturating_sub(1)), law(i.min(last))) {
+            (None, None) => Self::Solid,
+            (Some(left), Some(right)) if left == right && !wall.massless[i] => Self::Pcm(left),
+            _ => Self::Mixed,
+        }
+    }
 }
 
 impl<S: Real> End<S> {
+    #[inline(always)]
     fn face() -> Self {
-        Self { resistance: S::zero(), gain: S::zero(), varies: false }
+        Self { resistance: S::zero(), gain: S::zero() }
     }
 }
 
@@ -137,9 +170,12 @@ impl<S: Real> Chain<S> {
             next: zeros.clone(),
             path: zeros,
             first: [S::zero(); 2],
-            points: vec![None; n],
+            points: vec![PcmPoint::zero(); n],
+            ways: (0..=n).map(|i| Way::of(wall, i)).collect(),
+            inverse_lengths: vec![S::zero(); n + 1],
         };
         chain.link_solids(wall);
+        chain.measure_links(wall);
         chain
     }
 
@@ -165,7 +201,16 @@ impl<S: Real> Chain<S> {
         }
     }
 
+    fn measure_links(&mut self, wall: &Wall<S>) {
+        let n = wall.cells.len();
+        for i in (0..=n).filter(|&i| matches!(self.ways[i], Way::Pcm(_))) {
+            let share = if i == 0 || i == n { 0.5 } else { 1.0 };
+            self.inverse_lengths[i] = S::one() / wall.cells[i.min(n - 1)].thickness.scale(share);
+        }
+    }
+
     /// Linearises the phase-change cells about an iterate of the cells and the two faces.
+    #[inline(always)]
     pub fn linearise(
         &mut self,
         wall: &Wall<S>,
@@ -187,101 +232,86 @@ impl<S: Real> Chain<S> {
                     Storage { offset: start.enthalpy[i] - capacity * start.cells[i], capacity }
                 }
             };
-            self.points[i] = Some(point);
+            self.points[i] = point;
         }
         for i in 0..self.links.len() {
-            self.linearise_link(wall, i, at, start);
+            match self.ways[i] {
+                Way::Solid => {}
+                Way::Pcm(law) => self.links[i] = self.link_in_pcm(wall, i, law, at, start),
+                Way::Mixed => self.links[i] = self.link_of_halves(wall, i, at),
+            }
         }
     }
 
-    /// Newton form of the flux along a link whose conductivity depends on temperature.
-    fn linearise_link(&mut self, wall: &Wall<S>, i: usize, at: &Iterate<'_, S>, start: &Start<'_, S>) {
-        if let Some(link) = self.link_in_pcm(wall, i, at, start) {
-            self.links[i] = link;
-            return;
+    /// Newton form of the flux between two points of one phase-change layer, or of its cell and a bare face.
+    ///
+    /// The flux is the difference of the integrals of the conductivity (Kirchhoff's transformation) over the
+    /// distance: exact in a steady state, however much the conductivity changes in between, and its derivatives
+    /// keep the sign of the conductivity, so that Newton's matrix stays an M-matrix.
+    #[inline(always)]
+    fn link_in_pcm(
+        &self,
+        wall: &Wall<S>,
+        i: usize,
+        law: usize,
+        at: &Iterate<'_, S>,
+        start: &Start<'_, S>,
+    ) -> Link<S> {
+        let last = wall.cells.len() - 1;
+        let (left_temperature, left) = if i == 0 {
+            (at.faces[0], wall.pcm[law].at(at.faces[0], &start.memory[0]))
+        } else {
+            (at.cells[i - 1], self.points[i - 1])
+        };
+        let (right_temperature, right) = if i > last {
+            (at.faces[1], wall.pcm[law].at(at.faces[1], &start.memory[last]))
+        } else {
+            (at.cells[i], self.points[i])
+        };
+        let inverse = self.inverse_lengths[i];
+        let (by_left, by_right) = (left.conductivity * inverse, right.conductivity * inverse);
+        Link {
+            left: by_left,
+            right: by_right,
+            offset: (left.potential - right.potential) * inverse - by_left * left_temperature
+                + by_right * right_temperature,
         }
+    }
+
+    /// Newton form of `K (T_left - T_right)` with K from the half cells at their own temperatures.
+    #[inline(always)]
+    fn link_of_halves(&self, wall: &Wall<S>, i: usize, at: &Iterate<'_, S>) -> Link<S> {
         let n = wall.cells.len();
         let (left, left_temperature) =
             if i > 0 { (self.end(wall, i - 1), at.cells[i - 1]) } else { (End::face(), at.faces[0]) };
         let (right, right_temperature) =
             if i < n { (self.end(wall, i), at.cells[i]) } else { (End::face(), at.faces[1]) };
-        if !left.varies && !right.varies {
-            return;
-        }
-        // `K (T_left - T_right)` with K from the half cells at their own temperatures.
         let conductance = S::one() / (left.resistance + wall.extra[i] + right.resistance);
         let square = conductance * conductance * (left_temperature - right_temperature);
         let (by_left, by_right) = (square * left.gain, square * right.gain);
-        // Where the slope of the conductivity would make heat flow the wrong way, Newton's tangent misleads: the
-        // conductivity of the iterate is kept. The flux at the solution is the same.
-        let kept = S::zero().lt(conductance + by_left) & S::zero().lt(conductance - by_right);
-        let (by_left, by_right) = (S::select(kept, by_left, S::zero()), S::select(kept, by_right, S::zero()));
-        self.links[i] = Link {
+        Link {
             left: conductance + by_left,
             right: conductance - by_right,
             offset: -(by_left * left_temperature + by_right * right_temperature),
-        };
-    }
-
-    /// The link between two points of one phase-change layer, or of its cell and a bare face.
-    ///
-    /// The flux is the difference of the integrals of the conductivity (Kirchhoff's transformation) over the
-    /// distance: exact in a steady state, however much the conductivity changes in between, and its derivatives
-    /// keep the sign of the conductivity, so that Newton's matrix stays an M-matrix.
-    fn link_in_pcm(
-        &self,
-        wall: &Wall<S>,
-        i: usize,
-        at: &Iterate<'_, S>,
-        start: &Start<'_, S>,
-    ) -> Option<Link<S>> {
-        let n = wall.cells.len();
-        // The face belongs to the layer behind it.
-        let (outer, inner) = (i.saturating_sub(1), i.min(n.saturating_sub(1)));
-        let (Matter::Pcm(law), Matter::Pcm(other)) =
-            (&wall.cells.get(outer)?.matter, &wall.cells[inner].matter)
-        else {
-            return None;
-        };
-        if law != other || wall.massless[i] {
-            return None;
         }
-        let end = |cell: usize, face: Option<S>| match (face, self.points[cell]) {
-            (None, Some(point)) => Some((at.cells[cell], point)),
-            (Some(temperature), _) => {
-                Some((temperature, wall.pcm[*law].at(temperature, &start.memory[cell])))
-            }
-            (None, None) => None,
-        };
-        let (left_temperature, left) = end(outer, (i == 0).then_some(at.faces[0]))?;
-        let (right_temperature, right) = end(inner, (i == n).then_some(at.faces[1]))?;
-        let whole = wall.cells[outer].thickness.scale(if i == 0 || i == n { 0.5 } else { 1.0 });
-        let (by_left, by_right) = (left.conductivity / whole, right.conductivity / whole);
-        Some(Link {
-            left: by_left,
-            right: by_right,
-            offset: (left.potential - right.potential) / whole - by_left * left_temperature
-                + by_right * right_temperature,
-        })
     }
 
     /// The half of a cell that a link crosses.
+    #[inline(always)]
     fn end(&self, wall: &Wall<S>, cell: usize) -> End<S> {
         let half = wall.cells[cell].thickness.scale(0.5);
-        match (&wall.cells[cell].matter, &self.points[cell]) {
-            (Matter::Solid { conductivity, .. }, _) => {
-                End { resistance: half / *conductivity, gain: S::zero(), varies: false }
-            }
-            (Matter::Pcm(_), Some(point)) => {
+        match &wall.cells[cell].matter {
+            Matter::Solid { conductivity, .. } => End { resistance: half / *conductivity, gain: S::zero() },
+            Matter::Pcm(_) => {
+                let point = &self.points[cell];
                 let resistance = half / point.conductivity;
-                let gain = resistance / point.conductivity * point.conductivity_slope;
-                End { resistance, gain, varies: true }
+                End { resistance, gain: resistance / point.conductivity * point.conductivity_slope }
             }
-            (Matter::Pcm(_), None) => End { varies: true, ..End::face() },
         }
     }
 
     /// Eliminates the cells for a stage of effective length `stage` [s]. Called again only when a coefficient changes.
+    #[inline(always)]
     pub fn factor(&mut self, wall: &Wall<S>, stage: f64) -> [[S; 2]; 2] {
         let n = self.storage.len();
         if n == 0 {
@@ -316,6 +346,7 @@ impl<S: Real> Chain<S> {
     }
 
     /// The part of the face fluxes that comes from what the cells held: `held` is the right-hand enthalpy [J/m3].
+    #[inline(always)]
     pub fn sources(&mut self, held: &[S]) -> [S; 2] {
         let n = self.storage.len();
         if n == 0 {
@@ -336,6 +367,7 @@ impl<S: Real> Chain<S> {
     }
 
     /// Cell temperatures from the face temperatures.
+    #[inline(always)]
     pub fn temperatures(&self, faces: [S; 2], cells: &mut [S]) {
         let mut next = faces[1];
         for i in (0..cells.len()).rev() {
@@ -345,6 +377,7 @@ impl<S: Real> Chain<S> {
     }
 
     /// Flux along link `i` at cell and face temperatures [W/m2], positive towards the inside.
+    #[inline(always)]
     pub fn link_flux(&self, i: usize, faces: [S; 2], cells: &[S]) -> S {
         let left = if i == 0 { faces[0] } else { cells[i - 1] };
         let right = if i == cells.len() { faces[1] } else { cells[i] };

@@ -1,8 +1,10 @@
 //! Convective heat flow between a face and its air.
 //!
 //! Every correlation gives a film coefficient h as a function of the temperature
-//! difference; heat flow is `q = h(|d|) d`, `d = T_face - T_air`. Its derivative, which Newton
-//! needs, comes from running the same source on [`Dual`].
+//! difference; heat flow is `q = h d`, `d = T_face - T_air`. `h` is written as a function of `d^2 + r^2`: smooth where
+//! the heat flow turns, and roots and derivatives of powers of `|d|` come without divisions.
+//!
+//! Everything that does not depend on the temperatures (geometry, wind) is worked out once per run or per stage.
 //!
 //! Sources:
 //! - Alamdari & Hammond (1983), Build. Serv. Eng. Res. Technol. 4(3), doi:10.1177/014362448300400304.
@@ -12,7 +14,7 @@
 
 use crate::description::{Convection, PowerLaw};
 use crate::parameters::Values;
-use crate::real::{Dual, Mask, Real};
+use crate::real::{Mask, Real};
 
 /// Temperature differences below this [K] are rounded off: `|d|^(1/3)` has an infinite slope at zero.
 const ROUND_OFF: f64 = 0.01;
@@ -20,27 +22,49 @@ const ROUND_OFF: f64 = 0.01;
 const CALM: f64 = 1e-3;
 /// A face is treated as horizontal when its normal lies within 45 deg of the vertical.
 const HORIZONTAL: f64 = core::f64::consts::FRAC_1_SQRT_2;
+/// Exponents of `MoWiTT`, windward and leeward.
+const MOWITT_EXPONENTS: [f64; 2] = [0.89, 0.617];
 
-/// A number with its derivative by the temperature difference.
-type D<S> = Dual<S, 1>;
-
-/// The air at a face.
+/// Wind at the mast and the powers of it that correlations ask for.
 #[derive(Debug, Clone, Copy)]
-pub struct FilmAir<S: Real> {
-    /// Upward component of the normal that points from the face into the air.
-    pub upward: S,
-    /// Wind at the face [m/s]; zero indoors.
-    pub wind: S,
-    /// True where the wind blows onto the face.
-    pub windward: S::Mask,
+pub struct Wind {
+    /// [m/s].
+    pub speed: f64,
+    /// Root of the speed.
+    root: f64,
+    /// Speed to `MoWiTT`'s windward and leeward exponents.
+    mowitt: [f64; 2],
+    /// Logarithm of the speed.
+    logarithm: f64,
 }
 
-impl<S: Real> FilmAir<S> {
-    /// Still air indoors.
-    pub fn still(upward: S) -> Self {
-        Self { upward, wind: S::zero(), windward: S::Mask::splat(false) }
+impl Wind {
+    /// Powers of a speed [m/s].
+    #[must_use]
+    pub fn new(speed: f64) -> Self {
+        let moving = if speed < CALM { CALM } else { speed };
+        Self {
+            speed,
+            root: Real::sqrt(moving),
+            mowitt: MOWITT_EXPONENTS.map(|exponent| Real::powf(moving, exponent)),
+            logarithm: Real::ln(moving),
+        }
     }
 }
+
+/// Where a face lies: what turns the wind at the mast and gravity into those at the face.
+#[derive(Debug, Clone, Copy)]
+pub struct Exposure<S> {
+    /// Plane area [m2].
+    pub area: S,
+    /// Upward component of the normal that points from the face into the air.
+    pub upward: S,
+    /// Wind at the face over wind at the mast [-].
+    pub wind_factor: S,
+}
+
+/// The part of a film coefficient that the wind makes, where heat flows up and where it flows down [W/(m2 K)].
+pub type Forced<S> = [S; 2];
 
 /// Heat flow from face to air and its slope by `T_face - T_air`.
 #[derive(Debug, Clone, Copy)]
@@ -51,190 +75,283 @@ pub struct FilmFlux<S> {
     pub slope: S,
 }
 
-/// A correlation with its numbers.
+/// A film coefficient with the numbers of its correlation.
 #[derive(Debug, Clone)]
-pub enum Film<S> {
-    /// See [`Convection::Constant`].
+pub struct Film<S> {
+    law: Law<S>,
+    /// Upward component of the normal that points from the face into the air.
+    upward: S,
+}
+
+/// Correlations, reduced to what depends on temperature and wind.
+#[derive(Debug, Clone)]
+enum Law<S> {
     Constant(S),
-    /// See [`Convection::LinearWind`].
+    /// `constant + wind V`, V at the mast.
     LinearWind {
-        /// Coefficient in still air [W/(m2 K)].
         constant: S,
-        /// Its rise with wind [W/(m2 K) per m/s].
         wind: S,
     },
-    /// See [`Convection::AlamdariHammond`].
-    AlamdariHammond {
-        /// Characteristic length [m].
-        length: S,
-        /// Multiplies the correlation [-].
+    /// `factor (laminar |d|^3/2 + turbulent d^2)^1/6`, but `stable |d|^1/5` where warm air lies on a plate.
+    Blend {
         factor: S,
+        open: [S; 2],
+        stable: Option<S>,
     },
-    /// See [`Convection::PaperEq5`].
-    PaperEq5 {
-        /// Height [m].
-        length: S,
-        /// Multiplies the correlation [-].
-        factor: S,
-    },
-    /// See [`Convection::Tarp`]. `forced`: `2.537 R sqrt(P/A)`, zero indoors.
+    /// `natural |d|^1/3` where buoyancy drives the air off the face and where it does not; forced part per root of wind.
     Tarp {
-        /// Multiplies the correlation [-].
-        factor: S,
-        /// Forced part per square root of wind speed [W/(m2 K) per (m/s)^1/2].
+        natural: [S; 2],
         forced: S,
     },
-    /// See [`Convection::Mowitt`].
+    /// `factor sqrt(0.84^2 |d|^2/3 + (wind V^b)^2)`, windward and leeward.
     Mowitt {
-        /// Multiplies the correlation [-].
         factor: S,
+        wind: [S; 2],
     },
-    /// See [`Convection::Power`].
-    Power {
-        /// a, b, n, c, m where heat flows up or the face is vertical.
-        upward: [S; 5],
-        /// a, b, n, c, m where heat flows down.
-        downward: [S; 5],
-    },
+    /// Where heat flows up (or the face is vertical) and where it flows down.
+    Power([Power<S>; 2]),
+}
+
+/// `constant + gain |d|^exponent + wind V^wind_exponent`, V at the mast.
+#[derive(Debug, Clone, Copy)]
+struct Power<S> {
+    constant: S,
+    gain: S,
+    exponent: S,
+    wind: S,
+    wind_exponent: S,
+}
+
+/// A natural film coefficient and `d dh/dd` [W/(m2 K)].
+#[derive(Debug, Clone, Copy)]
+struct Natural<S> {
+    coefficient: S,
+    rise: S,
 }
 
 impl<S: Real> Film<S> {
-    /// Reads the numbers of a correlation; `area` is the face's plane area [m2].
-    pub fn new(values: &Values<'_, S>, law: &Convection, area: S) -> Self {
-        let power = |p: &PowerLaw| [p.a, p.b, p.n, p.c, p.m].map(|id| values.get(id));
-        match law {
-            Convection::Constant { coefficient } => Self::Constant(values.get(*coefficient)),
+    /// Reads the numbers of a correlation for a face.
+    pub fn new(values: &Values<'_, S>, law: &Convection, face: &Exposure<S>) -> Self {
+        let get = |id| values.get(id);
+        let law = match law {
+            Convection::Constant { coefficient } => Law::Constant(get(*coefficient)),
             Convection::LinearWind { constant, wind } => {
-                Self::LinearWind { constant: values.get(*constant), wind: values.get(*wind) }
+                Law::LinearWind { constant: get(*constant), wind: get(*wind) * face.wind_factor }
             }
             Convection::AlamdariHammond { length, factor } => {
-                Self::AlamdariHammond { length: values.get(*length), factor: values.get(*factor) }
+                Law::alamdari_hammond(get(*length), get(*factor), face.upward)
             }
             Convection::PaperEq5 { length, factor } => {
-                Self::PaperEq5 { length: values.get(*length), factor: values.get(*factor) }
+                let laminar = S::constant(power_of_six(1.51)) / sixth_power(get(*length));
+                let turbulent = S::constant(power_of_six(1.33));
+                Law::Blend { factor: get(*factor), open: [laminar, turbulent], stable: None }
             }
             Convection::Tarp { factor, roughness, perimeter } => {
                 let forced = match (roughness, perimeter) {
                     (Some(roughness), Some(perimeter)) => {
-                        values.get(*roughness).scale(2.537) * (values.get(*perimeter) / area).sqrt()
+                        get(*roughness).scale(2.537) * (get(*perimeter) / face.area * face.wind_factor).sqrt()
                     }
                     _ => S::zero(),
                 };
-                Self::Tarp { factor: values.get(*factor), forced }
+                Law::tarp(get(*factor), forced, face.upward)
             }
-            Convection::Mowitt { factor } => Self::Mowitt { factor: values.get(*factor) },
+            Convection::Mowitt { factor } => {
+                let [windward, leeward] =
+                    MOWITT_EXPONENTS.map(|exponent| face.wind_factor.powf(S::constant(exponent)));
+                Law::Mowitt { factor: get(*factor), wind: [windward.scale(3.26), leeward.scale(3.55)] }
+            }
             Convection::Power { upward, downward } => {
-                Self::Power { upward: power(upward), downward: power(downward) }
+                Law::Power([upward, downward].map(|law| Power::new(values, law, face.wind_factor)))
             }
+        };
+        Self { law, upward: face.upward }
+    }
+
+    /// The coefficient, where it depends neither on temperature nor on wind.
+    pub fn constant(&self) -> Option<S> {
+        if let Law::Constant(coefficient) = self.law { Some(coefficient) } else { None }
+    }
+
+    /// What a wind makes of the film coefficient; `windward`: where it blows onto the face.
+    #[inline(always)]
+    pub fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
+        match &self.law {
+            Law::Constant(_) | Law::Blend { .. } => [S::zero(); 2],
+            Law::LinearWind { constant, wind: slope } => [*constant + slope.scale(wind.speed); 2],
+            Law::Tarp { forced, .. } => {
+                let forced = forced.scale(wind.root);
+                [S::select(windward, forced, forced.scale(0.5)); 2]
+            }
+            Law::Mowitt { wind: [onto, away], .. } => {
+                [S::select(windward, onto.scale(wind.mowitt[0]), away.scale(wind.mowitt[1])); 2]
+            }
+            Law::Power(laws) => [laws[0].forced(wind), laws[1].forced(wind)],
         }
     }
 
-    /// Heat flow at `difference = T_face - T_air` [K].
-    pub fn flux(&self, difference: S, air: &FilmAir<S>) -> FilmFlux<S> {
-        if let Self::Constant(h) = self {
-            return FilmFlux { flux: *h * difference, slope: *h };
-        }
-        let d = D::variable(difference, 0);
-        let q = self.coefficient(d, air) * d;
-        FilmFlux { flux: q.value, slope: q.slope[0] }
+    /// Heat flow at `d = T_face - T_air` [K].
+    #[inline(always)]
+    pub fn flux(&self, d: S, forced: &Forced<S>) -> FilmFlux<S> {
+        // h = natural(d) + forced, or the root of the sum of their squares: q = h d, q' = h + d h'.
+        let square = d * d;
+        let rounded = square + S::constant(ROUND_OFF * ROUND_OFF);
+        let Natural { coefficient, rise } = match &self.law {
+            Law::Constant(h) => Natural { coefficient: *h, rise: S::zero() },
+            Law::LinearWind { .. } => Natural { coefficient: forced[0], rise: S::zero() },
+            Law::Tarp { natural: [open, still], .. } => {
+                let gain = S::select(self.unstable(d), *open, *still);
+                let natural = cube_root_law(gain, square, rounded);
+                Natural { coefficient: natural.coefficient + forced[0], rise: natural.rise }
+            }
+            Law::Mowitt { factor, .. } => mowitt(*factor, forced[0], square, rounded),
+            Law::Blend { factor, open, stable } => {
+                let mut natural = blend(open, square, rounded);
+                if let Some(gain) = stable {
+                    natural = self.on_plate(natural, *gain, d, rounded);
+                }
+                Natural { coefficient: *factor * natural.coefficient, rise: *factor * natural.rise }
+            }
+            Law::Power([up, down]) => {
+                let upward = self.unstable(d) | self.upward.abs().lt(S::constant(1e-6));
+                let gain = S::select(upward, up.gain, down.gain);
+                let exponent = S::select(upward, up.exponent, down.exponent);
+                let natural = power_law(gain, exponent, square, rounded);
+                let forced = S::select(upward, forced[0], forced[1]);
+                Natural { coefficient: natural.coefficient + forced, rise: natural.rise }
+            }
+        };
+        FilmFlux { flux: coefficient * d, slope: coefficient + rise }
     }
 
-    /// Film coefficient [W/(m2 K)].
-    fn coefficient(&self, difference: D<S>, air: &FilmAir<S>) -> D<S> {
-        let d = difference.smooth_abs(ROUND_OFF);
-        let wind = air.wind.max(S::constant(CALM));
-        // Buoyancy drives the air off the face: warm and facing up, or cold and facing down.
-        let unstable = S::zero().lt(difference.value * air.upward);
-        match self {
-            Self::Constant(h) => D::fixed(*h),
-            Self::LinearWind { constant, wind: slope } => D::fixed(*constant + *slope * air.wind),
-            Self::AlamdariHammond { length, factor } => {
-                D::fixed(*factor) * alamdari_hammond(d, *length, unstable, air.upward)
-            }
-            Self::PaperEq5 { length, factor } => D::fixed(*factor) * paper_eq5(d, *length),
-            Self::Tarp { factor, forced } => {
-                let side = S::select(air.windward, S::one(), S::constant(0.5));
-                let forced = *forced * side * wind.sqrt();
-                D::fixed(*factor) * (tarp_natural(d, unstable, air.upward) + D::fixed(forced))
-            }
-            Self::Mowitt { factor } => D::fixed(*factor) * mowitt(d, wind, air.windward),
-            Self::Power { upward, downward } => {
-                // Heat flows up into the air above a warm face, or up into a cold face above its air; a vertical
-                // face uses the upward set.
-                let vertical = air.upward.abs().lt(S::constant(1e-6));
-                let up = unstable | vertical;
-                let [a, b, n, c, m] = core::array::from_fn(|i| S::select(up, upward[i], downward[i]));
-                let wind = wind.powf(m);
-                D::fixed(a) + D::fixed(b) * d.powf(D::fixed(n)) + D::fixed(c * wind)
-            }
-        }
+    /// Where buoyancy drives the air off the face: warm and facing up, or cold and facing down. Heat flows up there.
+    #[inline(always)]
+    fn unstable(&self, d: S) -> S::Mask {
+        S::zero().lt(d * self.upward)
     }
 
-    /// True when the coefficient does not depend on temperature or wind.
-    #[must_use]
-    pub fn is_constant(law: &Convection) -> bool {
-        matches!(law, Convection::Constant { .. })
+    /// `gain |d|^1/5` where the air lies stably on a horizontal plate, else what is given.
+    #[inline(always)]
+    fn on_plate(&self, otherwise: Natural<S>, gain: S, d: S, rounded: S) -> Natural<S> {
+        let stable = S::constant(HORIZONTAL).lt(self.upward.abs()) & !self.unstable(d);
+        if !stable.any() {
+            return otherwise;
+        }
+        let still = power_law(gain, S::constant(0.2), d * d, rounded);
+        Natural {
+            coefficient: S::select(stable, still.coefficient, otherwise.coefficient),
+            rise: S::select(stable, still.rise, otherwise.rise),
+        }
     }
 }
 
-/// Sixth power by products: the compiler may round `powi` of a constant otherwise in lanes than in scalars.
-fn sixth(x: f64) -> f64 {
+impl<S: Real> Law<S> {
+    /// Vertical `{[1.5 (d/H)^1/4]^6 + [1.23 d^1/3]^6}^1/6`; horizontal, unstable the same with 1.4 and 1.63 on
+    /// D = 4A/P; stable `0.6 (d/D^2)^1/5`.
+    fn alamdari_hammond(length: S, factor: S, upward: S) -> Self {
+        let horizontal = S::constant(HORIZONTAL).lt(upward.abs());
+        let choose = |plate: f64, wall: f64| {
+            S::select(horizontal, S::constant(power_of_six(plate)), S::constant(power_of_six(wall)))
+        };
+        let stable = (length * length).powf(S::constant(-0.2)).scale(0.6);
+        let open = [choose(1.4, 1.5) / (length * length.sqrt()), choose(1.63, 1.23)];
+        Self::Blend { factor, open, stable: Some(stable) }
+    }
+
+    /// `9.482 d^1/3 / (7.283 - |cos S|)` unstable, `1.810 d^1/3 / (1.382 + |cos S|)` stable, `1.31 d^1/3` vertical.
+    fn tarp(factor: S, forced: S, upward: S) -> Self {
+        let tilt = upward.abs();
+        let vertical = tilt.lt(S::constant(1e-3));
+        let open = S::constant(9.482) / (S::constant(7.283) - tilt);
+        let still = S::constant(1.810) / (S::constant(1.382) + tilt);
+        let natural = [open, still].map(|gain| factor * S::select(vertical, S::constant(1.31), gain));
+        Self::Tarp { natural, forced: factor * forced }
+    }
+}
+
+impl<S: Real> Power<S> {
+    fn new(values: &Values<'_, S>, law: &PowerLaw, wind_factor: S) -> Self {
+        let [constant, gain, exponent, wind, wind_exponent] =
+            [law.a, law.b, law.n, law.c, law.m].map(|id| values.get(id));
+        Self { constant, gain, exponent, wind: wind * wind_factor.powf(wind_exponent), wind_exponent }
+    }
+}
+
+impl<S: Real> Power<S> {
+    /// The part without temperature.
+    #[inline(always)]
+    fn forced(&self, wind: &Wind) -> S {
+        self.constant + self.wind * self.wind_exponent.scale(wind.logarithm).exp()
+    }
+}
+
+/// Sixth power, by products: the compiler may round `powi` of a constant otherwise in lanes than in scalars.
+fn power_of_six(x: f64) -> f64 {
     let cube = x * x * x;
     cube * cube
 }
 
-/// Vertical `{[1.5 (d/H)^1/4]^6 + [1.23 d^1/3]^6}^1/6`; horizontal, unstable the same with 1.4 and 1.63 on D = 4A/P;
-/// stable `0.6 (d/D^2)^1/5`.
-fn alamdari_hammond<S: Real>(d: D<S>, length: S, unstable: S::Mask, upward: S) -> D<S> {
-    let ratio = d / D::fixed(length);
-    // x^(6/4) = x sqrt(x) and x^(6/3) = x^2 spare two powers.
-    let laminar = ratio * ratio.sqrt();
-    let turbulent = d * d;
-    let blend = |a: f64, b: f64| {
-        let sum = laminar.scale(sixth(a)) + turbulent.scale(sixth(b));
-        sum.cbrt().sqrt()
-    };
-    let horizontal = S::constant(HORIZONTAL).lt(upward.abs());
-    let stable = (d / D::fixed(length * length)).powf(D::constant(0.2)).scale(0.6);
-    let on_plate = D::select(unstable, blend(1.4, 1.63), stable);
-    D::select(horizontal, on_plate, blend(1.5, 1.23))
+fn sixth_power<S: Real>(x: S) -> S {
+    let cube = x * x * x;
+    cube * cube
 }
 
-/// `{[1.51 d^1/4 / H]^6 + [1.33 d^1/3]^6}^1/6`, as printed.
-fn paper_eq5<S: Real>(d: D<S>, length: S) -> D<S> {
-    let over = D::fixed(S::one() / length);
-    let first = over * over * over * over * over * over * d * d.sqrt();
-    (first.scale(sixth(1.51)) + (d * d).scale(sixth(1.33))).cbrt().sqrt()
+/// `gain |d|^1/3` of `square = d^2` and `rounded = d^2 + r^2`.
+#[inline(always)]
+fn cube_root_law<S: Real>(gain: S, square: S, rounded: S) -> Natural<S> {
+    let inverse = rounded.inverse_cbrt();
+    // x^(1/6) = sqrt(x y^2) with y = x^(-1/3); 1/x = y^3.
+    let coefficient = gain * (rounded * inverse * inverse).sqrt();
+    let share = square * (inverse * inverse * inverse);
+    Natural { coefficient, rise: (coefficient * share).scale(1.0 / 3.0) }
 }
 
-/// `9.482 d^1/3 / (7.283 - |cos S|)` unstable, `1.810 d^1/3 / (1.382 + |cos S|)` stable, `1.31 d^1/3` vertical.
-fn tarp_natural<S: Real>(d: D<S>, unstable: S::Mask, upward: S) -> D<S> {
-    let tilt = upward.abs();
-    let open = S::constant(9.482) / (S::constant(7.283) - tilt);
-    let still = S::constant(1.810) / (S::constant(1.382) + tilt);
-    let sloped = S::select(unstable, open, still);
-    let vertical = tilt.lt(S::constant(1e-3));
-    d.cbrt() * D::fixed(S::select(vertical, S::constant(1.31), sloped))
+/// `factor sqrt((0.84 |d|^1/3)^2 + forced^2)`.
+#[inline(always)]
+fn mowitt<S: Real>(factor: S, forced: S, square: S, rounded: S) -> Natural<S> {
+    let inverse = rounded.inverse_cbrt();
+    let natural = (rounded * inverse * inverse).scale(0.84 * 0.84);
+    let coefficient = (natural + forced * forced).sqrt();
+    let share = square * (inverse * inverse * inverse);
+    let rise = (natural * share).scale(1.0 / 3.0) / coefficient;
+    Natural { coefficient: factor * coefficient, rise: factor * rise }
 }
 
-/// `sqrt((0.84 d^1/3)^2 + (a V^b)^2)`: windward a 3.26, b 0.89; leeward a 3.55, b 0.617.
-fn mowitt<S: Real>(d: D<S>, wind: S, windward: S::Mask) -> D<S> {
-    let natural = d.cbrt().scale(0.84);
-    let a = S::select(windward, S::constant(3.26), S::constant(3.55));
-    let b = S::select(windward, S::constant(0.89), S::constant(0.617));
-    let forced = a * wind.powf(b);
-    (natural * natural + D::fixed(forced * forced)).sqrt()
+/// `(laminar |d|^3/2 + turbulent d^2)^1/6`.
+#[inline(always)]
+fn blend<S: Real>([laminar, turbulent]: &[S; 2], square: S, rounded: S) -> Natural<S> {
+    let magnitude = rounded.sqrt();
+    let laminar = *laminar * (magnitude * magnitude.sqrt());
+    let turbulent = *turbulent * rounded;
+    let sum = laminar + turbulent;
+    let inverse = sum.inverse_cbrt();
+    let coefficient = (sum * inverse * inverse).sqrt();
+    let share = square / rounded;
+    let slope = (laminar.scale(0.25) + turbulent.scale(1.0 / 3.0)) * (inverse * inverse * inverse);
+    Natural { coefficient, rise: coefficient * share * slope }
+}
+
+/// `gain |d|^exponent`.
+#[inline(always)]
+fn power_law<S: Real>(gain: S, exponent: S, square: S, rounded: S) -> Natural<S> {
+    let coefficient = gain * (exponent.scale(0.5) * rounded.ln()).exp();
+    Natural { coefficient, rise: exponent * coefficient * (square / rounded) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::ParamId;
 
-    fn coefficient(film: &Film<f64>, difference: f64, upward: f64, wind: f64, windward: bool) -> f64 {
-        let air = FilmAir { upward, wind, windward };
-        let flux = film.flux(difference, &air);
+    /// A face of 1 m2.
+    fn film(law: &Convection, numbers: &[f64], upward: f64) -> Film<f64> {
+        Film::new(&Values::new(numbers), law, &Exposure { area: 1.0, upward, wind_factor: 1.0 })
+    }
+
+    fn coefficient(film: &Film<f64>, difference: f64, wind: f64, windward: bool) -> f64 {
+        let forced = film.forced(&Wind::new(wind), windward);
+        let flux = film.flux(difference, &forced);
         let step = 1e-5;
-        let slope = (film.flux(difference + step, &air).flux - film.flux(difference - step, &air).flux)
+        let slope = (film.flux(difference + step, &forced).flux - film.flux(difference - step, &forced).flux)
             / (2.0 * step);
         assert!((flux.slope - slope).abs() < 1e-6 * slope.abs(), "slope {} is not {slope}", flux.slope);
         flux.flux / difference
@@ -248,31 +365,40 @@ mod tests {
     #[test]
     #[allow(clippy::approx_constant, reason = "6.283 is 7.283 - 1 of the correlation, not a circle")]
     fn correlations_by_hand() {
-        let ah = Film::AlamdariHammond { length: 3.0, factor: 1.0 };
+        let id = |i: u32| ParamId(i);
+        let ah = Convection::AlamdariHammond { length: id(0), factor: id(1) };
         // 5 K, 3 m: laminar 1.5 (5/3)^.25 = 1.70434, turbulent 1.23 5^(1/3) = 2.10327
-        assert_close(coefficient(&ah, 5.0, 0.0, 0.0, false), 2.192_50);
+        assert_close(coefficient(&film(&ah, &[3.0, 1.0], 0.0), 5.0, 0.0, false), 2.192_50);
         // Stable over a 3 m plate at 5 K: 0.6 (5/9)^0.2 = 0.53345
-        assert_close(coefficient(&ah, -5.0, 1.0, 0.0, false), 0.533_45);
+        assert_close(coefficient(&film(&ah, &[3.0, 1.0], 1.0), -5.0, 0.0, false), 0.533_45);
         // Unstable: 1.4 (5/3)^.25 = 1.59071, 1.63 5^(1/3) = 2.78726
-        assert_close(coefficient(&ah, 5.0, 1.0, 0.0, false), 2.803_09);
-        let eq5 = Film::PaperEq5 { length: 0.28, factor: 1.0 };
+        assert_close(coefficient(&film(&ah, &[3.0, 1.0], 1.0), 5.0, 0.0, false), 2.803_09);
+        let eq5 = Convection::PaperEq5 { length: id(0), factor: id(1) };
         // 5 K, 0.28 m: first term 1.51 5^.25 / 0.28 = 8.06419 rules
-        assert_close(coefficient(&eq5, 5.0, 1.0, 0.0, false), 8.064_7);
-        let tarp = Film::Tarp { factor: 1.0, forced: 0.0 };
-        assert_close(coefficient(&tarp, 8.0, 0.0, 0.0, false), 2.62);
-        assert_close(coefficient(&tarp, 8.0, 1.0, 0.0, false), 2.0 * 9.482 / 6.283);
-        assert_close(coefficient(&tarp, -8.0, 1.0, 0.0, false), 2.0 * 1.81 / 2.382);
-        let mowitt = Film::Mowitt { factor: 1.0 };
-        assert_close(
-            coefficient(&mowitt, 8.0, 0.0, 4.0, true),
-            (1.68_f64.powi(2) + 11.196_0_f64.powi(2)).sqrt(),
-        );
-        assert_close(
-            coefficient(&mowitt, 8.0, 0.0, 4.0, false),
-            (1.68_f64.powi(2) + 8.350_4_f64.powi(2)).sqrt(),
-        );
-        let power = Film::Power { upward: [1.0, 2.0, 0.25, 0.5, 1.0], downward: [0.3, 0.0, 1.0, 0.0, 1.0] };
-        assert_close(coefficient(&power, 16.0, 1.0, 3.0, true), 6.5);
-        assert_close(coefficient(&power, -16.0, 1.0, 3.0, true), 0.3);
+        assert_close(coefficient(&film(&eq5, &[0.28, 1.0], 1.0), 5.0, 0.0, false), 8.064_9);
+        let tarp = Convection::Tarp { factor: id(0), roughness: None, perimeter: None };
+        assert_close(coefficient(&film(&tarp, &[1.0], 0.0), 8.0, 0.0, false), 2.62);
+        assert_close(coefficient(&film(&tarp, &[1.0], 1.0), 8.0, 0.0, false), 2.0 * 9.482 / 6.283);
+        assert_close(coefficient(&film(&tarp, &[1.0], 1.0), -8.0, 0.0, false), 2.0 * 1.81 / 2.382);
+        // Rough (2.17) face of 1 m2 with 4 m perimeter at 4 m/s: 2.537 2.17 (4 4)^1/2 = 22.0212
+        let tarp = Convection::Tarp { factor: id(0), roughness: Some(id(1)), perimeter: Some(id(2)) };
+        assert_close(coefficient(&film(&tarp, &[1.0, 2.17, 4.0], 0.0), 8.0, 4.0, true), 2.62 + 22.021_2);
+        assert_close(coefficient(&film(&tarp, &[1.0, 2.17, 4.0], 0.0), 8.0, 4.0, false), 2.62 + 11.010_6);
+        let mowitt = Convection::Mowitt { factor: id(0) };
+        let by_hand = |forced: f64| (1.68 * 1.68 + forced * forced).sqrt();
+        // 3.26 4^0.89 and 3.55 4^0.617
+        assert_close(coefficient(&film(&mowitt, &[1.0], 0.0), 8.0, 4.0, true), by_hand(11.195_7));
+        assert_close(coefficient(&film(&mowitt, &[1.0], 0.0), 8.0, 4.0, false), by_hand(8.350_2));
+        let law = |first| PowerLaw {
+            a: id(first),
+            b: id(first + 1),
+            n: id(first + 2),
+            c: id(first + 3),
+            m: id(first + 4),
+        };
+        let power = Convection::Power { upward: law(0), downward: law(5) };
+        let numbers = [1.0, 2.0, 0.25, 0.5, 1.0, 0.3, 0.0, 1.0, 0.0, 1.0];
+        assert_close(coefficient(&film(&power, &numbers, 1.0), 16.0, 3.0, true), 6.5);
+        assert_close(coefficient(&film(&power, &numbers, 1.0), -16.0, 3.0, true), 0.3);
     }
 }

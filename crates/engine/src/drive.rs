@@ -1,11 +1,11 @@
 //! What acts on the building at one instant: forcing turned into numbers at each face.
 
 use crate::coefficients::{Boundary, Coefficients, Face, Imposed, Outdoors};
-use crate::convection::FilmAir;
-use crate::forcing::channel;
+use crate::convection::{Forced, Wind};
+use crate::forcing::{Forcing, channel};
 use crate::parameters::Values;
 use crate::plan::Plan;
-use crate::radiation::sky_emission;
+use crate::radiation::{Heaven, sky_emission};
 use crate::real::Real;
 use crate::solar::Sunlight;
 
@@ -14,6 +14,64 @@ use crate::solar::Sunlight;
 const LEEWARD_COSINE: f64 = 0.0;
 /// Faces within about 11 deg of horizontal are always windward (Walton 1983).
 const FLAT: f64 = 0.98;
+
+/// The weather at one stage, worked out as far as it is the same for all members.
+#[derive(Debug, Clone, Copy)]
+pub struct Instant<'a> {
+    /// All channels.
+    pub row: &'a [f64],
+    sunlight: Sunlight,
+    heaven: Heaven,
+    wind: Wind,
+    /// North and east components of the direction the wind comes from.
+    wind_from: [f64; 2],
+}
+
+impl<'a> Instant<'a> {
+    /// Reads a forcing row.
+    #[must_use]
+    pub fn new(plan: &Plan, row: &'a [f64]) -> Self {
+        let from = row[channel::WIND_DIRECTION].to_radians();
+        Self {
+            row,
+            sunlight: Sunlight::new(row, plan.description.site.diffuse),
+            heaven: Heaven::new(&plan.description.site.sky, row),
+            wind: Wind::new(row[channel::WIND_SPEED]),
+            wind_from: [from.cos(), from.sin()],
+        }
+    }
+}
+
+/// The weather of all stages of a run.
+#[derive(Debug)]
+pub struct Weather<'a> {
+    instants: Vec<Instant<'a>>,
+    stages: usize,
+}
+
+impl<'a> Weather<'a> {
+    /// Reads a forcing.
+    #[must_use]
+    pub fn new(plan: &Plan, forcing: &Forcing<'a>) -> Self {
+        let stages = forcing.stages();
+        let instants = (0..forcing.steps() * stages)
+            .map(|k| Instant::new(plan, forcing.at(k / stages, k % stages)))
+            .collect();
+        Self { instants, stages }
+    }
+
+    /// Number of steps.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.instants.len() / self.stages
+    }
+
+    /// The weather at a stage of a step.
+    #[must_use]
+    pub fn at(&self, step: usize, stage: usize) -> &Instant<'a> {
+        &self.instants[step * self.stages + stage]
+    }
+}
 
 /// Numbers at a face.
 #[derive(Debug, Clone, Copy)]
@@ -24,8 +82,8 @@ pub struct FaceDrive<S: Real> {
     pub longwave: S,
     /// Temperature of the air, or the imposed temperature [degC].
     pub temperature: S,
-    /// State of the air for the film.
-    pub air: FilmAir<S>,
+    /// What the wind makes of the film.
+    pub forced: Forced<S>,
 }
 
 /// Numbers at all faces and outdoors.
@@ -40,71 +98,64 @@ pub struct Drive<S: Real> {
 }
 
 impl<S: Real> Drive<S> {
-    /// Evaluates a forcing row.
+    /// A place for the numbers of a building.
     #[must_use]
-    pub fn new(plan: &Plan, coefficients: &Coefficients<S>, numbers: &[S], row: &[f64]) -> Self {
-        let site = &plan.description.site;
-        let sunlight = Sunlight::new(row, site.diffuse);
-        let sky = sky_emission(&Values::new(numbers), &site.sky, coefficients.cloud, row);
-        let outdoor_air = S::constant(row[channel::AIR_TEMPERATURE]);
-        let wind = S::constant(row[channel::WIND_SPEED]);
-        let faces = coefficients.faces.iter().map(|face| {
-            let measured = face.irradiance.map(|channel| S::constant(row[channel]));
-            match &face.boundary {
-                Boundary::Outdoors(outdoors) => {
-                    let irradiance = measured
-                        .unwrap_or_else(|| sunlight.on(&outdoors.plane, coefficients.ground_reflectance));
-                    FaceDrive {
-                        solar: face.absorptance * irradiance,
-                        longwave: face.emissivity * incoming_longwave(outdoors, sky, outdoor_air),
-                        temperature: outdoor_air,
-                        air: outdoor_film(face, outdoors, row),
-                    }
-                }
-                Boundary::Imposed(imposed) => FaceDrive {
-                    temperature: imposed_temperature(imposed, row),
-                    ..FaceDrive::sheltered(face, measured)
-                },
-                Boundary::Zone | Boundary::Adiabatic => FaceDrive::sheltered(face, measured),
-            }
-        });
-        Self { faces: faces.collect(), outdoor_air, wind }
+    pub fn new(plan: &Plan) -> Self {
+        let zero = S::zero();
+        let rest = FaceDrive { solar: zero, longwave: zero, temperature: zero, forced: [zero; 2] };
+        Self { faces: vec![rest; plan.faces.len()], outdoor_air: zero, wind: zero }
     }
-}
 
-impl<S: Real> FaceDrive<S> {
-    /// A face out of the weather.
-    fn sheltered(face: &Face<S>, irradiance: Option<S>) -> Self {
-        Self {
-            solar: irradiance.map_or_else(S::zero, |irradiance| face.absorptance * irradiance),
-            longwave: S::zero(),
-            temperature: S::zero(),
-            air: FilmAir::still(face.upward),
+    /// Turns the weather into numbers at each face.
+    #[inline(always)]
+    pub fn update(&mut self, plan: &Plan, coefficients: &Coefficients<S>, numbers: &[S], now: &Instant<'_>) {
+        let site = &plan.description.site;
+        let sky = sky_emission(&Values::new(numbers), &site.sky, coefficients.cloud, &now.heaven);
+        self.outdoor_air = S::constant(now.row[channel::AIR_TEMPERATURE]);
+        self.wind = S::constant(now.wind.speed);
+        for (at, face) in self.faces.iter_mut().zip(&coefficients.faces) {
+            let measured = face.irradiance.map(
+                #[inline(always)]
+                |channel| S::constant(now.row[channel]),
+            );
+            if let Boundary::Outdoors(outdoors) = &face.boundary {
+                let irradiance = match measured {
+                    Some(irradiance) => irradiance,
+                    None => now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance),
+                };
+                at.solar = face.absorptance * irradiance;
+                at.longwave = face.emissivity * incoming_longwave(outdoors, sky, self.outdoor_air);
+                at.temperature = self.outdoor_air;
+                at.forced = forced(face, outdoors, now);
+            } else if let Some(irradiance) = measured {
+                at.solar = face.absorptance * irradiance;
+            }
+            if let Boundary::Imposed(imposed) = &face.boundary {
+                at.temperature = imposed_temperature(imposed, now.row);
+            }
         }
     }
 }
 
-/// `F_sky (beta E_sky + (1 - beta) E_air) + F_ground E_air`, beta = `sqrt(F_sky)`; the ground is at air temperature.
+/// `F_sky (beta E_sky + (1 - beta) E_air) + F_ground E_air`, `beta = sqrt(F_sky)`; the ground is at air temperature.
+#[inline(always)]
 fn incoming_longwave<S: Real>(outdoors: &Outdoors<S>, sky: S, air: S) -> S {
     let Some(emission) = &outdoors.emission else { return S::zero() };
     let from_air = emission.at(air).0;
-    let view = outdoors.plane.sky_view;
-    let to_sky = view * view.max(S::zero()).sqrt();
-    to_sky * sky + (S::one() - to_sky) * from_air
+    from_air + outdoors.to_sky * (sky - from_air)
 }
 
-fn outdoor_film<S: Real>(face: &Face<S>, outdoors: &Outdoors<S>, row: &[f64]) -> FilmAir<S> {
-    let from = row[channel::WIND_DIRECTION].to_radians();
-    let facing = outdoors.heading[0].scale(from.cos()) + outdoors.heading[1].scale(from.sin());
+#[inline(always)]
+fn forced<S: Real>(face: &Face<S>, outdoors: &Outdoors<S>, now: &Instant<'_>) -> Forced<S> {
+    let Some(film) = &face.film else { return [S::zero(); 2] };
+    let [north, east] = now.wind_from;
+    let facing = outdoors.heading[0].scale(north) + outdoors.heading[1].scale(east);
     let onto = S::constant(LEEWARD_COSINE).lt(facing);
     let flat = S::constant(FLAT).lt(face.upward.abs());
-    FilmAir {
-        upward: face.upward,
-        wind: outdoors.wind_factor.scale(row[channel::WIND_SPEED]),
-        windward: onto | flat,
-    }
+    film.forced(&now.wind, onto | flat)
 }
 
+#[inline(always)]
 fn imposed_temperature<S: Real>(imposed: &Imposed<S>, row: &[f64]) -> S {
     match imposed {
         Imposed::Channel(channel) => S::constant(row[*channel]),

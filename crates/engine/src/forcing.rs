@@ -56,7 +56,7 @@ impl<'a> Forcing<'a> {
     /// [`EngineError::Input`] when the length is not a multiple of `stages * channels`.
     pub fn new(values: &'a [f64], stages: usize, channels: usize) -> Result<Self, EngineError> {
         let row = stages * channels;
-        if row == 0 || values.len() % row != 0 {
+        if row == 0 || !values.len().is_multiple_of(row) {
             return Err(EngineError::Input(format!(
                 "forcing has {} values, expected a multiple of {stages} stages x {channels} channels",
                 values.len()

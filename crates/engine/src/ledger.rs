@@ -47,11 +47,13 @@ pub struct Power<S> {
 impl<S: Real> Power<S> {
     /// No heat.
     #[must_use]
+    #[inline(always)]
     pub fn none() -> Self {
         Self { into: [S::zero(); Flow::ALL.len()], turnover: S::zero() }
     }
 
     /// Books a flow.
+    #[inline(always)]
     pub fn book(&mut self, flow: Flow, power: S) {
         self.into[flow as usize] += power;
         self.turnover += power.abs();
@@ -80,6 +82,7 @@ impl<S: Real> Ledger<S> {
     }
 
     /// Books a step: heat into the building and its magnitude over the step [J], and what was stored.
+    #[inline(always)]
     pub fn book(&mut self, energy: &Power<S>, stored: S) {
         let mut total = S::zero();
         for (sum, part) in self.into.iter_mut().zip(energy.into) {

@@ -11,6 +11,7 @@ pub mod coefficients;
 pub mod conduction;
 pub mod convection;
 pub mod description;
+pub mod dispatch;
 pub mod drive;
 pub mod error;
 pub mod forcing;

@@ -2,6 +2,7 @@
 
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use crate::drive::Weather;
 use crate::error::EngineError;
 use crate::forcing::Forcing;
 use crate::ledger::Ledger;
@@ -87,28 +88,42 @@ pub fn march<S: Real>(
     watch: &Watch,
 ) -> Result<Run<S>, EngineError> {
     check(plan, numbers.len(), forcing, options)?;
+    march_in(plan, numbers, &Weather::new(plan, forcing), options, watch)
+}
+
+/// Runs a plan at a parameter vector in a weather that many runs share. What `march` checks must hold.
+pub(crate) fn march_in<S: Real>(
+    plan: &Plan,
+    numbers: &[S],
+    weather: &Weather<'_>,
+    options: &Options,
+    watch: &Watch,
+) -> Result<Run<S>, EngineError> {
     let mut stepper = Stepper::new(plan, numbers, options.scheme);
     let mut state = stepper.uniform(S::constant(options.initial));
-    let (cycles, settled) = warm_up(&mut stepper, &mut state, forcing, options, watch)?;
-    stepper.balance_faces(&mut state, forcing.at(0, 0))?;
-    let mut records = Vec::with_capacity(options.rows(forcing.steps()) * options.probes.len());
+    let (cycles, settled) = warm_up(&mut stepper, &mut state, weather, options, watch)?;
+    stepper.forget();
+    // The weather of the first stage stands for that of the start.
+    stepper.balance_faces(&mut state, weather.at(0, 0))?;
+    let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
     let mut ledger = Ledger::new();
     let mut record = |stepper: &Stepper<'_, S>, state: &State<S>| {
         records.extend(options.probes.iter().map(|probe| probe.read(plan, stepper, state)));
     };
-    for step in 0..=forcing.steps() {
+    for step in 0..=weather.steps() {
         // Row k is the state at the start of step `record_from + k * record_every`.
-        let due = step >= options.record_from && (step - options.record_from) % options.record_every == 0;
+        let due =
+            step >= options.record_from && (step - options.record_from).is_multiple_of(options.record_every);
         if due {
             record(&stepper, &state);
         }
-        if step == forcing.steps() {
+        if step == weather.steps() {
             break;
         }
         if watch.stop.load(Ordering::Relaxed) {
             return Err(EngineError::Interrupted);
         }
-        stepper.step(&mut state, forcing, step, options.dt, &mut ledger)?;
+        stepper.step(&mut state, weather, step, options.dt, &mut ledger)?;
     }
     Ok(Run { records, ledger, state, cycles, settled, iterations: stepper.iterations })
 }
@@ -117,7 +132,7 @@ pub fn march<S: Real>(
 fn warm_up<S: Real>(
     stepper: &mut Stepper<'_, S>,
     state: &mut State<S>,
-    forcing: &Forcing<'_>,
+    weather: &Weather<'_>,
     options: &Options,
     watch: &Watch,
 ) -> Result<(usize, S), EngineError> {
@@ -125,16 +140,15 @@ fn warm_up<S: Real>(
     let mut active = S::Mask::splat(true);
     let mut settled = S::zero();
     for cycle in 1..=warmup.max_cycles {
-        let before = state.clone();
         let mut next = state.clone();
         let mut unused = Ledger::new();
         for step in 0..warmup.steps {
             if watch.stop.load(Ordering::Relaxed) {
                 return Err(EngineError::Interrupted);
             }
-            stepper.step(&mut next, forcing, step, options.dt, &mut unused)?;
+            stepper.step(&mut next, weather, step, options.dt, &mut unused)?;
         }
-        let change = next.distance(&before);
+        let change = next.distance(state);
         state.take(active, &next);
         settled = S::select(active, change, settled);
         active = active & S::constant(warmup.tolerance).lt(change);
@@ -146,7 +160,12 @@ fn warm_up<S: Real>(
     Err(EngineError::NotSettled { cycles: warmup.max_cycles, residual, tolerance: warmup.tolerance })
 }
 
-fn check(plan: &Plan, numbers: usize, forcing: &Forcing<'_>, options: &Options) -> Result<(), EngineError> {
+pub(crate) fn check(
+    plan: &Plan,
+    numbers: usize,
+    forcing: &Forcing<'_>,
+    options: &Options,
+) -> Result<(), EngineError> {
     let fail = |text: String| Err(EngineError::Input(text));
     let stages = options.scheme.weights().len();
     if numbers != plan.description.parameters.len() {

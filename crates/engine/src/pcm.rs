@@ -24,6 +24,21 @@ pub struct PcmPoint<S> {
     pub potential: S,
 }
 
+impl<S: Real> PcmPoint<S> {
+    /// A point not yet evaluated.
+    pub fn zero() -> Self {
+        let zero = S::zero();
+        Self {
+            enthalpy: zero,
+            capacity: zero,
+            liquid_fraction: zero,
+            conductivity: zero,
+            conductivity_slope: zero,
+            potential: zero,
+        }
+    }
+}
+
 /// What a phase-change cell remembers between steps. Changes once per accepted step;
 /// both stages of a step read the memory as it stood at the step's start.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +57,7 @@ pub struct PcmCoefficients<S> {
 
 #[derive(Debug, Clone)]
 enum Law<S> {
-    Tanh { centre: S, width: S, latent_heat: S },
+    Tanh { centre: S, width: S, inverse_width: S, latent_heat: S },
     Table(Table<S>),
 }
 
@@ -84,6 +99,7 @@ impl<S: Real> PcmCoefficients<S> {
         let tanh = |latent_heat, melting_temperature, width| Law::Tanh {
             centre: values.get(melting_temperature),
             width,
+            inverse_width: S::one() / width,
             latent_heat: density[1] * values.get(latent_heat),
         };
         let law = match law {
@@ -114,9 +130,12 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     /// Properties at a temperature [degC].
+    #[inline(always)]
     pub fn at(&self, temperature: S, _memory: &PcmMemory<S>) -> PcmPoint<S> {
         let (enthalpy, capacity, fraction, fraction_slope) = match &self.law {
-            Law::Tanh { centre, width, latent_heat } => self.tanh(temperature, *centre, *width, *latent_heat),
+            Law::Tanh { centre, inverse_width, latent_heat, .. } => {
+                self.tanh(temperature - *centre, *inverse_width, *latent_heat)
+            }
             Law::Table(table) => table.at(temperature, self.volumetric_heat),
         };
         let molten = match &self.law {
@@ -142,10 +161,10 @@ impl<S: Real> PcmCoefficients<S> {
     /// The enthalpy whose derivative is the apparent capacity of the paper's eq. 2, relative to the melting temperature:
     /// `H = (rho c)_s (T-Tm) + f [rho_l L + D (T-Tm)]`, `D = (rho c)_l - (rho c)_s`,
     /// `f = 1/2 + 1/2 tanh((T-Tm)/w)`. One exponential serves all.
-    fn tanh(&self, temperature: S, centre: S, width: S, latent_heat: S) -> (S, S, S, S) {
-        let excess = temperature - centre;
-        let fraction = S::one() / (S::one() + (-(excess / width).scale(2.0)).exp());
-        let slope = (fraction * (S::one() - fraction)).scale(2.0) / width;
+    #[inline(always)]
+    fn tanh(&self, excess: S, inverse_width: S, latent_heat: S) -> (S, S, S, S) {
+        let fraction = S::one() / (S::one() + (excess * inverse_width).scale(-2.0).exp());
+        let slope = (fraction * (S::one() - fraction)).scale(2.0) * inverse_width;
         let step = self.volumetric_heat[1] - self.volumetric_heat[0];
         let jump = latent_heat + step * excess;
         let enthalpy = self.volumetric_heat[0] * excess + fraction * jump;
@@ -155,7 +174,9 @@ impl<S: Real> PcmCoefficients<S> {
 
     /// Keeps a Newton step from leaping over the steep part of the enthalpy curve: a step that crosses its
     /// inflection from beyond one half-width lands on the inflection, from where Newton converges monotonically.
-    pub fn limit(&self, from: S, to: S) -> S {
+    /// True where it was kept.
+    #[inline(always)]
+    pub fn limit(&self, from: S, to: S) -> (S, S::Mask) {
         let (centre, width) = match &self.law {
             Law::Tanh { centre, width, .. } => (*centre, *width),
             Law::Table(table) => table.middle(),
@@ -163,13 +184,22 @@ impl<S: Real> PcmCoefficients<S> {
         let before = from - centre;
         let after = to - centre;
         let crosses = (before * after).lt(S::zero());
-        let leaps = width.lt((after - before).abs());
-        S::select(crosses & leaps, centre, to)
+        let leaps = crosses & width.lt((after - before).abs());
+        (S::select(leaps, centre, to), leaps)
+    }
+
+    /// Half-width of the melting range [K].
+    pub fn width(&self) -> S {
+        match &self.law {
+            Law::Tanh { width, .. } => *width,
+            Law::Table(table) => table.middle().1,
+        }
     }
 }
 
 impl<S: Real> Table<S> {
     /// (enthalpy, capacity, liquid fraction, its slope), summed over clamped segments so that lanes need no lookup.
+    #[inline(always)]
     fn at(&self, temperature: S, volumetric_heat: [S; 2]) -> (S, S, S, S) {
         let read = temperature - self.shift;
         let (mut height, mut slope) = (S::zero(), S::zero());
@@ -197,6 +227,7 @@ impl<S: Real> Table<S> {
     }
 
     /// Integral of the liquid fraction over temperature [K], from the solidus.
+    #[inline(always)]
     fn molten(&self, temperature: S) -> S {
         let read = temperature - self.shift;
         let solid = self.curve(self.solidus);
@@ -211,11 +242,13 @@ impl<S: Real> Table<S> {
     }
 
     /// Specific enthalpy above the first point [J/kg] at an unshifted temperature.
+    #[inline(always)]
     fn curve(&self, temperature: f64) -> f64 {
         self.segments.iter().map(|segment| segment.at(temperature).0).sum()
     }
 
     /// Middle and half-width of the melting range.
+    #[inline(always)]
     fn middle(&self) -> (S, S) {
         let centre = S::constant(0.5 * (self.solidus + self.liquidus)) + self.shift;
         (centre, S::constant(0.5 * (self.liquidus - self.solidus)))
@@ -224,6 +257,7 @@ impl<S: Real> Table<S> {
 
 impl Segment {
     /// Rise of the segment up to a temperature and its slope there (zero outside).
+    #[inline(always)]
     fn at<S: Real>(&self, temperature: S) -> (S, S) {
         let raw = (temperature - S::constant(self.start)).scale(1.0 / self.length);
         let u = raw.max(S::zero()).min(S::one());
@@ -235,6 +269,7 @@ impl Segment {
     }
 
     /// Integral of `offset + rise` up to a temperature, over the part of the segment within a range.
+    #[inline(always)]
     fn integral<S: Real>(&self, temperature: S, offset: f64, range: [f64; 2]) -> S {
         let [low, high] = range.map(|end| ((end - self.start) / self.length).clamp(0.0, 1.0));
         let raw = (temperature - S::constant(self.start)).scale(1.0 / self.length);
@@ -242,6 +277,7 @@ impl Segment {
         self.antiderivative(u, offset) - self.antiderivative(S::constant(low), offset)
     }
 
+    #[inline(always)]
     fn antiderivative<S: Real>(&self, u: S, offset: f64) -> S {
         let cubic = S::constant(self.square / 3.0) + u.scale(self.cube / 4.0);
         (u * (S::constant(offset) + u * (S::constant(self.linear / 2.0) + u * cubic))).scale(self.length)

@@ -1,5 +1,7 @@
 //! The building compiled to flat arrays and indices: everything that does not depend on a parameter's value.
 
+use std::collections::BTreeSet;
+
 use crate::description::{Construction, Convection, Description, Facing, Material, Side, ZoneLongwave};
 use crate::error::EngineError;
 use crate::forcing::CLIMATE_CHANNELS;
@@ -20,8 +22,8 @@ pub struct Plan {
     pub zones: Vec<ZonePlan>,
     /// Number of finite volumes in all walls.
     pub n_cells: usize,
-    /// Number of zone faces and zone airs: the size of the dense room block.
-    pub n_dense: usize,
+    /// The room block: for each zone face and zone air, in the order of elimination, the later ones that it meets.
+    pub reach: Vec<Vec<usize>>,
 }
 
 /// A wall as a chain of cells between two faces.
@@ -42,11 +44,11 @@ pub struct WallPlan {
 /// How a face takes part in the solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceRole {
-    /// Unknown `row` of the dense block, in contact with a zone.
+    /// Unknown `row` of the room block, in contact with a zone.
     Zone {
         /// Index of the zone.
         zone: usize,
-        /// Row in the dense block.
+        /// Row in the room block.
         row: usize,
     },
     /// Eliminated inside its wall.
@@ -69,7 +71,7 @@ pub struct FacePlan {
 pub struct ZonePlan {
     /// Its faces, in the order of the surfaces.
     pub faces: Vec<FaceId>,
-    /// Row of its air in the dense block.
+    /// Row of its air in the room block.
     pub air_row: usize,
 }
 
@@ -88,22 +90,25 @@ impl Plan {
             first_cell += wall.cell_layers.len();
             walls.push(wall);
         }
-        let (faces, zones, n_dense) = number_unknowns(&description);
-        Ok(Self { description, walls, faces, zones, n_cells: first_cell, n_dense })
+        let (mut faces, mut zones) = name_unknowns(&description);
+        let reach = order_unknowns(&description, &mut faces, &mut zones);
+        Ok(Self { description, walls, faces, zones, n_cells: first_cell, reach })
     }
 
     /// The side that a face stands for.
     #[must_use]
+    #[inline(always)]
     pub fn side(&self, face: FaceId) -> &Side {
         let surface = &self.description.surfaces[face / 2];
-        if face % 2 == 0 { &surface.outside } else { &surface.inside }
+        if face.is_multiple_of(2) { &surface.outside } else { &surface.inside }
     }
 
-    /// Row of a zone face in the dense block.
+    /// Row of a zone face in the room block.
     ///
     /// # Panics
     /// When the face is not in a zone: a fault of the engine.
     #[must_use]
+    #[inline(always)]
     pub fn row(&self, face: FaceId) -> usize {
         match self.faces[face].role {
             FaceRole::Zone { row, .. } => row,
@@ -120,7 +125,7 @@ impl Plan {
     /// Name of a face for messages.
     #[must_use]
     pub fn face_name(&self, face: FaceId) -> String {
-        let side = if face % 2 == 0 { "outside" } else { "inside" };
+        let side = if face.is_multiple_of(2) { "outside" } else { "inside" };
         format!("surface {} ({side} face)", self.description.surfaces[face / 2].name)
     }
 }
@@ -154,6 +159,7 @@ impl WallPlan {
 
     /// Number of cells.
     #[must_use]
+    #[inline(always)]
     pub fn len(&self) -> usize {
         self.cell_layers.len()
     }
@@ -166,7 +172,7 @@ impl WallPlan {
 }
 
 /// Numbers the faces in contact with zones first, then the airs.
-fn number_unknowns(description: &Description) -> (Vec<FacePlan>, Vec<ZonePlan>, usize) {
+fn name_unknowns(description: &Description) -> (Vec<FacePlan>, Vec<ZonePlan>) {
     let mut zones: Vec<ZonePlan> =
         description.zones.iter().map(|_| ZonePlan { faces: Vec::new(), air_row: 0 }).collect();
     let mut faces = Vec::with_capacity(2 * description.surfaces.len());
@@ -187,7 +193,75 @@ fn number_unknowns(description: &Description) -> (Vec<FacePlan>, Vec<ZonePlan>, 
         zone.air_row = row;
         row += 1;
     }
-    (faces, zones, row)
+    (faces, zones)
+}
+
+/// Renumbers the unknowns of the room block in an order of elimination that keeps it sparse, always the one with the
+/// fewest neighbours next (minimum degree). Faces of different zones meet only through the walls between them.
+fn order_unknowns(
+    description: &Description,
+    faces: &mut [FacePlan],
+    zones: &mut [ZonePlan],
+) -> Vec<Vec<usize>> {
+    let mut meets = neighbours(description, faces, zones);
+    let n = meets.len();
+    let mut position = vec![usize::MAX; n];
+    let mut reach = Vec::with_capacity(n);
+    for next in 0..n {
+        let waiting = (0..n).filter(|&k| position[k] == usize::MAX);
+        let Some(chosen) = waiting.min_by_key(|&k| meets[k].len()) else { break };
+        position[chosen] = next;
+        let met = core::mem::take(&mut meets[chosen]);
+        // Elimination makes all that it meets meet each other.
+        for &k in &met {
+            meets[k].extend(met.iter().filter(|&&other| other != k));
+            meets[k].remove(&chosen);
+        }
+        reach.push(met);
+    }
+    for face in faces {
+        if let FaceRole::Zone { row, .. } = &mut face.role {
+            *row = position[*row];
+        }
+    }
+    for zone in zones {
+        zone.air_row = position[zone.air_row];
+    }
+    let placed = |met: BTreeSet<usize>| {
+        let mut rows: Vec<usize> = met.into_iter().map(|k| position[k]).collect();
+        rows.sort_unstable();
+        rows
+    };
+    reach.into_iter().map(placed).collect()
+}
+
+/// Which unknowns of the room block exchange heat directly.
+fn neighbours(description: &Description, faces: &[FacePlan], zones: &[ZonePlan]) -> Vec<BTreeSet<usize>> {
+    let row = |face: FaceId| match faces[face].role {
+        FaceRole::Zone { row, .. } => Some(row),
+        FaceRole::Local => None,
+    };
+    let unknowns = zones.iter().map(|zone| zone.faces.len() + 1).sum();
+    let mut meets = vec![BTreeSet::new(); unknowns];
+    let mut meet = |a: usize, b: usize| {
+        meets[a].insert(b);
+        meets[b].insert(a);
+    };
+    for (zone, definition) in zones.iter().zip(&description.zones) {
+        let rows: Vec<usize> = zone.faces.iter().filter_map(|&face| row(face)).collect();
+        for (i, &a) in rows.iter().enumerate() {
+            meet(a, zone.air_row);
+            if !matches!(definition.longwave, ZoneLongwave::None) {
+                rows[..i].iter().for_each(|&b| meet(a, b));
+            }
+        }
+    }
+    for wall in 0..description.surfaces.len() {
+        if let (Some(a), Some(b)) = (row(2 * wall), row(2 * wall + 1)) {
+            meet(a, b);
+        }
+    }
+    meets
 }
 
 /// Everything that indexing below relies on. The description language checks the same with better words.

@@ -32,6 +32,7 @@ pub enum Emission<S> {
 
 impl<S: Real> Emission<S> {
     /// (sigma T^4, its slope) [W/m2, W/(m2 K)].
+    #[inline(always)]
     pub fn at(&self, temperature: S) -> (S, S) {
         let kelvin = |t: S| t + S::constant(KELVIN);
         match self {
@@ -146,32 +147,59 @@ fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], n: usize) {
     }
 }
 
+/// What models of the sky need to know of the weather.
+#[derive(Debug, Clone, Copy)]
+pub struct Heaven {
+    /// Black emission at the air's temperature [W/m2].
+    black: f64,
+    /// Air temperature [K].
+    air: f64,
+    /// What the model multiplies: infrared, or its function of the dew point.
+    humidity: f64,
+    /// Cloud cover [tenths].
+    cloud: f64,
+}
+
+impl Heaven {
+    /// Reads a forcing row for a model.
+    #[must_use]
+    pub fn new(sky: &Sky, row: &[f64]) -> Self {
+        let air = row[channel::AIR_TEMPERATURE] + KELVIN;
+        let dew = row[channel::DEW_POINT];
+        let humidity = match sky {
+            Sky::Measured { .. } => row[channel::INFRARED],
+            Sky::Offset { .. } => 0.0,
+            Sky::ClarkAllen { .. } => Real::ln((dew + KELVIN) / 273.0),
+            Sky::MartinBerdahl { .. } => dew / 100.0,
+            Sky::Brunt { .. } => Real::sqrt(vapour_pressure(dew)),
+        };
+        Self { black: SIGMA * air.pow4(), air, humidity, cloud: row[channel::CLOUD_COVER] }
+    }
+}
+
 /// Downward emission of the sky on a horizontal plane [W/m2].
-pub fn sky_emission<S: Real>(values: &Values<'_, S>, sky: &Sky, cloud: [S; 3], row: &[f64]) -> S {
-    let air = row[channel::AIR_TEMPERATURE];
-    let black = SIGMA * Real::pow4(air + KELVIN);
-    let dew = row[channel::DEW_POINT];
+#[inline(always)]
+pub fn sky_emission<S: Real>(values: &Values<'_, S>, sky: &Sky, cloud: [S; 3], heaven: &Heaven) -> S {
+    let h = heaven.humidity;
     let emissivity = match sky {
-        Sky::Measured { scale } => return values.get(*scale).scale(row[channel::INFRARED]),
+        Sky::Measured { scale } => return values.get(*scale).scale(h),
         Sky::Offset { depression } => {
-            return (S::constant(air + KELVIN) - values.get(*depression)).pow4().scale(SIGMA);
+            return (S::constant(heaven.air) - values.get(*depression)).pow4().scale(SIGMA);
         }
-        Sky::ClarkAllen { a, b } => values.get(*a) + values.get(*b).scale(((dew + KELVIN) / 273.0).ln()),
+        Sky::ClarkAllen { a, b } | Sky::Brunt { a, b } => values.get(*a) + values.get(*b).scale(h),
         Sky::MartinBerdahl { a, b, c } => {
-            let d = dew / 100.0;
-            values.get(*a) + values.get(*b).scale(d) + values.get(*c).scale(d * d)
+            values.get(*a) + values.get(*b).scale(h) + values.get(*c).scale(h * h)
         }
-        Sky::Brunt { a, b } => values.get(*a) + values.get(*b).scale(vapour_pressure(dew).sqrt()),
     };
-    let n = row[channel::CLOUD_COVER];
+    let n = heaven.cloud;
     let clouds = S::one() + (cloud[0] + (cloud[1] + cloud[2].scale(n)).scale(n)).scale(n);
-    (emissivity * clouds).min(S::one()).scale(black)
+    (emissivity * clouds).min(S::one()).scale(heaven.black)
 }
 
 /// Vapour pressure [hPa] at a dew point [degC]: Magnus form, Alduchov & Eskridge (1996),
 /// J. Appl. Meteorol. 35, doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2.
 fn vapour_pressure(dew: f64) -> f64 {
-    6.1094 * (17.625 * dew / (243.04 + dew)).exp()
+    6.1094 * Real::exp(17.625 * dew / (243.04 + dew))
 }
 
 #[cfg(test)]

@@ -69,13 +69,16 @@ impl Sunlight {
 
     /// Irradiance on a plane [W/m2]: beam, diffuse and reflected from the ground.
     #[must_use]
+    #[inline(always)]
     pub fn on<S: Real>(&self, plane: &Plane<S>, ground_reflectance: S) -> S {
         let n = &plane.normal;
         let cosine =
             n[0].scale(self.direction[0]) + n[1].scale(self.direction[1]) + n[2].scale(self.direction[2]);
         let facing = cosine.max(S::zero());
-        let beam = facing.scale(self.direct_normal + self.circumsolar);
-        let diffuse = plane.sky_view.scale(self.isotropic) + plane.sin_tilt.scale(self.horizon);
+        let beam = facing.scale(self.direct_normal);
+        let diffuse = facing.scale(self.circumsolar)
+            + plane.sky_view.scale(self.isotropic)
+            + plane.sin_tilt.scale(self.horizon);
         let ground = (ground_reflectance * plane.ground_view).scale(self.global_horizontal);
         beam + diffuse.max(S::zero()) + ground
     }

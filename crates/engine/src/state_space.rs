@@ -3,7 +3,7 @@
 //! States are cell and air temperatures; faces hold no heat and are eliminated. Only models whose every law is
 //! linear and constant have such a form; the first law that is not is named.
 
-use crate::coefficients::{Boundary, Coefficients};
+use crate::coefficients::{Boundary, Coefficients, Face};
 use crate::conduction::Chain;
 use crate::convection::Film;
 use crate::description::{Infiltration, Material};
@@ -69,16 +69,16 @@ fn require_linear(plan: &Plan, numbers: &[f64], coefficients: &Coefficients<f64>
     }
     for (index, face) in coefficients.faces.iter().enumerate() {
         let name = plan.face_name(index);
-        if face.film.as_ref().is_some_and(|film| !matches!(film, Film::Constant(_))) {
+        if face.film.as_ref().is_some_and(|film| film.constant().is_none()) {
             return refuse(format!("convection at {name}"), "use a constant coefficient");
         }
-        if let Boundary::Outdoors(outdoors) = &face.boundary {
-            if matches!(outdoors.emission, Some(Emission::Exact)) {
-                return refuse(
-                    format!("long-wave exchange at {name}"),
-                    "use `longwave: {kind: linearised, ...}`",
-                );
-            }
+        if let Boundary::Outdoors(outdoors) = &face.boundary
+            && matches!(outdoors.emission, Some(Emission::Exact))
+        {
+            return refuse(
+                format!("long-wave exchange at {name}"),
+                "use `longwave: {kind: linearised, ...}`",
+            );
         }
     }
     for (zone, definition) in coefficients.zones.iter().zip(&plan.description.zones) {
@@ -97,6 +97,11 @@ fn require_linear(plan: &Plan, numbers: &[f64], coefficients: &Coefficients<f64>
         }
     }
     Ok(())
+}
+
+/// Coefficient of a constant film over plane area, zero where there is none [W/(m2 K)].
+fn film_coefficient(face: &Face<f64>) -> f64 {
+    face.film.as_ref().and_then(Film::constant).map_or(0.0, |h| h * face.area_factor)
 }
 
 /// Nodes: cells, airs, then faces. Rows are heat balances [W].
@@ -177,11 +182,8 @@ impl<'a> Network<'a> {
         let area = self.coefficients.walls[index / 2].area;
         let node = self.face(index);
         let surface = &self.plan.description.surfaces[index / 2].name;
-        let side = if index % 2 == 0 { "outside" } else { "inside" };
-        let film = match face.film {
-            Some(Film::Constant(h)) => h * face.area_factor * area,
-            _ => 0.0,
-        };
+        let side = if index.is_multiple_of(2) { "outside" } else { "inside" };
+        let film = film_coefficient(face) * area;
         if face.irradiance.is_some() || matches!(face.boundary, Boundary::Outdoors(_)) {
             self.drive(node, &format!("{surface}.{side}_irradiance"), area * face.absorptance);
         }
@@ -192,8 +194,7 @@ impl<'a> Network<'a> {
                 if let Some(emission) = &outdoors.emission {
                     // Linear emission: offset + slope T for face and air alike.
                     let (offset, slope) = (emission.at(0.0).0, emission.at(0.0).1);
-                    let view = outdoors.plane.sky_view;
-                    let (to_sky, gain) = (view * view.max(0.0).sqrt(), area * face.emissivity);
+                    let (to_sky, gain) = (outdoors.to_sky, area * face.emissivity);
                     self.add(node, node, -gain * slope);
                     self.drive(node, "sky_emission", gain * to_sky);
                     self.drive(node, "outdoor_air_temperature", gain * (1.0 - to_sky) * slope);
@@ -233,9 +234,7 @@ impl<'a> Network<'a> {
         self.capacity[air] = numbers.capacity;
         for (i, &index) in faces.iter().enumerate() {
             let face = &self.coefficients.faces[index];
-            if let Some(Film::Constant(h)) = face.film {
-                self.couple(self.face(index), air, h * face.area_factor * numbers.areas[i]);
-            }
+            self.couple(self.face(index), air, film_coefficient(face) * numbers.areas[i]);
             for (j, &other) in faces.iter().enumerate().skip(i + 1) {
                 if let Some(&exchange) = numbers.exchange.get(i * faces.len() + j) {
                     let slope = numbers.emission.at(0.0).1;

@@ -7,9 +7,8 @@
 
 use crate::coefficients::{Boundary, Coefficients, Face, Matter};
 use crate::conduction::{Chain, Iterate, Start, StorageRule};
-use crate::drive::{Drive, FaceDrive};
+use crate::drive::{Drive, FaceDrive, Instant, Weather};
 use crate::error::EngineError;
-use crate::forcing::Forcing;
 use crate::ledger::{Flow, Ledger, Power};
 use crate::pcm::PcmMemory;
 use crate::plan::{FaceId, FaceRole, Plan};
@@ -18,6 +17,12 @@ use crate::real::{Mask, Real};
 /// Root of the sum of squared changes in the last Newton iteration [K]. Convergence is quadratic: the error left is
 /// of the order of its square.
 const TOLERANCE: f64 = 1e-6;
+/// A solution is taken without another iteration to confirm it where the next change is foreseen to be below this [K].
+const FORESEEN: f64 = 1e-8;
+/// What is foreseen holds only for changes below this share of the melting range, and of 1 K.
+const FORESIGHT: f64 = 0.05;
+/// Iterations after which every third goes half-way only, lest it runs in a circle.
+const PATIENCE: usize = 20;
 /// Iterations before a step counts as unsolvable.
 const MAX_ITERATIONS: usize = 60;
 /// Temperature differences between a zone and outdoors are rounded off within this [K] where they drive an air flow.
@@ -77,27 +82,53 @@ pub struct State<S> {
 }
 
 impl<S: Real> State<S> {
+    #[inline(always)]
+    fn view(&self) -> Temperatures<'_, S> {
+        Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
+    }
+
     /// Takes over the lanes of `other` where the mask is true.
+    #[inline(always)]
     pub fn take(&mut self, mask: S::Mask, other: &Self) {
-        let blend = |mine: &mut [S], theirs: &[S]| {
-            for (a, b) in mine.iter_mut().zip(theirs) {
-                *a = S::select(mask, *b, *a);
-            }
-        };
-        blend(&mut self.cells, &other.cells);
-        blend(&mut self.enthalpy, &other.enthalpy);
-        blend(&mut self.faces, &other.faces);
-        blend(&mut self.air, &other.air);
+        blend(mask, &mut self.cells, &other.cells);
+        blend(mask, &mut self.enthalpy, &other.enthalpy);
+        blend(mask, &mut self.faces, &other.faces);
+        blend(mask, &mut self.air, &other.air);
         for (a, b) in self.memory.iter_mut().zip(&other.memory) {
             a.liquid_fraction = S::select(mask, b.liquid_fraction, a.liquid_fraction);
         }
     }
 
     /// Largest change of a cell or an air against another state [K].
+    #[inline(always)]
     pub fn distance(&self, other: &Self) -> S {
         let pairs = self.cells.iter().zip(&other.cells).chain(self.air.iter().zip(&other.air));
         pairs.fold(S::zero(), |largest, (a, b)| largest.max((*a - *b).abs()))
     }
+}
+
+/// Takes over `theirs` where the mask is true.
+#[inline(always)]
+fn blend<S: Real>(mask: S::Mask, mine: &mut [S], theirs: &[S]) {
+    for (a, &b) in mine.iter_mut().zip(theirs) {
+        *a = S::select(mask, b, *a);
+    }
+}
+
+/// Sum of squared differences.
+#[inline(always)]
+fn squared_distance<S: Real>(new: &[S], old: &[S]) -> S {
+    let mut sum = S::zero();
+    for (&a, &b) in new.iter().zip(old) {
+        sum += (a - b) * (a - b);
+    }
+    sum
+}
+
+/// `from + ratio (to - from)`.
+#[inline(always)]
+fn line<S: Real>(from: S, to: S, ratio: f64) -> S {
+    from + (to - from).scale(ratio)
 }
 
 /// A straight line `offset + slope T`.
@@ -108,13 +139,16 @@ struct Line<S> {
 }
 
 impl<S: Real> Line<S> {
+    #[inline(always)]
     fn zero() -> Self {
         Self { offset: S::zero(), slope: S::zero() }
     }
     /// The tangent of a function with a value and a slope at a point.
+    #[inline(always)]
     fn tangent(value: S, slope: S, at: S) -> Self {
         Self { offset: value - slope * at, slope }
     }
+    #[inline(always)]
     fn at(&self, x: S) -> S {
         self.offset + self.slope * x
     }
@@ -145,13 +179,29 @@ pub struct Stepper<'a, S: Real> {
     laws: Vec<FaceLaws<S>>,
     /// Air entering each zone: heat, of `T_outdoor - T_air` [W].
     inflow: Vec<Line<S>>,
-    block: RoomBlock<S>,
+    drive: Drive<S>,
+    /// Heat of the walls into their faces at faces of 0 degC [W/m2].
+    sources: Vec<[S; 2]>,
+    /// Faces outside the zones, as functions of those inside.
+    locals: Vec<LocalFaces<S>>,
+    block: RoomBlock<'a, S>,
     iterate: Unknowns<S>,
     solved: Unknowns<S>,
+    /// Start of the step before, from which the next is guessed.
+    previous: Option<Unknowns<S>>,
+    /// Square of the changes that can be foreseen [K2].
+    foresight: S,
     held: Vec<S>,
     held_air: Vec<S>,
     /// Newton iterations since the start.
     pub iterations: usize,
+}
+
+/// Temperatures of an iterate or a state, to read.
+struct Temperatures<'a, S> {
+    cells: &'a [S],
+    faces: &'a [S],
+    air: &'a [S],
 }
 
 /// Temperatures of one iterate.
@@ -162,12 +212,53 @@ struct Unknowns<S> {
     air: Vec<S>,
 }
 
+impl<S: Real> Unknowns<S> {
+    #[inline(always)]
+    fn view(&self) -> Temperatures<'_, S> {
+        Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
+    }
+
+    /// `from + ratio (to - from)`, without leaping over a melting range.
+    #[inline(always)]
+    fn extrapolate(
+        &mut self,
+        plan: &Plan,
+        coefficients: &Coefficients<S>,
+        from: &Temperatures<'_, S>,
+        to: &Temperatures<'_, S>,
+        ratio: f64,
+    ) {
+        for ((guess, &from), &to) in self.faces.iter_mut().zip(from.faces).zip(to.faces) {
+            *guess = line(from, to, ratio);
+        }
+        for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
+            *guess = line(from, to, ratio);
+        }
+        for (wall, numbers) in plan.walls.iter().zip(&coefficients.walls).filter(|(wall, _)| wall.nonlinear) {
+            for (i, cell) in numbers.cells.iter().enumerate() {
+                let k = wall.first_cell + i;
+                let guess = line(from.cells[k], to.cells[k], ratio);
+                self.cells[k] = match cell.matter {
+                    Matter::Pcm(law) => numbers.pcm[law].limit(to.cells[k], guess).0,
+                    Matter::Solid { .. } => guess,
+                };
+            }
+        }
+    }
+}
+
 impl<'a, S: Real> Stepper<'a, S> {
     /// Prepares a plan with a parameter vector.
     #[must_use]
     pub fn new(plan: &'a Plan, numbers: &'a [S], scheme: Scheme) -> Self {
         let coefficients = Coefficients::new(plan, numbers);
         let chains = coefficients.walls.iter().map(Chain::new).collect();
+        let foresight = coefficients
+            .walls
+            .iter()
+            .flat_map(|wall| &wall.pcm)
+            .fold(S::one(), |narrowest, law| narrowest.min(law.width()));
+        let foresight = foresight.scale(FORESIGHT);
         let zeros = |n: usize| vec![S::zero(); n];
         let unknowns = Unknowns {
             cells: zeros(plan.n_cells),
@@ -184,9 +275,14 @@ impl<'a, S: Real> Stepper<'a, S> {
             factored: f64::NAN,
             laws: vec![FaceLaws { film: Line::zero(), emission: Line::zero() }; plan.faces.len()],
             inflow: vec![Line::zero(); plan.zones.len()],
-            block: RoomBlock::new(plan.n_dense),
+            drive: Drive::new(plan),
+            sources: vec![[S::zero(); 2]; plan.walls.len()],
+            locals: vec![LocalFaces::None; plan.walls.len()],
+            block: RoomBlock::new(&plan.reach),
             iterate: unknowns.clone(),
             solved: unknowns,
+            previous: None,
+            foresight: foresight * foresight,
             held: zeros(plan.n_cells),
             held_air: zeros(plan.zones.len()),
             iterations: 0,
@@ -226,25 +322,27 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Brings the faces of a state into balance with a forcing row: a stage so short that nothing is stored.
+    /// Brings the faces of a state into balance with the weather: a stage so short that nothing is stored.
     ///
     /// # Errors
     /// [`EngineError::NotConverged`].
-    pub fn balance_faces(&mut self, state: &mut State<S>, row: &[f64]) -> Result<(), EngineError> {
+    pub fn balance_faces(&mut self, state: &mut State<S>, now: &Instant<'_>) -> Result<(), EngineError> {
         const INSTANT: f64 = 1e-3;
-        let drive = Drive::new(self.plan, &self.coefficients, self.numbers, row);
-        self.held.copy_from_slice(&state.enthalpy);
-        self.held_air.copy_from_slice(&state.air);
-        self.begin(state);
-        self.solve_stage(&drive, state, INSTANT, (0, 0))?;
-        state.faces.copy_from_slice(&self.solved.faces);
-        Ok(())
+        S::vectorised(
+            #[inline(always)]
+            || {
+                self.drive.update(self.plan, &self.coefficients, self.numbers, now);
+                self.start(state, 0.0);
+                self.solve_stage(state, INSTANT, (0, 0))?;
+                state.faces.copy_from_slice(&self.solved.faces);
+                Ok(())
+            },
+        )
     }
 
-    fn begin(&mut self, state: &State<S>) {
-        self.iterate.cells.copy_from_slice(&state.cells);
-        self.iterate.faces.copy_from_slice(&state.faces);
-        self.iterate.air.copy_from_slice(&state.air);
+    /// Forgets the step before: what comes next does not follow it.
+    pub fn forget(&mut self) {
+        self.previous = None;
     }
 
     /// One step of length `dt` [s].
@@ -254,30 +352,68 @@ impl<'a, S: Real> Stepper<'a, S> {
     pub fn step(
         &mut self,
         state: &mut State<S>,
-        forcing: &Forcing<'_>,
+        weather: &Weather<'_>,
         step: usize,
         dt: f64,
         ledger: &mut Ledger<S>,
     ) -> Result<(), EngineError> {
-        let diagonal = self.scheme.diagonal();
-        self.begin(state);
-        self.held.copy_from_slice(&state.enthalpy);
-        self.held_air.copy_from_slice(&state.air);
-        let mut energy = Power::none();
-        for (stage, &weight) in self.scheme.weights().iter().enumerate() {
-            let drive = Drive::new(self.plan, &self.coefficients, self.numbers, forcing.at(step, stage));
-            self.solve_stage(&drive, state, diagonal * dt, (step, stage + 1))?;
-            self.accumulate(&drive, weight * dt, &mut energy);
-            if stage + 1 < self.scheme.weights().len() {
-                self.hold_over(state, (1.0 - diagonal) / diagonal);
-            }
-        }
-        self.accept(state, &energy, ledger);
-        Ok(())
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let (diagonal, weights) = (self.scheme.diagonal(), self.scheme.weights());
+                self.start(state, diagonal);
+                self.remember(state);
+                let mut energy = Power::none();
+                for (stage, &weight) in weights.iter().enumerate() {
+                    if stage > 0 {
+                        self.hold_over(state, diagonal);
+                    }
+                    self.drive.update(self.plan, &self.coefficients, self.numbers, weather.at(step, stage));
+                    self.solve_stage(state, diagonal * dt, (step, stage + 1))?;
+                    self.accumulate(weight * dt, &mut energy);
+                }
+                self.accept(state, &energy, ledger);
+                Ok(())
+            },
+        )
     }
 
-    /// What the next stage starts from: `H_n + ratio (H_stage - H_n)`.
-    fn hold_over(&mut self, state: &State<S>, ratio: f64) {
+    /// Sets out from a state; guesses that it goes on as in the step before for a share of a step.
+    #[inline(always)]
+    fn start(&mut self, state: &State<S>, share: f64) {
+        self.held.copy_from_slice(&state.enthalpy);
+        self.held_air.copy_from_slice(&state.air);
+        match &self.previous {
+            Some(previous) if share > 0.0 => {
+                self.iterate.extrapolate(
+                    self.plan,
+                    &self.coefficients,
+                    &previous.view(),
+                    &state.view(),
+                    1.0 + share,
+                );
+            }
+            _ => {
+                self.iterate.cells.copy_from_slice(&state.cells);
+                self.iterate.faces.copy_from_slice(&state.faces);
+                self.iterate.air.copy_from_slice(&state.air);
+            }
+        }
+    }
+
+    /// Keeps the start of this step for the guess of the next.
+    #[inline(always)]
+    fn remember(&mut self, state: &State<S>) {
+        let previous = self.previous.get_or_insert_with(|| self.solved.clone());
+        previous.cells.copy_from_slice(&state.cells);
+        previous.faces.copy_from_slice(&state.faces);
+        previous.air.copy_from_slice(&state.air);
+    }
+
+    /// What the second stage starts from: `H_n + (1 - g)/g (H_stage - H_n)`; its end is guessed on a straight line.
+    #[inline(always)]
+    fn hold_over(&mut self, state: &State<S>, diagonal: f64) {
+        let ratio = (1.0 - diagonal) / diagonal;
         for (wall, chain) in self.plan.walls.iter().zip(&self.chains) {
             for i in 0..wall.len() {
                 let k = wall.first_cell + i;
@@ -288,10 +424,17 @@ impl<'a, S: Real> Stepper<'a, S> {
         for (zone, held) in self.held_air.iter_mut().enumerate() {
             *held = state.air[zone] + (self.solved.air[zone] - state.air[zone]).scale(ratio);
         }
-        self.iterate.clone_from(&self.solved);
+        self.iterate.extrapolate(
+            self.plan,
+            &self.coefficients,
+            &state.view(),
+            &self.solved.view(),
+            1.0 / diagonal,
+        );
     }
 
     /// Takes the last stage as the new state and books the step.
+    #[inline(always)]
     fn accept(&mut self, state: &mut State<S>, energy: &Power<S>, ledger: &mut Ledger<S>) {
         let mut stored = S::zero();
         for ((wall, chain), numbers) in self.plan.walls.iter().zip(&self.chains).zip(&self.coefficients.walls)
@@ -325,66 +468,64 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// it in the chains and laws, so that every flux can be booked at the value the last solve used.
     ///
     /// A lane that has converged keeps its iterate: later solves repeat its last one bit for bit.
+    #[inline(always)]
     fn solve_stage(
         &mut self,
-        drive: &Drive<S>,
         state: &State<S>,
         length: f64,
         place: (usize, usize),
     ) -> Result<(), EngineError> {
         self.prepare_linear_walls(length);
-        let mut sources = self.linear_sources();
         let mut active = S::Mask::splat(true);
         let mut polish = S::DERIVATIVES;
-        for _ in 0..MAX_ITERATIONS {
+        // Square of the change before this one; zero where it says nothing of the next.
+        let mut before = S::zero();
+        for iteration in 0..MAX_ITERATIONS {
             self.iterations += 1;
-            self.linearise_walls(state, length, &mut sources);
-            self.linearise_faces(drive);
-            self.solve_linear(drive, &sources, length);
+            self.linearise_walls(state, length);
+            self.linearise_faces();
+            self.solve_linear(length);
             let change = self.change();
-            active = active & !change.lt(S::constant(TOLERANCE * TOLERANCE));
+            active = active & !self.settled(change, before);
             if active.any() {
-                self.advance(active);
-            } else {
-                if !polish {
-                    self.finish_linear_walls();
-                    return Ok(());
-                }
+                let limited = self.advance(active, iteration);
+                before = S::select(limited, S::zero(), change);
+            } else if polish {
                 polish = false;
-                self.advance(S::Mask::splat(true));
+                self.advance(S::Mask::splat(true), 0);
+            } else {
+                self.finish_linear_walls();
+                return Ok(());
             }
         }
         Err(self.not_converged(active, place))
     }
 
-    /// Factors the walls of constant properties, once per stage length.
+    /// Where the changes (squared) are small, or the next is foreseen to be: Newton's iteration squares them.
+    #[inline(always)]
+    fn settled(&self, change: S, before: S) -> S::Mask {
+        let small = change.lt(S::constant(TOLERANCE * TOLERANCE));
+        // e2 = e1 (e1/e0)^2, in squares.
+        let foreseen = (change * change * change).lt((before * before).scale(FORESEEN * FORESEEN));
+        small | (foreseen & change.lt(self.foresight))
+    }
+
+    /// Factors the walls of constant properties, once per stage length, and gathers what they hold.
+    #[inline(always)]
     fn prepare_linear_walls(&mut self, length: f64) {
-        if self.factored.to_bits() == length.to_bits() {
-            return;
-        }
-        for (w, wall) in self.plan.walls.iter().enumerate() {
-            if !wall.nonlinear {
+        let factor = self.factored.to_bits() != length.to_bits();
+        for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear) {
+            if factor {
                 self.responses[w] = self.chains[w].factor(&self.coefficients.walls[w], length);
             }
+            let cells = wall.first_cell..wall.first_cell + wall.len();
+            self.sources[w] = self.chains[w].sources(&self.held[cells]);
         }
         self.factored = length;
     }
 
-    fn linear_sources(&mut self) -> Vec<[S; 2]> {
-        let held = &self.held;
-        let walls = self.plan.walls.iter().zip(self.chains.iter_mut());
-        walls
-            .map(|(wall, chain)| {
-                if wall.nonlinear {
-                    [S::zero(); 2]
-                } else {
-                    chain.sources(&held[wall.first_cell..wall.first_cell + wall.len()])
-                }
-            })
-            .collect()
-    }
-
-    fn linearise_walls(&mut self, state: &State<S>, length: f64, sources: &mut [[S; 2]]) {
+    #[inline(always)]
+    fn linearise_walls(&mut self, state: &State<S>, length: f64) {
         for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| wall.nonlinear) {
             let cells = wall.first_cell..wall.first_cell + wall.len();
             let numbers = &self.coefficients.walls[w];
@@ -399,59 +540,55 @@ impl<'a, S: Real> Stepper<'a, S> {
             };
             self.chains[w].linearise(numbers, &at, &start, self.scheme.storage_rule());
             self.responses[w] = self.chains[w].factor(numbers, length);
-            sources[w] = self.chains[w].sources(&self.held[cells]);
+            self.sources[w] = self.chains[w].sources(&self.held[cells]);
         }
     }
 
-    fn linearise_faces(&mut self, drive: &Drive<S>) {
+    #[inline(always)]
+    fn linearise_faces(&mut self) {
         for (index, face) in self.coefficients.faces.iter().enumerate() {
             let temperature = self.iterate.faces[index];
             let (air, emission) = match self.plan.faces[index].role {
                 FaceRole::Zone { zone, .. } => {
                     (self.iterate.air[zone], Some(self.coefficients.zones[zone].emission))
                 }
-                FaceRole::Local => (drive.faces[index].temperature, outdoor_emission(face)),
+                FaceRole::Local => (self.drive.faces[index].temperature, outdoor_emission(face)),
             };
-            self.laws[index] = FaceLaws {
-                film: face.film.as_ref().map_or_else(Line::zero, |film| {
-                    let flux = film.flux(temperature - air, &drive.faces[index].air);
-                    Line::tangent(
-                        flux.flux * face.area_factor,
-                        flux.slope * face.area_factor,
-                        temperature - air,
-                    )
-                }),
-                emission: emission.map_or_else(Line::zero, |law| {
-                    let (value, slope) = law.at(temperature);
-                    Line::tangent(value, slope, temperature)
-                }),
-            };
+            let laws = &mut self.laws[index];
+            if let Some(film) = &face.film {
+                let difference = temperature - air;
+                let flux = film.flux(difference, &self.drive.faces[index].forced);
+                let (flux, slope) = (flux.flux * face.area_factor, flux.slope * face.area_factor);
+                laws.film = Line::tangent(flux, slope, difference);
+            }
+            if let Some(law) = emission {
+                let (value, slope) = law.at(temperature);
+                laws.emission = Line::tangent(value, slope, temperature);
+            }
         }
         for (zone, numbers) in self.coefficients.zones.iter().enumerate() {
-            self.inflow[zone] = infiltration(numbers, drive, self.iterate.air[zone]);
+            self.inflow[zone] = infiltration(numbers, &self.drive, self.iterate.air[zone]);
         }
     }
 
     /// Solves the linearised building into `solved` (cells of nonlinear walls included).
-    fn solve_linear(&mut self, drive: &Drive<S>, sources: &[[S; 2]], length: f64) {
-        let mut locals = Vec::with_capacity(self.plan.walls.len());
+    #[inline(always)]
+    fn solve_linear(&mut self, length: f64) {
         self.block.clear();
-        for (w, &source) in sources.iter().enumerate() {
-            let local = self.eliminate_wall(drive, w, source);
-            locals.push(local);
+        for w in 0..self.plan.walls.len() {
+            self.locals[w] = self.eliminate_wall(w);
         }
         for zone in 0..self.plan.zones.len() {
-            self.assemble_zone(drive, zone, length);
+            self.assemble_zone(zone, length);
         }
         self.block.solve();
         for (zone, plan) in self.plan.zones.iter().enumerate() {
             self.solved.air[zone] = self.block.right[plan.air_row];
         }
-        for (w, local) in locals.into_iter().enumerate() {
-            let faces = self.resolve_faces(w, local);
+        for (w, wall) in self.plan.walls.iter().enumerate() {
+            let faces = self.resolve_faces(w, self.locals[w]);
             self.solved.faces[2 * w] = faces[0];
             self.solved.faces[2 * w + 1] = faces[1];
-            let wall = &self.plan.walls[w];
             if wall.nonlinear {
                 let cells = wall.first_cell..wall.first_cell + wall.len();
                 self.chains[w].temperatures(faces, &mut self.solved.cells[cells]);
@@ -460,13 +597,14 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// Enters a wall into the room block, its local faces eliminated.
-    fn eliminate_wall(&mut self, drive: &Drive<S>, w: usize, source: [S; 2]) -> LocalFaces<S> {
-        let response = self.responses[w];
+    #[inline(always)]
+    fn eliminate_wall(&mut self, w: usize) -> LocalFaces<S> {
+        let (source, response) = (self.sources[w], self.responses[w]);
         let area = self.coefficients.walls[w].area;
         let roles = [self.plan.faces[2 * w].role, self.plan.faces[2 * w + 1].role];
         match roles {
             [FaceRole::Local, FaceRole::Local] => {
-                let [outer, inner] = [0, 1].map(|e| self.local_balance(drive, 2 * w + e));
+                let (outer, inner) = (self.local_balance(2 * w), self.local_balance(2 * w + 1));
                 LocalFaces::Both(solve_pair(outer, inner, source, response))
             }
             [FaceRole::Zone { row: outer, .. }, FaceRole::Zone { row: inner, .. }] => {
@@ -477,22 +615,17 @@ impl<'a, S: Real> Stepper<'a, S> {
                 }
                 LocalFaces::None
             }
-            [FaceRole::Zone { row, .. }, FaceRole::Local] => self.eliminate_one(drive, w, 0, row, source),
-            [FaceRole::Local, FaceRole::Zone { row, .. }] => self.eliminate_one(drive, w, 1, row, source),
+            [FaceRole::Zone { row, .. }, FaceRole::Local] => self.eliminate_one(w, 0, row),
+            [FaceRole::Local, FaceRole::Zone { row, .. }] => self.eliminate_one(w, 1, row),
         }
     }
 
     /// A wall whose face `e` is in a zone and whose other face is local.
-    fn eliminate_one(
-        &mut self,
-        drive: &Drive<S>,
-        w: usize,
-        e: usize,
-        row: usize,
-        source: [S; 2],
-    ) -> LocalFaces<S> {
+    #[inline(always)]
+    fn eliminate_one(&mut self, w: usize, e: usize, row: usize) -> LocalFaces<S> {
+        let source = self.sources[w];
         let (response, area, o) = (self.responses[w], self.coefficients.walls[w].area, 1 - e);
-        let line = match self.local_balance(drive, 2 * w + o) {
+        let line = match self.local_balance(2 * w + o) {
             LocalBalance::Fixed(value) => Line { offset: value, slope: S::zero() },
             LocalBalance::Gain(gain) => {
                 let inverse = S::one() / (gain.slope - response[o][o]);
@@ -505,9 +638,10 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// Heat from outside into a local face, `offset - slope T`, or the temperature it is held at.
-    fn local_balance(&self, drive: &Drive<S>, index: FaceId) -> LocalBalance<S> {
+    #[inline(always)]
+    fn local_balance(&self, index: FaceId) -> LocalBalance<S> {
         let face = &self.coefficients.faces[index];
-        let (at, laws) = (&drive.faces[index], &self.laws[index]);
+        let (at, laws) = (&self.drive.faces[index], &self.laws[index]);
         match face.boundary {
             Boundary::Imposed(_) if face.film.is_none() => LocalBalance::Fixed(at.temperature),
             Boundary::Adiabatic => LocalBalance::Gain(Line { offset: at.solar, slope: S::zero() }),
@@ -521,7 +655,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// Convection, exchange between faces, infiltration and storage of a zone.
-    fn assemble_zone(&mut self, drive: &Drive<S>, zone: usize, length: f64) {
+    #[inline(always)]
+    fn assemble_zone(&mut self, zone: usize, length: f64) {
         let plan = self.plan;
         let numbers = &self.coefficients.zones[zone];
         let (air, faces) = (plan.zones[zone].air_row, &plan.zones[zone].faces);
@@ -531,78 +666,108 @@ impl<'a, S: Real> Stepper<'a, S> {
             let film = self.laws[index].film;
             let (conductance, offset) = (numbers.areas[i] * film.slope, numbers.areas[i] * film.offset);
             self.block.couple(row, air, conductance);
-            self.block.right[row] += numbers.areas[i] * drive.faces[index].solar - offset;
+            self.block.right[row] += numbers.areas[i] * self.drive.faces[index].solar - offset;
             self.block.right[air] += offset;
             if numbers.exchange.is_empty() {
                 continue;
             }
+            let (mine, sum) = (self.laws[index].emission, numbers.exchange_sums[i]);
+            self.block.add(row, row, sum * mine.slope);
+            let mut arriving = -(sum * mine.offset);
             for (j, &other) in faces.iter().enumerate().filter(|(j, _)| *j != i) {
-                let exchange = numbers.exchange[i * n + j];
-                let (mine, theirs) = (self.laws[index].emission, self.laws[other].emission);
-                self.block.add(row, row, exchange * mine.slope);
+                let (exchange, theirs) = (numbers.exchange[i * n + j], self.laws[other].emission);
                 self.block.add(row, plan.row(other), -(exchange * theirs.slope));
-                self.block.right[row] += exchange * (theirs.offset - mine.offset);
+                arriving += exchange * theirs.offset;
             }
+            self.block.right[row] += arriving;
         }
         let inflow = self.inflow[zone];
         let storage = numbers.capacity.scale(1.0 / length);
         self.block.add(air, air, storage + inflow.slope);
         self.block.right[air] +=
-            storage * self.held_air[zone] + inflow.offset + inflow.slope * drive.outdoor_air;
+            storage * self.held_air[zone] + inflow.offset + inflow.slope * self.drive.outdoor_air;
     }
 
+    /// Solution at a face in a zone.
+    #[inline(always)]
+    fn zone_face(&self, index: FaceId) -> S {
+        self.block.right[self.plan.row(index)]
+    }
+
+    #[inline(always)]
     fn resolve_faces(&self, w: usize, local: LocalFaces<S>) -> [S; 2] {
-        let dense = |e: usize| self.block.right[self.plan.row(2 * w + e)];
         match local {
             LocalFaces::Both(faces) => faces,
-            LocalFaces::None => [dense(0), dense(1)],
-            LocalFaces::One { side: 0, line } => [line.at(dense(1)), dense(1)],
-            LocalFaces::One { line, .. } => [dense(0), line.at(dense(0))],
+            LocalFaces::None => [self.zone_face(2 * w), self.zone_face(2 * w + 1)],
+            LocalFaces::One { side: 0, line } => {
+                let inner = self.zone_face(2 * w + 1);
+                [line.at(inner), inner]
+            }
+            LocalFaces::One { line, .. } => {
+                let outer = self.zone_face(2 * w);
+                [outer, line.at(outer)]
+            }
         }
     }
 
     /// Sum of the squared changes of the iterate, by lane [K2]. Not a number when any part of it is not one.
+    #[inline(always)]
     fn change(&self) -> S {
-        let mut sum = S::zero();
-        let mut compare = |new: &[S], old: &[S]| {
-            for (a, b) in new.iter().zip(old) {
-                let change = *a - *b;
-                sum += change * change;
-            }
-        };
-        compare(&self.solved.faces, &self.iterate.faces);
-        compare(&self.solved.air, &self.iterate.air);
+        let mut sum = squared_distance(&self.solved.faces, &self.iterate.faces)
+            + squared_distance(&self.solved.air, &self.iterate.air);
         for wall in self.plan.walls.iter().filter(|wall| wall.nonlinear) {
             let cells = wall.first_cell..wall.first_cell + wall.len();
-            compare(&self.solved.cells[cells.clone()], &self.iterate.cells[cells]);
+            sum += squared_distance(&self.solved.cells[cells.clone()], &self.iterate.cells[cells]);
         }
         sum
     }
 
     /// Moves the iterate of the active lanes to the solution, limited where a melting range would be leapt over.
-    fn advance(&mut self, active: S::Mask) {
-        let take = |new: &[S], old: &mut [S]| {
-            for (a, b) in new.iter().zip(old) {
-                *b = S::select(active, *a, *b);
-            }
-        };
-        take(&self.solved.faces, &mut self.iterate.faces);
-        take(&self.solved.air, &mut self.iterate.air);
+    /// True where it was limited.
+    #[inline(always)]
+    fn advance(&mut self, active: S::Mask, iteration: usize) -> S::Mask {
+        if iteration >= PATIENCE && iteration.is_multiple_of(3) {
+            self.hold_back();
+        }
+        // The apparent capacity is a constant of the step: no curve to leap over.
+        let curved = self.scheme.storage_rule() == StorageRule::Enthalpy;
+        let mut limited = S::Mask::splat(false);
+        blend(active, &mut self.iterate.faces, &self.solved.faces);
+        blend(active, &mut self.iterate.air, &self.solved.air);
         for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| wall.nonlinear) {
             let numbers = &self.coefficients.walls[w];
             for (i, cell) in numbers.cells.iter().enumerate() {
                 let k = wall.first_cell + i;
                 let (old, new) = (self.iterate.cells[k], self.solved.cells[k]);
                 let target = match cell.matter {
-                    Matter::Pcm(law) => numbers.pcm[law].limit(old, new),
-                    Matter::Solid { .. } => new,
+                    Matter::Pcm(law) if curved => {
+                        let (target, leaps) = numbers.pcm[law].limit(old, new);
+                        limited = limited | leaps;
+                        target
+                    }
+                    Matter::Pcm(_) | Matter::Solid { .. } => new,
                 };
                 self.iterate.cells[k] = S::select(active, target, old);
             }
         }
+        limited
+    }
+
+    /// Halves the step that Newton's iteration takes: it then leaves a cycle.
+    #[cold]
+    fn hold_back(&mut self) {
+        let halve = |new: &mut [S], old: &[S]| {
+            for (a, &b) in new.iter_mut().zip(old) {
+                *a = line(b, *a, 0.5);
+            }
+        };
+        halve(&mut self.solved.faces, &self.iterate.faces);
+        halve(&mut self.solved.air, &self.iterate.air);
+        halve(&mut self.solved.cells, &self.iterate.cells);
     }
 
     /// Cell temperatures of the walls whose cells Newton did not need.
+    #[inline(always)]
     fn finish_linear_walls(&mut self) {
         for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear) {
             let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
@@ -612,50 +777,58 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// Adds the stage's heat to the step's, at the values of the last linear solve.
-    fn accumulate(&self, drive: &Drive<S>, duration: f64, energy: &mut Power<S>) {
-        let mut book = |flow: Flow, power: S| energy.book(flow, power.scale(duration));
+    #[inline(always)]
+    fn accumulate(&self, duration: f64, energy: &mut Power<S>) {
         for (index, face) in self.coefficients.faces.iter().enumerate() {
             let area = self.coefficients.walls[index / 2].area;
-            let (at, laws) = (&drive.faces[index], &self.laws[index]);
+            let (at, laws) = (&self.drive.faces[index], &self.laws[index]);
             let temperature = self.solved.faces[index];
             if face.irradiance.is_some() || matches!(face.boundary, Boundary::Outdoors(_)) {
-                book(Flow::Solar, area * at.solar);
+                energy.book(Flow::Solar, (area * at.solar).scale(duration));
             }
             match &face.boundary {
                 Boundary::Outdoors(outdoors) => {
-                    book(Flow::Convection, -(area * laws.film.at(temperature - at.temperature)));
+                    let power = -(area * laws.film.at(temperature - at.temperature));
+                    energy.book(Flow::Convection, power.scale(duration));
                     if outdoors.emission.is_some() {
                         let net = at.longwave - face.emissivity * laws.emission.at(temperature);
-                        book(Flow::Longwave, area * net);
+                        energy.book(Flow::Longwave, (area * net).scale(duration));
                     }
                 }
-                Boundary::Imposed(_) => book(Flow::Boundary, area * self.boundary_heat(index, at)),
+                Boundary::Imposed(_) => {
+                    let power = area * self.boundary_heat(index, at);
+                    energy.book(Flow::Boundary, power.scale(duration));
+                }
                 Boundary::Zone | Boundary::Adiabatic => {}
             }
         }
         for (zone, inflow) in self.inflow.iter().enumerate() {
-            book(Flow::Infiltration, inflow.at(drive.outdoor_air - self.solved.air[zone]));
+            let power = inflow.at(self.drive.outdoor_air - self.solved.air[zone]);
+            energy.book(Flow::Infiltration, power.scale(duration));
         }
     }
 
     /// Heat from an imposed temperature into its wall [W/m2].
+    #[inline(always)]
     fn boundary_heat(&self, index: FaceId, at: &FaceDrive<S>) -> S {
         if self.coefficients.faces[index].film.is_some() {
             return -self.laws[index].film.at(self.solved.faces[index] - at.temperature);
         }
         let flux = self.face_flux(index);
-        if index % 2 == 0 { flux } else { -flux }
+        if index.is_multiple_of(2) { flux } else { -flux }
     }
 
     /// Conduction through a face at the end of the last stage [W/m2], positive towards the inside.
     #[must_use]
+    #[inline(always)]
     pub fn face_flux(&self, index: FaceId) -> S {
-        let link = if index % 2 == 0 { 0 } else { self.plan.walls[index / 2].len() };
+        let link = if index.is_multiple_of(2) { 0 } else { self.plan.walls[index / 2].len() };
         self.link_flux(index / 2, link)
     }
 
     /// Conduction along a link of a wall at the end of the last stage [W/m2], positive towards the inside.
     #[must_use]
+    #[inline(always)]
     pub fn link_flux(&self, w: usize, link: usize) -> S {
         let wall = &self.plan.walls[w];
         let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
@@ -701,6 +874,7 @@ impl<'a, S: Real> Stepper<'a, S> {
 }
 
 /// The emission law of a face that looks outdoors.
+#[inline(always)]
 fn outdoor_emission<S: Real>(face: &Face<S>) -> Option<crate::radiation::Emission<S>> {
     match &face.boundary {
         Boundary::Outdoors(outdoors) => outdoors.emission,
@@ -709,6 +883,7 @@ fn outdoor_emission<S: Real>(face: &Face<S>) -> Option<crate::radiation::Emissio
 }
 
 /// Heat of entering air, `C (n0 + n1 |d| + n2 V)/3600 d`, `d = T_outdoor - T_air`, as its tangent.
+#[inline(always)]
 fn infiltration<S: Real>(zone: &crate::coefficients::Zone<S>, drive: &Drive<S>, air: S) -> Line<S> {
     let d = drive.outdoor_air - air;
     let [constant, temperature, wind] = zone.infiltration;
@@ -726,6 +901,17 @@ enum LocalBalance<S> {
     Gain(Line<S>),
 }
 
+impl<S: Real> LocalBalance<S> {
+    /// Gains of the face's own temperature and the other one's, and the right-hand side.
+    #[inline(always)]
+    fn equation(self, e: usize, source: [S; 2], response: [[S; 2]; 2]) -> ([S; 2], S) {
+        match self {
+            Self::Fixed(value) => ([S::one(), S::zero()], value),
+            Self::Gain(gain) => ([gain.slope - response[e][e], -response[e][1 - e]], source[e] + gain.offset),
+        }
+    }
+}
+
 /// The local faces of a wall after its elimination.
 #[derive(Debug, Clone, Copy)]
 enum LocalFaces<S> {
@@ -739,47 +925,47 @@ enum LocalFaces<S> {
 }
 
 /// Both faces of a wall that touches no zone.
+#[inline(always)]
 fn solve_pair<S: Real>(
     outer: LocalBalance<S>,
     inner: LocalBalance<S>,
     source: [S; 2],
     response: [[S; 2]; 2],
 ) -> [S; 2] {
-    let equation = |balance: LocalBalance<S>, e: usize| match balance {
-        LocalBalance::Fixed(value) => ([S::one(), S::zero()], value),
-        LocalBalance::Gain(gain) => {
-            ([gain.slope - response[e][e], -response[e][1 - e]], source[e] + gain.offset)
-        }
-    };
-    let ([a, b], f) = equation(outer, 0);
-    let ([d, c], g) = equation(inner, 1);
+    let ([a, b], f) = outer.equation(0, source, response);
+    let ([d, c], g) = inner.equation(1, source, response);
     let determinant = a * d - b * c;
     [(f * d - b * g) / determinant, (a * g - c * f) / determinant]
 }
 
-/// The dense system of zone faces and airs. Its matrix is an M-matrix: no pivoting.
+/// The system of zone faces and airs. Its matrix is an M-matrix: no pivoting.
 #[derive(Debug)]
-struct RoomBlock<S> {
-    size: usize,
+struct RoomBlock<'a, S> {
+    /// For each row the later ones that it meets, see [`Plan::reach`].
+    reach: &'a [Vec<usize>],
     matrix: Vec<S>,
     right: Vec<S>,
 }
 
-impl<S: Real> RoomBlock<S> {
-    fn new(size: usize) -> Self {
-        Self { size, matrix: vec![S::zero(); size * size], right: vec![S::zero(); size] }
+impl<'a, S: Real> RoomBlock<'a, S> {
+    fn new(reach: &'a [Vec<usize>]) -> Self {
+        let size = reach.len();
+        Self { reach, matrix: vec![S::zero(); size * size], right: vec![S::zero(); size] }
     }
 
+    #[inline(always)]
     fn clear(&mut self) {
         self.matrix.fill(S::zero());
         self.right.fill(S::zero());
     }
 
+    #[inline(always)]
     fn add(&mut self, row: usize, column: usize, value: S) {
-        self.matrix[row * self.size + column] += value;
+        self.matrix[row * self.reach.len() + column] += value;
     }
 
     /// A conductance between two unknowns.
+    #[inline(always)]
     fn couple(&mut self, a: usize, b: usize, conductance: S) {
         self.add(a, a, conductance);
         self.add(b, b, conductance);
@@ -787,29 +973,32 @@ impl<S: Real> RoomBlock<S> {
         self.add(b, a, -conductance);
     }
 
-    /// Gaussian elimination; the solution replaces the right-hand side.
+    /// Gaussian elimination of what is not zero; the solution replaces the right-hand side.
+    #[inline(always)]
     fn solve(&mut self) {
-        let n = self.size;
-        for k in 0..n {
+        let n = self.reach.len();
+        for (k, reach) in self.reach.iter().enumerate() {
             let (upper, lower) = self.matrix.split_at_mut((k + 1) * n);
-            let pivot = &upper[k * n..];
+            let pivot = &mut upper[k * n..];
             let inverse = S::one() / pivot[k];
+            pivot[k] = inverse;
             let known = self.right[k];
-            for (i, row) in lower.chunks_exact_mut(n).enumerate() {
+            for &i in reach {
+                let row = &mut lower[(i - k - 1) * n..(i - k) * n];
                 let factor = row[k] * inverse;
-                for (a, p) in row[k + 1..].iter_mut().zip(&pivot[k + 1..]) {
-                    *a = *a - factor * *p;
+                for &j in reach {
+                    row[j] = row[j] - factor * pivot[j];
                 }
-                self.right[k + 1 + i] = self.right[k + 1 + i] - factor * known;
+                self.right[i] = self.right[i] - factor * known;
             }
         }
-        for k in (0..n).rev() {
+        for (k, reach) in self.reach.iter().enumerate().rev() {
             let row = &self.matrix[k * n..(k + 1) * n];
             let mut sum = self.right[k];
-            for (a, x) in row[k + 1..].iter().zip(&self.right[k + 1..]) {
-                sum = sum - *a * *x;
+            for &j in reach {
+                sum = sum - row[j] * self.right[j];
             }
-            self.right[k] = sum / row[k];
+            self.right[k] = sum * row[k];
         }
     }
 }
