@@ -363,6 +363,36 @@ CASES = {
         ("sensors.joint", "first on line 13"),
     ),
     "a tab": Refused("step: 30min", "\tstep: 30min", "\tstep", ("no YAML", "indentation")),
+    "a number in the place of bounds": Refused(
+        "materials.brick.conductivity:",
+        "materials.brick.conductivity: 0.6",
+        "conductivity: 0.6",
+        ("found: 0.6", "a mapping", "write {low: , high: }"),
+    ),
+    "a list in the place of bounds": Refused(
+        "materials.brick.conductivity:",
+        "materials.brick.conductivity: [0.3, 1.2]",
+        "[0.3, 1.2]",
+        ("found: [0.3, 1.2]", "Write {low: 0.3, high: 1.2}"),
+    ),
+    "a number in the place of a time zone": Refused(
+        MEASURED + "  timezone: UTC+1",
+        MEASURED + "  timezone: 1",
+        "timezone: 1\n",
+        ("measurements.timezone", "found: '1'", "UTC+4"),
+    ),
+    "a building in the place of a study": Refused(
+        STUDY,
+        BUILDING,
+        "name: Test wall",
+        ("found: a building", "expected: a study", "your-own-wall.md"),
+    ),
+    "too short to identify on": Refused(
+        IDENTIFIED,
+        '["2023-03-02 00:00", "2023-03-02 00:20"]',
+        "identification:\n",
+        ("4 parameters cannot be found from 2 measured values", "a longer period"),
+    ),
     # --- the building, through the study
     "negative thickness": Refused(
         "thickness: 0.06",
@@ -479,6 +509,10 @@ def twice(table: pd.DataFrame, column: str) -> None:
     table.loc[300, column] = str(table[column].iloc[299])
 
 
+def code(table: pd.DataFrame, column: str) -> None:
+    table.loc[300:302, column] = -9999.0
+
+
 TABLES: dict[str, tuple[Callable[[pd.DataFrame, str], None], str, tuple[str, ...]]] = {
     "NaN in the weather": (gap, "air", ("logger.csv:302", "air_temperature has no value", "fill_gaps: 2h")),
     "NaN in a boundary": (gap, "room", ("logger.csv:302", "room has no value", "fill_gaps: 2h")),
@@ -488,6 +522,7 @@ TABLES: dict[str, tuple[Callable[[pd.DataFrame, str], None], str, tuple[str, ...
         ("study.yaml:4: climate.measured", "line 302", "'error'", "`missing`"),
     ),
     "words in a sensor": (words, "core", ("study.yaml:14: sensors.core.column", "line 302", "'error'")),
+    "a code in a sensor": (code, "core", ("study.yaml:14: sensors.core.column", "-9999", "missing: [-9999]")),
     "dates of America": (american, "time", ("logger.csv:2", "'03/01/2023 00:00'", "time_format")),
     "a stamp twice": (twice, "time", ("2023-03-03 01:50",)),
     "a dead sensor that is masked": (
@@ -555,3 +590,30 @@ def test_gaps_in_what_drives_the_model_are_filled_on_request(
     # What is compared is never filled, and what was missing is named.
     assert study.measurements.data["core"].isna().sum() == 3
     assert {s.channel for s in study.quality if s.kind == "missing"} >= {"room", "core"}
+
+
+def test_a_code_that_is_named_is_no_value(bench: Bench) -> None:
+    from mascarin.study import Study
+
+    table = pd.read_csv(bench.table)
+    code(table, "core")
+    table.to_csv(bench.table, index=False)
+    bench.edit(MEASURED, MEASURED + "  missing: [-9999]\n")
+    assert Study(bench.study).measurements.data["core"].isna().sum() == 3
+
+
+def test_an_irradiance_in_kilowatts_is_asked_about(bench: Bench) -> None:
+    from mascarin.study import Study
+
+    table = pd.read_csv(bench.table)
+    table["sun"] /= 1000.0
+    table.to_csv(bench.table, index=False)
+    with pytest.warns(UserWarning, match=r"irradiance sun is 0\.\d+ W/m2 at most; is it kW/m2"):
+        Study(bench.study)
+
+
+def test_a_bare_number_is_seconds(bench: Bench) -> None:
+    from mascarin.study import Study
+
+    bench.edit("step: 30min", "step: 1800")
+    assert Study(bench.study).simulation.step_seconds == 1800.0

@@ -415,7 +415,8 @@ def _separator(path: Path, skip_lines: int) -> str:
     best = max(counts, key=lambda mark: counts[mark])
     if counts[best] == 0:
         raise InputError(
-            f"{path.name}: no separator found in the header {header.strip()[:80]!r}; state separator."
+            f"{path.name}: no separator found in the header {header.strip()[:40]!r}, expected the names of "
+            "columns; state separator, or skip_lines if the header stands further down."
         )
     return best
 

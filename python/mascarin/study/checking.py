@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Final
 
 from mascarin.errors import InputError, did_you_mean
@@ -12,11 +13,16 @@ from mascarin.validation.observation import PERIODS, require_comparable
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.model import Building
     from mascarin.study.pipeline import Study
 
 #: A sensor that repeats itself over more than this part of the identification is not fitted to.
 _MOST_DEAD: Final = 0.5
 _DEAD: Final = ("stuck", "forward_filled")
+#: Measured temperatures of a building lie between these. [degC]
+_TEMPERATURES: Final = (-100.0, 200.0)
+#: An irradiance that never exceeds this may be in kW/m2. [W/m2]
+_DARK: Final = 2.0
 
 
 def check(study: Study) -> None:
@@ -36,6 +42,7 @@ def check(study: Study) -> None:
     _periods(study)
     _alive(study)
     _runs(study)
+    _sensible(study)
 
 
 def _names(study: Study) -> None:
@@ -151,3 +158,37 @@ def _runs(study: Study) -> None:
             study.whole(name)
             if variant.identify:
                 study.problem(name)
+
+
+def _sensible(study: Study) -> None:
+    """Refuse temperatures that are codes; ask about irradiances that look like kW/m2."""
+    import numpy as np
+
+    low, high = _TEMPERATURES
+    observation = study.observation
+    for s, name in enumerate(observation.names):
+        if study.simulation.outputs[s].unit != "degC":
+            continue
+        measured = observation.measured[:, s]
+        outside = np.flatnonzero((measured < low) | (measured > high))
+        if outside.size:
+            value = measured[outside[0]]
+            with study.places.blame("sensors", name, "column"):
+                raise InputError(
+                    f"found {value:g} at {observation.times[outside[0]]:%Y-%m-%d %H:%M} ({outside.size} such "
+                    f"values), expected a temperature from {low:g} to {high:g} degC; if it stands for no "
+                    f"value write missing: [{value:g}] in measurements, else mask: [out_of_range] in quality"
+                )
+    for name in _irradiances(study.building):
+        highest = float(np.nanmax(study.measurements.series(name)))
+        if 0.0 < highest < _DARK:
+            warnings.warn(
+                f"{study.measurements.file}: the irradiance {name} is {highest:g} W/m2 at most; is it kW/m2?",
+                stacklevel=2,
+            )
+
+
+def _irradiances(building: Building) -> list[str]:
+    """Measured columns that are irradiances."""
+    sides = [side for surface in building.surfaces.values() for side in (surface.outside, surface.inside)]
+    return list(dict.fromkeys(side.irradiance for side in sides if side.irradiance is not None))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from mascarin.errors import InputError
 from mascarin.model.names import Name
@@ -28,7 +28,12 @@ def _duration(text: str) -> str:
     return text
 
 
-def _timezone(text: str) -> str:
+def _seconds(given: Any) -> Any:
+    """A bare number is a number of seconds."""
+    return f"{given}s" if isinstance(given, int | float) and not isinstance(given, bool) else given
+
+
+def _timezone(text: object) -> object:
     """A time zone that exists."""
     from mascarin.climate.timezones import parse_timezone
 
@@ -41,11 +46,22 @@ def _timezone(text: str) -> str:
     return text
 
 
+def _bounds(given: Any) -> Any:
+    """Two numbers are bounds that were meant, and are to be written as such."""
+    if isinstance(given, list) and len(given) == 2:
+        raise problem(str(given), "a mapping", f"Write {{low: {given[0]}, high: {given[1]}}}.")
+    if isinstance(given, int | float):
+        raise problem(
+            str(given), "a mapping", "A value belongs into the building; write {low: , high: } here."
+        )
+    return given
+
+
 #: A local time, ISO 8601, with or without an offset.
 Time = str
 Span = tuple[Time, Time]
-Duration = Annotated[str, AfterValidator(_duration)]
-TimeZone = Annotated[str, AfterValidator(_timezone)]
+Duration = Annotated[str, BeforeValidator(_seconds), AfterValidator(_duration)]
+TimeZone = Annotated[str, BeforeValidator(_timezone)]
 Columns = str | tuple[str, ...] | dict[str, Any]
 
 #: Names that the results give to models and metrics, so that no variant may bear them.
@@ -187,10 +203,14 @@ class Free(Part):
     )
 
 
+#: What is known of a parameter; nothing for the usual.
+Stated = Annotated[Free | None, BeforeValidator(_bounds)]
+
+
 class IdentificationPlan(Part):
     """Which parameters to identify, and how."""
 
-    parameters: dict[str, Free | None] = Field(
+    parameters: dict[str, Stated] = Field(
         min_length=1, description="Path -> what is known of it; nothing after the colon for the usual"
     )
     method: Literal["least-squares", "hooke-jeeves"] = Field("least-squares", description="Optimiser")
@@ -254,7 +274,7 @@ class Variant(Part):
         description="Whether it may become the fitted model: of all candidates and the building as "
         "described, the one with the lowest cost on the identification period does",
     )
-    parameters: dict[str, Free | None] = Field(
+    parameters: dict[str, Stated] = Field(
         default_factory=dict,
         description="Path -> bounds of what it adds to the identification; what it has not is left out",
     )
@@ -292,6 +312,14 @@ class StudyFile(Part):
     identification: IdentificationPlan = Field(description="Which parameters to identify")
     reference: Reference | None = Field(None, description="Numbers of a publication, shown as a scale")
     variants: dict[str, Variant] = Field(default_factory=dict, description="Other model choices")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_building(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "surfaces" in data and "building" not in data:
+            expected = "a study: building, climate, measurements, sensors, periods, identification"
+            insist(fault((), "a building", expected, "A study names a building; see docs/your-own-wall.md."))
+        return data
 
     @model_validator(mode="after")
     def _named(self) -> Self:
