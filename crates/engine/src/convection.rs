@@ -189,6 +189,15 @@ impl<S: Real> Film<S> {
         }
     }
 
+    /// What is left of the film's wind part where no wind blows: its constant.
+    pub fn still(&self) -> Forced<S> {
+        match &self.law {
+            Law::Constant(_) | Law::Blend { .. } | Law::Tarp { .. } | Law::Mowitt { .. } => [S::zero(); 2],
+            Law::LinearWind { constant, .. } => [*constant; 2],
+            Law::Power([up, down]) => [up.constant, down.constant],
+        }
+    }
+
     /// Heat flow at `d = T_face - T_air` [K].
     #[inline(always)]
     pub fn flux(&self, d: S, forced: &Forced<S>) -> FilmFlux<S> {

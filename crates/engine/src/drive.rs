@@ -1,7 +1,7 @@
 //! What acts on the building at one instant: forcing turned into numbers at each face.
 
 use crate::coefficients::{Boundary, Coefficients, Face, Imposed, Outdoors};
-use crate::convection::{Forced, Wind};
+use crate::convection::{Film, Forced, Wind};
 use crate::forcing::{Forcing, channel};
 use crate::parameters::Values;
 use crate::plan::Plan;
@@ -98,12 +98,15 @@ pub struct Drive<S: Real> {
 }
 
 impl<S: Real> Drive<S> {
-    /// A place for the numbers of a building.
+    /// A place for the numbers of a building, in still air.
     #[must_use]
-    pub fn new(plan: &Plan) -> Self {
+    pub fn new(coefficients: &Coefficients<S>) -> Self {
         let zero = S::zero();
-        let rest = FaceDrive { solar: zero, longwave: zero, temperature: zero, forced: [zero; 2] };
-        Self { faces: vec![rest; plan.faces.len()], outdoor_air: zero, wind: zero }
+        let faces = coefficients.faces.iter().map(|face| {
+            let forced = face.film.as_ref().map_or([zero; 2], Film::still);
+            FaceDrive { solar: zero, longwave: zero, temperature: zero, forced }
+        });
+        Self { faces: faces.collect(), outdoor_air: zero, wind: zero }
     }
 
     /// Turns the weather into numbers at each face.

@@ -265,6 +265,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             faces: zeros(plan.faces.len()),
             air: zeros(plan.zones.len()),
         };
+        let drive = Drive::new(&coefficients);
         Self {
             plan,
             coefficients,
@@ -275,7 +276,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             factored: f64::NAN,
             laws: vec![FaceLaws { film: Line::zero(), emission: Line::zero() }; plan.faces.len()],
             inflow: vec![Line::zero(); plan.zones.len()],
-            drive: Drive::new(plan),
+            drive,
             sources: vec![[S::zero(); 2]; plan.walls.len()],
             locals: vec![LocalFaces::None; plan.walls.len()],
             block: RoomBlock::new(&plan.reach),

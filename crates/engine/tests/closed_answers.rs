@@ -156,15 +156,25 @@ fn stefan_one_phase() {
     assert!(relative(melted, 0.8144) < 3e-3, "{melted} melted, expected 0.8144");
 }
 
-/// A zone behind a resistance: `T = T1 + (T0 - T1) e^(-t/tau)`.
+/// A zone behind a resistance: `T = T1 + (T0 - T1) e^(-t/tau)`. Every film that makes 4 W/(m2 K) in still air serves.
 #[test]
 fn lumped_zone() {
+    step_response(|b| b.film(4.0));
+    step_response(|b| Convection::LinearWind {
+        constant: b.number("convection.constant", 4.0),
+        wind: b.number("convection.wind", 3.0),
+    });
+    step_response(|b| b.power([4.0, 0.0, 0.3, 0.0, 1.0], [4.0, 0.0, 0.3, 0.0, 1.0]));
+    step_response(|b| b.power([0.0, 4.0, 0.0, 0.0, 1.0], [0.0, 4.0, 0.0, 0.0, 1.0]));
+}
+
+fn step_response(film: impl Fn(&mut Builder) -> Convection) {
     let mut b = Builder::new();
     let measured = b.channel("outer");
     let barrier = b.resistance("barrier", 0.5);
     let wall = b.construction("wall", &[(barrier, 0.0, 0)]);
     let zone = b.zone("room", 30.0, 0.7, ZoneLongwave::None);
-    let (film_out, film_in) = (b.film(20.0), b.film(4.0));
+    let (film_out, film_in) = (b.film(20.0), film(&mut b));
     let inside = b.inside(zone, film_in, 0.9);
     b.surface(
         "wall",
@@ -178,6 +188,7 @@ fn lumped_zone() {
     let rows = forcing(&plan, Scheme::Sdirk2, steps, dt, |_, row| {
         set(row, 0, 35.0);
         row[channel::AIR_TEMPERATURE] = 10.0;
+        row[channel::WIND_SPEED] = 7.0;
     });
     let result = run(&plan, &rows, &options(Scheme::Sdirk2, dt, vec![Probe::AirTemperature { zone: 0 }]));
     let pressure = 101_325.0 * (1.0 - 2.25577e-5 * 55.0_f64).powf(5.25588);
