@@ -76,8 +76,9 @@ class Progress:
         Parameters
         ----------
         done, total : float
-            Work done and work in all, in any common unit; a total of 0 means that nobody knows it. The first call may be above zero
-            (work found done by an earlier run): the remaining time counts only what is done here.
+            Work done and work in all, in any common unit; a total of 0 means that nobody knows it. The
+            first call may be above zero (work found done by an earlier run): the remaining time counts only
+            what is done here.
         note : str, optional
             A few words shown behind the numbers, such as the best cost so far.
         """
