@@ -128,6 +128,7 @@ class Simulation:
                 scheme,
                 self._description.channels,
                 measurements,
+                limits=_boundary_limits(building),
             ),
             dtype=np.float64,
         )
@@ -536,6 +537,16 @@ def _initial(given: object) -> float | None:
     if isinstance(given, (int, float)) and not isinstance(given, bool) and -100.0 < given < 200.0:
         return float(given)
     raise InputError(f"initial: found {given!r}, expected 'repeat' or a temperature in degC")
+
+
+def _boundary_limits(building: Building) -> dict[str, tuple[float, float]]:
+    """What measured columns that drive a building can be at all, by what each is used for."""
+    from mascarin.climate import IRRADIANCES, TEMPERATURES
+
+    sides = [side for surface in building.surfaces.values() for side in surface.sides]
+    temperatures = {side.measured: TEMPERATURES for side in sides if side.measured is not None}
+    irradiances = {side.irradiance: IRRADIANCES for side in sides if side.irradiance is not None}
+    return temperatures | irradiances
 
 
 def _finite(forcing: Array, channels: Sequence[str], building: Building) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from datetime import UTC, datetime, timedelta, timezone, tzinfo
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
 
 from mascarin.errors import InputError, did_you_mean
@@ -17,6 +17,10 @@ _WANTED = (
     "expected an IANA name such as 'Europe/Paris' or 'Indian/Reunion', "
     "or a fixed offset such as 'UTC+4' or 'UTC-07:00'"
 )
+
+
+_ISO_DATE: Final = re.compile(r"\d{4}-\d{2}-\d{2}(?:[T ]|$)|\d{8}T")
+"""How a date begins in ISO 8601: year, month, day."""
 
 
 def parse_timezone(text: object, where: str = "timezone") -> tzinfo:
@@ -172,6 +176,9 @@ def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:
     """
     import pandas as pd
 
+    if isinstance(value, str) and not _ISO_DATE.match(value.strip()):
+        # pandas would guess: 01/02/2023 as 2 January, 13/02/2023 as 13 February.
+        raise InputError(f"{what}: {value!r} is not a date; write it as 2012-09-20 or 2012-09-20 06:30.")
     try:
         stamp = pd.Timestamp(value)  # type: ignore[arg-type]
     except (ValueError, TypeError) as error:
