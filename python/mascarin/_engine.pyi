@@ -6,6 +6,8 @@ from typing import Any, Final, final
 import numpy as np
 import numpy.typing as npt
 
+__all__ = ["CLIMATE_CHANNELS", "EngineInputError", "EngineSolverError", "Plan"]
+
 _Array = npt.NDArray[np.float64]
 
 CLIMATE_CHANNELS: Final[int]
