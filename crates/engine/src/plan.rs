@@ -1,5 +1,6 @@
 //! The building compiled to flat arrays and indices: everything that does not depend on a parameter's value.
 
+use core::ops::Range;
 use std::collections::BTreeSet;
 
 use crate::description::{Construction, Convection, Description, Facing, Material, Side, ZoneLongwave};
@@ -22,8 +23,9 @@ pub struct Plan {
     pub zones: Vec<ZonePlan>,
     /// Number of finite volumes in all walls.
     pub n_cells: usize,
-    /// The room block: for each zone face and zone air, in the order of elimination, the later ones that it meets.
-    pub reach: Vec<Vec<usize>>,
+    /// The room block: for each zone face and zone air, in the order of elimination, the later ones that it meets, as
+    /// runs of neighbouring rows.
+    pub reach: Vec<Vec<Range<usize>>>,
 }
 
 /// A wall as a chain of cells between two faces.
@@ -71,6 +73,8 @@ pub struct FacePlan {
 pub struct ZonePlan {
     /// Its faces, in the order of the surfaces.
     pub faces: Vec<FaceId>,
+    /// Row of each face in the room block.
+    pub face_rows: Vec<usize>,
     /// Row of its air in the room block.
     pub air_row: usize,
 }
@@ -173,14 +177,18 @@ impl WallPlan {
 
 /// Numbers the faces in contact with zones first, then the airs.
 fn name_unknowns(description: &Description) -> (Vec<FacePlan>, Vec<ZonePlan>) {
-    let mut zones: Vec<ZonePlan> =
-        description.zones.iter().map(|_| ZonePlan { faces: Vec::new(), air_row: 0 }).collect();
+    let mut zones: Vec<ZonePlan> = description
+        .zones
+        .iter()
+        .map(|_| ZonePlan { faces: Vec::new(), face_rows: Vec::new(), air_row: 0 })
+        .collect();
     let mut faces = Vec::with_capacity(2 * description.surfaces.len());
     let mut row = 0;
     for (surface, definition) in description.surfaces.iter().enumerate() {
         for (side, part) in [&definition.outside, &definition.inside].into_iter().enumerate() {
             let role = if let Facing::Zone { zone } = part.facing {
                 zones[zone].faces.push(2 * surface + side);
+                zones[zone].face_rows.push(row);
                 row += 1;
                 FaceRole::Zone { zone, row: row - 1 }
             } else {
@@ -202,7 +210,7 @@ fn order_unknowns(
     description: &Description,
     faces: &mut [FacePlan],
     zones: &mut [ZonePlan],
-) -> Vec<Vec<usize>> {
+) -> Vec<Vec<Range<usize>>> {
     let mut meets = neighbours(description, faces, zones);
     let n = meets.len();
     let mut position = vec![usize::MAX; n];
@@ -226,13 +234,21 @@ fn order_unknowns(
     }
     for zone in zones {
         zone.air_row = position[zone.air_row];
+        zone.face_rows = zone.face_rows.iter().map(|&row| position[row]).collect();
     }
-    let placed = |met: BTreeSet<usize>| {
-        let mut rows: Vec<usize> = met.into_iter().map(|k| position[k]).collect();
-        rows.sort_unstable();
-        rows
-    };
-    reach.into_iter().map(placed).collect()
+    reach.into_iter().map(|met| runs(met.into_iter().map(|k| position[k]).collect())).collect()
+}
+
+/// Numbers gathered into runs of neighbours.
+fn runs(numbers: BTreeSet<usize>) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for number in numbers {
+        match runs.last_mut() {
+            Some(run) if run.end == number => run.end += 1,
+            _ => runs.push(number..number + 1),
+        }
+    }
+    runs
 }
 
 /// Which unknowns of the room block exchange heat directly.
@@ -248,7 +264,7 @@ fn neighbours(description: &Description, faces: &[FacePlan], zones: &[ZonePlan])
         meets[b].insert(a);
     };
     for (zone, definition) in zones.iter().zip(&description.zones) {
-        let rows: Vec<usize> = zone.faces.iter().filter_map(|&face| row(face)).collect();
+        let rows = &zone.face_rows;
         for (i, &a) in rows.iter().enumerate() {
             meet(a, zone.air_row);
             if !matches!(definition.longwave, ZoneLongwave::None) {

@@ -5,6 +5,8 @@
 //!
 //! Sources: SDIRK2 of Alexander (1977), SIAM J. Numer. Anal. 14(6), doi:10.1137/0714068.
 
+use core::ops::Range;
+
 use crate::coefficients::{Boundary, Coefficients, Face, Matter};
 use crate::conduction::{Chain, Iterate, Start, StorageRule};
 use crate::drive::{Drive, FaceDrive, Instant, Weather};
@@ -658,27 +660,28 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Convection, exchange between faces, infiltration and storage of a zone.
     #[inline(always)]
     fn assemble_zone(&mut self, zone: usize, length: f64) {
-        let plan = self.plan;
+        let plan = &self.plan.zones[zone];
         let numbers = &self.coefficients.zones[zone];
-        let (air, faces) = (plan.zones[zone].air_row, &plan.zones[zone].faces);
-        let n = faces.len();
-        for (i, &index) in faces.iter().enumerate() {
-            let row = plan.row(index);
-            let film = self.laws[index].film;
-            let (conductance, offset) = (numbers.areas[i] * film.slope, numbers.areas[i] * film.offset);
-            self.block.couple(row, air, conductance);
-            self.block.right[row] += numbers.areas[i] * self.drive.faces[index].solar - offset;
+        let (air, n) = (plan.air_row, plan.faces.len());
+        for (i, (&index, &row)) in plan.faces.iter().zip(&plan.face_rows).enumerate() {
+            let (laws, area) = (self.laws[index], numbers.areas[i]);
+            let offset = area * laws.film.offset;
+            self.block.couple(row, air, area * laws.film.slope);
             self.block.right[air] += offset;
-            if numbers.exchange.is_empty() {
-                continue;
-            }
-            let (mine, sum) = (self.laws[index].emission, numbers.exchange_sums[i]);
-            self.block.add(row, row, sum * mine.slope);
-            let mut arriving = -(sum * mine.offset);
-            for (j, &other) in faces.iter().enumerate().filter(|(j, _)| *j != i) {
-                let (exchange, theirs) = (numbers.exchange[i * n + j], self.laws[other].emission);
-                self.block.add(row, plan.row(other), -(exchange * theirs.slope));
-                arriving += exchange * theirs.offset;
+            let mut arriving = area * self.drive.faces[index].solar - offset;
+            if !numbers.exchange.is_empty() {
+                let sum = numbers.exchange_sums[i];
+                let line = self.block.row(row);
+                line[row] += sum * laws.emission.slope;
+                arriving = arriving - sum * laws.emission.offset;
+                let exchange = &numbers.exchange[i * n..(i + 1) * n];
+                for (j, (&other, &column)) in plan.faces.iter().zip(&plan.face_rows).enumerate() {
+                    if j != i {
+                        let theirs = &self.laws[other].emission;
+                        line[column] = line[column] - exchange[j] * theirs.slope;
+                        arriving += exchange[j] * theirs.offset;
+                    }
+                }
             }
             self.block.right[row] += arriving;
         }
@@ -943,13 +946,13 @@ fn solve_pair<S: Real>(
 #[derive(Debug)]
 struct RoomBlock<'a, S> {
     /// For each row the later ones that it meets, see [`Plan::reach`].
-    reach: &'a [Vec<usize>],
+    reach: &'a [Vec<Range<usize>>],
     matrix: Vec<S>,
     right: Vec<S>,
 }
 
 impl<'a, S: Real> RoomBlock<'a, S> {
-    fn new(reach: &'a [Vec<usize>]) -> Self {
+    fn new(reach: &'a [Vec<Range<usize>>]) -> Self {
         let size = reach.len();
         Self { reach, matrix: vec![S::zero(); size * size], right: vec![S::zero(); size] }
     }
@@ -958,6 +961,12 @@ impl<'a, S: Real> RoomBlock<'a, S> {
     fn clear(&mut self) {
         self.matrix.fill(S::zero());
         self.right.fill(S::zero());
+    }
+
+    #[inline(always)]
+    fn row(&mut self, row: usize) -> &mut [S] {
+        let n = self.reach.len();
+        &mut self.matrix[row * n..(row + 1) * n]
     }
 
     #[inline(always)]
@@ -984,20 +993,27 @@ impl<'a, S: Real> RoomBlock<'a, S> {
             let inverse = S::one() / pivot[k];
             pivot[k] = inverse;
             let known = self.right[k];
-            for &i in reach {
-                let row = &mut lower[(i - k - 1) * n..(i - k) * n];
-                let factor = row[k] * inverse;
-                for &j in reach {
-                    row[j] = row[j] - factor * pivot[j];
+            for rows in reach {
+                let later = &mut lower[(rows.start - k - 1) * n..(rows.end - k - 1) * n];
+                let right = &mut self.right[rows.clone()];
+                for (row, right) in later.chunks_exact_mut(n).zip(right) {
+                    let factor = row[k] * inverse;
+                    for run in reach {
+                        for (a, &p) in row[run.clone()].iter_mut().zip(&pivot[run.clone()]) {
+                            *a = *a - factor * p;
+                        }
+                    }
+                    *right = *right - factor * known;
                 }
-                self.right[i] = self.right[i] - factor * known;
             }
         }
         for (k, reach) in self.reach.iter().enumerate().rev() {
             let row = &self.matrix[k * n..(k + 1) * n];
             let mut sum = self.right[k];
-            for &j in reach {
-                sum = sum - row[j] * self.right[j];
+            for run in reach {
+                for (&a, &x) in row[run.clone()].iter().zip(&self.right[run.clone()]) {
+                    sum = sum - a * x;
+                }
             }
             self.right[k] = sum * row[k];
         }
