@@ -50,7 +50,7 @@ check-tools:
 		echo "error: '$(PYTHON)' cannot make virtual environments (its modules venv and ensurepip are missing)." \
 			"On Debian and Ubuntu: install the package python3-venv" >&2; exit 1; }
 	@command -v cargo >/dev/null 2>&1 || { \
-		echo "error: 'cargo' not found. Mascarin's engine is built with Rust 1.85 or later:" \
+		echo "error: 'cargo' not found. Mascarin's engine is built with Rust 1.89 or later:" \
 			"see rustup.rs or your system's packages" >&2; exit 1; }
 
 $(ENVIRONMENT): constraints.txt | check-tools
