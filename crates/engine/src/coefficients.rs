@@ -6,7 +6,7 @@ use crate::forcing::CLIMATE_CHANNELS;
 use crate::parameters::Values;
 use crate::pcm::PcmCoefficients;
 use crate::plan::{FaceId, Plan, WallPlan};
-use crate::radiation::{Emission, exchange_areas};
+use crate::radiation::{Emission, exchange_areas, self_weight};
 use crate::real::Real;
 use crate::solar::Plane;
 
@@ -357,7 +357,9 @@ fn view_weights<S: Real>(plan: &Plan, index: usize, areas: &[S]) -> Vec<S> {
             let weight = if given.len() == n {
                 // The given weights hold the nominal areas: they follow when an area is varied.
                 S::constant(given[i][j])
-            } else if i != j && !same_plane(plan, faces[i], faces[j]) {
+            } else if i == j {
+                self_weight(areas, i)
+            } else if !same_plane(plan, faces[i], faces[j]) {
                 areas[i] * areas[j]
             } else {
                 S::zero()

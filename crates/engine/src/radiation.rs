@@ -84,6 +84,14 @@ pub fn exchange_areas<S: Real>(areas: &[S], emissivities: &[S], weights: &[S]) -
     symmetric(&exchange, n)
 }
 
+/// Weight with which a face sees itself: none, unless it is larger than all others together. Then it must be bent
+/// round them (a shell round a body), and closure can hold in no other way. Of a body and its shell it is exact.
+pub fn self_weight<S: Real>(areas: &[S], face: usize) -> S {
+    let others = areas.iter().enumerate().filter(|(i, _)| *i != face);
+    let excess = others.fold(areas[face], |rest, (_, area)| rest - *area);
+    areas[face] * excess.max(S::zero())
+}
+
 /// The mean of a matrix and its transpose: makes an exchange exactly two-sided.
 fn symmetric<S: Real>(matrix: &[S], n: usize) -> Vec<S> {
     let mut mean = matrix.to_vec();
@@ -211,6 +219,23 @@ mod tests {
     fn parallel_plates() {
         let exchange = exchange_areas(&[2.0, 2.0], &[0.9, 0.25], &[0.0, 1.0, 1.0, 0.0]);
         assert!((exchange[1] - 2.0 / (1.0 / 0.9 + 1.0 / 0.25 - 1.0)).abs() < 1e-12);
+    }
+
+    /// A body in a shell: 1/X = (1-e1)/(e1 A1) + 1/A1 + (1-e2)/(e2 A2) (Hottel & Sarofim 1967, ch. 3).
+    #[test]
+    fn body_in_a_shell() {
+        for shell in [10.5, 20.0, 400.0] {
+            let areas = [10.0, shell];
+            let weights =
+                [self_weight(&areas, 0), areas[0] * areas[1], areas[0] * areas[1], self_weight(&areas, 1)];
+            let exchange = exchange_areas(&areas, &[0.8, 0.3], &weights);
+            let expected = 1.0 / (0.2 / 8.0 + 0.1 + 0.7 / (0.3 * shell));
+            assert!(
+                (exchange[1] / expected - 1.0).abs() < 1e-9,
+                "{shell}: {} is not {expected}",
+                exchange[1]
+            );
+        }
     }
 
     /// In a cube with black walls the exchange area is A F; rows sum to the areas for any emissivities of the rest.
