@@ -6,6 +6,7 @@
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in square brackets: [m] is no link")]
 
+pub(crate) mod balance;
 pub mod batch;
 pub mod coefficients;
 pub mod conduction;
@@ -23,6 +24,8 @@ pub mod plan;
 pub mod probe;
 pub mod radiation;
 pub mod real;
+pub(crate) mod room_block;
 pub mod solar;
+pub mod state;
 pub mod state_space;
 pub mod step;

@@ -9,7 +9,8 @@ use crate::ledger::Ledger;
 use crate::plan::Plan;
 use crate::probe::Probe;
 use crate::real::{Mask, Real};
-use crate::step::{Scheme, State, Stepper};
+use crate::state::State;
+use crate::step::{Scheme, Stepper};
 
 /// How a run is made.
 #[derive(Debug, Clone)]

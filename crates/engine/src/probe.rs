@@ -6,7 +6,8 @@ use crate::coefficients::{Matter, Wall};
 use crate::error::EngineError;
 use crate::plan::{FaceId, Plan};
 use crate::real::Real;
-use crate::step::{State, Stepper};
+use crate::state::State;
+use crate::step::Stepper;
 
 /// A quantity to record.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -5,8 +5,7 @@
 //!
 //! Sources: SDIRK2 of Alexander (1977), SIAM J. Numer. Anal. 14(6), doi:10.1137/0714068.
 
-use core::ops::Range;
-
+use crate::balance::{FaceLaws, Line, LocalBalance, LocalFaces, solve_pair};
 use crate::coefficients::{Boundary, Coefficients, Face, Matter};
 use crate::conduction::{Chain, Iterate, Start, StorageRule};
 use crate::drive::{Drive, FaceDrive, Instant, Weather};
@@ -15,6 +14,8 @@ use crate::ledger::{Flow, Ledger, Power};
 use crate::pcm::PcmMemory;
 use crate::plan::{FaceId, FaceRole, Plan};
 use crate::real::{Mask, Real};
+use crate::room_block::RoomBlock;
+use crate::state::{State, Unknowns, blend, line, squared_distance};
 
 /// Root of the sum of squared changes in the last Newton iteration [K]. Convergence is quadratic: the error left is
 /// of the order of its square.
@@ -68,103 +69,6 @@ impl Scheme {
     }
 }
 
-/// Everything that passes from step to step.
-#[derive(Debug, Clone)]
-pub struct State<S> {
-    /// Cell temperatures of all walls [degC].
-    pub cells: Vec<S>,
-    /// Cell enthalpies [J/m3].
-    pub enthalpy: Vec<S>,
-    /// What the cells remember.
-    pub memory: Vec<PcmMemory<S>>,
-    /// Face temperatures [degC].
-    pub faces: Vec<S>,
-    /// Zone air temperatures [degC].
-    pub air: Vec<S>,
-}
-
-impl<S: Real> State<S> {
-    #[inline(always)]
-    fn view(&self) -> Temperatures<'_, S> {
-        Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
-    }
-
-    /// Takes over the lanes of `other` where the mask is true.
-    #[inline(always)]
-    pub fn take(&mut self, mask: S::Mask, other: &Self) {
-        blend(mask, &mut self.cells, &other.cells);
-        blend(mask, &mut self.enthalpy, &other.enthalpy);
-        blend(mask, &mut self.faces, &other.faces);
-        blend(mask, &mut self.air, &other.air);
-        for (a, b) in self.memory.iter_mut().zip(&other.memory) {
-            a.liquid_fraction = S::select(mask, b.liquid_fraction, a.liquid_fraction);
-        }
-    }
-
-    /// Largest change of a cell or an air against another state [K].
-    #[inline(always)]
-    pub fn distance(&self, other: &Self) -> S {
-        let pairs = self.cells.iter().zip(&other.cells).chain(self.air.iter().zip(&other.air));
-        pairs.fold(S::zero(), |largest, (a, b)| largest.max((*a - *b).abs()))
-    }
-}
-
-/// Takes over `theirs` where the mask is true.
-#[inline(always)]
-fn blend<S: Real>(mask: S::Mask, mine: &mut [S], theirs: &[S]) {
-    for (a, &b) in mine.iter_mut().zip(theirs) {
-        *a = S::select(mask, b, *a);
-    }
-}
-
-/// Sum of squared differences.
-#[inline(always)]
-fn squared_distance<S: Real>(new: &[S], old: &[S]) -> S {
-    let mut sum = S::zero();
-    for (&a, &b) in new.iter().zip(old) {
-        sum += (a - b) * (a - b);
-    }
-    sum
-}
-
-/// `from + ratio (to - from)`.
-#[inline(always)]
-fn line<S: Real>(from: S, to: S, ratio: f64) -> S {
-    from + (to - from).scale(ratio)
-}
-
-/// A straight line `offset + slope T`.
-#[derive(Debug, Clone, Copy)]
-struct Line<S> {
-    offset: S,
-    slope: S,
-}
-
-impl<S: Real> Line<S> {
-    #[inline(always)]
-    fn zero() -> Self {
-        Self { offset: S::zero(), slope: S::zero() }
-    }
-    /// The tangent of a function with a value and a slope at a point.
-    #[inline(always)]
-    fn tangent(value: S, slope: S, at: S) -> Self {
-        Self { offset: value - slope * at, slope }
-    }
-    #[inline(always)]
-    fn at(&self, x: S) -> S {
-        self.offset + self.slope * x
-    }
-}
-
-/// The linearised laws of a face in one Newton iteration [W/m2].
-#[derive(Debug, Clone, Copy)]
-struct FaceLaws<S> {
-    /// Convection off the face, of `T_face - T_air`.
-    film: Line<S>,
-    /// Black emission, of `T_face`.
-    emission: Line<S>,
-}
-
 /// Marches a building by one step at a time.
 #[derive(Debug)]
 pub struct Stepper<'a, S: Real> {
@@ -197,56 +101,6 @@ pub struct Stepper<'a, S: Real> {
     held_air: Vec<S>,
     /// Newton iterations since the start.
     pub iterations: usize,
-}
-
-/// Temperatures of an iterate or a state, to read.
-struct Temperatures<'a, S> {
-    cells: &'a [S],
-    faces: &'a [S],
-    air: &'a [S],
-}
-
-/// Temperatures of one iterate.
-#[derive(Debug, Clone)]
-struct Unknowns<S> {
-    cells: Vec<S>,
-    faces: Vec<S>,
-    air: Vec<S>,
-}
-
-impl<S: Real> Unknowns<S> {
-    #[inline(always)]
-    fn view(&self) -> Temperatures<'_, S> {
-        Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
-    }
-
-    /// `from + ratio (to - from)`, without leaping over a melting range.
-    #[inline(always)]
-    fn extrapolate(
-        &mut self,
-        plan: &Plan,
-        coefficients: &Coefficients<S>,
-        from: &Temperatures<'_, S>,
-        to: &Temperatures<'_, S>,
-        ratio: f64,
-    ) {
-        for ((guess, &from), &to) in self.faces.iter_mut().zip(from.faces).zip(to.faces) {
-            *guess = line(from, to, ratio);
-        }
-        for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
-            *guess = line(from, to, ratio);
-        }
-        for (wall, numbers) in plan.walls.iter().zip(&coefficients.walls).filter(|(wall, _)| wall.nonlinear) {
-            for (i, cell) in numbers.cells.iter().enumerate() {
-                let k = wall.first_cell + i;
-                let guess = line(from.cells[k], to.cells[k], ratio);
-                self.cells[k] = match cell.matter {
-                    Matter::Pcm(law) => numbers.pcm[law].limit(to.cells[k], guess).0,
-                    Matter::Solid { .. } => guess,
-                };
-            }
-        }
-    }
 }
 
 impl<'a, S: Real> Stepper<'a, S> {
@@ -896,126 +750,4 @@ fn infiltration<S: Real>(zone: &crate::coefficients::Zone<S>, drive: &Drive<S>, 
     let rate = per_second * (constant + temperature * magnitude + wind * drive.wind);
     let slope = rate + per_second * temperature * d * d / magnitude;
     Line::tangent(rate * d, slope, d)
-}
-
-/// A face outside the zones: held at a temperature, or gaining `offset - slope T`.
-#[derive(Debug, Clone, Copy)]
-enum LocalBalance<S> {
-    Fixed(S),
-    Gain(Line<S>),
-}
-
-impl<S: Real> LocalBalance<S> {
-    /// Gains of the face's own temperature and the other one's, and the right-hand side.
-    #[inline(always)]
-    fn equation(self, e: usize, source: [S; 2], response: [[S; 2]; 2]) -> ([S; 2], S) {
-        match self {
-            Self::Fixed(value) => ([S::one(), S::zero()], value),
-            Self::Gain(gain) => ([gain.slope - response[e][e], -response[e][1 - e]], source[e] + gain.offset),
-        }
-    }
-}
-
-/// The local faces of a wall after its elimination.
-#[derive(Debug, Clone, Copy)]
-enum LocalFaces<S> {
-    None,
-    /// Its temperature as a function of the other face's.
-    One {
-        side: usize,
-        line: Line<S>,
-    },
-    Both([S; 2]),
-}
-
-/// Both faces of a wall that touches no zone.
-#[inline(always)]
-fn solve_pair<S: Real>(
-    outer: LocalBalance<S>,
-    inner: LocalBalance<S>,
-    source: [S; 2],
-    response: [[S; 2]; 2],
-) -> [S; 2] {
-    let ([a, b], f) = outer.equation(0, source, response);
-    let ([d, c], g) = inner.equation(1, source, response);
-    let determinant = a * d - b * c;
-    [(f * d - b * g) / determinant, (a * g - c * f) / determinant]
-}
-
-/// The system of zone faces and airs. Its matrix is an M-matrix: no pivoting.
-#[derive(Debug)]
-struct RoomBlock<'a, S> {
-    /// For each row the later ones that it meets, see [`Plan::reach`].
-    reach: &'a [Vec<Range<usize>>],
-    matrix: Vec<S>,
-    right: Vec<S>,
-}
-
-impl<'a, S: Real> RoomBlock<'a, S> {
-    fn new(reach: &'a [Vec<Range<usize>>]) -> Self {
-        let size = reach.len();
-        Self { reach, matrix: vec![S::zero(); size * size], right: vec![S::zero(); size] }
-    }
-
-    #[inline(always)]
-    fn clear(&mut self) {
-        self.matrix.fill(S::zero());
-        self.right.fill(S::zero());
-    }
-
-    #[inline(always)]
-    fn row(&mut self, row: usize) -> &mut [S] {
-        let n = self.reach.len();
-        &mut self.matrix[row * n..(row + 1) * n]
-    }
-
-    #[inline(always)]
-    fn add(&mut self, row: usize, column: usize, value: S) {
-        self.matrix[row * self.reach.len() + column] += value;
-    }
-
-    /// A conductance between two unknowns.
-    #[inline(always)]
-    fn couple(&mut self, a: usize, b: usize, conductance: S) {
-        self.add(a, a, conductance);
-        self.add(b, b, conductance);
-        self.add(a, b, -conductance);
-        self.add(b, a, -conductance);
-    }
-
-    /// Gaussian elimination of what is not zero; the solution replaces the right-hand side.
-    #[inline(always)]
-    fn solve(&mut self) {
-        let n = self.reach.len();
-        for (k, reach) in self.reach.iter().enumerate() {
-            let (upper, lower) = self.matrix.split_at_mut((k + 1) * n);
-            let pivot = &mut upper[k * n..];
-            let inverse = S::one() / pivot[k];
-            pivot[k] = inverse;
-            let known = self.right[k];
-            for rows in reach {
-                let later = &mut lower[(rows.start - k - 1) * n..(rows.end - k - 1) * n];
-                let right = &mut self.right[rows.clone()];
-                for (row, right) in later.chunks_exact_mut(n).zip(right) {
-                    let factor = row[k] * inverse;
-                    for run in reach {
-                        for (a, &p) in row[run.clone()].iter_mut().zip(&pivot[run.clone()]) {
-                            *a = *a - factor * p;
-                        }
-                    }
-                    *right = *right - factor * known;
-                }
-            }
-        }
-        for (k, reach) in self.reach.iter().enumerate().rev() {
-            let row = &self.matrix[k * n..(k + 1) * n];
-            let mut sum = self.right[k];
-            for run in reach {
-                for (&a, &x) in row[run.clone()].iter().zip(&self.right[run.clone()]) {
-                    sum = sum - a * x;
-                }
-            }
-            self.right[k] = sum * row[k];
-        }
-    }
 }

@@ -1,0 +1,121 @@
+//! What passes from step to step, and the temperatures of one iterate.
+
+use crate::coefficients::{Coefficients, Matter};
+use crate::pcm::PcmMemory;
+use crate::plan::Plan;
+use crate::real::Real;
+
+/// Everything that passes from step to step.
+#[derive(Debug, Clone)]
+pub struct State<S> {
+    /// Cell temperatures of all walls [degC].
+    pub cells: Vec<S>,
+    /// Cell enthalpies [J/m3].
+    pub enthalpy: Vec<S>,
+    /// What the cells remember.
+    pub memory: Vec<PcmMemory<S>>,
+    /// Face temperatures [degC].
+    pub faces: Vec<S>,
+    /// Zone air temperatures [degC].
+    pub air: Vec<S>,
+}
+
+impl<S: Real> State<S> {
+    #[inline(always)]
+    pub(crate) fn view(&self) -> Temperatures<'_, S> {
+        Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
+    }
+
+    /// Takes over the lanes of `other` where the mask is true.
+    #[inline(always)]
+    pub fn take(&mut self, mask: S::Mask, other: &Self) {
+        blend(mask, &mut self.cells, &other.cells);
+        blend(mask, &mut self.enthalpy, &other.enthalpy);
+        blend(mask, &mut self.faces, &other.faces);
+        blend(mask, &mut self.air, &other.air);
+        for (a, b) in self.memory.iter_mut().zip(&other.memory) {
+            a.liquid_fraction = S::select(mask, b.liquid_fraction, a.liquid_fraction);
+        }
+    }
+
+    /// Largest change of a cell or an air against another state [K].
+    #[inline(always)]
+    pub fn distance(&self, other: &Self) -> S {
+        let pairs = self.cells.iter().zip(&other.cells).chain(self.air.iter().zip(&other.air));
+        pairs.fold(S::zero(), |largest, (a, b)| largest.max((*a - *b).abs()))
+    }
+}
+
+/// Takes over `theirs` where the mask is true.
+#[inline(always)]
+pub(crate) fn blend<S: Real>(mask: S::Mask, mine: &mut [S], theirs: &[S]) {
+    for (a, &b) in mine.iter_mut().zip(theirs) {
+        *a = S::select(mask, b, *a);
+    }
+}
+
+/// Sum of squared differences.
+#[inline(always)]
+pub(crate) fn squared_distance<S: Real>(new: &[S], old: &[S]) -> S {
+    let mut sum = S::zero();
+    for (&a, &b) in new.iter().zip(old) {
+        sum += (a - b) * (a - b);
+    }
+    sum
+}
+
+/// `from + ratio (to - from)`.
+#[inline(always)]
+pub(crate) fn line<S: Real>(from: S, to: S, ratio: f64) -> S {
+    from + (to - from).scale(ratio)
+}
+
+/// Temperatures of an iterate or a state, to read.
+pub(crate) struct Temperatures<'a, S> {
+    pub(crate) cells: &'a [S],
+    pub(crate) faces: &'a [S],
+    pub(crate) air: &'a [S],
+}
+
+/// Temperatures of one iterate.
+#[derive(Debug, Clone)]
+pub(crate) struct Unknowns<S> {
+    pub(crate) cells: Vec<S>,
+    pub(crate) faces: Vec<S>,
+    pub(crate) air: Vec<S>,
+}
+
+impl<S: Real> Unknowns<S> {
+    #[inline(always)]
+    pub(crate) fn view(&self) -> Temperatures<'_, S> {
+        Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
+    }
+
+    /// `from + ratio (to - from)`, without leaping over a melting range.
+    #[inline(always)]
+    pub(crate) fn extrapolate(
+        &mut self,
+        plan: &Plan,
+        coefficients: &Coefficients<S>,
+        from: &Temperatures<'_, S>,
+        to: &Temperatures<'_, S>,
+        ratio: f64,
+    ) {
+        for ((guess, &from), &to) in self.faces.iter_mut().zip(from.faces).zip(to.faces) {
+            *guess = line(from, to, ratio);
+        }
+        for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
+            *guess = line(from, to, ratio);
+        }
+        for (wall, numbers) in plan.walls.iter().zip(&coefficients.walls).filter(|(wall, _)| wall.nonlinear) {
+            for (i, cell) in numbers.cells.iter().enumerate() {
+                let k = wall.first_cell + i;
+                let guess = line(from.cells[k], to.cells[k], ratio);
+                self.cells[k] = match cell.matter {
+                    Matter::Pcm(law) => numbers.pcm[law].limit(to.cells[k], guess).0,
+                    Matter::Solid { .. } => guess,
+                };
+            }
+        }
+    }
+}
