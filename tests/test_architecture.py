@@ -13,6 +13,7 @@ PACKAGE = ROOT / "python" / "mascarin"
 # From first to last; rooms on one line may use each other.
 ORDER = [
     {"errors", "progress", "_engine"},
+    {"materials"},
     {"model"},
     {"climate"},
     {"simulation", "results", "state_space"},

@@ -45,6 +45,11 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "check", "mascarin.commands.model:check", "Check a building description and say what it holds."
         ),
         Command("parameters", "mascarin.commands.model:parameters", "List every parameter of a building."),
+        Command(
+            "materials",
+            "mascarin.commands.materials:materials",
+            "Search the library of phase-change products.",
+        ),
         Command("cite", "mascarin.commands.model:cite", "List the sources that a building rests on."),
     ),
     "Run": (Command("run", "mascarin.commands.run:run", "Run a building in a climate."),),

@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.model import quantities as q
+from mascarin.model.library import FromLibrary
 from mascarin.model.number import Number, Remark, problem
 from mascarin.model.part import Part, fault, insist
 
@@ -199,6 +200,7 @@ class PhaseChangeMaterial(Part):
     latent_heat: q.LatentHeat | None = None
     melting_temperature: q.MeltingTemperature | None = None
     law: Law
+    product: str | None = Field(None, description="Product of the library that the rest comes from")
     source: str | None = Field(None, description="Where the properties come from")
 
     @model_validator(mode="after")
@@ -274,4 +276,5 @@ Material = Annotated[
     | Annotated[Resistance, Tag("resistance")]
     | Annotated[PhaseChangeMaterial, Tag("pcm")],
     Discriminator(_kind),
+    FromLibrary(),
 ]

@@ -1,0 +1,188 @@
+"""Commands about phase-change products: the library."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from mascarin.commands.inputs import AsJson
+from mascarin.commands.output import print_json, print_table
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from mascarin.materials import Product
+
+
+def materials(
+    query: str = "",
+    /,
+    *,
+    melting: Annotated[str | None, Parameter(help="Melting temperature, as LOW..HIGH in degC.")] = None,
+    kind: str | None = None,
+    plot: Path | None = None,
+    as_json: AsJson = False,
+) -> None:
+    """Search the library of phase-change products.
+
+    A building file takes a product by its name: "ceiling_pcm: {product: RT25HC}". A query that names one
+    product shows all that is known of it.
+
+    Parameters
+    ----------
+    query : str
+        Name of a product, or part of a name, a maker or a form; none: all.
+    kind : str
+        Only products of this kind: organic, salt hydrate, powder, board, sheet.
+    plot : Path
+        Write a picture of enthalpy and apparent specific heat of what was found: SVG, PNG or PDF.
+    """
+    from mascarin.materials import search
+    from mascarin.materials.library import suggestion
+
+    chosen = search(query, melting=_interval(melting), kind=kind)
+    exact = [one for one in chosen if _same(one.name, query)]
+    chosen = exact or chosen
+    if not chosen:
+        hint = suggestion(query) if query else ""
+        raise InputError(
+            f"found no product that fits; expected a part of a name, or a wider search. {hint}".rstrip()
+        )
+    if as_json:
+        print_json([described(one) for one in chosen])
+    elif exact:
+        _show(exact[0])
+    else:
+        _list(chosen)
+    if plot is not None:
+        from mascarin.materials.plots import plot as draw
+
+        draw(chosen, plot)
+        print(f"wrote {plot}", file=sys.stderr)
+
+
+def _same(name: str, query: str) -> bool:
+    from mascarin.materials.library import plain
+
+    return plain(name) == plain(query)
+
+
+def _interval(text: str | None) -> tuple[float, float] | None:
+    if text is None:
+        return None
+    low, dots, high = text.partition("..")
+    try:
+        if dots:
+            return (float(low or "-inf"), float(high or "inf"))
+    except ValueError:
+        pass
+    raise InputError(f"--melting: found '{text}'; expected LOW..HIGH in degC, such as 22..28, 22.. or ..28")
+
+
+def _list(chosen: list[Product]) -> None:
+    header = (
+        "product",
+        "kind",
+        "melts",
+        "freezes",
+        "latent kJ/kg",
+        "c J/(kg K)",
+        "k W/(m K)",
+        "rho kg/m3",
+        "maker",
+    )
+    rows = [
+        (
+            one.name,
+            one.kind or "",
+            _number(one.melting_temperature, 1),
+            _number(one.freezing_temperature, 1),
+            _number(_kilo(one.number("latent_heat")), 0),
+            *(_pair(one.pair(key)) for key in ("specific_heat", "conductivity", "density")),
+            one.maker,
+        )
+        for one in chosen
+    ]
+    print_table(header, rows)
+
+
+def _show(one: Product) -> None:
+    ranged = one.melting_range
+    lines = [
+        ("maker", one.maker),
+        ("kind", ", ".join(text for text in (one.kind, one.form) if text)),
+        ("melting range", f"{ranged[0]:g} to {ranged[1]:g} degC" if ranged else ""),
+        (
+            "melts",
+            _with(one.melting_temperature, "degC (half is liquid)" if one.heating else "degC (as stated)"),
+        ),
+        ("freezes", _with(one.freezing_temperature, "degC (half is liquid)")),
+        ("latent heat", _with(_kilo(one.number("latent_heat")), "kJ/kg")),
+        ("specific heat", _with(_pair(one.pair("specific_heat")), "J/(kg K) solid/liquid")),
+        ("conductivity", _with(_pair(one.pair("conductivity")), "W/(m K) solid/liquid")),
+        ("density", _with(_pair(one.pair("density")), "kg/m3 solid/liquid")),
+        ("thickness", _with(one.number("thickness"), "m")),
+        ("curves", ", ".join(name for name in ("heating", "cooling") if getattr(one, name)) or "none"),
+        ("law", json.dumps(_bare(one.raw["law"])) if "law" in one.raw else ""),
+        ("source", one.source),
+        ("note", one.note or ""),
+    ]
+    print(one.name)
+    for label, text in lines:
+        if text:
+            print(f"  {label:14} {text}")
+    print(f"\nIn a building file:\n  materials:\n    my_pcm: {{product: {one.name}}}")
+
+
+def _number(value: float | None, digits: int) -> str:
+    return "" if value is None else f"{value:.{digits}f}"
+
+
+def _with(value: float | str | None, unit: str) -> str:
+    if value is None or value == "":
+        return ""
+    return f"{value if isinstance(value, str) else f'{value:g}'} {unit}"
+
+
+def _kilo(value: float | None) -> float | None:
+    return None if value is None else value / 1000.0
+
+
+def _pair(pair: tuple[float, float] | None) -> str:
+    if pair is None:
+        return ""
+    return f"{pair[0]:g}" if pair[0] == pair[1] else f"{pair[0]:g}/{pair[1]:g}"
+
+
+def _bare(raw: Any) -> Any:
+    if isinstance(raw, dict):
+        return raw["value"] if "value" in raw else {key: _bare(value) for key, value in raw.items()}
+    return raw
+
+
+def described(one: Product) -> dict[str, Any]:
+    """A product as plain data, SI units; null where the source does not say."""
+    from mascarin.materials.library import curves
+
+    return {
+        "name": one.name,
+        "maker": one.maker,
+        "kind": one.kind,
+        "form": one.form,
+        "melting_temperature": one.melting_temperature,
+        "freezing_temperature": one.freezing_temperature,
+        "melting_range": one.melting_range,
+        "latent_heat": one.number("latent_heat"),
+        **{key: one.pair(key) for key in ("specific_heat", "conductivity", "density")},
+        "thickness": one.number("thickness"),
+        "law": _bare(one.raw.get("law")),
+        "curves": {
+            direction: {"temperatures": curve.temperatures, "liquid_fraction": curve.liquid_fraction}
+            for direction, curve in curves(one)
+        },
+        "source": one.source,
+        "note": one.note,
+    }

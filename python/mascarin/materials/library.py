@@ -1,0 +1,285 @@
+"""The products that come with Mascarin: `products.yaml`, read, found by name, sifted by what they do.
+
+A product is data, not a part of a description: a building file takes one by name (``product: RT25HC``), and
+the description then checks each of its numbers as if the user had written it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final
+
+from mascarin.errors import InputError, did_you_mean
+
+FILE: Final = Path(__file__).with_name("products.yaml")
+STEP: Final = 0.5
+"""Distance of the points of a curve [K]."""
+
+PROPERTIES: Final = ("conductivity", "density", "specific_heat")
+KINDS: Final = ("organic", "salt hydrate", "powder", "board", "sheet")
+DIRECTIONS: Final = ("heating", "cooling")
+COLLECTION: Final = "as collected in slPCMlib (Barz, Bres & Emhofer 2022, doi:10.3384/ecp19363)"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Liquid fraction over temperature, in steps of `STEP`, from 0 to 1."""
+
+    first: float
+    liquid_fraction: tuple[float, ...]
+
+    @property
+    def temperatures(self) -> tuple[float, ...]:
+        """Temperatures of the points [degC]."""
+        return tuple(self.first + STEP * k for k in range(len(self.liquid_fraction)))
+
+    def temperature_at(self, fraction: float) -> float:
+        """Temperature at which a fraction is liquid, between the points by a straight line [degC]."""
+        points = list(zip(self.temperatures, self.liquid_fraction, strict=True))
+        for (t0, f0), (t1, f1) in pairwise(points):
+            if f0 <= fraction <= f1 and f1 > f0:
+                return t0 + (fraction - f0) / (f1 - f0) * (t1 - t0)
+        raise ValueError(f"liquid fraction {fraction:g} is outside the curve")
+
+
+@dataclass(frozen=True)
+class Product:
+    """A phase-change product; None and empty pairs where the source does not say.
+
+    ``raw`` holds the numbers as written, notes included, for use in a description.
+    """
+
+    name: str
+    maker: str
+    kind: str | None
+    form: str | None
+    source: str
+    note: str | None
+    heating: Curve | None
+    cooling: Curve | None
+    raw: Mapping[str, Any]
+
+    def pair(self, key: str) -> tuple[float, float] | None:
+        """A property of solid and liquid, or None where it is not known. [unit of the property]"""
+        raw = self.raw.get(key)
+        if raw is None:
+            return None
+        if isinstance(raw, list):
+            return (_bare(raw[0]), _bare(raw[1]))
+        return (_bare(raw), _bare(raw))
+
+    def number(self, key: str) -> float | None:
+        """A single number, such as the latent heat, or None where it is not known."""
+        raw = self.raw.get(key)
+        return None if raw is None else _bare(raw)
+
+    @property
+    def melting_range(self) -> tuple[float, float] | None:
+        """First and last temperature at which something melts or freezes [degC]."""
+        return self.pair("melting_range")
+
+    @property
+    def melting_temperature(self) -> float | None:
+        """Stated melting temperature, else that at which half is liquid on heating [degC]."""
+        stated = self.number("melting_temperature")
+        if stated is not None or self.heating is None:
+            return stated
+        return round(self.heating.temperature_at(0.5), 2)
+
+    @property
+    def freezing_temperature(self) -> float | None:
+        """Temperature at which half is liquid on cooling [degC]; None where there is no cooling curve."""
+        return None if self.cooling is None else round(self.cooling.temperature_at(0.5), 2)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """What a wall needs to know and the source does not say."""
+        return tuple(key for key in (*PROPERTIES, "latent_heat") if key not in self.raw)
+
+    def enthalpies(self, temperatures: Sequence[float], fractions: Sequence[float]) -> tuple[float, ...]:
+        """Specific enthalpy along a curve, above its first point.
+
+        ``h(T, xi) = c_s (T - Tm) + xi [L + (c_l - c_s)(T - Tm)]``: a function of temperature and liquid
+        fraction alone, so that heating and cooling curve meet in the liquid as in the solid.
+
+        Parameters
+        ----------
+        temperatures, fractions : sequences of float
+            Points of the curve: temperature [degC] and liquid fraction [-].
+
+        Returns
+        -------
+        tuple of float
+            Enthalpies [J/kg].
+
+        Raises
+        ------
+        ValueError
+            The specific heat, the latent heat or the melting temperature is not known.
+        """
+        heats, latent, centre = (
+            self.pair("specific_heat"),
+            self.number("latent_heat"),
+            self.melting_temperature,
+        )
+        if heats is None or latent is None or centre is None:
+            raise ValueError(f"{self.name}: the enthalpy needs more than is known of it")
+        solid, liquid = heats
+        values = [
+            solid * (t - centre) + xi * (latent + (liquid - solid) * (t - centre))
+            for t, xi in zip(temperatures, fractions, strict=True)
+        ]
+        return tuple(round(value - values[0], 1) for value in values)
+
+
+def _bare(raw: Any) -> float:
+    return float(raw["value"] if isinstance(raw, Mapping) else raw)
+
+
+def _curve(raw: Mapping[str, Any] | None) -> Curve | None:
+    if raw is None:
+        return None
+    return Curve(float(raw["first"]), tuple(float(x) for x in raw["liquid_fraction"]))
+
+
+def _product(name: str, raw: Mapping[str, Any]) -> Product:
+    source = str(raw["source"])
+    return Product(
+        name=name,
+        maker=str(raw["maker"]),
+        kind=raw.get("kind"),
+        form=raw.get("form"),
+        source=source if "doi:" in source else f"{source}, {COLLECTION}",
+        note=raw.get("note"),
+        heating=_curve(raw.get("heating")),
+        cooling=_curve(raw.get("cooling")),
+        raw=raw,
+    )
+
+
+@cache
+def products() -> Mapping[str, Product]:
+    """Every product by its name, in the order of the file."""
+    from ruamel.yaml import YAML
+
+    text = FILE.read_text(encoding="utf-8")
+    return {name: _product(name, raw) for name, raw in YAML(typ="safe").load(text).items()}
+
+
+def plain(name: str) -> str:
+    """A name without what does not count: case, spaces, hyphens."""
+    return re.sub(r"[\s_.-]", "", name).casefold()
+
+
+def product(name: str) -> Product:
+    """One product by its name; case, spaces and hyphens do not count.
+
+    Raises
+    ------
+    InputError
+        There is no such product; the text names the nearest ones.
+    """
+    for one in products().values():
+        if plain(one.name) == plain(name):
+            return one
+    raise InputError(
+        f"found the product '{name}'; expected one of the library ('mascarin materials' lists it). "
+        f"{suggestion(name)}".rstrip()
+    )
+
+
+def suggestion(name: str) -> str:
+    """Sentence that helps with a name that is no product."""
+    by_plain = {plain(one): one for one in products()}
+    close = did_you_mean(plain(name), by_plain)
+    if not close.startswith("Did you mean"):
+        return ""
+    return re.sub(r"'([^']+)'", lambda found: f"'{by_plain[found[1]]}'", close)
+
+
+def search(
+    query: str = "", *, melting: tuple[float, float] | None = None, kind: str | None = None
+) -> list[Product]:
+    """Products that fit.
+
+    Parameters
+    ----------
+    query : str
+        Part of a name, of a maker or of the form; empty: any.
+    melting : tuple of float, optional
+        Lowest and highest melting temperature [degC].
+    kind : str, optional
+        One of `KINDS`.
+
+    Returns
+    -------
+    list of Product
+        By melting temperature, lowest first.
+
+    Raises
+    ------
+    InputError
+        There is no such kind, or the temperatures are in the wrong order.
+    """
+    if kind is not None and kind not in KINDS:
+        raise InputError(f"kind: found '{kind}'; expected a kind of product. {did_you_mean(kind, KINDS)}")
+    if melting is not None and not melting[0] <= melting[1]:
+        raise InputError(f"melting: found {melting[0]:g}..{melting[1]:g}; expected the lower end first")
+    found = [one for one in products().values() if _fits(one, query, melting, kind)]
+    return sorted(found, key=lambda one: (one.melting_temperature or 0.0, one.name))
+
+
+def _fits(one: Product, query: str, melting: tuple[float, float] | None, kind: str | None) -> bool:
+    words = (plain(word) for word in (one.name, one.maker, one.form or ""))
+    if query and not any(plain(query) in word for word in words):
+        return False
+    if kind is not None and one.kind != kind:
+        return False
+    if melting is None:
+        return True
+    centre = one.melting_temperature
+    return centre is not None and melting[0] <= centre <= melting[1]
+
+
+def curves(one: Product) -> Iterator[tuple[str, Curve]]:
+    """The curves that are known, each with its direction."""
+    for direction in DIRECTIONS:
+        curve = getattr(one, direction)
+        if curve is not None:
+            yield direction, curve
+
+
+def enthalpy_curves(one: Product) -> Iterator[tuple[str, tuple[float, ...], tuple[float, ...]]]:
+    """Enthalpy over temperature, as far as it is known.
+
+    Yields
+    ------
+    tuple
+        What the curve is (heating, cooling, or the law of a product without curves), temperatures [degC],
+        enthalpies [J/kg].
+    """
+    if {"specific_heat", "latent_heat"} & set(one.missing) or one.melting_temperature is None:
+        return
+    known = dict(curves(one))
+    low = min((curve.temperatures[0] for curve in known.values()), default=0.0) - 2.0
+    high = max((curve.temperatures[-1] for curve in known.values()), default=0.0) + 2.0
+    for direction, curve in known.items():  # from one solid to one liquid, where the curves meet
+        points = (low, *curve.temperatures, high)
+        yield direction, points, one.enthalpies(points, (0.0, *curve.liquid_fraction, 1.0))
+    if one.heating is None and one.cooling is None and "law" in one.raw:
+        width, centre = _bare(one.raw["law"]["width"]), one.melting_temperature
+        points = tuple(centre + 0.1 * k * width for k in range(-40, 41))
+        fractions = [0.5 + 0.5 * math.tanh((t - centre) / width) for t in points]
+        yield f"tanh law, half-width {width:g} K", points, one.enthalpies(points, fractions)
+
+
+def capacities(temperatures: Sequence[float], enthalpies: Sequence[float]) -> list[tuple[float, float]]:
+    """Apparent specific heat between the points: mid temperature [degC], capacity [J/(kg K)]."""
+    points = list(zip(temperatures, enthalpies, strict=True))
+    return [(0.5 * (t0 + t1), (h1 - h0) / (t1 - t0)) for (t0, h0), (t1, h1) in pairwise(points)]
