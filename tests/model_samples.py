@@ -163,6 +163,13 @@ surfaces:
     internal_mass: true
     outside: {zone: room, convection: 2, emissivity: 0.9}
     inside: {zone: room, convection: 2, emissivity: 0.9}
+  south:
+    construction: wall
+    area: 9
+    tilt: 90
+    azimuth: 180
+    outside: {outdoors: true, convection: doe2, emissivity: 0.9, absorptance: 0.4}
+    inside: {zone: shaft, convection: 2.5}
   held: {construction: wall, area: 1, tilt: 90, outside: {measured: T_face}, inside: {adiabatic: true}}
 sensors:
   core: {surface: west, depth: 0.05}

@@ -65,10 +65,9 @@ def test_a_choice_puts_numbers_out_of_work(changes: dict[str, object], path: str
     assert path not in idle(room())
 
 
-def test_a_height_and_a_wind_correlation_put_the_profile_to_work() -> None:
-    building = room().replace(
-        {"surfaces.south.outside.convection": "mowitt", "surfaces.south.outside.height": 2}
-    )
+@pytest.mark.parametrize("film", ["mowitt", "doe2"])
+def test_a_height_and_a_wind_correlation_put_the_profile_to_work(film: str) -> None:
+    building = room().replace({"surfaces.south.outside.convection": film, "surfaces.south.outside.height": 2})
     assert set(idle(building)) == {"surfaces.rest.azimuth", "surfaces.rest.tilt"}
 
 

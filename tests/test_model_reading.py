@@ -171,6 +171,12 @@ FAULTS = {
         "surfaces.rest.inside.convection.roughness",
         ["it belongs to the wind's part"],
     ),
+    "an outdoor film indoors": (
+        "true}\n    inside: {zone: room, convection: 3,",
+        "true}\n    inside: {zone: room, convection: doe2, # here\n",
+        "surfaces.rest.inside.convection",
+        ["'doe2' on a side facing zone", "Write 'tarp'"],
+    ),
     "wind correlation on an imposed temperature": (
         "outside: {adiabatic: true}",
         "outside: {measured: T, convection: mowitt} # here",

@@ -10,6 +10,7 @@
 //! - Alamdari & Hammond (1983), Build. Serv. Eng. Res. Technol. 4(3), doi:10.1177/014362448300400304.
 //! - Walton (1983), Thermal Analysis Research Program (TARP), NBSSIR 83-2655.
 //! - Yazdanian & Klems (1994), `MoWiTT`, ASHRAE Trans. 100(1), 1087-1096.
+//! - LBL (1994), DOE2.1E-053 source code, as described in the `EnergyPlus` Engineering Reference: `MoWiTT` on rough faces.
 //! - Guichard et al., the paper's eq. 5 as printed (a misprint of Alamdari & Hammond's; kept under its own name).
 
 use crate::description::{Convection, PowerLaw};
@@ -108,6 +109,12 @@ enum Law<S> {
         factor: S,
         wind: [S; 2],
     },
+    /// TARP's natural part n; with the wind `n + roughness (sqrt(n^2 + (wind V^b)^2) - n)`, windward and leeward.
+    Doe2 {
+        natural: [S; 2],
+        roughness: S,
+        wind: [S; 2],
+    },
     /// Where heat flows up (or the face is vertical) and where it flows down.
     Power([Power<S>; 2]),
 }
@@ -156,9 +163,15 @@ impl<S: Real> Film<S> {
                 Law::tarp(get(*factor), forced, face.upward)
             }
             Convection::Mowitt { factor } => {
-                let [windward, leeward] =
-                    MOWITT_EXPONENTS.map(|exponent| face.wind_factor.powf(S::constant(exponent)));
-                Law::Mowitt { factor: get(*factor), wind: [windward.scale(3.26), leeward.scale(3.55)] }
+                Law::Mowitt { factor: get(*factor), wind: mowitt_wind(face.wind_factor) }
+            }
+            Convection::Doe2 { factor, roughness } => {
+                let (factor, wind) = (get(*factor), mowitt_wind(face.wind_factor));
+                Law::Doe2 {
+                    natural: tarp_natural(factor, face.upward),
+                    roughness: get(*roughness),
+                    wind: wind.map(|part| factor * part),
+                }
             }
             Convection::Power { upward, downward } => {
                 Law::Power([upward, downward].map(|law| Power::new(values, law, face.wind_factor)))
@@ -182,7 +195,7 @@ impl<S: Real> Film<S> {
                 let forced = forced.scale(wind.root);
                 [S::select(windward, forced, forced.scale(0.5)); 2]
             }
-            Law::Mowitt { wind: [onto, away], .. } => {
+            Law::Mowitt { wind: [onto, away], .. } | Law::Doe2 { wind: [onto, away], .. } => {
                 [S::select(windward, onto.scale(wind.mowitt[0]), away.scale(wind.mowitt[1])); 2]
             }
             Law::Power(laws) => [laws[0].forced(wind), laws[1].forced(wind)],
@@ -192,7 +205,11 @@ impl<S: Real> Film<S> {
     /// What is left of the film's wind part where no wind blows: its constant.
     pub fn still(&self) -> Forced<S> {
         match &self.law {
-            Law::Constant(_) | Law::Blend { .. } | Law::Tarp { .. } | Law::Mowitt { .. } => [S::zero(); 2],
+            Law::Constant(_)
+            | Law::Blend { .. }
+            | Law::Tarp { .. }
+            | Law::Mowitt { .. }
+            | Law::Doe2 { .. } => [S::zero(); 2],
             Law::LinearWind { constant, .. } => [*constant; 2],
             Law::Power([up, down]) => [up.constant, down.constant],
         }
@@ -213,6 +230,10 @@ impl<S: Real> Film<S> {
                 Natural { coefficient: natural.coefficient + forced[0], rise: natural.rise }
             }
             Law::Mowitt { factor, .. } => mowitt(*factor, forced[0], square, rounded),
+            Law::Doe2 { natural: [open, still], roughness, .. } => {
+                let gain = S::select(self.unstable(d), *open, *still);
+                doe2(cube_root_law(gain, square, rounded), *roughness, forced[0])
+            }
             Law::Blend { factor, open, stable } => {
                 let mut natural = blend(open, square, rounded);
                 if let Some(gain) = stable {
@@ -266,15 +287,24 @@ impl<S: Real> Law<S> {
         Self::Blend { factor, open, stable: Some(stable) }
     }
 
-    /// `9.482 d^1/3 / (7.283 - |cos S|)` unstable, `1.810 d^1/3 / (1.382 + |cos S|)` stable, `1.31 d^1/3` vertical.
     fn tarp(factor: S, forced: S, upward: S) -> Self {
-        let tilt = upward.abs();
-        let vertical = tilt.lt(S::constant(1e-3));
-        let open = S::constant(9.482) / (S::constant(7.283) - tilt);
-        let still = S::constant(1.810) / (S::constant(1.382) + tilt);
-        let natural = [open, still].map(|gain| factor * S::select(vertical, S::constant(1.31), gain));
-        Self::Tarp { natural, forced: factor * forced }
+        Self::Tarp { natural: tarp_natural(factor, upward), forced: factor * forced }
     }
+}
+
+/// `9.482 d^1/3 / (7.283 - |cos S|)` unstable, `1.810 d^1/3 / (1.382 + |cos S|)` stable, `1.31 d^1/3` vertical.
+fn tarp_natural<S: Real>(factor: S, upward: S) -> [S; 2] {
+    let tilt = upward.abs();
+    let vertical = tilt.lt(S::constant(1e-3));
+    let open = S::constant(9.482) / (S::constant(7.283) - tilt);
+    let still = S::constant(1.810) / (S::constant(1.382) + tilt);
+    [open, still].map(|gain| factor * S::select(vertical, S::constant(1.31), gain))
+}
+
+/// Gains of `MoWiTT`'s wind part, windward and leeward, on the speed at the mast.
+fn mowitt_wind<S: Real>(wind_factor: S) -> [S; 2] {
+    let [windward, leeward] = MOWITT_EXPONENTS.map(|exponent| wind_factor.powf(S::constant(exponent)));
+    [windward.scale(3.26), leeward.scale(3.55)]
 }
 
 impl<S: Real> Power<S> {
@@ -323,6 +353,14 @@ fn mowitt<S: Real>(factor: S, forced: S, square: S, rounded: S) -> Natural<S> {
     let share = square * (inverse * inverse * inverse);
     let rise = (natural * share).scale(1.0 / 3.0) / coefficient;
     Natural { coefficient: factor * coefficient, rise: factor * rise }
+}
+
+/// `n + roughness (sqrt(n^2 + forced^2) - n)` of a natural film n.
+#[inline(always)]
+fn doe2<S: Real>(natural: Natural<S>, roughness: S, forced: S) -> Natural<S> {
+    let Natural { coefficient: n, rise } = natural;
+    let smooth = (n * n + forced * forced).sqrt();
+    Natural { coefficient: n + roughness * (smooth - n), rise: rise + roughness * (n * rise / smooth - rise) }
 }
 
 /// `(laminar |d|^3/2 + turbulent d^2)^1/6`.
@@ -398,6 +436,12 @@ mod tests {
         // 3.26 4^0.89 and 3.55 4^0.617
         assert_close(coefficient(&film(&mowitt, &[1.0], 0.0), 8.0, 4.0, true), by_hand(11.195_7));
         assert_close(coefficient(&film(&mowitt, &[1.0], 0.0), 8.0, 4.0, false), by_hand(8.350_2));
+        let doe2 = Convection::Doe2 { factor: id(0), roughness: id(1) };
+        // Rough wall (1.67), 8 K, 4 m/s: natural 2.62, smooth (2.62^2 + 11.1957^2)^1/2 = 11.49815 and 8.75157
+        assert_close(coefficient(&film(&doe2, &[1.0, 1.67], 0.0), 8.0, 4.0, true), 17.446_5);
+        assert_close(coefficient(&film(&doe2, &[1.0, 1.67], 0.0), 8.0, 4.0, false), 12.859_7);
+        // Cold roof: natural 2 1.81 / 2.382 = 1.51973, smooth 11.29838
+        assert_close(coefficient(&film(&doe2, &[1.0, 1.0], 1.0), -8.0, 4.0, true), 11.298_4);
         let law = |first| PowerLaw {
             a: id(first),
             b: id(first + 1),

@@ -444,6 +444,14 @@ pub enum Convection {
         /// Multiplies the correlation [-].
         factor: ParamId,
     },
+    /// DOE-2: TARP's natural part and `MoWiTT`'s wind on a face of some roughness.
+    Doe2 {
+        /// Multiplies the correlation [-].
+        factor: ParamId,
+
+        /// Roughness multiplier Rf [-].
+        roughness: ParamId,
+    },
     /// `a + b |dT|^n + c V^m` by direction of heat flow.
     Power {
         /// Heat flows up, or the face is vertical.

@@ -346,7 +346,10 @@ fn check_side(description: &Description, name: &str, side: &Side) -> Result<(), 
         return fail("a measured irradiance needs absorptance");
     }
     if matches!(side.facing, Facing::Measured { .. } | Facing::Ground { .. })
-        && matches!(side.convection, Some(Convection::Tarp { .. } | Convection::Mowitt { .. }))
+        && matches!(
+            side.convection,
+            Some(Convection::Tarp { .. } | Convection::Mowitt { .. } | Convection::Doe2 { .. })
+        )
     {
         return fail("an imposed temperature takes a constant film");
     }

@@ -60,6 +60,14 @@ class Mowitt(Part):
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
 
 
+class Doe2(Part):
+    """DOE-2: TARP's buoyant part, and MoWiTT's wind on faces of any roughness, outdoors."""
+
+    kind: Literal["doe2"]
+    factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
+    roughness: q.Roughness | None = None
+
+
 class PowerLaw(Part):
     """``a + b |dT|^n + c V^m`` for one direction of heat flow."""
 
@@ -79,7 +87,7 @@ class Power(Part):
 
 
 Convection = Annotated[
-    Constant | LinearWind | AlamdariHammond | PaperEq5 | Tarp | Mowitt | Power,
+    Constant | LinearWind | AlamdariHammond | PaperEq5 | Tarp | Mowitt | Doe2 | Power,
     Field(discriminator="kind"),
     Shorthand(word="kind", number="coefficient", kind="constant"),
 ]
@@ -90,4 +98,5 @@ SOURCES = {
     "paper_eq5": "Guichard et al. 2016, doi:10.3390/en9010009, eq. 5 as printed",
     "tarp": "Walton 1983, Thermal Analysis Research Program Reference Manual, NBSIR 83-2655",
     "mowitt": "Yazdanian & Klems 1994, ASHRAE Transactions 100(1)",
+    "doe2": "LBL 1994, DOE2.1E-053 source code; EnergyPlus Engineering Reference, outside convection",
 }

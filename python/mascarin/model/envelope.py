@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.model import quantities as q
-from mascarin.model.convection import Convection, Mowitt, Tarp
+from mascarin.model.convection import Convection, Doe2, Mowitt, Tarp
 from mascarin.model.names import ConstructionName, MaterialName, Name, SurfaceName, ZoneName
 from mascarin.model.number import Number, Remark, problem
 from mascarin.model.part import Part, Shorthand, fault, insist, refuse
@@ -230,7 +230,7 @@ class Surface(Part):
 
     def _direction_acts(self) -> bool:
         """Tell whether sun, wind or the view between the faces of a zone depend on the azimuth."""
-        windy = isinstance(self.outside.convection, Tarp | Mowitt)
+        windy = isinstance(self.outside.convection, Tarp | Mowitt | Doe2)
         sun = windy or any(side.outdoors and side.irradiance is None for side in self.sides)
         seen = any(side.zone is not None for side in self.sides)
         return (sun or seen) and self.tilt is not None and 0.0 < self.tilt < 180.0

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from mascarin.model.convection import AlamdariHammond, LinearWind, Mowitt, PaperEq5, Power, Tarp
+from mascarin.model.convection import AlamdariHammond, Doe2, LinearWind, Mowitt, PaperEq5, Power, Tarp
 from mascarin.model.envelope import NoLongwave, Side, Surface
 from mascarin.model.leaves import leaves
 from mascarin.model.settling import faces_of
@@ -36,7 +36,7 @@ class Face:
             return False
         if isinstance(film, Power):
             return film.upward.c > 0.0 or film.downward.c > 0.0
-        return isinstance(film, LinearWind | Tarp | Mowitt)
+        return isinstance(film, LinearWind | Tarp | Mowitt | Doe2)
 
     @property
     def sunlit(self) -> bool:
@@ -145,11 +145,11 @@ def _in_direction(building: Building, name: str, surface: Surface) -> Reasons:
     if surface.tilt in (0.0, 180.0):
         yield f"surfaces.{name}.azimuth", "a horizontal surface has no direction"
     elif not (
-        sunlit or any(face.windy and isinstance(face.side.convection, Tarp | Mowitt) for face in faces)
+        sunlit or any(face.windy and isinstance(face.side.convection, Tarp | Mowitt | Doe2) for face in faces)
     ):
         yield f"surfaces.{name}.azimuth", _only(reasons)
     skyward = any(face.side.outdoors and face.side.sky_view is None and face.sees_sky for face in faces)
-    if not (sunlit or skyward or any(isinstance(face.side.convection, Tarp) for face in faces)):
+    if not (sunlit or skyward or any(isinstance(face.side.convection, Tarp | Doe2) for face in faces)):
         yield (
             f"surfaces.{name}.tilt",
             _only([*reasons, *(["vertical or horizontal film"] if buoyant else [])]),

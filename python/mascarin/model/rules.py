@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from mascarin.errors import did_you_mean
-from mascarin.model.convection import Mowitt, Tarp
+from mascarin.model.convection import Doe2, Mowitt, Tarp
 from mascarin.model.envelope import NoLongwave, Side
 from mascarin.model.material import Resistance
 from mascarin.model.part import fault
@@ -121,6 +121,13 @@ def _films_suit_their_side(building: Building) -> Faults:
                 f"'{side.convection.kind}' on a side facing {side.faces}",
                 "a film that suits an imposed temperature: a number, linear_wind, alamdari_hammond or power",
                 "Write the film coefficient of that air.",
+            )
+        if isinstance(side.convection, Doe2) and not side.outdoors:
+            yield fault(
+                (*at, "convection"),
+                f"'doe2' on a side facing {side.faces}",
+                "a film without wind",
+                "Write 'tarp', whose buoyant part it has, or a film that suits this side.",
             )
         if isinstance(side.convection, Tarp) and not side.outdoors:
             for key in ("roughness", "perimeter"):

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError
-from mascarin.model.convection import AlamdariHammond, Convection, PaperEq5, Tarp
+from mascarin.model.convection import AlamdariHammond, Convection, Doe2, PaperEq5, Tarp
 from mascarin.model.envelope import Side, Surface
 from mascarin.model.number import Number, Remark
 from mascarin.model.part import Location, fault, insist, refuse, settled
@@ -117,6 +117,8 @@ def _settled_convection(
             return convection.model_copy(update={"length": settled(kind, "length", length, source)})
         case Tarp() if side.outdoors:
             return convection.model_copy(update=_wind_facts(convection, surface, polygon))
+        case Doe2(roughness=None) if side.outdoors:
+            return convection.model_copy(update=_usual_roughness(Doe2))
     return convection
 
 
@@ -132,10 +134,9 @@ def _length(surface: Surface, polygon: Polygon | None) -> tuple[float, str]:
 
 
 def _wind_facts(tarp: Tarp, surface: Surface, polygon: Polygon | None) -> dict[str, Number]:
-    facts = {}
+    facts: dict[str, Number] = {}
     if tarp.roughness is None:
-        source = "Walton 1983: medium rough, as plaster, concrete and brick"
-        facts["roughness"] = settled(Tarp, "roughness", _USUAL_ROUGHNESS, source, assumed=True)
+        facts |= _usual_roughness(Tarp)
     if tarp.perimeter is None:
         edge = 4.0 * math.sqrt(surface.area or 0.0)
         facts["perimeter"] = (
@@ -144,6 +145,11 @@ def _wind_facts(tarp: Tarp, surface: Surface, polygon: Polygon | None) -> dict[s
             else settled(Tarp, "perimeter", polygon.perimeter, _FROM_VERTICES)
         )
     return facts
+
+
+def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:
+    source = "Walton 1983: medium rough, as plaster, concrete and brick"
+    return {"roughness": settled(film, "roughness", _USUAL_ROUGHNESS, source, assumed=True)}
 
 
 def settle_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> dict[str, Zone]:

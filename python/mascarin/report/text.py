@@ -26,6 +26,7 @@ _CHOICES = {
     "paper_eq5": "eq. 5 as printed",
     "tarp": "TARP",
     "mowitt": "MoWiTT",
+    "doe2": "DOE-2",
     "power": "power law by direction",
     "martin_berdahl": "Martin and Berdahl, with clouds",
     "clark_allen": "Clark and Allen, with clouds",

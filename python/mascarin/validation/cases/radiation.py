@@ -202,6 +202,10 @@ _STILL: Final = (
 )  # fmt: skip
 
 
+def _doe2(natural: float, wind: float) -> float:
+    return natural + _ROUGH * (math.hypot(natural, wind) - natural)
+
+
 def _forced(side: float, wind: float) -> float:
     return 2.537 * side * _ROUGH * math.sqrt(_PERIMETER * wind / _AREA)
 
@@ -209,6 +213,7 @@ def _forced(side: float, wind: float) -> float:
 _WINDY: Final = (
     Film("{kind: linear_wind, constant: 5.7, wind: 3.8}", 90, lambda d, v: 5.7 + 3.8 * v),
     Film("{kind: mowitt}", 90, lambda d, v: math.hypot(0.84 * d ** (1 / 3), 3.26 * v**0.89)),
+    Film("{kind: doe2, roughness: 1.67}", 90, lambda d, v: _doe2(1.31 * d ** (1 / 3), 3.26 * v**0.89)),
     Film(
         "{kind: tarp, roughness: 1.67, perimeter: 8}", 90, lambda d, v: 1.31 * d ** (1 / 3) + _forced(1.0, v)
     ),
@@ -218,6 +223,7 @@ _WINDY: Final = (
 )
 _LEEWARD: Final = (
     Film("{kind: mowitt}", 90, lambda d, v: math.hypot(0.84 * d ** (1 / 3), 3.55 * v**0.617)),
+    Film("{kind: doe2, roughness: 1.67}", 90, lambda d, v: _doe2(1.31 * d ** (1 / 3), 3.55 * v**0.617)),
     Film(
         "{kind: tarp, roughness: 1.67, perimeter: 8}", 90, lambda d, v: 1.31 * d ** (1 / 3) + _forced(0.5, v)
     ),
