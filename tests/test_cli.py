@@ -151,10 +151,15 @@ def test_warnings_are_said_in_one_line(
     assert capsys.readouterr() == ("", "warning: the step is long\n")
 
 
-def test_a_reader_that_stops_reading_is_no_error() -> None:
+@pytest.mark.parametrize("code", [0, 1])
+def test_a_reader_that_stops_reading_changes_nothing(code: int) -> None:
     script = (
         "import sys; from mascarin import cli\n"
-        "cli.build_app = lambda chosen: lambda words: print('x' * 200_000)\n"
+        "def command(words):\n"
+        "    print('x' * 200_000)\n"
+        "    print('more', flush=True)\n"
+        f"    return {code}\n"
+        "cli.build_app = lambda chosen: command\n"
         "sys.exit(cli.main([]))"
     )
     with subprocess.Popen(
@@ -165,11 +170,16 @@ def test_a_reader_that_stops_reading_is_no_error() -> None:
         process.stdout.read(10)
         process.stdout.close()
         assert process.stderr.read() == b""
-        assert process.wait() == 0
+        assert process.wait() == code
 
 
 def test_output_without_a_file_behind_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """Under a notebook standard output has no file number; a closed reader must not become a defect."""
-    raising(monkeypatch, BrokenPipeError())
-    monkeypatch.setattr(sys, "stdout", io.StringIO())
+
+    class Gone(io.StringIO):
+        def write(self, text: str) -> int:
+            raise BrokenPipeError
+
+    monkeypatch.setattr(sys, "stdout", Gone())
+    monkeypatch.setattr(cli, "build_app", lambda chosen: lambda words: sys.stdout.write("x") and 0)
     assert cli.main([]) == 0

@@ -92,7 +92,8 @@ def test_another_value_acts(call: list[str], capsys: pytest.CaptureFixture[str])
     [
         (["-o", "box.xls"], "expected a file ending in .nc or .csv"),
         (["-o", "nowhere/box.nc"], "make 'nowhere' first"),
-        (["--output", "rom.*"], "no output like 'rom.*'"),
+        (["--output", "rom.*"], "Did you mean 'room.*'?"),
+        (["--output", "facade.*_flx"], "Did you mean 'facade.inside_flux'"),
         (["--output", "room.air_temprature"], "'room.air_temperature'"),
         (["--step", "soon"], "--step: found 'soon'"),
         (["--start", "2001-13-02"], "2001-13-02"),

@@ -295,7 +295,7 @@ def in_process(study: Study, reductions: int, starts: int, seed: int) -> tuple[R
         rounding=rounded,
         observer=rows,
     )
-    evaluator = Evaluator(Cost(study.problem(), study.file.identification.cost))
+    evaluator = Evaluator(Cost(study.problem(), study.sought.cost))
     while points := optimiser.ask():
         told = []
         for point in points:

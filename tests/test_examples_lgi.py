@@ -165,7 +165,7 @@ def test_the_study_chooses_its_film_outside_on_the_identification_period() -> No
     study = Study(STUDIES["lgi"])
     assert study.candidates == [None, "TARP outside", "linear in the wind"]
     paths = set(study.plan_of("linear in the wind").parameters)
-    shared = set(study.file.identification.parameters)
+    shared = set(study.sought.parameters)
     assert shared - paths == {"surfaces.roof.outside.convection.factor"}
     assert paths - shared == {
         "surfaces.roof.outside.convection.constant",

@@ -369,6 +369,18 @@ FAULTS = {
         "surfaces.south.azimuth",
         ["found: nothing", "Write one or remove the key"],
     ),
+    "a decimal comma": (
+        "    azimuth: 180\n",
+        "    azimuth: 180,5 # here\n",
+        "surfaces.south.azimuth",
+        ["found: '180,5'", "Write decimals with a point: 180.5."],
+    ),
+    "a decimal comma in braces": (
+        "{volume: 30, infiltration: 0.5}",
+        "{volume: 30, infiltration: 0,5} # here",
+        "zones.room.5",
+        ["found: nothing", "Write decimals with a point, as in 0.4."],
+    ),
     "no volume": (
         "{volume: 30, infiltration: 0.5}",
         "{infiltration: 0.5} # here",

@@ -244,6 +244,52 @@ def test_work_on_other_inputs_is_not_continued(quick: Bench, capsys: pytest.Capt
 
 
 @pytest.mark.filterwarnings("always::UserWarning")
+def test_results_of_other_inputs_do_not_stay(quick: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+    out = quick.folder / "out"
+    carried_out(quick.study, out, capsys)
+    mine = out / "figures" / "mine.svg"
+    mine.write_text("kept", encoding="utf-8")
+    quick.edit("  core: {column", "  heart: {column")
+    carried_out(quick.study, out, capsys)
+    figures = {path.name for path in (out / "figures").iterdir()}
+    assert "heart.svg" in figures
+    assert not [name for name in figures if name.startswith("core")]
+    assert mine.read_text(encoding="utf-8") == "kept"
+
+
+def test_a_variant_may_hold_dots_in_its_name(quick: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+    quick.edit(
+        "identification:\n",
+        "variants: {h 0.5 W: {identify: false, changes: {surfaces.wall.inside.convection: 9}}}\n"
+        "identification:\n",
+    )
+    done = carried_out(quick.study, quick.folder / "out", capsys)
+    assert "h 0.5 W/joint" in (done.out / "report.html").read_text(encoding="utf-8")
+
+
+def test_two_studies_do_not_share_a_folder(quick: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+    from mascarin.study import Study
+    from mascarin.study.keeping import Workspace
+
+    study = Study(quick.study)
+    out = quick.folder / "out"
+    with Workspace(out, study.inputs()):
+        for command in ("study", "sensitivity", "calibrate", "validate"):
+            assert cli.main([command, str(quick.study), "-o", str(out)]) == 2
+            assert "another study is at work in this folder" in capsys.readouterr().err
+    Workspace(out, study.inputs()).__exit__()
+
+
+def test_when_it_was_run_is_told_beside_the_results(done: Done) -> None:
+    """The results are the same to the byte each time; the moment and the time it took stand by themselves."""
+    run = json.loads((done.out / "run.json").read_text(encoding="utf-8"))
+    assert run["run_time"] > 0.0
+    assert run["created"].endswith("+00:00")
+    assert "Time of the run" in (done.out / "report.html").read_text(encoding="utf-8")
+    assert done.content["command"] == ["mascarin study study.yaml -o out/"]
+
+
+@pytest.mark.filterwarnings("always::UserWarning")
 def test_a_manifest_that_nobody_can_read_is_other_work(
     quick: Bench, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -362,7 +363,7 @@ CASES = {
         "joint: {column: core",
         ("sensors.joint", "first on line 13"),
     ),
-    "a tab": Refused("step: 30min", "\tstep: 30min", "\tstep", ("no YAML", "indentation")),
+    "a tab": Refused("step: 30min", "\tstep: 30min", "\tstep", ("no YAML", "Indent with spaces")),
     "a number in the place of bounds": Refused(
         "materials.brick.conductivity:",
         "materials.brick.conductivity: 0.6",
@@ -558,6 +559,46 @@ def test_a_dead_sensor_that_nobody_masks_is_refused(bench: Bench, capsys: pytest
         "mask: [stuck]",
     ):
         assert part in said
+
+
+def test_all_that_is_wrong_is_said_at_once(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+    """What is wrong with a table hides neither what else is, nor another column."""
+    bench.edit("column: joint", "column: jiont")
+    bench.edit("column: core", "column: cor")
+    bench.edit("output: core.temperature", "output: core.temprature")
+    bench.edit("air_temperature: air}", "air_temperature: airr}")
+    bench.edit("materials.brick.conductivity:", "materials.brick.conductvity:")
+    said = refusal(bench, capsys)
+    assert "study.yaml: 5 faults" in said
+    for part in ("'jiont'", "'cor'", "core.temprature", "'airr'", "materials.brick.conductvity"):
+        assert part in said
+
+
+@pytest.mark.parametrize("label", ["as described", "measured", "weather", "fitted"])
+def test_a_variant_cannot_bear_a_name_that_results_use(
+    label: str, bench: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bench.edit(
+        "identification:\n  starts",
+        f"variants: {{{label}: {{changes: {{site.sky: brunt}}}}}}\nidentification:\n  starts",
+    )
+    said = refusal(bench, capsys)
+    assert f"found: '{label}'" in said
+    assert "another name" in said
+
+
+def test_without_an_identification_a_building_is_only_compared(
+    bench: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bench.edit(STUDY[STUDY.index("identification:\n  starts") :], "")
+    assert cli.main(["validate", str(bench.study), "--json"]) in (0, 1)
+    assert json.loads(capsys.readouterr().out)["sensors"]["joint"]["blind"]["nominal"]["n"] > 0
+    for command in ("study", "calibrate"):
+        assert cli.main([command, str(bench.study), "-o", str(bench.folder / "out")]) == 2
+        said = capsys.readouterr().err
+        assert "identification: found nothing" in said
+        assert "mascarin validate" in said
+        assert not (bench.folder / "out").exists()
 
 
 def test_a_folder_that_is_a_file_is_refused(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:

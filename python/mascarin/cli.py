@@ -13,7 +13,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Sequence
-from typing import Final, NamedTuple, TextIO
+from typing import Any, Final, NamedTuple, TextIO, cast
 
 from cyclopts import App, CycloptsError, Group
 
@@ -141,14 +141,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = _take_debug(words)
-    with warnings.catch_warnings():
+    out, err = (cast("TextIO", _Output(stream)) for stream in (sys.stdout, sys.stderr))
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings():
         if not debug:
             warnings.showwarning = _show_warning
         try:
             code = build_app(words[0] if words else None)(words)
             sys.stdout.flush()
-        except BrokenPipeError:
-            return _reader_gone()
         except KeyboardInterrupt:
             _say("interrupted")
             return EXIT_INTERRUPTED
@@ -191,13 +190,42 @@ def _usage_text(error: CycloptsError) -> str:
     return " ".join(str(error).split())
 
 
-def _reader_gone() -> int:
-    """Whoever read our output (``| head``) has had enough: not an error, and nothing more to say."""
-    # Python flushes standard output once more when it ends: give it somewhere to go. Where standard
-    # output is no real file there is nothing to flush.
-    with contextlib.suppress(OSError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return EXIT_OK
+class _Output:
+    """A stream whose reader may leave (``| head``): the work goes on, and its exit code is the same.
+
+    Parameters
+    ----------
+    stream : TextIO
+        Where it goes.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        """Everything else is the stream's."""
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        """Write, or drop what nobody reads."""
+        try:
+            return self._stream.write(text)
+        except BrokenPipeError:
+            self._leave()
+            return len(text)
+
+    def flush(self) -> None:
+        """Pass on what was written, or drop what nobody reads."""
+        try:
+            self._stream.flush()
+        except BrokenPipeError:
+            self._leave()
+
+    def _leave(self) -> None:
+        # Python flushes the stream once more when it ends: give it somewhere to go. Where it is no real
+        # file there is nothing to flush.
+        with contextlib.suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
 
 
 def _show_warning(

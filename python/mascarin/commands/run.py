@@ -147,10 +147,20 @@ def _matching(building: Building, patterns: Sequence[str] | None) -> list[str] |
         meant = [name for name in names if fnmatchcase(name, pattern)]
         if not meant and any(sign in pattern for sign in "*?["):
             raise InputError(
-                f"--output: found no output like '{pattern}'. {did_you_mean(pattern, names)}".rstrip()
+                f"--output: found no output like '{pattern}'; expected a pattern that fits one. "
+                f"{_meant(pattern, names)}".rstrip()
             )
         found |= dict.fromkeys(meant or [building.output(pattern).name])
     return list(found)
+
+
+def _meant(pattern: str, names: Sequence[str]) -> str:
+    """Patterns like this one that do fit: its owner, or what it asks of the owner, taken from a name."""
+    owner, _, what = pattern.partition(".")
+    pairs = [(left, right) for left, _, right in (name.partition(".") for name in names)]
+    near = {f"{left}.{what}" for left, right in pairs if fnmatchcase(right, what)}
+    near |= {f"{owner}.{right}" for left, right in pairs if fnmatchcase(left, owner)}
+    return did_you_mean(pattern, near or names)
 
 
 def _write(results: Results, out: Path) -> None:

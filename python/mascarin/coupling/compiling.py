@@ -75,7 +75,7 @@ def compile_study(study: Study) -> Case:
         place=((at - seconds[0]) / step)[np.flatnonzero(study.during["identification"])],
         parameters=problem.parameters,
         sensors=problem.sensors,
-        cost=study.file.identification.cost,
+        cost=study.sought.cost,
         step=observation.interval,
         inputs=inputs_of(str(study.path.resolve()), _files(study.path, study.file)),
     )

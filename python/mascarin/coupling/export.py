@@ -113,9 +113,9 @@ def write_project(study: str, out: Path, options: Options | None = None) -> Path
     opened = Study(path)
     plan = _plan(
         o,
-        opened.file.identification.starts,
-        opened.file.identification.seed,
-        opened.file.identification.budget,
+        opened.sought.starts,
+        opened.sought.seed,
+        opened.sought.budget,
     )
     case = compile_study(opened)
     algorithm = chosen(o.algorithm, len(case.parameters))

@@ -8,6 +8,7 @@ parameter table and documentation all read it from there.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from pydantic.json_schema import JsonSchemaValue
 
 Interval = tuple[float, float]
+
+#: A number as it is written where the comma is the decimal sign.
+_COMMA = re.compile(r"[-+]?\d+,\d+")
 
 
 class Remark(str):
@@ -294,6 +298,8 @@ class Quantity:
         return raw if isinstance(raw, Number) else Number(raw)
 
     def _advice(self, raw: object) -> str:
+        if isinstance(raw, str) and _COMMA.fullmatch(raw):
+            return f"Write decimals with a point: {raw.replace(',', '.')}."
         if isinstance(raw, str) and raw[:1].isdigit():
             return f"Write the bare number; the unit is always {self.unit}."
         if isinstance(raw, str) and self.words:

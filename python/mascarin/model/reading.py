@@ -197,7 +197,9 @@ class _Document:
                 "",
                 f"text that is no YAML: {error.problem}",
                 "valid YAML 1.2",
-                "Check indentation, colons and quotes near this line.",
+                "Indent with spaces: YAML knows no tabs there."
+                if "\\t" in str(error.problem)
+                else "Check indentation, colons and quotes near this line.",
             )
         except YAMLError as error:
             self._refuse(0, "", f"text that is no YAML: {error}", "valid YAML 1.2", "Save it as UTF-8 text.")
@@ -262,7 +264,10 @@ class _Document:
                 return None
             case "null":
                 line = self.lines[place] - 1  # the key's: the value that is missing has no line
-                self._refuse(line, _text(place), "nothing", "a value", "Write one or remove the key.")
+                # In braces the comma of 0,4 ends a value, and what follows is a key without one.
+                comma = isinstance(place[-1], str) and place[-1].isdigit()
+                help_ = "Write decimals with a point, as in 0.4." if comma else "Write one or remove the key."
+                self._refuse(line, _text(place), "nothing", "a value", help_)
                 return None
             case "bool" | "int" | "float":
                 return getattr(self.scalars, f"construct_yaml_{kind}")(node)

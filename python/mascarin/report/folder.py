@@ -50,6 +50,8 @@ def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
         A file is missing or cannot be read.
     """
     study = read_json(out / "study.json")
+    if (out / "run.json").exists():
+        study |= read_json(out / "run.json")
     return study, _series(out / "tables" / "series.csv", study)
 
 
@@ -71,18 +73,24 @@ def _series(path: Path, study: Mapping[str, Any]) -> Series:
     return Series(times[0].isoformat(), (times[1] - times[0]).total_seconds(), columns)
 
 
+def _parts(name: str, models: Sequence[str]) -> tuple[str, str]:
+    """Owner of a column and what it holds; both a sensor's name and a model's label may hold dots."""
+    if name.startswith(("weather.", "state.")):
+        owner, _, what = name.partition(".")
+        return owner, what
+    model = max((model for model in models if name.endswith(f".{model}")), key=len, default="")
+    return name.removesuffix(f".{model}"), model
+
+
 def _number(cell: str) -> float:
     return float(cell) if cell else math.nan
 
 
 def _columns(names: Sequence[str], values: Array, study: Mapping[str, Any]) -> dict[str, Column]:
-    sensors = study.get("sensor_info", {})
+    sensors, models = study.get("sensor_info", {}), ("measured", *study.get("models", {}))
     found = {}
     for name, column in zip(names, values.T, strict=True):
-        # A sensor's name may hold a dot; a model's label may not.
-        owner, _, what = (
-            name.partition(".") if name.startswith(("weather.", "state.")) else name.rpartition(".")
-        )
+        owner, what = _parts(name, models)
         if owner in sensors:
             info = sensors[owner]
             key = f"{'observed' if what == 'measured' else what}/{owner}"

@@ -11,10 +11,13 @@ from mascarin.study.screening import check_plan
 from mascarin.validation.observation import PERIODS, require_comparable
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pandas as pd
 
     from mascarin.model import Building
     from mascarin.study.pipeline import Study
+    from mascarin.study.places import Faults
 
 #: A sensor that repeats itself over more than this part of the identification is not fitted to.
 _MOST_DEAD: Final = 0.5
@@ -31,32 +34,39 @@ def check(study: Study) -> None:
     Parameters
     ----------
     study : Study
-        Its files are open.
+        Its files are open, and its names are known.
 
     Raises
     ------
     InputError
         File, line and place in the study, what was found, what was expected, what to do.
     """
-    _names(study)
     _periods(study)
     _alive(study)
     _runs(study)
     _sensible(study)
 
 
-def _names(study: Study) -> None:
-    """Outputs, parameters, criteria: whatever is called by a name that must exist."""
-    file, blame = study.file, study.places.blame
+def names(study: Study, faults: Faults) -> None:
+    """Outputs, parameters, criteria: whatever is called by a name that must exist. No table is needed.
+
+    Parameters
+    ----------
+    study : Study
+        Its building is read.
+    faults : Faults
+        Takes what is wrong.
+    """
+    file, places = study.file, study.places
     for name, sensor in file.sensors.items():
-        with blame("sensors", name, "output"):
+        with places.noting(faults, "sensors", name, "output"):
             study.building.output(sensor.output)
-    if not any(sensor.use for sensor in file.sensors.values()):
-        with blame("sensors"):
+    with places.noting(faults, "sensors"):
+        if not any(sensor.use for sensor in file.sensors.values()):
             raise InputError("found use: false on every sensor, expected one at least that takes part")
     seen: dict[str, str] = {}
-    for path, free in file.identification.parameters.items():
-        with blame("identification", "parameters", path):
+    for path, free in {} if file.identification is None else file.identification.parameters.items():
+        with places.noting(faults, "identification", "parameters", path):
             found = free_parameter(study.building, path, free).path
             if found in seen:
                 raise InputError(f"is the same as {seen[found]}, expected each parameter once; remove one")
@@ -64,19 +74,22 @@ def _names(study: Study) -> None:
     for k, criterion in enumerate(file.criteria):
         for key, known in (("sensors", tuple(file.sensors)), ("periods", PERIODS)):
             for name in getattr(criterion, key) or ():
-                if name not in known:
-                    with blame("criteria", k, key):
-                        hint = did_you_mean(name, known)
-                        raise InputError(f"found '{name}', expected one of {', '.join(known)}. {hint}")
+                with places.noting(faults, "criteria", k, key):
+                    _require_known(name, known)
     for name in {} if file.reference is None else file.reference.sensors:
-        if name not in file.sensors:
-            with blame("reference", "sensors", name):
-                hint = did_you_mean(name, tuple(file.sensors))
-                raise InputError(f"found '{name}', expected one of {', '.join(file.sensors)}. {hint}")
+        with places.noting(faults, "reference", "sensors", name):
+            _require_known(name, tuple(file.sensors))
     if file.sensitivity is not None:
-        check_plan(study.building, file.sensitivity, study.places)
+        with faults.kept():
+            check_plan(study.building, file.sensitivity, places)
     for variant in file.variants:
-        study.building_of(variant)
+        with faults.kept():
+            study.building_of(variant)
+
+
+def _require_known(name: str, known: Sequence[str]) -> None:
+    if name not in known:
+        raise InputError(f"found '{name}', expected one of {', '.join(known)}. {did_you_mean(name, known)}")
 
 
 def _periods(study: Study) -> None:
@@ -151,12 +164,13 @@ def _runs(study: Study) -> None:
         for name in (name for name, sensor in file.sensors.items() if sensor.use):
             with blame("sensors", name):
                 require_comparable(study.observation, study.during[period], period, [name])
-    with blame("identification"):
-        _ = study.problem()
+    if file.identification is not None:
+        with blame("identification"):
+            _ = study.problem()
     for name, variant in file.variants.items():
         with blame("variants", name):
             study.whole(name)
-            if variant.identify:
+            if variant.identify and file.identification is not None:
                 study.problem(name)
 
 

@@ -64,10 +64,10 @@ Duration = Annotated[str, BeforeValidator(_seconds), AfterValidator(_duration)]
 TimeZone = Annotated[str, BeforeValidator(_timezone)]
 Columns = str | tuple[str, ...] | dict[str, Any]
 
-#: Names that the results give to models and metrics, so that no variant may bear them.
+#: Names that the results give to models, metrics and series, so that no variant may bear them.
 TAKEN: Final = (
     "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
-    "max_error_percent", "measured_range",
+    "max_error_percent", "measured_range", "measured", "as described", "observed", "weather", "state",
 )  # fmt: skip
 
 
@@ -309,7 +309,9 @@ class StudyFile(Part):
     quality: Quality = Field(default_factory=lambda: Quality(mask=()), description="Suspicious stretches")
     criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit 1 when one is missed")
     sensitivity: SensitivityPlan | None = Field(None, description="Which parameters matter")
-    identification: IdentificationPlan = Field(description="Which parameters to identify")
+    identification: IdentificationPlan | None = Field(
+        None, description="Which parameters to identify; without it the building can only be compared"
+    )
     reference: Reference | None = Field(None, description="Numbers of a publication, shown as a scale")
     variants: dict[str, Variant] = Field(default_factory=dict, description="Other model choices")
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import __version__
+from mascarin.examples import STUDIES
 from mascarin.study.pipeline import scores_of
 from mascarin.validation.observation import PERIODS
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from mascarin.calibration import Fit
     from mascarin.model import Building
     from mascarin.sensitivity.spectral import SpectralSensitivity
+    from mascarin.study.description import StudyFile
     from mascarin.study.pipeline import Findings, ModelRun, Study
     from mascarin.validation.criteria import Verdict
 
@@ -89,9 +91,9 @@ def header(study: Study, command: str) -> dict[str, Any]:
         "title": file.name,
         "intro": [part.strip() for part in file.about.split("\n\n") if part.strip()],
         "observed": {"label": file.observed},
-        "seed": file.identification.seed,
+        "seed": _seed(file),
         "timezone": study.climate.timezone,
-        "command": [f"mascarin {command} {study.path.name} -o out/"],
+        "command": [f"mascarin {command} {_called(study)} -o out/"],
         "inputs": _inputs(study),
         "versions": _versions(),
         "sources": [{"text": text} for text in study.building.sources()],
@@ -142,6 +144,17 @@ def for_report(content: Mapping[str, Any]) -> dict[str, Any]:
         for sensor, periods in content["sensors"].items()
     }
     return {**content, "sensors": sensors}
+
+
+def _called(study: Study) -> str:
+    """What to call the study by: its name where it comes with Mascarin, else its file."""
+    shipped = (name for name, path in STUDIES.items() if path.resolve() == study.path.resolve())
+    return next(shipped, study.path.name)
+
+
+def _seed(file: StudyFile) -> int | None:
+    """Where the random numbers start: those of the identification, else of the sensitivity."""
+    return next((plan.seed for plan in (file.identification, file.sensitivity) if plan is not None), None)
 
 
 def _plain(values: Any) -> Any:
@@ -225,7 +238,7 @@ def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, di
 
 
 def _parameters(study: Study, fit: Fit) -> dict[str, dict[str, Any]]:
-    plan = study.file.identification.parameters
+    plan = study.sought.parameters
     given = {study.building.parameter(path).path: free for path, free in plan.items()}
     # A candidate may have parameters that the building as described has not.
     sources = {parameter.path: parameter.source for parameter in study.building.parameters()}

@@ -6,7 +6,7 @@ Unfinished work is kept where the whole study keeps it: a study goes on from wha
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -39,15 +39,18 @@ def sensitivity(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
     """
     from mascarin.sensitivity.plots import save, spectrum, tornado
 
-    workspace = Workspace(out, study.inputs())
-    # A default of pydantic's own, so that every other key is the usual one.
-    plan = study.file.sensitivity or SensitivityPlan.model_validate({})
-    found = study.screened(plan, workspace, Teller(quiet))
-    for name in found.outputs:
-        save(spectrum(found, name), out / "figures" / f"{name}-spectrum.svg")
-        save(tornado(found, name), out / "figures" / f"{name}-tornado.svg")
-    content = {**header(study, "sensitivity"), **importance(study, found)}
-    _write(out, "sensitivity", content, {"sensitivity": found.table()})
+    with Workspace(out, study.inputs()) as workspace:
+        # A default of pydantic's own, so that every other key is the usual one.
+        plan = study.file.sensitivity or SensitivityPlan.model_validate({})
+        found = study.screened(plan, workspace, Teller(quiet))
+        drawn = {}
+        for name in found.outputs:
+            drawn[out / "figures" / f"{name}-spectrum.svg"] = spectrum(found, name)
+            drawn[out / "figures" / f"{name}-tornado.svg"] = tornado(found, name)
+        for path, figure in drawn.items():
+            save(figure, path)
+        content = {**header(study, "sensitivity"), **importance(study, found)}
+        _write(workspace, "sensitivity", content, {"sensitivity": found.table()}, drawn)
     return content
 
 
@@ -68,23 +71,24 @@ def calibration(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
     dict
         What calibration.json holds.
     """
-    workspace = Workspace(out, study.inputs())
-    nominal = study.nominal()
-    fitted, fit = study.fitted(workspace, Teller(quiet))
-    models, verdicts = {"nominal": nominal, "fitted": fitted}, study.judged(nominal, fitted)
-    content = {
-        **header(study, "calibrate"),
-        **comparison(models, verdicts),
-        **estimates(study, fit),
-        "notes": [{"title": "The estimates", "text": text} for text in fit.warnings],
-    }
-    tables = {
-        "parameters": fit.table(),
-        "calibration_metrics": metrics_table([nominal, fitted]),
-        "calibration_criteria": criteria_table(verdicts),
-        "quality": quality_table(study.quality),
-    }
-    _write(out, "calibration", content, tables)
+    _ = study.sought
+    with Workspace(out, study.inputs()) as workspace:
+        nominal = study.nominal()
+        fitted, fit = study.fitted(workspace, Teller(quiet))
+        models, verdicts = {"nominal": nominal, "fitted": fitted}, study.judged(nominal, fitted)
+        content = {
+            **header(study, "calibrate"),
+            **comparison(models, verdicts),
+            **estimates(study, fit),
+            "notes": [{"title": "The estimates", "text": text} for text in fit.warnings],
+        }
+        tables = {
+            "parameters": fit.table(),
+            "calibration_metrics": metrics_table([nominal, fitted]),
+            "calibration_criteria": criteria_table(verdicts),
+            "quality": quality_table(study.quality),
+        }
+        _write(workspace, "calibration", content, tables)
     return content
 
 
@@ -103,24 +107,36 @@ def validation(study: Study, out: Path | None) -> dict[str, Any]:
     dict
         What validation.json holds.
     """
-    if out is not None:
-        Workspace(out, study.inputs())  # refuses what is no folder before anything is run
-    nominal = study.nominal()
-    verdicts = study.judged(nominal)
-    content = {**header(study, "validate"), **comparison({"nominal": nominal}, verdicts)}
-    if out is not None:
-        tables = {
-            "validation_metrics": metrics_table([nominal]),
-            "validation_criteria": criteria_table(verdicts),
-            "quality": quality_table(study.quality),
-        }
-        _write(out, "validation", content, tables)
+    if out is None:
+        return _validated(study)[0]
+    with Workspace(out, study.inputs()) as workspace:  # refuses what is no folder before anything is run
+        content, tables = _validated(study)
+        _write(workspace, "validation", content, tables)
     return content
 
 
-def _write(out: Path, name: str, content: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> None:
-    write_tables(out / "tables", tables)
-    write_whole(out / f"{name}.json", as_json(content))
+def _validated(study: Study) -> tuple[dict[str, Any], dict[str, pd.DataFrame]]:
+    nominal = study.nominal()
+    verdicts = study.judged(nominal)
+    tables = {
+        "validation_metrics": metrics_table([nominal]),
+        "validation_criteria": criteria_table(verdicts),
+        "quality": quality_table(study.quality),
+    }
+    return {**header(study, "validate"), **comparison({"nominal": nominal}, verdicts)}, tables
+
+
+def _write(
+    workspace: Workspace,
+    name: str,
+    content: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    further: Iterable[Path] = (),
+) -> None:
+    result = workspace.out / f"{name}.json"
+    written = [*write_tables(workspace.out / "tables", tables), *further, result]
+    write_whole(result, as_json(content))
+    workspace.settle(name, written)
 
 
 def as_json(content: Mapping[str, Any]) -> str:

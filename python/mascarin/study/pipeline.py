@@ -19,6 +19,7 @@ from mascarin.climate import Climate, Measurements
 from mascarin.climate.quality import mask
 from mascarin.climate.table import file_hash, seconds_of
 from mascarin.climate.timezones import moment
+from mascarin.errors import InputError
 from mascarin.model import Building, load
 from mascarin.progress import Progress
 from mascarin.results import Results
@@ -26,7 +27,7 @@ from mascarin.simulation import Simulation
 from mascarin.study.description import IdentificationPlan, SensitivityPlan, StudyFile, Variant, read_study
 from mascarin.study.fitting import fit_parameters, identify, problem
 from mascarin.study.keeping import Workspace
-from mascarin.study.places import Places
+from mascarin.study.places import Faults, Places
 from mascarin.study.screening import factors, screen
 from mascarin.study.sources import filled, find, open_climate, open_measurements, require_one_clock
 from mascarin.validation.criteria import Criterion, Verdict, judge
@@ -143,7 +144,7 @@ class Study:
     """
 
     def __init__(self, path: str | Path) -> None:
-        from mascarin.study.checking import check
+        from mascarin.study.checking import check, names
 
         self.path = Path(path)
         self.file: StudyFile = read_study(self.path)
@@ -155,9 +156,15 @@ class Study:
         as_described = load(described)
         with blame("set"):
             self.building: Building = as_described.replace(self.file.set)
-        require_one_clock(self.file, self.places)
-        self.climate: Climate = open_climate(self.file.climate, beside, self.building, self.places)
-        read = open_measurements(self.file, beside, self.building, self.places, Places(described))
+        faults = Faults()
+        names(self, faults)
+        with faults.kept():
+            require_one_clock(self.file, self.places)
+        with faults.kept():
+            self.climate: Climate = open_climate(self.file.climate, beside, self.building, self.places)
+        with faults.kept():
+            read = open_measurements(self.file, beside, self.building, self.places, Places(described))
+        faults.tell(self.path)
         self.quality: list[Stretch] = read.quality() + self._weather_quality()
         self.measurements: Measurements = self._masked(self._filled(read))
         self.criteria: tuple[Criterion, ...] = self.file.criteria
@@ -330,7 +337,8 @@ class Study:
                 if known in ranges:
                     low, high = ranges[known]
                     ranges[known] = (min(low, span[0]), max(high, span[1]))
-        for free in fit_parameters(self.building, self.file.identification):
+        sought = self.file.identification
+        for free in [] if sought is None else fit_parameters(self.building, sought):
             if free.path in ranges:
                 ranges[free.path] = (free.lower, free.upper)
         return ranges
@@ -350,9 +358,26 @@ class Study:
             self.plan_of(variant),
         )
 
+    @property
+    def sought(self) -> IdentificationPlan:
+        """What is to be identified.
+
+        Raises
+        ------
+        InputError
+            The study says nothing of it.
+        """
+        if self.file.identification is None:
+            raise InputError(
+                f"{self.places.at('identification')}: found nothing, expected which parameters to identify: "
+                "add identification: {parameters: {...}}, or ask for the comparison alone with "
+                "'mascarin validate', or for what matters with 'mascarin sensitivity'"
+            )
+        return self.file.identification
+
     def plan_of(self, variant: str | None) -> IdentificationPlan:
         """What is identified in a variant: the study's parameters that it has, and its own."""
-        plan = self.file.identification
+        plan = self.sought
         if variant is None:
             return plan
         known = {parameter.path for parameter in self.building_of(variant).parameters()}
@@ -372,7 +397,9 @@ class Study:
     def lead_seconds(self) -> float:
         """Length of the run before the identification period, as long as the record allows. [s]"""
         available = (self.identification[0] - self.start).total_seconds()
-        lead = min(seconds_of(self.file.identification.lead, "lead"), available)
+        plan = self.file.identification
+        wanted = IdentificationPlan.model_fields["lead"].default if plan is None else plan.lead
+        lead = min(seconds_of(wanted, "lead"), available)
         return self._whole_steps(lead).total_seconds()
 
     def scores(self, results: Results) -> Scores:
@@ -416,9 +443,16 @@ class Study:
         """
         from mascarin.study.writing import write_all
 
+        _ = self.sought
+        with Workspace(Path(out), self.inputs()) as workspace:
+            findings = self._found(workspace, Teller(quiet))
+            write_all(self, findings, workspace)
+            workspace.drop("sensitivity")
+        return findings
+
+    def _found(self, workspace: Workspace, tell: Teller) -> Findings:
+        """The five steps."""
         began = time.monotonic()
-        workspace = Workspace(Path(out), self.inputs())
-        tell = Teller(quiet)
         nominal = self.nominal()
         plan = self.file.sensitivity
         sensitivity = None if plan is None else self.screened(plan, workspace, tell)
@@ -426,7 +460,7 @@ class Study:
         variants = self._varied(workspace, tell)
         verdicts = self.judged(nominal, fitted)
         examinations = self._examined(fitted)
-        findings = Findings(
+        return Findings(
             nominal,
             fitted,
             variants,
@@ -438,9 +472,6 @@ class Study:
             self.quality,
             time.monotonic() - began,
         )
-        write_all(self, findings, workspace)
-        workspace.drop("sensitivity")
-        return findings
 
     def _compared(
         self, label: str, simulation: Simulation, values: Any, fit: Fit | None, note: str
@@ -533,7 +564,7 @@ class Study:
             fit = identify(
                 self.short(variant),
                 self.problem(variant),
-                self.file.identification,
+                self.sought,
                 record=workspace.path(f"evaluations-{_safe(label)}.jsonl"),
                 progress=_searching(progress),
             )

@@ -9,6 +9,45 @@ from pathlib import Path
 from mascarin.errors import InputError
 
 
+class _Several(InputError):
+    """Errors told together."""
+
+    def __init__(self, where: Path, texts: list[str]) -> None:
+        super().__init__("\n".join([f"{where}: {len(texts)} faults", *texts]))
+        self.texts = texts
+
+
+class Faults:
+    """Errors that do not hang on each other, told together."""
+
+    def __init__(self) -> None:
+        self._found: list[str] = []
+
+    @contextmanager
+    def kept(self) -> Iterator[None]:
+        """Keep an InputError raised inside."""
+        try:
+            yield
+        except _Several as error:
+            self._found += error.texts
+        except InputError as error:
+            self._found.append(str(error))
+
+    def tell(self, where: Path) -> None:
+        """Raise what was kept, if anything.
+
+        Raises
+        ------
+        InputError
+            All that was kept, one after the other.
+        """
+        found = list(dict.fromkeys(self._found))
+        if len(found) == 1:
+            raise InputError(found[0])
+        if found:
+            raise _Several(where, found)
+
+
 class Places:
     """Lines of the entries of a YAML file.
 
@@ -48,6 +87,12 @@ class Places:
             yield
         except InputError as error:
             raise self.blamed(error, *place) from None
+
+    @contextmanager
+    def noting(self, faults: Faults, *place: str | int) -> Iterator[None]:
+        """The same, but keep the error among others and go on."""
+        with faults.kept(), self.blame(*place):
+            yield
 
     def blamed(self, error: InputError, *place: str | int) -> InputError:
         """The same error with file, line and place in front, the place not said twice."""

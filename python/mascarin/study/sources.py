@@ -167,7 +167,8 @@ def open_measurements(
     try:
         return Measurements.from_table(path, columns=[*asks, *others], **table.options)
     except InputError as error:
-        raise InputError(f"{_asking(path, table, asks, places)}: {error}") from None
+        _tell(path, table, asks, places)
+        raise InputError(f"{places.at('measurements', 'mean')}: {error}") from None
 
 
 def _other_columns(path: Path, table: Table, asks: Mapping[str, str]) -> list[str]:
@@ -186,21 +187,20 @@ def _other_columns(path: Path, table: Table, asks: Mapping[str, str]) -> list[st
     return others
 
 
-def _asking(path: Path, table: Table, asks: Mapping[str, str], places: Places) -> str:
-    """Which entry asks for what cannot be read: that of the first column that cannot, else the table's."""
-    plain = {**table.options, "mean": ()}
+def _tell(path: Path, table: Table, asks: Mapping[str, str], places: Places) -> None:
+    """Say what cannot be read: the table as a whole, else every column, with the entry that asks for it."""
+    from mascarin.study.places import Faults
 
-    def readable(*columns: str) -> bool:
-        try:
-            Measurements.from_table(path, columns=columns, **plain)
-        except InputError:
-            return False
-        return True
-
-    if not readable():
-        return places.at("measurements")
-    column = next((column for column in asks if not readable(column)), None)
-    return asks[column] if column is not None else places.at("measurements", "mean")
+    plain, faults = {**table.options, "mean": ()}, Faults()
+    with places.blame("measurements"):
+        Measurements.from_table(path, columns=(), **plain)
+    for column, place in asks.items():
+        with faults.kept():
+            try:
+                Measurements.from_table(path, columns=[column], **plain)
+            except InputError as error:
+                raise InputError(f"{place}: {error}") from None
+    faults.tell(places.path)
 
 
 def filled(read: Measurements, building: Building, longest: str) -> Measurements:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator, Mapping, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -21,6 +23,10 @@ if TYPE_CHECKING:
     from mascarin.validation.criteria import Verdict
 
 
+#: When a study was run, and how long it took.
+RUN: Final = "run.json"
+
+
 def write_all(study: Study, findings: Findings, workspace: Workspace) -> None:
     """Write everything but the report into the study's folder; each file appears when it is complete.
 
@@ -34,9 +40,23 @@ def write_all(study: Study, findings: Findings, workspace: Workspace) -> None:
         The folder.
     """
     out = workspace.out
-    _figures(study, findings, _folder(out / "figures"))
-    _tables(study, findings, _folder(out / "tables"))
+    written = [
+        *_figures(study, findings, _folder(out / "figures")),
+        *_tables(study, findings, _folder(out / "tables")),
+        *(out / name for name in ("study.json", RUN, "report.html")),
+    ]
     write_whole(out / "study.json", json.dumps(document(study, findings), indent=1, allow_nan=False) + "\n")
+    write_whole(out / RUN, json.dumps(_run(findings), indent=1) + "\n")
+    workspace.settle("study", written)
+
+
+def _run(findings: Findings) -> dict[str, Any]:
+    """What is another each time a study is run, apart from the results, which are the same to the byte."""
+    return {
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "run_time": round(findings.seconds, 1),
+        "processors": os.cpu_count(),
+    }
 
 
 def _folder(path: Path) -> Path:
@@ -44,7 +64,7 @@ def _folder(path: Path) -> Path:
     return path
 
 
-def _tables(study: Study, findings: Findings, folder: Path) -> None:
+def _tables(study: Study, findings: Findings, folder: Path) -> list[Path]:
     tables = {
         "metrics": metrics_table(list(_runs(findings))),
         "parameters": findings.fit.table(),
@@ -54,10 +74,10 @@ def _tables(study: Study, findings: Findings, folder: Path) -> None:
     }
     if findings.sensitivity is not None:
         tables["sensitivity"] = findings.sensitivity.table()
-    write_tables(folder, tables)
+    return write_tables(folder, tables)
 
 
-def write_tables(folder: Path, tables: Mapping[str, pd.DataFrame]) -> None:
+def write_tables(folder: Path, tables: Mapping[str, pd.DataFrame]) -> list[Path]:
     """Write tables as CSV; each appears when it is complete.
 
     Parameters
@@ -66,10 +86,16 @@ def write_tables(folder: Path, tables: Mapping[str, pd.DataFrame]) -> None:
         Where to; made when it is missing.
     tables : mapping of str to DataFrame
         By name without ending.
+
+    Returns
+    -------
+    list of Path
+        The files.
     """
     _folder(folder)
     for name, table in tables.items():
         write_whole(folder / f"{name}.csv", table.to_csv(index=False, lineterminator="\n"))
+    return [folder / f"{name}.csv" for name in tables]
 
 
 def metrics_table(runs: Sequence[ModelRun]) -> pd.DataFrame:
@@ -134,7 +160,7 @@ def _series(study: Study, findings: Findings) -> Any:
     return table
 
 
-def _figures(study: Study, findings: Findings, folder: Path) -> None:
+def _figures(study: Study, findings: Findings, folder: Path) -> list[Path]:
     from mascarin.sensitivity.plots import save, spectrum, tornado
 
     observation = study.observation
@@ -142,14 +168,16 @@ def _figures(study: Study, findings: Findings, folder: Path) -> None:
         run.label: observation.simulated(run.results.index, run.results.records)
         for run in (findings.nominal, findings.fitted)
     }
+    drawn: dict[Path, Any] = {}
     for s, name in enumerate(observation.names):
-        save(
-            _comparison(study, s, {label: values[:, s] for label, values in models.items()}),
-            folder / f"{name}.svg",
-        )
+        curves = {label: values[:, s] for label, values in models.items()}
+        drawn[folder / f"{name}.svg"] = _comparison(study, s, curves)
         if findings.sensitivity is not None:
-            save(spectrum(findings.sensitivity, name), folder / f"{name}-spectrum.svg")
-            save(tornado(findings.sensitivity, name), folder / f"{name}-tornado.svg")
+            drawn[folder / f"{name}-spectrum.svg"] = spectrum(findings.sensitivity, name)
+            drawn[folder / f"{name}-tornado.svg"] = tornado(findings.sensitivity, name)
+    for path, figure in drawn.items():
+        save(figure, path)
+    return list(drawn)
 
 
 def _comparison(study: Study, s: int, models: dict[str, Any]) -> Any:
