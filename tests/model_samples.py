@@ -86,18 +86,38 @@ constructions:
       - {material: wax, thickness: 0.00526}
       - {material: salt, thickness: 0.01}
       - {material: curve, thickness: 0.01}
+schedules:
+  day: {kind: fraction, days: {all: [{at: "00:00", value: 0.1, ramp_to: 0.4}, {at: "08:00", value: 1},
+                                     {at: "18:00", value: 0.3}]}}
+  always: {kind: fraction, value: 0.9}
+  cool: {kind: temperature, days: {weekdays: [{at: "00:00", value: 27}], weekends: [{at: "00:00", value: 29},
+         {at: "12:00", value: 29, ramp_to: 28}], holidays: [{at: "00:00", value: 30}]}, holidays: ["12-25"]}
+  warm: {kind: temperature, value: 15}
 zones:
   room:
     volume: 27
     capacity_factor: 2
     infiltration: {constant: 0.2, temperature: 0.01, wind: 0.02}
     longwave: radiosity
+    gains:
+      people: {power: 100, radiative: 0.5, schedule: day}
+      lamp: {power: 20}
+    ventilation:
+      fan: {air_changes: 1.5, schedule: day}
+      shaft: {flow: 0.002}
+    heating: {setpoint: 24, capacity: 40, schedule: always}
+    cooling: {setpoint: {schedule: cool}, capacity: 60}
   attic:
     volume: 9
     infiltration: {value: 0.3, range: [0, 1]}
     longwave: {kind: linearised, reference: 25}
     view_factors: {roof: {ceiling: 1.0}, ceiling: {roof: 1.0}}
-  shaft: {volume: 4, longwave: none}
+  shaft: {volume: 4, longwave: none, heating: {setpoint: {schedule: warm}}}
+air_paths:
+  hatch: {between: [room, attic], flow: 0.01, schedule: always}
+openings:
+  ridge: {zone: attic, area: 0.02, height: 0.3}
+  eaves: {zone: attic, area: 0.01, height: 0.4, discharge: 0.6, wind_coefficient: 0.25, schedule: day}
 surfaces:
   roof:
     construction: wall

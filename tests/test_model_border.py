@@ -20,7 +20,17 @@ from mascarin.model.reading import parse
 from model_samples import EVERYTHING, everything, room
 
 # Keys of the border whose integers are no parameters.
-STRUCTURAL = {"material", "nodes", "construction", "zone", "surface", "channel", "irradiance"}
+STRUCTURAL = {
+    "material",
+    "nodes",
+    "construction",
+    "zone",
+    "surface",
+    "channel",
+    "irradiance",
+    "schedule",
+    "between",
+}
 
 
 def described(building: Any) -> dict[str, Any]:
@@ -118,7 +128,10 @@ def test_references_are_positions() -> None:
     assert names["constructions"][ceiling["construction"]] == "ceiling"
     assert names["zones"][ceiling["inside"]["facing"]["zone"]] == "room"
     assert names["surfaces"][building["sensors"][0]["surface"]] == "west"
-    assert building["channels"] == ["T_out", "G_north", "T_face"]
+    assert building["channels"] == [
+        *("T_out", "G_north", "T_face"),
+        *("schedule day", "schedule always", "schedule cool", "schedule warm"),
+    ]
     north = building["surfaces"][names["surfaces"].index("north")]["outside"]
     assert (north["facing"]["channel"], north["irradiance"]) == (0, 1)
 

@@ -78,12 +78,18 @@ def weather(channels: list[str], steps: int) -> npt.NDArray[np.float64]:
     up = np.clip(sun, 0, None)
     east = np.cos(np.pi * (hour - 6) / 12)
     length = np.sqrt(east**2 + 0.3**2 + sun**2)
+    scheduled = {
+        "schedule day": 0.5 + 0.3 * swing,
+        "schedule always": np.full(steps, 0.9),
+        "schedule cool": 26 - swing,
+        "schedule warm": np.full(steps, 25.0),
+    }
     columns = [
         *(24 + 5 * swing, 15 + 2 * swing, 4 + 2 * swing, 380 + 20 * swing),
         *(3 + 2 * swing, (15 * hour) % 360, np.full(steps, 101_000.0)),
         *(800.0 * (up > 0), 100 * up, 900 * up, np.full(steps, 1367.0)),
         *(east / length, 0.3 / length, sun / length, 200 + hour / 24),
-        *(300 * up if name.startswith("G") else 24 + 4 * swing for name in channels),
+        *(300 * up if name.startswith("G") else scheduled.get(name, 24 + 4 * swing) for name in channels),
     ]
     return np.ascontiguousarray(
         np.stack(np.broadcast_arrays(*columns), axis=-1)[:, None, :].repeat(2, axis=1)

@@ -14,6 +14,7 @@ def test_the_results_of_a_room() -> None:
         ("room.mean_radiant_temperature", "degC"),
         ("room.operative_temperature", "degC"),
         ("room.globe_temperature", "degC"),
+        ("room.air_changes", "1/h"),
         ("south.outside_temperature", "degC"),
         ("south.inside_temperature", "degC"),
         ("south.outside_flux", "W/m2"),

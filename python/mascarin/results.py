@@ -20,8 +20,19 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-FLOWS: Final = ("solar", "convection", "longwave", "boundary", "infiltration")
-"""Ways in which heat enters a building."""
+FLOWS: Final = (
+    "solar",
+    "convection",
+    "longwave",
+    "boundary",
+    "infiltration",
+    "ventilation",
+    "interzone",
+    "gains",
+    "heating",
+    "cooling",
+)
+"""Ways in which heat enters a building; cooling takes it out, as a negative number."""
 
 
 @dataclass(frozen=True)
@@ -180,8 +191,8 @@ class Results:
         Returns
         -------
         Results
-            States interpolated to the new times. A heat flux at a time is its mean over the interval that
-            ends there, so that its sum keeps the heat; that of the first time is the first recorded one.
+            States interpolated to the new times. A heat flux or load at a time is its mean over the interval
+            that ends there, so that its sum keeps the heat; that of the first time is the first recorded one.
 
         Raises
         ------
@@ -200,12 +211,68 @@ class Results:
             raise InputError(f"interval: found {interval!r}; expected a time shorter than the run")
         columns = [
             _means(place, self.records[:, k], times)
-            if output.unit == "W/m2"
+            if output.mean
             else np.interp(times, place, self.records[:, k])
             for k, output in enumerate(self.outputs)
         ]
         index = self.index[0] + pd.to_timedelta(times, unit="s")
         return replace(self, index=index, records=np.stack(columns, axis=-1))
+
+    def hourly(self, name: str) -> pd.Series[float]:
+        """Means of one series over whole hours.
+
+        Parameters
+        ----------
+        name : str
+            Output.
+
+        Returns
+        -------
+        pandas.Series
+            By the start of each hour, in the local time of the climate; hours that the run covers in full. A
+            load or flux counts as the mean of its step, a state as a straight line between its records.
+            [unit of the output; the mean of a load in W over an hour is its heat in Wh]
+
+        Raises
+        ------
+        InputError
+            It was not recorded, or the run covers no whole hour.
+        """
+        import numpy as np
+        import pandas as pd
+
+        position = self._position(name)
+        output, values = self.outputs[position], self.records[:, position]
+        place = np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64)
+        first = self.index[0].ceil("h", ambiguous=True, nonexistent="shift_forward")
+        early = (first - self.index[0]).total_seconds()
+        times = np.arange(early, place[-1] + 1e-6, 3600.0)
+        if len(times) < 2:
+            raise InputError(
+                f"{name}: the run covers no whole hour; expected one from full hour to full hour"
+            )
+        means = (_means(place, values, times) if output.mean else _state_means(place, values, times))[1:]
+        index = first + pd.to_timedelta(times[:-1] - early, unit="s")
+        return pd.Series(means, index=index, name=output.name)
+
+    def heat(self, name: str) -> float:
+        """Heat of a load over the run. [J]
+
+        Raises
+        ------
+        InputError
+            It was not recorded, or is no load in W.
+        """
+        import numpy as np
+
+        position = self._position(name)
+        if self.outputs[position].unit != "W":
+            raise InputError(
+                f"{name}: found a quantity in {self.outputs[position].unit}; expected a load in W, such as "
+                "a zone's heating_load"
+            )
+        seconds = np.diff(np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64))
+        return float(np.sum(self.records[1:, position] * seconds))
 
     def frame(self) -> pd.DataFrame:
         """All series as a table in local time, one column an output."""
@@ -287,4 +354,15 @@ def _means(place: Array, values: Array, times: Array) -> Array:
     # A recorded flux stands for the step that it ends.
     heat = np.concatenate([[0.0], np.cumsum(values[1:] * np.diff(place))])
     at = np.interp(times, place, heat)
+    return np.concatenate([values[:1], np.diff(at) / np.diff(times)])
+
+
+def _state_means(place: Array, values: Array, times: Array) -> Array:
+    """Means over the intervals that end at the times, of a state on straight lines between its records."""
+    import numpy as np
+
+    points = np.union1d(place, times)
+    level = np.interp(points, place, values)
+    sums = np.concatenate([[0.0], np.cumsum(0.5 * (level[1:] + level[:-1]) * np.diff(points))])
+    at = np.interp(times, points, sums)
     return np.concatenate([values[:1], np.diff(at) / np.diff(times)])

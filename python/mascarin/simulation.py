@@ -119,20 +119,76 @@ class Simulation:
         self._description: EngineDescription = building.to_engine(self.step_seconds, dict(ranges or {}))
         with _told_apart():
             self._plan = _engine.Plan(self._description.json)
-        self._forcing: Array = np.ascontiguousarray(
-            climate.forcing(
-                building.site,
-                self.start,
-                self.end,
-                self.step_seconds,
-                scheme,
-                self._description.channels,
-                measurements,
-                limits=_boundary_limits(building),
-            ),
-            dtype=np.float64,
-        )
+        self._forcing = self._driven(measurements)
         _finite(self._forcing, self._description.channels, building)
+        self._require_set_points_apart(self.values[None, :])
+
+    def _driven(self, measurements: Measurements | None) -> Array:
+        """Climate, measured columns and schedules at every stage, shape (steps, stages, channels)."""
+        from mascarin.climate import parse_timezone, scheduled
+
+        building, names = self.building, self._description.schedules
+        columns = self._description.channels[: len(self._description.channels) - len(names)]
+        weather = self.climate.forcing(
+            building.site,
+            self.start,
+            self.end,
+            self.step_seconds,
+            self.scheme,
+            columns,
+            measurements,
+            limits=_boundary_limits(building),
+        )
+        if not names:
+            return np.ascontiguousarray(weather, dtype=np.float64)
+        profiles = scheduled(
+            self.climate,
+            {name: building.schedules[name] for name in names},
+            parse_timezone(building.site.timezone),
+            self.start,
+            self.end,
+            self.step_seconds,
+            self.scheme,
+            measurements,
+        )
+        return np.concatenate([weather, profiles], axis=-1)
+
+    def _require_set_points_apart(self, vectors: Array) -> None:
+        """Refuse heating above cooling, in any member and at any time.
+
+        Raises
+        ------
+        InputError
+            Naming the zone, the member, the time and both set points.
+        """
+        for name, zone in self.building.zones.items():
+            if zone.heating is None or zone.cooling is None:
+                continue
+            heating, cooling = (self._set_point(name, which, vectors) for which in ("heating", "cooling"))
+            bad = np.argwhere(heating > cooling + 1e-9)
+            if not len(bad):
+                continue
+            member, step = (int(i) for i in bad[0])
+            warm, cold = (
+                float(np.broadcast_to(x, (len(vectors), len(self._forcing)))[member, step])
+                for x in (heating, cooling)
+            )
+            raise InputError(
+                f"zones.{name}: found heating to {warm:g} degC above cooling to {cold:g} degC at the end "
+                f"of the step from {self.index[step]:%Y-%m-%d %H:%M}"
+                f"{f' (member {member})' if len(vectors) > 1 else ''}; expected a heating set point at or "
+                "below the cooling set point at all times: lower the one or raise the other"
+            )
+
+    def _set_point(self, zone: str, which: str, vectors: Array) -> Array:
+        """Set points at the ends of the steps, shape (members, 1) or (1, steps). [degC]"""
+        from mascarin.climate import CHANNELS
+
+        plant = self.building.zones[zone].plants[which]
+        if plant.setpoint.schedule is None:
+            return vectors[:, [self._positions[f"zones.{zone}.{which}.setpoint.temperature"]]]
+        place = len(CHANNELS) + self._description.channels.index(f"schedule {plant.setpoint.schedule}")
+        return self._forcing[None, :, -1, place]
 
     @property
     def paths(self) -> list[str]:
@@ -313,6 +369,7 @@ class Simulation:
                 f"samples: {parameter.path} of member {member}: found {vectors[member, k]:g} "
                 f"{parameter.unit}; expected a value from {parameter.lower:g} to {parameter.upper:g}"
             )
+        self._require_set_points_apart(vectors)
 
     @cached_property
     def _limits(self) -> tuple[Array, Array]:

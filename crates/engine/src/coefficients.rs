@@ -1,7 +1,9 @@
 //! A plan with the numbers of one run (or of a pack of members in lanes).
 
 use crate::convection::{Exposure, Film};
-use crate::description::{Facing, Infiltration, Material, OutdoorLongwave, ParamId, Side, ZoneLongwave};
+use crate::description::{
+    Exposure as Reach, Facing, Infiltration, Material, OutdoorLongwave, ParamId, Side, ZoneLongwave,
+};
 use crate::forcing::CLIMATE_CHANNELS;
 use crate::parameters::Values;
 use crate::pcm::PcmCoefficients;
@@ -9,6 +11,7 @@ use crate::plan::{FaceId, Plan, WallPlan};
 use crate::radiation::{Emission, exchange_areas, self_weight};
 use crate::real::Real;
 use crate::solar::Plane;
+use crate::zone::{AirFlow, Gain, Opening, Path, Thermostat};
 
 /// Specific heat of dry air at room temperature [J/(kg K)] (ASHRAE Handbook of Fundamentals, ch. 1).
 pub const AIR_SPECIFIC_HEAT: f64 = 1006.0;
@@ -24,6 +27,8 @@ pub struct Coefficients<S> {
     pub faces: Vec<Face<S>>,
     /// Zones.
     pub zones: Vec<Zone<S>>,
+    /// Air exchanged between zones.
+    pub paths: Vec<Path<S>>,
     /// Solar reflectance of the ground [-].
     pub ground_reflectance: S,
     /// Cloud polynomial of the sky.
@@ -131,6 +136,8 @@ pub struct Face<S> {
     pub irradiance: Option<usize>,
     /// What it faces.
     pub boundary: Boundary<S>,
+    /// What of the weather reaches it.
+    pub exposure: Reach,
 }
 
 /// A zone.
@@ -150,6 +157,18 @@ pub struct Zone<S> {
     pub emission: Emission<S>,
     /// Areas of its faces [m2].
     pub areas: Vec<S>,
+    /// Heat from people, light and machines.
+    pub gains: Vec<Gain<S>>,
+    /// Share of each face in the heat that gains radiate [-].
+    pub radiant_shares: Vec<S>,
+    /// Outdoor air let in on purpose.
+    pub ventilation: Vec<AirFlow<S>>,
+    /// Openings to outdoors.
+    pub openings: Vec<Opening<S>>,
+    /// Ideal heating.
+    pub heating: Option<Thermostat<S>>,
+    /// Ideal cooling.
+    pub cooling: Option<Thermostat<S>>,
 }
 
 impl<S: Real> Coefficients<S> {
@@ -165,10 +184,12 @@ impl<S: Real> Coefficients<S> {
             site.air_density.map_or_else(|| density_at(values.get(site.altitude)), |id| values.get(id));
         let zones =
             (0..plan.zones.len()).map(|i| Zone::new(plan, i, &values, &walls, &faces, density)).collect();
+        let paths = description.air_paths.iter().map(|path| Path::new(path, &values, density)).collect();
         Self {
             walls,
             faces,
             zones,
+            paths,
             ground_reflectance: values.get(site.ground_reflectance),
             cloud: site.cloud.map(|id| values.get(id)),
             sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),
@@ -252,6 +273,7 @@ impl<S: Real> Face<S> {
             absorptance: values.get_or(side.absorptance, 0.0),
             irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),
             boundary: boundary(plan, index, side, values),
+            exposure: side.exposure,
         }
     }
 }
@@ -287,7 +309,11 @@ fn outdoors<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_
         },
         heading,
         // F_sky sqrt(F_sky): the sky near the horizon is as warm as the air (Walton 1983).
-        to_sky: sky_view * sky_view.max(S::constant(1e-300)).sqrt(),
+        to_sky: if side.exposure.sky {
+            sky_view * sky_view.max(S::constant(1e-300)).sqrt()
+        } else {
+            S::zero()
+        },
         emission: match side.longwave {
             OutdoorLongwave::Exact => Some(Emission::Exact),
             OutdoorLongwave::Linearised { reference } => Some(Emission::Linearised(values.get(reference))),
@@ -334,7 +360,21 @@ impl<S: Real> Zone<S> {
         let exchange_sums = (0..n).map(sum).collect();
         let air_capacity = values.get(definition.volume) * density.scale(AIR_SPECIFIC_HEAT);
         let Infiltration { constant, temperature, wind } = &definition.infiltration;
+        let exchanging = !matches!(definition.longwave, ZoneLongwave::None);
+        let heat = density.scale(AIR_SPECIFIC_HEAT);
+        let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
+        let thermostat = |plant| Thermostat::new(plant, values);
         Self {
+            gains: definition.gains.iter().map(|gain| Gain::new(gain, values)).collect(),
+            radiant_shares: radiant_shares(&areas, exchanging.then_some(&emissivities)),
+            ventilation: definition
+                .ventilation
+                .iter()
+                .map(|flow| AirFlow::new(flow, values, heat, air_capacity))
+                .collect(),
+            openings: openings.map(|opening| Opening::new(opening, values, heat)).collect(),
+            heating: definition.heating.as_ref().map(thermostat),
+            cooling: definition.cooling.as_ref().map(thermostat),
             capacity: air_capacity * values.get(definition.capacity_factor),
             air_capacity,
             infiltration: [constant, temperature, wind].map(|id| values.get(*id)),
@@ -344,6 +384,16 @@ impl<S: Real> Zone<S> {
             areas,
         }
     }
+}
+
+/// Shares by area times emissivity; by area alone where the faces exchange no long-wave radiation.
+fn radiant_shares<S: Real>(areas: &[S], emissivities: Option<&Vec<S>>) -> Vec<S> {
+    let weights: Vec<S> = match emissivities {
+        Some(emissivities) => areas.iter().zip(emissivities).map(|(&a, &e)| a * e).collect(),
+        None => areas.to_vec(),
+    };
+    let total = weights.iter().fold(S::zero(), |sum, &weight| sum + weight);
+    weights.into_iter().map(|weight| weight / total).collect()
 }
 
 /// Given weights, or `A_i A_j` between faces that do not lie in parallel planes looking the same way.

@@ -369,11 +369,41 @@ impl<S: Real> Chain<S> {
     /// Cell temperatures from the face temperatures.
     #[inline(always)]
     pub fn temperatures(&self, faces: [S; 2], cells: &mut [S]) {
+        self.back_substitute(&self.known, faces, cells);
+    }
+
+    #[inline(always)]
+    fn back_substitute(&self, known: &[S], faces: [S; 2], cells: &mut [S]) {
         let mut next = faces[1];
         for i in (0..cells.len()).rev() {
-            next = self.known[i] + self.to_outside[i] * faces[0] + self.next[i] * next;
+            next = known[i] + self.to_outside[i] * faces[0] + self.next[i] * next;
             cells[i] = next;
         }
+    }
+
+    /// How [`Self::sources`] change with what the cells held; `known` takes what [`Self::temperature_changes`] needs.
+    #[inline(always)]
+    pub fn source_changes(&self, held: &[S], known: &mut [S]) -> [S; 2] {
+        let n = self.storage.len();
+        if n == 0 {
+            return [S::zero(); 2];
+        }
+        let mut first = S::zero();
+        for (i, &held) in held.iter().enumerate() {
+            let mut right = held * self.rate[i];
+            if i > 0 {
+                right += self.links[i].left * known[i - 1];
+            }
+            known[i] = right * self.inverse[i];
+            first += self.path[i] * known[i];
+        }
+        [self.links[0].right * first, self.links[n].left * known[n - 1]]
+    }
+
+    /// How cell temperatures change with those of the faces and with what the cells held.
+    #[inline(always)]
+    pub fn temperature_changes(&self, known: &[S], faces: [S; 2], cells: &mut [S]) {
+        self.back_substitute(known, faces, cells);
     }
 
     /// Flux along link `i` at cell and face temperatures [W/m2], positive towards the inside.

@@ -37,12 +37,18 @@ pub struct Description {
     pub constructions: Vec<Construction>,
     /// Air zones.
     pub zones: Vec<Zone>,
+    /// Air exchanged between zones.
+    #[serde(default)]
+    pub air_paths: Vec<AirPath>,
+    /// Openings between zones and outdoors.
+    #[serde(default)]
+    pub openings: Vec<Opening>,
     /// Surfaces.
     pub surfaces: Vec<Surface>,
     /// Sensors inside walls.
     #[serde(default)]
     pub sensors: Vec<Sensor>,
-    /// Names of the forcing channels that follow the climate channels (measured temperatures, irradiances).
+    /// Names of the forcing channels that follow the climate channels (measured temperatures, irradiances, schedules).
     #[serde(default)]
     pub channels: Vec<String>,
 }
@@ -259,6 +265,116 @@ pub struct Zone {
     /// except those of the same tilt and azimuth.
     #[serde(default)]
     pub view_weights: Vec<Vec<f64>>,
+    /// Heat from people, light and machines.
+    #[serde(default)]
+    pub gains: Vec<Gain>,
+    /// Outdoor air let in on purpose.
+    #[serde(default)]
+    pub ventilation: Vec<Ventilation>,
+    /// Ideal heating.
+    #[serde(default)]
+    pub heating: Option<Plant>,
+    /// Ideal cooling.
+    #[serde(default)]
+    pub cooling: Option<Plant>,
+}
+
+/// Heat from people, light and machines. Its radiative part goes to the faces of the zone.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gain {
+    /// Name in messages and inputs.
+    pub name: String,
+    /// Heat at full schedule [W].
+    pub power: ParamId,
+    /// Part of it that is radiated [-].
+    pub radiative: ParamId,
+    /// Index into [`Description::channels`]: fraction of the power [-]. None: always all of it.
+    #[serde(default)]
+    pub schedule: Option<usize>,
+}
+
+/// Outdoor air let in on purpose, at the density of the site: either rate is given.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ventilation {
+    /// Name in messages.
+    pub name: String,
+    /// Air changes [1/h].
+    #[serde(default)]
+    pub air_changes: Option<ParamId>,
+    /// Volume flow [m3/s].
+    #[serde(default)]
+    pub flow: Option<ParamId>,
+    /// Index into [`Description::channels`]: fraction of the flow [-]. None: always all of it.
+    #[serde(default)]
+    pub schedule: Option<usize>,
+}
+
+/// Ideal heating or cooling of the air of a zone.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plant {
+    /// Air temperature that it keeps.
+    pub setpoint: SetPoint,
+    /// Most heat that it gives or takes [W]. None: as much as it needs.
+    #[serde(default)]
+    pub capacity: Option<ParamId>,
+    /// Index into [`Description::channels`]: fraction of the capacity that is available [-]. None: always all of it.
+    #[serde(default)]
+    pub schedule: Option<usize>,
+}
+
+/// Air temperature that a plant keeps [degC].
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum SetPoint {
+    /// One number.
+    Constant {
+        /// [degC].
+        temperature: ParamId,
+    },
+    /// Index into [`Description::channels`]; the value at the end of a step counts.
+    Scheduled {
+        /// Index into [`Description::channels`].
+        channel: usize,
+    },
+}
+
+/// Air that two zones exchange, as much one way as the other.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AirPath {
+    /// Name in messages.
+    pub name: String,
+    /// Indices into [`Description::zones`].
+    pub between: [usize; 2],
+    /// Volume flow each way at the density of the site [m3/s].
+    pub flow: ParamId,
+    /// Index into [`Description::channels`]: fraction of the flow [-]. None: always all of it.
+    #[serde(default)]
+    pub schedule: Option<usize>,
+}
+
+/// An opening to outdoors that wind and buoyancy drive air through; equation and source in `zone.rs`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Opening {
+    /// Name in messages.
+    pub name: String,
+    /// Index into [`Description::zones`].
+    pub zone: usize,
+    /// Free area [m2].
+    pub area: ParamId,
+    /// From the opening to the neutral level [m].
+    pub height: ParamId,
+    /// Discharge coefficient of the buoyant flow [-].
+    pub discharge: ParamId,
+    /// Effectiveness against the wind [-].
+    pub wind_coefficient: ParamId,
+    /// Index into [`Description::channels`]: fraction of the area that is open [-]. None: always all of it.
+    #[serde(default)]
+    pub schedule: Option<usize>,
 }
 
 /// Outdoor air entering a zone unasked [1/h, 1/(h K), 1/(h m/s)].
@@ -343,6 +459,27 @@ pub struct Side {
     /// Name index into [`Description::channels`]: measured irradiance on this plane [W/m2], used as it is.
     #[serde(default)]
     pub irradiance: Option<usize>,
+    /// What of the weather reaches an `outdoors` side.
+    #[serde(default)]
+    pub exposure: Exposure,
+}
+
+/// What of the weather reaches an `outdoors` side, beside the temperature of the air.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Exposure {
+    /// The sun, from sky and ground alike.
+    pub sun: bool,
+    /// The wind.
+    pub wind: bool,
+    /// The sky's long-wave radiation; without it all long-wave radiation that arrives is that of the air's temperature.
+    pub sky: bool,
+}
+
+impl Default for Exposure {
+    fn default() -> Self {
+        Self { sun: true, wind: true, sky: true }
+    }
 }
 
 /// What a side faces.

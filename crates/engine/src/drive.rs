@@ -8,6 +8,7 @@ use crate::plan::Plan;
 use crate::radiation::{Heaven, sky_emission};
 use crate::real::Real;
 use crate::solar::Sunlight;
+use crate::zone::ZoneDrive;
 
 /// A face is leeward when the wind comes from behind its plane (Walton 1983 draws the line at 100 deg off the normal,
 /// where the wind blows along the face and the windward coefficient has no ground any more).
@@ -91,6 +92,10 @@ pub struct FaceDrive<S: Real> {
 pub struct Drive<S: Real> {
     /// Per face.
     pub faces: Vec<FaceDrive<S>>,
+    /// Per zone.
+    pub zones: Vec<ZoneDrive<S>>,
+    /// Heat carried between two zones, per path [W/K].
+    pub paths: Vec<S>,
     /// Outdoor air [degC].
     pub outdoor_air: S,
     /// Wind at the mast [m/s].
@@ -106,7 +111,13 @@ impl<S: Real> Drive<S> {
             let forced = face.film.as_ref().map_or([zero; 2], Film::still);
             FaceDrive { solar: zero, longwave: zero, temperature: zero, forced }
         });
-        Self { faces: faces.collect(), outdoor_air: zero, wind: zero }
+        Self {
+            faces: faces.collect(),
+            zones: coefficients.zones.iter().map(ZoneDrive::new).collect(),
+            paths: vec![zero; coefficients.paths.len()],
+            outdoor_air: zero,
+            wind: zero,
+        }
     }
 
     /// Turns the weather into numbers at each face.
@@ -124,18 +135,27 @@ impl<S: Real> Drive<S> {
             if let Boundary::Outdoors(outdoors) = &face.boundary {
                 let irradiance = match measured {
                     Some(irradiance) => irradiance,
+                    None if !face.exposure.sun => S::zero(),
                     None => now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance),
                 };
                 at.solar = face.absorptance * irradiance;
                 at.longwave = face.emissivity * incoming_longwave(outdoors, sky, self.outdoor_air);
                 at.temperature = self.outdoor_air;
-                at.forced = forced(face, outdoors, now);
+                if face.exposure.wind {
+                    at.forced = forced(face, outdoors, now);
+                }
             } else if let Some(irradiance) = measured {
                 at.solar = face.absorptance * irradiance;
             }
             if let Boundary::Imposed(imposed) = &face.boundary {
                 at.temperature = imposed_temperature(imposed, now.row);
             }
+        }
+        for (at, zone) in self.zones.iter_mut().zip(&coefficients.zones) {
+            at.update(zone, now.row);
+        }
+        for (at, path) in self.paths.iter_mut().zip(&coefficients.paths) {
+            *at = path.conductance(now.row);
         }
     }
 }

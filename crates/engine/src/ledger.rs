@@ -15,12 +15,32 @@ pub enum Flow {
     Boundary,
     /// Outdoor air entering zones.
     Infiltration,
+    /// Outdoor air let in by ventilation and openings.
+    Ventilation,
+    /// Air exchanged between zones: nothing in sum, but it turns over.
+    Interzone,
+    /// People, light and machines.
+    Gains,
+    /// Heat that plants give.
+    Heating,
+    /// Heat that plants take, as a negative number.
+    Cooling,
 }
 
 impl Flow {
     /// All flows, in the order of the ledger's arrays.
-    pub const ALL: [Self; 5] =
-        [Self::Solar, Self::Convection, Self::Longwave, Self::Boundary, Self::Infiltration];
+    pub const ALL: [Self; 10] = [
+        Self::Solar,
+        Self::Convection,
+        Self::Longwave,
+        Self::Boundary,
+        Self::Infiltration,
+        Self::Ventilation,
+        Self::Interzone,
+        Self::Gains,
+        Self::Heating,
+        Self::Cooling,
+    ];
 
     /// Name in results.
     #[must_use]
@@ -31,6 +51,11 @@ impl Flow {
             Self::Longwave => "longwave",
             Self::Boundary => "boundary",
             Self::Infiltration => "infiltration",
+            Self::Ventilation => "ventilation",
+            Self::Interzone => "interzone",
+            Self::Gains => "gains",
+            Self::Heating => "heating",
+            Self::Cooling => "cooling",
         }
     }
 }

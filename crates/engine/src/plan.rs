@@ -3,7 +3,9 @@
 use core::ops::Range;
 use std::collections::BTreeSet;
 
-use crate::description::{Construction, Convection, Description, Facing, Material, Side, ZoneLongwave};
+use crate::description::{
+    Construction, Convection, Description, Facing, Material, SetPoint, Side, ZoneLongwave,
+};
 use crate::error::EngineError;
 use crate::forcing::CLIMATE_CHANNELS;
 
@@ -21,6 +23,8 @@ pub struct Plan {
     pub faces: Vec<FacePlan>,
     /// Zones.
     pub zones: Vec<ZonePlan>,
+    /// Zones with ideal heating or cooling.
+    pub plants: Vec<usize>,
     /// Number of finite volumes in all walls.
     pub n_cells: usize,
     /// The room block: for each zone face and zone air, in the order of elimination, the later ones that it meets, as
@@ -96,7 +100,9 @@ impl Plan {
         }
         let (mut faces, mut zones) = name_unknowns(&description);
         let reach = order_unknowns(&description, &mut faces, &mut zones);
-        Ok(Self { description, walls, faces, zones, n_cells: first_cell, reach })
+        let conditioned = |zone: &crate::description::Zone| zone.heating.is_some() || zone.cooling.is_some();
+        let plants = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();
+        Ok(Self { description, walls, faces, zones, plants, n_cells: first_cell, reach })
     }
 
     /// The side that a face stands for.
@@ -277,6 +283,9 @@ fn neighbours(description: &Description, faces: &[FacePlan], zones: &[ZonePlan])
             meet(a, b);
         }
     }
+    for path in &description.air_paths {
+        meet(zones[path.between[0]].air_row, zones[path.between[1]].air_row);
+    }
     meets
 }
 
@@ -314,9 +323,52 @@ fn check(description: &Description) -> Result<(), EngineError> {
         {
             return fail(format!("zone {}: view weights are not square", zone.name));
         }
+        check_zone(description, zone)?;
+    }
+    for path in &description.air_paths {
+        let [a, b] = path.between;
+        if a == b || a.max(b) >= description.zones.len() {
+            return fail(format!("air path {} does not join two zones", path.name));
+        }
+        check_schedule(description, &path.name, path.schedule)?;
+    }
+    for opening in &description.openings {
+        if opening.zone >= description.zones.len() {
+            return fail(format!("opening {} is in no zone", opening.name));
+        }
+        check_schedule(description, &opening.name, opening.schedule)?;
     }
     if description.sensors.iter().any(|sensor| sensor.surface >= description.surfaces.len()) {
         return fail("a sensor is in no surface".to_owned());
+    }
+    Ok(())
+}
+
+fn check_zone(description: &Description, zone: &crate::description::Zone) -> Result<(), EngineError> {
+    for gain in &zone.gains {
+        check_schedule(description, &gain.name, gain.schedule)?;
+    }
+    for flow in &zone.ventilation {
+        if flow.air_changes.is_some() == flow.flow.is_some() {
+            return Err(EngineError::Description(format!(
+                "ventilation {} of zone {}: either air changes or a flow",
+                flow.name, zone.name
+            )));
+        }
+        check_schedule(description, &flow.name, flow.schedule)?;
+    }
+    for plant in [&zone.heating, &zone.cooling].into_iter().flatten() {
+        check_schedule(description, &zone.name, plant.schedule)?;
+        if let SetPoint::Scheduled { channel } = plant.setpoint {
+            check_schedule(description, &zone.name, Some(channel))?;
+        }
+    }
+    Ok(())
+}
+
+fn check_schedule(description: &Description, name: &str, schedule: Option<usize>) -> Result<(), EngineError> {
+    if schedule.is_some_and(|channel| channel >= description.channels.len()) {
+        return Err(EngineError::Description(format!("{name}: unknown schedule")));
     }
     Ok(())
 }
@@ -335,7 +387,9 @@ fn check_side(description: &Description, name: &str, side: &Side) -> Result<(), 
         Facing::Outdoors if side.convection.is_none() || side.emissivity.is_none() => {
             return fail("an outdoor side needs convection and emissivity");
         }
-        Facing::Outdoors if side.absorptance.is_none() => return fail("an outdoor side needs absorptance"),
+        Facing::Outdoors if side.absorptance.is_none() && side.exposure.sun => {
+            return fail("an outdoor side needs absorptance");
+        }
         Facing::Measured { channel } if channel >= n_channels => return fail("unknown channel"),
         _ => {}
     }

@@ -65,6 +65,21 @@ pub enum Probe {
         /// Index of the layer, counted from outside.
         layer: usize,
     },
+    /// Heat that the plant of a zone gave over the step [W].
+    HeatingLoad {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Heat that the plant of a zone took over the step [W].
+    CoolingLoad {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Outdoor air entering a zone: infiltration, ventilation and openings [1/h].
+    AirChanges {
+        /// Index of the zone.
+        zone: usize,
+    },
     /// Temperature at a sensor [degC].
     Sensor {
         /// Index of the sensor.
@@ -84,7 +99,11 @@ impl Probe {
             construction.map_or(0, |index| description.constructions[index].layers.len())
         };
         let known = match *self {
-            Self::AirTemperature { zone } | Self::MeanRadiantTemperature { zone } => zone < plan.zones.len(),
+            Self::AirTemperature { zone }
+            | Self::MeanRadiantTemperature { zone }
+            | Self::HeatingLoad { zone }
+            | Self::CoolingLoad { zone }
+            | Self::AirChanges { zone } => zone < plan.zones.len(),
             Self::FaceTemperature { surface, side } | Self::FaceFlux { surface, side } => {
                 surface < plan.walls.len() && side < 2
             }
@@ -108,6 +127,9 @@ impl Probe {
         match *self {
             Self::AirTemperature { zone } => state.air[zone],
             Self::MeanRadiantTemperature { zone } => mean_radiant(plan, stepper, state, zone),
+            Self::HeatingLoad { zone } => state.load[zone].max(S::zero()),
+            Self::CoolingLoad { zone } => (-state.load[zone]).max(S::zero()),
+            Self::AirChanges { zone } => stepper.air_changes(zone, state.air[zone]),
             Self::FaceTemperature { surface, side } => state.faces[2 * surface + side],
             Self::FaceFlux { surface, side } => stepper.face_flux(2 * surface + side),
             Self::InterfaceTemperature { surface, interface } => {

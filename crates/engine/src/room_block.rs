@@ -69,15 +69,35 @@ impl<'a, S: Real> RoomBlock<'a, S> {
                 }
             }
         }
-        for (k, reach) in self.reach.iter().enumerate().rev() {
-            let row = &self.matrix[k * n..(k + 1) * n];
-            let mut sum = self.right[k];
-            for run in reach {
-                for (&a, &x) in row[run.clone()].iter().zip(&self.right[run.clone()]) {
-                    sum = sum - a * x;
-                }
+        back_substitute(self.reach, &self.matrix, &mut self.right);
+    }
+
+    /// The solution for another right-hand side, with the factors of [`Self::solve`].
+    #[inline(always)]
+    pub(crate) fn solve_again(&self, right: &mut [S]) {
+        let n = self.reach.len();
+        for (k, reach) in self.reach.iter().enumerate() {
+            let known = right[k] * self.matrix[k * n + k];
+            for row in reach.iter().cloned().flatten() {
+                right[row] = right[row] - self.matrix[row * n + k] * known;
             }
-            self.right[k] = sum * row[k];
         }
+        back_substitute(self.reach, &self.matrix, right);
+    }
+}
+
+/// From the last unknown to the first; the pivots stand inverted on the diagonal.
+#[inline(always)]
+fn back_substitute<S: Real>(reach: &[Vec<Range<usize>>], matrix: &[S], right: &mut [S]) {
+    let n = reach.len();
+    for (k, reach) in reach.iter().enumerate().rev() {
+        let row = &matrix[k * n..(k + 1) * n];
+        let mut sum = right[k];
+        for run in reach {
+            for (&a, &x) in row[run.clone()].iter().zip(&right[run.clone()]) {
+                sum = sum - a * x;
+            }
+        }
+        right[k] = sum * row[k];
     }
 }

@@ -18,6 +18,8 @@ pub struct State<S> {
     pub faces: Vec<S>,
     /// Zone air temperatures [degC].
     pub air: Vec<S>,
+    /// Heat from the plant of each zone over the step that ended here [W]; cooling is negative.
+    pub load: Vec<S>,
 }
 
 impl<S: Real> State<S> {
@@ -33,6 +35,7 @@ impl<S: Real> State<S> {
         blend(mask, &mut self.enthalpy, &other.enthalpy);
         blend(mask, &mut self.faces, &other.faces);
         blend(mask, &mut self.air, &other.air);
+        blend(mask, &mut self.load, &other.load);
         for (a, b) in self.memory.iter_mut().zip(&other.memory) {
             a.liquid_fraction = S::select(mask, b.liquid_fraction, a.liquid_fraction);
         }
@@ -89,6 +92,13 @@ impl<S: Real> Unknowns<S> {
     #[inline(always)]
     pub(crate) fn view(&self) -> Temperatures<'_, S> {
         Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
+    }
+
+    #[inline(always)]
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.cells.copy_from_slice(&other.cells);
+        self.faces.copy_from_slice(&other.faces);
+        self.air.copy_from_slice(&other.air);
     }
 
     /// `from + ratio (to - from)`, without leaping over a melting range.

@@ -10,6 +10,7 @@ use crate::description::{Infiltration, Material};
 use crate::error::EngineError;
 use crate::plan::Plan;
 use crate::radiation::Emission;
+use crate::zone::AirFlow;
 
 /// Matrices in row-major order with names for their rows and columns.
 #[derive(Debug, Clone)]
@@ -29,7 +30,7 @@ pub struct StateSpace {
     /// Name of each state, a temperature [degC].
     pub states: Vec<String>,
 
-    /// Name of each input: temperatures [degC], irradiances and emissions [W/m2].
+    /// Name of each input: temperatures [degC], irradiances and emissions [W/m2], gains [W].
     pub inputs: Vec<String>,
 
     /// Name of each output, a temperature [degC].
@@ -53,6 +54,7 @@ pub fn state_space(plan: &Plan, numbers: &[f64]) -> Result<StateSpace, EngineErr
     for zone in 0..plan.zones.len() {
         network.add_zone(zone);
     }
+    network.add_paths();
     Ok(network.eliminate_faces())
 }
 
@@ -95,6 +97,23 @@ fn require_linear(plan: &Plan, numbers: &[f64], coefficients: &Coefficients<f64>
                 "keep only its constant part",
             );
         }
+        if definition.heating.is_some() || definition.cooling.is_some() {
+            return refuse(format!("the plant of zone {}", definition.name), "remove heating and cooling");
+        }
+        let flows = zone.ventilation.iter().zip(&definition.ventilation);
+        if let Some((_, flow)) = flows.into_iter().find(|(flow, _)| flow.whole().is_none()) {
+            return refuse(
+                format!("ventilation {} of zone {}", flow.name, definition.name),
+                "remove its schedule",
+            );
+        }
+    }
+    if let Some(opening) = plan.description.openings.first() {
+        return refuse(format!("opening {}", opening.name), "use ventilation without a schedule");
+    }
+    let paths = coefficients.paths.iter().zip(&plan.description.air_paths);
+    if let Some((_, path)) = paths.into_iter().find(|(path, _)| path.whole().is_none()) {
+        return refuse(format!("air path {}", path.name), "remove its schedule");
     }
     Ok(())
 }
@@ -242,9 +261,25 @@ impl<'a> Network<'a> {
                 }
             }
         }
-        let inflow = numbers.air_capacity * numbers.infiltration[0] / 3600.0;
+        let ventilation: f64 = numbers.ventilation.iter().filter_map(AirFlow::whole).sum();
+        let inflow = numbers.air_capacity * numbers.infiltration[0] / 3600.0 + ventilation;
         self.add(air, air, -inflow);
         self.drive(air, "outdoor_air_temperature", inflow);
+        let definition = &self.plan.description.zones[zone];
+        for (gain, defined) in numbers.gains.iter().zip(&definition.gains) {
+            let input = format!("{}.{}_gain", definition.name, defined.name);
+            self.drive(air, &input, 1.0 - gain.radiative);
+            for (&face, share) in faces.iter().zip(&numbers.radiant_shares) {
+                self.drive(self.face(face), &input, gain.radiative * share);
+            }
+        }
+    }
+
+    fn add_paths(&mut self) {
+        for path in &self.coefficients.paths {
+            let [a, b] = path.between.map(|zone| self.plan.n_cells + zone);
+            self.couple(a, b, path.whole().unwrap_or_default());
+        }
     }
 
     /// Solves the massless faces out and divides by the capacities.

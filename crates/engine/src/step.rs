@@ -13,9 +13,11 @@ use crate::error::EngineError;
 use crate::ledger::{Flow, Ledger, Power};
 use crate::pcm::PcmMemory;
 use crate::plan::{FaceId, FaceRole, Plan};
+use crate::plant::{Plants, Response};
 use crate::real::{Mask, Real};
 use crate::room_block::RoomBlock;
 use crate::state::{State, Unknowns, blend, line, squared_distance};
+use crate::zone;
 
 /// Root of the sum of squared changes in the last Newton iteration [K]. Convergence is quadratic: the error left is
 /// of the order of its square.
@@ -28,8 +30,8 @@ const FORESIGHT: f64 = 0.05;
 const PATIENCE: usize = 20;
 /// Iterations before a step counts as unsolvable.
 const MAX_ITERATIONS: usize = 60;
-/// Temperature differences between a zone and outdoors are rounded off within this [K] where they drive an air flow.
-const ROUND_OFF: f64 = 0.01;
+/// Searches for the loads of the plants before a step counts as unsolvable.
+const MAX_SWEEPS: usize = 40;
 
 /// Time-stepping scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,9 +85,16 @@ pub struct Stepper<'a, S: Real> {
     /// Effective stage length of the factors in hand [s]; NaN: none.
     factored: f64,
     laws: Vec<FaceLaws<S>>,
-    /// Air entering each zone: heat, of `T_outdoor - T_air` [W].
+    /// Air entering each zone unasked: heat, of `T_outdoor - T_air` [W].
     inflow: Vec<Line<S>>,
+    /// Outdoor air let into each zone, likewise.
+    airing: Vec<Line<S>>,
     drive: Drive<S>,
+    /// What drives the other stage of a step whose stages are gone through again.
+    other_drive: Drive<S>,
+    /// Heat from the plant of each zone [W].
+    load: Vec<S>,
+    plants: Plants<S>,
     /// Heat of the walls into their faces at faces of 0 degC [W/m2].
     sources: Vec<[S; 2]>,
     /// Faces outside the zones, as functions of those inside.
@@ -132,7 +141,11 @@ impl<'a, S: Real> Stepper<'a, S> {
             factored: f64::NAN,
             laws: vec![FaceLaws { film: Line::zero(), emission: Line::zero() }; plan.faces.len()],
             inflow: vec![Line::zero(); plan.zones.len()],
+            airing: vec![Line::zero(); plan.zones.len()],
+            other_drive: drive.clone(),
             drive,
+            load: zeros(plan.zones.len()),
+            plants: Plants::new(&plan.plants, &unknowns, plan.reach.len(), scheme.weights().len()),
             sources: vec![[S::zero(); 2]; plan.walls.len()],
             locals: vec![LocalFaces::None; plan.walls.len()],
             block: RoomBlock::new(&plan.reach),
@@ -155,6 +168,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             memory: vec![nothing; self.plan.n_cells],
             faces: vec![temperature; self.plan.faces.len()],
             air: vec![temperature; self.plan.zones.len()],
+            load: vec![S::zero(); self.plan.zones.len()],
         };
         self.settle(&mut state);
         state
@@ -190,7 +204,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             || {
                 self.drive.update(self.plan, &self.coefficients, self.numbers, now);
                 self.start(state, 0.0);
-                self.solve_stage(state, INSTANT, (0, 0))?;
+                self.solve_stage(state, INSTANT, (0, 0), S::Mask::splat(true))?;
                 state.faces.copy_from_slice(&self.solved.faces);
                 Ok(())
             },
@@ -217,22 +231,197 @@ impl<'a, S: Real> Stepper<'a, S> {
         S::vectorised(
             #[inline(always)]
             || {
-                let (diagonal, weights) = (self.scheme.diagonal(), self.scheme.weights());
-                self.start(state, diagonal);
+                self.start(state, self.scheme.diagonal());
                 self.remember(state);
-                let mut energy = Power::none();
-                for (stage, &weight) in weights.iter().enumerate() {
-                    if stage > 0 {
-                        self.hold_over(state, diagonal);
-                    }
-                    self.drive.update(self.plan, &self.coefficients, self.numbers, weather.at(step, stage));
-                    self.solve_stage(state, diagonal * dt, (step, stage + 1))?;
-                    self.accumulate(weight * dt, &mut energy);
-                }
+                let energy = if self.plan.plants.is_empty() {
+                    self.free_step(state, weather, step, dt)?
+                } else {
+                    self.regulated_step(state, weather, step, dt)?
+                };
                 self.accept(state, &energy, ledger);
                 Ok(())
             },
         )
+    }
+
+    /// The stages of a step without plants, one after the other.
+    #[inline(always)]
+    fn free_step(
+        &mut self,
+        state: &State<S>,
+        weather: &Weather<'_>,
+        step: usize,
+        dt: f64,
+    ) -> Result<Power<S>, EngineError> {
+        let (diagonal, weights) = (self.scheme.diagonal(), self.scheme.weights());
+        let mut energy = Power::none();
+        for (stage, &weight) in weights.iter().enumerate() {
+            if stage > 0 {
+                self.hold_over(state, diagonal);
+            }
+            self.drive.update(self.plan, &self.coefficients, self.numbers, weather.at(step, stage));
+            self.solve_stage(state, diagonal * dt, (step, stage + 1), S::Mask::splat(true))?;
+            self.accumulate(weight * dt, &mut energy);
+        }
+        Ok(energy)
+    }
+
+    /// The stages of a step, gone through again until the loads of the plants are right; see [`crate::plant`].
+    #[inline(always)]
+    fn regulated_step(
+        &mut self,
+        state: &State<S>,
+        weather: &Weather<'_>,
+        step: usize,
+        dt: f64,
+    ) -> Result<Power<S>, EngineError> {
+        let last = self.scheme.weights().len() - 1;
+        self.plants.begin(&self.coefficients.zones, weather.at(step, last).row, &mut self.load);
+        let mut active = S::Mask::splat(true);
+        let mut polish = S::DERIVATIVES;
+        for sweep in 0..MAX_SWEEPS {
+            let energy = self.sweep(state, weather, (step, dt), sweep > 0, active)?;
+            let settled = self.plants.correct(&self.solved.air, &mut self.load, active, polish);
+            let moving = active & !settled;
+            if moving.any() {
+                active = moving;
+            } else if polish {
+                polish = false;
+                active = S::Mask::splat(true);
+            } else {
+                return Ok(energy);
+            }
+        }
+        let lane = (0..S::LANES).find(|&lane| active.lane(lane)).unwrap_or(0);
+        let (zone, residual) = self.plants.worst(lane);
+        let place = format!("zone {} (load of its plant)", self.plan.description.zones[zone].name);
+        Err(EngineError::NotConverged { step, stage: last + 1, place, residual, iterations: MAX_SWEEPS })
+    }
+
+    /// All stages of a step at the loads in hand. Lanes that are not active repeat the sweep before bit for bit.
+    #[inline(always)]
+    fn sweep(
+        &mut self,
+        state: &State<S>,
+        weather: &Weather<'_>,
+        (step, dt): (usize, f64),
+        again: bool,
+        active: S::Mask,
+    ) -> Result<Power<S>, EngineError> {
+        let (diagonal, weights) = (self.scheme.diagonal(), self.scheme.weights());
+        let mut energy = Power::none();
+        let answer = self.plants.asking(active);
+        if again {
+            self.held.copy_from_slice(&state.enthalpy);
+            self.held_air.copy_from_slice(&state.air);
+        }
+        for (stage, &weight) in weights.iter().enumerate() {
+            if stage > 0 {
+                self.hold_over(state, diagonal);
+            }
+            if weights.len() > 1 && (again || stage > 0) {
+                core::mem::swap(&mut self.drive, &mut self.other_drive);
+            }
+            if again {
+                self.plants.guess(stage, active, &mut self.iterate);
+            } else {
+                self.drive.update(self.plan, &self.coefficients, self.numbers, weather.at(step, stage));
+            }
+            self.solve_stage(state, diagonal * dt, (step, stage + 1), active)?;
+            if answer {
+                self.respond(stage, diagonal * dt);
+            }
+            self.plants.keep(stage, &self.iterate, &self.solved);
+            self.accumulate(weight * dt, &mut energy);
+        }
+        Ok(energy)
+    }
+
+    /// How the stage just solved answers to a watt of each plant.
+    #[inline(always)]
+    fn respond(&mut self, stage: usize, length: f64) {
+        let mut responses = core::mem::take(&mut self.plants.responses);
+        for (response, &zone) in responses.iter_mut().zip(&self.plan.plants) {
+            response.right.fill(S::zero());
+            response.right[self.plan.zones[zone].air_row] = S::one();
+            if stage > 0 {
+                self.carry_over(response, length);
+            } else {
+                response.known.fill(S::zero());
+            }
+            self.block.solve_again(&mut response.right);
+            self.spread(response, stage);
+        }
+        self.plants.responses = responses;
+    }
+
+    /// What the first stage's answer leaves to the second: heat held in walls and airs.
+    #[inline(always)]
+    fn carry_over(&self, response: &mut Response<S>, length: f64) {
+        let diagonal = self.scheme.diagonal();
+        let ratio = (1.0 - diagonal) / diagonal;
+        let first = &response.stages[0];
+        for (zone, plan) in self.plan.zones.iter().enumerate() {
+            let storage = self.coefficients.zones[zone].capacity.scale(ratio / length);
+            response.right[plan.air_row] += storage * first.air[zone];
+        }
+        for (w, wall) in self.plan.walls.iter().enumerate() {
+            let cells = wall.first_cell..wall.first_cell + wall.len();
+            let source =
+                self.chains[w].source_changes(&response.held[cells.clone()], &mut response.known[cells]);
+            let area = self.coefficients.walls[w].area;
+            for e in 0..2 {
+                let FaceRole::Zone { row, .. } = self.plan.faces[2 * w + e].role else { continue };
+                let mut heat = source[e];
+                if let LocalFaces::One { side, .. } = self.locals[w] {
+                    heat += self.responses[w][e][side] * self.free_answer(w, side, source[side]);
+                }
+                response.right[row] += area * heat;
+            }
+            response.sources[w] = source;
+        }
+    }
+
+    /// Rise of a local face with the heat that its wall sends into it, the other face held [K].
+    #[inline(always)]
+    fn free_answer(&self, w: usize, side: usize, source: S) -> S {
+        match self.local_balance(2 * w + side) {
+            LocalBalance::Fixed(_) => S::zero(),
+            LocalBalance::Gain(gain) => source / (gain.slope - self.responses[w][side][side]),
+        }
+    }
+
+    /// Carries the answer of the room block to all faces and cells.
+    #[inline(always)]
+    fn spread(&self, response: &mut Response<S>, stage: usize) {
+        let diagonal = self.scheme.diagonal();
+        let ratio = (1.0 - diagonal) / diagonal;
+        let Response { stages, held, known, right, sources } = response;
+        let answer = &mut stages[stage];
+        for (zone, plan) in self.plan.zones.iter().enumerate() {
+            answer.air[zone] = right[plan.air_row];
+        }
+        for (w, wall) in self.plan.walls.iter().enumerate() {
+            let mut faces = [S::zero(); 2];
+            for (e, face) in faces.iter_mut().enumerate() {
+                if let FaceRole::Zone { row, .. } = self.plan.faces[2 * w + e].role {
+                    *face = right[row];
+                }
+            }
+            if let LocalFaces::One { side, line } = self.locals[w] {
+                let source = if stage > 0 { sources[w][side] } else { S::zero() };
+                faces[side] = line.slope * faces[1 - side] + self.free_answer(w, side, source);
+            }
+            answer.faces[2 * w..2 * w + 2].copy_from_slice(&faces);
+            let cells = wall.first_cell..wall.first_cell + wall.len();
+            let chain = &self.chains[w];
+            chain.temperature_changes(&known[cells.clone()], faces, &mut answer.cells[cells.clone()]);
+            if stage == 0 {
+                for (i, k) in cells.enumerate() {
+                    held[k] = chain.storage[i].capacity * answer.cells[k].scale(ratio);
+                }
+            }
+        }
     }
 
     /// Sets out from a state; guesses that it goes on as in the step before for a share of a step.
@@ -240,6 +429,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn start(&mut self, state: &State<S>, share: f64) {
         self.held.copy_from_slice(&state.enthalpy);
         self.held_air.copy_from_slice(&state.air);
+        self.load.copy_from_slice(&state.load);
         match &self.previous {
             Some(previous) if share > 0.0 => {
                 self.iterate.extrapolate(
@@ -318,22 +508,24 @@ impl<'a, S: Real> Stepper<'a, S> {
         state.cells.copy_from_slice(&self.solved.cells);
         state.faces.copy_from_slice(&self.solved.faces);
         state.air.copy_from_slice(&self.solved.air);
+        state.load.copy_from_slice(&self.load);
         ledger.book(energy, stored);
     }
 
     /// Newton's iteration for one stage. Leaves the solution in `solved` and the linearisation that produced
     /// it in the chains and laws, so that every flux can be booked at the value the last solve used.
     ///
-    /// A lane that has converged keeps its iterate: later solves repeat its last one bit for bit.
+    /// A lane that has converged, or was not active from the start, keeps its iterate: later solves repeat its last one
+    /// bit for bit.
     #[inline(always)]
     fn solve_stage(
         &mut self,
         state: &State<S>,
         length: f64,
         place: (usize, usize),
+        mut active: S::Mask,
     ) -> Result<(), EngineError> {
         self.prepare_linear_walls(length);
-        let mut active = S::Mask::splat(true);
         let mut polish = S::DERIVATIVES;
         // Square of the change before this one; zero where it says nothing of the next.
         let mut before = S::zero();
@@ -424,7 +616,9 @@ impl<'a, S: Real> Stepper<'a, S> {
             }
         }
         for (zone, numbers) in self.coefficients.zones.iter().enumerate() {
-            self.inflow[zone] = infiltration(numbers, &self.drive, self.iterate.air[zone]);
+            let (wind, outdoor, air) = (self.drive.wind, self.drive.outdoor_air, self.iterate.air[zone]);
+            self.inflow[zone] = zone::infiltration(numbers, wind, outdoor, air);
+            self.airing[zone] = zone::ventilation(numbers, &self.drive.zones[zone], wind, outdoor, air);
         }
     }
 
@@ -437,6 +631,10 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
         for zone in 0..self.plan.zones.len() {
             self.assemble_zone(zone, length);
+        }
+        for (path, &conductance) in self.coefficients.paths.iter().zip(&self.drive.paths) {
+            let [a, b] = path.between.map(|zone| self.plan.zones[zone].air_row);
+            self.block.couple(a, b, conductance);
         }
         self.block.solve();
         for (zone, plan) in self.plan.zones.iter().enumerate() {
@@ -537,13 +735,16 @@ impl<'a, S: Real> Stepper<'a, S> {
                     }
                 }
             }
+            arriving += self.drive.zones[zone].radiant * numbers.radiant_shares[i];
             self.block.right[row] += arriving;
         }
-        let inflow = self.inflow[zone];
+        let (inflow, airing) = (self.inflow[zone], self.airing[zone]);
+        let entering = Line { offset: inflow.offset + airing.offset, slope: inflow.slope + airing.slope };
         let storage = numbers.capacity.scale(1.0 / length);
-        self.block.add(air, air, storage + inflow.slope);
+        self.block.add(air, air, storage + entering.slope);
         self.block.right[air] +=
-            storage * self.held_air[zone] + inflow.offset + inflow.slope * self.drive.outdoor_air;
+            storage * self.held_air[zone] + entering.offset + entering.slope * self.drive.outdoor_air;
+        self.block.right[air] += self.drive.zones[zone].convective + self.load[zone];
     }
 
     /// Solution at a face in a zone.
@@ -664,6 +865,35 @@ impl<'a, S: Real> Stepper<'a, S> {
             let power = inflow.at(self.drive.outdoor_air - self.solved.air[zone]);
             energy.book(Flow::Infiltration, power.scale(duration));
         }
+        self.accumulate_zones(duration, energy);
+    }
+
+    /// Adds what acts in the zones beside walls and infiltration.
+    #[inline(always)]
+    fn accumulate_zones(&self, duration: f64, energy: &mut Power<S>) {
+        for (zone, airing) in self.airing.iter().enumerate() {
+            let at = &self.drive.zones[zone];
+            let power = airing.at(self.drive.outdoor_air - self.solved.air[zone]);
+            energy.book(Flow::Ventilation, power.scale(duration));
+            energy.book(Flow::Gains, (at.convective + at.radiant).scale(duration));
+        }
+        for (path, &conductance) in self.coefficients.paths.iter().zip(&self.drive.paths) {
+            let [a, b] = path.between.map(|zone| self.solved.air[zone]);
+            let power = (conductance * (b - a)).scale(duration);
+            energy.book(Flow::Interzone, power);
+            energy.book(Flow::Interzone, -power);
+        }
+        for &zone in &self.plan.plants {
+            let load = self.load[zone].scale(duration);
+            energy.book(Flow::Heating, load.max(S::zero()));
+            energy.book(Flow::Cooling, load.min(S::zero()));
+        }
+    }
+
+    /// Outdoor air entering a zone at an air temperature, as the last stage was driven [1/h].
+    pub(crate) fn air_changes(&self, zone: usize, air: S) -> S {
+        let (drive, numbers) = (&self.drive, &self.coefficients.zones[zone]);
+        zone::air_changes(numbers, &drive.zones[zone], drive.wind, drive.outdoor_air, air)
     }
 
     /// Heat from an imposed temperature into its wall [W/m2].
@@ -738,16 +968,4 @@ fn outdoor_emission<S: Real>(face: &Face<S>) -> Option<crate::radiation::Emissio
         Boundary::Outdoors(outdoors) => outdoors.emission,
         Boundary::Imposed(_) | Boundary::Adiabatic | Boundary::Zone => None,
     }
-}
-
-/// Heat of entering air, `C (n0 + n1 |d| + n2 V)/3600 d`, `d = T_outdoor - T_air`, as its tangent.
-#[inline(always)]
-fn infiltration<S: Real>(zone: &crate::coefficients::Zone<S>, drive: &Drive<S>, air: S) -> Line<S> {
-    let d = drive.outdoor_air - air;
-    let [constant, temperature, wind] = zone.infiltration;
-    let magnitude = d.smooth_abs(ROUND_OFF);
-    let per_second = zone.air_capacity.scale(1.0 / 3600.0);
-    let rate = per_second * (constant + temperature * magnitude + wind * drive.wind);
-    let slope = rate + per_second * temperature * d * d / magnitude;
-    Line::tangent(rate * d, slope, d)
 }

@@ -11,6 +11,7 @@ from .channels import CHANNELS, IRRADIANCES, RADIATION, TEMPERATURES, UNITS
 from .forcing import STAGES, forcing
 from .measurements import Measurements
 from .place import require_place
+from .schedules import scheduled
 from .table import Column
 from .timezones import parse_timezone
 from .weather import Climate, Place, SiteLike, summary
@@ -30,5 +31,6 @@ __all__ = [
     "forcing",
     "parse_timezone",
     "require_place",
+    "scheduled",
     "summary",
 ]

@@ -105,11 +105,11 @@ def forcing(
         out[..., CHANNELS.index(name)] = _weather(ready, name, first, edges, stage, weights)
     _fill_radiation(out, ready, sun, first, edges, stage, weights)
     for place, name in enumerate(channels, start=len(CHANNELS)):
-        holder = _holder(climate, measurements, name)
+        holder = holder_of(climate, measurements, name)
         holder.grid.require(first, last, f"{holder.file}: {name}")
         if limits is not None and name in limits:
             require_range(holder, name, limits[name], first, last)
-        out[..., place] = _column(holder, name, first, edges, stage, weights)
+        out[..., place] = column_values(holder, name, first, edges, stage, weights)
     return out
 
 
@@ -150,13 +150,46 @@ def _weather(
     climate: Climate, name: str, origin: float, edges: Array, stage: Array, weights: tuple[float, ...]
 ) -> Array:
     if name in climate.data.columns:
-        return _column(climate, name, origin, edges, stage, weights)
+        return column_values(climate, name, origin, edges, stage, weights)
     if name in ("infrared", "pressure"):
         return np.full(stage.shape, np.nan)
     raise InputError(f"{climate.file}: the climate has no {name}; map a column or state that it is absent.")
 
 
-def _column(
+def column_means(holder: Climate | Measurements, name: str, origin: float, edges: Array) -> Array:
+    """Means of a column over steps.
+
+    Parameters
+    ----------
+    holder : Climate or Measurements
+        Where the column is.
+    name : str
+        Column.
+    origin : float
+        Start of the period, seconds since 1970-01-01 UTC [s].
+    edges : ndarray, shape (steps + 1,)
+        Ends of the steps from there [s].
+
+    Returns
+    -------
+    ndarray, shape (steps,)
+        A mean stays level inside its interval; instants are joined by straight lines. [unit of the column]
+    """
+    start, values, kind = window(holder, name, origin + edges[0], origin + edges[-1])
+    knots = start - origin + holder.grid.interval * np.arange(len(values) + (kind == "mean"))
+    # Fine enough that the mean of straight lines is exact: the integral at every knot and edge.
+    places = np.union1d(knots, edges)
+    middle = 0.5 * (places[1:] + places[:-1])
+    inside = (
+        values[np.clip(np.searchsorted(knots, middle) - 1, 0, len(values) - 1)]
+        if kind == "mean"
+        else np.interp(middle, knots, values)
+    )
+    integral = np.concatenate([[0.0], np.cumsum(inside * np.diff(places))])
+    return np.asarray(np.diff(np.interp(edges, places, integral)) / np.diff(edges))
+
+
+def column_values(
     holder: Climate | Measurements,
     name: str,
     origin: float,
@@ -164,6 +197,7 @@ def _column(
     stage: Array,
     weights: tuple[float, ...],
 ) -> Array:
+    """A column at the stages of every step; times from `origin` [s]."""
     start, values, kind = window(holder, name, origin + edges[0], origin + edges[-1])
     start -= origin
     interval = holder.grid.interval
@@ -283,7 +317,14 @@ def _balanced(
     return np.asarray(np.where(small[:, None], means[:, None], scaled))
 
 
-def _holder(climate: Climate, measurements: Measurements | None, name: str) -> Climate | Measurements:
+def holder_of(climate: Climate, measurements: Measurements | None, name: str) -> Climate | Measurements:
+    """Who holds a measured column.
+
+    Raises
+    ------
+    InputError
+        Nobody; the text names the nearest columns.
+    """
     if name in climate.data.columns and name not in CHANNELS:
         return climate
     if measurements is not None and name in measurements.data.columns:

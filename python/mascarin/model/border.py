@@ -18,9 +18,11 @@ from mascarin.model.envelope import Side, Surface
 from mascarin.model.material import Material, PhaseChangeMaterial, Phases, TanhLaw
 from mascarin.model.mesh import choose
 from mascarin.model.number import Interval, Number
-from mascarin.model.rules import face_names
+from mascarin.model.part import Part
+from mascarin.model.rules import face_names, references
 from mascarin.model.settling import enclosure, faces_of
 from mascarin.model.site import Site
+from mascarin.model.zone import AirPath, Opening, Plant, Zone
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
     from mascarin.model.envelope import Construction
 
 Json = dict[str, Any]
+#: Position of the channel of each schedule.
+Places = Mapping[str, int]
 #: Id of the leaf at a path.
 Ids = Callable[[str], int]
 
@@ -47,7 +51,9 @@ class EngineDescription:
     values : ndarray, shape (P,)
         Nominal value of each parameter. [unit of each]
     channels : list of str
-        Measured columns that the forcing holds after the climate's channels.
+        What the forcing holds after the climate's channels: measured columns, then schedules.
+    schedules : tuple of str
+        Names of the schedules, which are the last of the channels.
     notes : tuple of str
         Warnings about the mesh.
     """
@@ -56,6 +62,7 @@ class EngineDescription:
     paths: list[str]
     values: npt.NDArray[np.float64]
     channels: list[str]
+    schedules: tuple[str, ...]
     notes: tuple[str, ...]
 
 
@@ -67,6 +74,9 @@ def describe(building: Building, step_seconds: float, ranges: Mapping[str, Inter
     leaves = [parameter for parameter in building.parameters() if not parameter.structural]
     ids = {leaf.path: index for index, leaf in enumerate(leaves)}
     columns = channels(building)
+    schedules = used_schedules(building)
+    places = {name: len(columns) + k for k, name in enumerate(schedules)}
+    columns = [*columns, *(f"schedule {name}" for name in schedules)]
     description = {
         "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
         "site": _site(building.site, _below(ids, "site")),
@@ -74,7 +84,9 @@ def describe(building: Building, step_seconds: float, ranges: Mapping[str, Inter
         "constructions": _each(
             building.constructions, "constructions", ids, partial(_construction, building, mesh.nodes)
         ),
-        "zones": _each(building.zones, "zones", ids, partial(_zone, building)),
+        "zones": _each(building.zones, "zones", ids, partial(_zone, building, places)),
+        "air_paths": _each(building.air_paths, "air_paths", ids, partial(_air_path, building, places)),
+        "openings": _each(building.openings, "openings", ids, partial(_opening, building, places)),
         "surfaces": _each(building.surfaces, "surfaces", ids, partial(_surface, building, columns)),
         "sensors": _each(building.sensors, "sensors", ids, partial(_sensor, building)),
         "channels": columns,
@@ -84,6 +96,7 @@ def describe(building: Building, step_seconds: float, ranges: Mapping[str, Inter
         paths=[leaf.path for leaf in leaves],
         values=np.array([leaf.value for leaf in leaves], dtype=np.float64),
         channels=columns,
+        schedules=tuple(schedules),
         notes=mesh.warnings,
     )
 
@@ -93,6 +106,18 @@ def channels(building: Building) -> list[str]:
     sides = [side for surface in building.surfaces.values() for side in surface.sides]
     columns = [column for side in sides for column in (side.measured, side.irradiance)]
     return list(dict.fromkeys(column for column in columns if column is not None))
+
+
+def measured_columns(building: Building) -> list[str]:
+    """Measured columns that a building needs, those of its schedules included."""
+    scheduled = (building.schedules[name].column for name in used_schedules(building))
+    return list(dict.fromkeys([*channels(building), *(column for column in scheduled if column is not None)]))
+
+
+def used_schedules(building: Building) -> list[str]:
+    """Names of the schedules that something in the building follows, in the order of the description."""
+    used = {name for name, _, _ in references(building)}
+    return [name for name in building.schedules if name in used]
 
 
 def _below(ids: Mapping[str, int], path: str) -> Ids:
@@ -173,15 +198,50 @@ def _construction(
     return {"name": name, "layers": layers}
 
 
-def _zone(building: Building, name: str, zone: Any, ids: Ids) -> Json:
+def _zone(building: Building, places: Places, name: str, zone: Zone, ids: Ids) -> Json:
+    def each(section: str) -> list[Json]:
+        parts: Mapping[str, Part] = getattr(zone, section)
+        return [
+            {"name": key, **_fields(part, ids, f"{section}.{key}."), **_schedule(part, places)}
+            for key, part in parts.items()
+        ]
+
+    plants = {which: _plant(plant, places, ids, which) for which, plant in zone.plants.items()}
     return {
         "name": name,
+        "gains": each("gains"),
+        "ventilation": each("ventilation"),
+        **plants,
         "volume": ids("volume"),
         "capacity_factor": ids("capacity_factor"),
         "infiltration": _fields(zone.infiltration, ids, "infiltration."),
         "longwave": _fields(zone.longwave, ids, "longwave."),
         "view_weights": view_weights(building, name),
     }
+
+
+def _schedule(part: Any, places: Places) -> Json:
+    return {"schedule": None if part.schedule is None else places[part.schedule]}
+
+
+def _plant(plant: Plant, places: Places, ids: Ids, which: str) -> Json:
+    given = plant.setpoint.schedule
+    setpoint: Json = (
+        {"kind": "constant", "temperature": ids(f"{which}.setpoint.temperature")}
+        if given is None
+        else {"kind": "scheduled", "channel": places[given]}
+    )
+    return {"setpoint": setpoint, **_fields(plant, ids, f"{which}."), **_schedule(plant, places)}
+
+
+def _air_path(building: Building, places: Places, name: str, path: AirPath, ids: Ids) -> Json:
+    between = [list(building.zones).index(zone) for zone in path.between]
+    return {"name": name, "between": between, **_fields(path, ids), **_schedule(path, places)}
+
+
+def _opening(building: Building, places: Places, name: str, opening: Opening, ids: Ids) -> Json:
+    zone = list(building.zones).index(opening.zone)
+    return {"name": name, "zone": zone, **_fields(opening, ids), **_schedule(opening, places)}
 
 
 def view_weights(building: Building, zone: str) -> list[list[float]]:
@@ -236,6 +296,8 @@ def _side(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
         written["longwave"] = _fields(side.longwave, ids, "longwave.")
     if side.irradiance is not None:
         written["irradiance"] = columns.index(side.irradiance)
+    if side.exposure is not None:
+        written["exposure"] = side.exposure.model_dump()
     return written
 
 

@@ -16,9 +16,10 @@ from mascarin.model.number import Interval, Number
 from mascarin.model.parameters import Parameter, lookup, parameters, resolve
 from mascarin.model.part import Part, insist, is_number
 from mascarin.model.rules import faults
+from mascarin.model.schedule import Schedule
 from mascarin.model.settling import settle_surfaces, settle_zones
 from mascarin.model.site import Site
-from mascarin.model.zone import Zone
+from mascarin.model.zone import AirPath, Opening, Zone
 
 if TYPE_CHECKING:
     from pydantic import ModelWrapValidatorHandler
@@ -36,7 +37,14 @@ class Building(Part):
     constructions: dict[Name, Construction] = Field(
         default_factory=dict, description="Layered constructions by name"
     )
+    schedules: dict[Name, Schedule] = Field(default_factory=dict, description="Schedules by name")
     zones: dict[Name, Zone] = Field(default_factory=dict, description="Air zones by name")
+    air_paths: dict[Name, AirPath] = Field(
+        default_factory=dict, description="Air exchanged between zones, by name"
+    )
+    openings: dict[Name, Opening] = Field(
+        default_factory=dict, description="Openings between zones and outdoors, by name"
+    )
     surfaces: dict[Name, Surface] = Field(
         default_factory=dict, description="Walls, roofs, floors, doors by name"
     )

@@ -113,6 +113,16 @@ class Ground(Part):
         return raw
 
 
+class Exposure(Part):
+    """What of the weather reaches a side, beside the temperature of the air."""
+
+    sun: bool = Field(True, description="Sun, from sky and ground alike")
+    wind: bool = Field(True, description="Wind on the film")
+    sky: bool = Field(
+        True, description="Long-wave exchange with the sky; without it the partner is at air temperature"
+    )
+
+
 class Side(Part):
     """One face of a surface: what it faces and how it exchanges heat with that."""
 
@@ -134,11 +144,26 @@ class Side(Part):
         None, description="Exchange with sky, air and ground; none: exact"
     )
     irradiance: str | None = Field(None, description="Measured column of the irradiance on this plane [W/m2]")
+    exposure: Exposure | None = Field(
+        None, description="What of the weather reaches a side facing outdoors; none: all of it"
+    )
 
     @property
     def faces(self) -> str:
         """Which of the five the side faces."""
         return next(name for name in FACINGS if getattr(self, name) is not None)
+
+    @property
+    def exposed(self) -> Exposure:
+        """What of the weather reaches it: of nothing but outdoors, nothing."""
+        if not self.outdoors:
+            return Exposure(sun=False, wind=False, sky=False)
+        return self.exposure or Exposure()
+
+    @property
+    def sunlit(self) -> bool:
+        """Whether it takes its irradiance from the climate."""
+        return self.exposed.sun and self.irradiance is None
 
     @model_validator(mode="after")
     def _sound(self) -> Side:
@@ -156,7 +181,7 @@ class Side(Part):
             needed.append("convection")
         if self.outdoors:
             needed.append("emissivity")
-        if self.outdoors or self.irradiance is not None:
+        if self.sunlit or self.irradiance is not None:
             needed.append("absorptance")
         return [
             fault(
@@ -176,21 +201,38 @@ class Side(Part):
             "convection": self.adiabatic is None,
             "area_factor": air,
             "emissivity": bool(self.outdoors or self.zone is not None),
-            "absorptance": bool(self.outdoors) or self.irradiance is not None,
-            "sky_view": bool(self.outdoors),
-            "height": bool(self.outdoors),
+            "absorptance": self.sunlit or self.irradiance is not None,
+            "sky_view": self.sunlit or self.exposed.sky,
+            "height": self.exposed.wind,
             "longwave": bool(self.outdoors),
-            "irradiance": bool(self.outdoors) or (self.measured is not None and air),
+            "irradiance": self.exposed.sun or (self.measured is not None and air),
         }
         return [
             fault(
                 (key,),
-                f"'{key}' on a side facing {self.faces}",
+                f"'{key}' on a side facing {self.faces}{self._sheltered(key)}",
                 "only what acts on this side",
                 f"Remove '{key}:': it would change nothing here.",
             )
             for key, active in acts.items()
             if getattr(self, key) is not None and not active
+        ] + self._unexposed()
+
+    def _sheltered(self, key: str) -> str:
+        """Say what keeps the weather off, where that is why a key does not act."""
+        away = {"absorptance": "sun", "sky_view": "sun or sky", "height": "wind", "irradiance": "sun"}
+        return f" without {away[key]}" if self.outdoors and key in away else ""
+
+    def _unexposed(self) -> list[InitErrorDetails]:
+        if self.outdoors or self.exposure is None:
+            return []
+        return [
+            fault(
+                ("exposure",),
+                f"'exposure' on a side facing {self.faces}",
+                "only what acts on this side",
+                "Remove 'exposure:': no weather reaches this side.",
+            )
         ]
 
 
@@ -230,8 +272,8 @@ class Surface(Part):
 
     def _direction_acts(self) -> bool:
         """Tell whether sun, wind or the view between the faces of a zone depend on the azimuth."""
-        windy = isinstance(self.outside.convection, Tarp | Mowitt | Doe2)
-        sun = windy or any(side.outdoors and side.irradiance is None for side in self.sides)
+        windy = isinstance(self.outside.convection, Tarp | Mowitt | Doe2) and self.outside.exposed.wind
+        sun = windy or any(side.sunlit for side in self.sides)
         seen = any(side.zone is not None for side in self.sides)
         return (sun or seen) and self.tilt is not None and 0.0 < self.tilt < 180.0
 

@@ -32,7 +32,7 @@ class Face:
     def windy(self) -> bool:
         """Whether its film depends on wind."""
         film = self.side.convection
-        if not self.side.outdoors:
+        if not self.side.exposed.wind:
             return False
         if isinstance(film, Power):
             return film.upward.c > 0.0 or film.downward.c > 0.0
@@ -41,13 +41,13 @@ class Face:
     @property
     def sunlit(self) -> bool:
         """Whether it takes its irradiance from the climate."""
-        return bool(self.side.outdoors) and self.side.irradiance is None
+        return self.side.sunlit
 
     @property
     def sees_sky(self) -> bool:
         """Whether it exchanges long-wave with the sky."""
         view = (1.0 if self.tilt < 180.0 else 0.0) if self.side.sky_view is None else self.side.sky_view
-        return bool(self.side.outdoors) and not isinstance(self.side.longwave, NoLongwave) and view > 0.0
+        return self.side.exposed.sky and not isinstance(self.side.longwave, NoLongwave) and view > 0.0
 
 
 def without_effect(building: Building) -> dict[str, str]:
@@ -60,6 +60,7 @@ def without_effect(building: Building) -> dict[str, str]:
     for name, surface in building.surfaces.items():
         found.update(_in_direction(building, name, surface))
     found.update(_between_faces(building))
+    found.update(_in_air(building))
     return found
 
 
@@ -114,8 +115,16 @@ def _on_side(face: Face) -> Reasons:
         yield f"{path}.emissivity", "longwave is none"
         if side.irradiance is not None:
             yield f"{path}.sky_view", "longwave is none and the irradiance is measured"
-    if isinstance(side.convection, LinearWind) and not side.outdoors:
+    windless = not side.exposed.wind
+    if isinstance(side.convection, LinearWind) and windless:
         yield f"{path}.convection.wind", "there is no wind on this side"
+    if isinstance(side.convection, Tarp) and side.outdoors and windless:
+        yield from (
+            (f"{path}.convection.{key}", "there is no wind on this side")
+            for key in ("roughness", "perimeter")
+        )
+    if isinstance(side.convection, Doe2) and windless:
+        yield f"{path}.convection.roughness", "there is no wind on this side"
     if isinstance(side.convection, Power):
         yield from _in_power(face, side.convection)
 
@@ -129,7 +138,7 @@ def _in_power(face: Face, film: Power) -> Reasons:
             continue
         if law.b == 0.0:
             yield f"{path}.n", "b is 0"
-        if not face.side.outdoors:
+        if not face.side.exposed.wind:
             yield from ((f"{path}.{key}", "there is no wind on this side") for key in ("c", "m"))
         elif law.c == 0.0:
             yield f"{path}.m", "c is 0"
@@ -175,6 +184,18 @@ def _between_faces(building: Building) -> Reasons:
         if reason:
             yield from ((f"surfaces.{surface}.{side}.emissivity", reason) for surface, side in faces)
             yield f"zones.{name}.longwave.reference", reason
+
+
+def _in_air(building: Building) -> Reasons:
+    for name, zone in building.zones.items():
+        for gain, numbers in zone.gains.items():
+            if numbers.power == 0.0:
+                yield f"zones.{name}.gains.{gain}.radiative", "the power is 0"
+    for name, opening in building.openings.items():
+        if opening.discharge == 0.0:
+            yield f"openings.{name}.height", "the discharge is 0"
+        if opening.height == 0.0:
+            yield f"openings.{name}.discharge", "the height is 0"
 
 
 def _all_of(path: str, part: Any, reason: str) -> Reasons:

@@ -25,6 +25,9 @@ Kind = Literal[
     "liquid_fraction",
     "layer_enthalpy",
     "sensor",
+    "heating_load",
+    "cooling_load",
+    "air_changes",
 ]
 
 _ZONE_KINDS: tuple[Kind, ...] = (
@@ -33,6 +36,8 @@ _ZONE_KINDS: tuple[Kind, ...] = (
     "operative_temperature",
     "globe_temperature",
 )
+#: Units of means: over the step, or whatever other interval, that ends at the time of the record.
+_MEANS = ("W", "W/m2")
 _SIDES = ("outside", "inside")
 
 
@@ -43,6 +48,9 @@ class Output:
     The mean radiant temperature of a zone is the mean of the temperatures of its faces, weighted by area:
     no view factors to a point and no emissivities enter. The operative temperature is the mean of air and
     mean radiant temperature; the globe temperature is that of a black globe of 0.15 m between the two.
+
+    Heating and cooling loads are what ideal plants give and take, neither below 0, as means over the step
+    that ends at the record. Air changes count all outdoor air: infiltration, ventilation and openings.
 
     Attributes
     ----------
@@ -76,6 +84,11 @@ class Output:
     aliases: tuple[str, ...] = ()
 
     @property
+    def mean(self) -> bool:
+        """Whether a record is the mean over the interval that it ends, and no state at its time."""
+        return self.unit in _MEANS
+
+    @property
     def place(self) -> dict[str, int]:
         """The positions that belong to this kind, by name."""
         keys = ("zone", "surface", "side", "layer", "interface", "sensor")
@@ -89,6 +102,11 @@ def outputs(building: Building) -> list[Output]:
         for index, name in enumerate(building.zones)
         for kind in _ZONE_KINDS
     ]
+    for index, (name, zone) in enumerate(building.zones.items()):
+        for which in zone.plants:
+            kind: Kind = "heating_load" if which == "heating" else "cooling_load"
+            found.append(Output(f"{name}.{kind}", "W", kind, zone=index))
+        found.append(Output(f"{name}.air_changes", "1/h", "air_changes", zone=index))
     for index, name in enumerate(building.surfaces):
         found += _of_surface(building, index, name)
     for index, name in enumerate(building.sensors):

@@ -132,5 +132,7 @@ def _aliases(building: Building, path: str) -> Iterator[str]:
             yield f"{path}.coefficient"
         case ["zones", _, "infiltration"]:
             yield f"{path}.constant"
+        case ["zones", _, "heating" | "cooling", "setpoint"]:
+            yield f"{path}.temperature"
         case ["surfaces", _, _, "ground", "temperature"]:
             yield f"{path.removesuffix('temperature')}mean"

@@ -382,6 +382,109 @@ AirChangePerSpeed = Annotated[
     ),
 ]
 
+Ventilation = Annotated[
+    Number,
+    Quantity(
+        "1/h",
+        "Air changes of ventilation from outdoors, at the density of the site",
+        Percent(20, "fans against the resistance of filters and ducts"),
+        Limits(at_least=0, at_most=1000),
+    ),
+]
+VolumeFlow = Annotated[
+    Number,
+    Quantity(
+        "m3/s",
+        "Volume flow of air at the density of the site",
+        Percent(20, "fans against the resistance of filters and ducts; doors ajar or open"),
+        Limits(at_least=0, at_most=1000),
+    ),
+]
+OpeningArea = Annotated[
+    Number,
+    Quantity("m2", "Free area of the opening", Percent(20, "meshes, blades, how far it is opened"), POSITIVE),
+]
+OpeningHeight = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Vertical distance between the middle of the opening and the neutral level",
+        Percent(30, "the neutral level shifts with every other leak"),
+        Limits(at_least=0, at_most=500),
+    ),
+]
+Discharge = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Discharge coefficient of the opening",
+        Span(0.4, 0.8, "two-way through one opening to rounded edges"),
+        FRACTION,
+    ),
+]
+WindCoefficient = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Effectiveness of the opening against the wind at the mast",
+        Span(
+            0.05,
+            0.6,
+            "sheltered, by diagonal wind (0.25 to 0.35), to wind square on the opening (0.5 to 0.6)",
+        ),
+        FRACTION,
+    ),
+]
+
+# --- Gains, plant, schedules --------------------------------------------------------------------------------
+
+GainPower = Annotated[
+    Number,
+    Quantity("W", "Heat at full schedule", Percent(30, "name plates against what is drawn"), NOT_NEGATIVE),
+]
+Radiative = Annotated[
+    Number,
+    Quantity(
+        "-", "Part of the heat that is radiated", Within(0.2, "handbooks give ranges as wide"), FRACTION
+    ),
+]
+SetPoint = Annotated[
+    Number,
+    Quantity(
+        "degC",
+        "Air temperature that the plant keeps",
+        Within(1, "a thermostat's place, offset and switching difference"),
+        Limits(at_least=-60, at_most=90),
+    ),
+]
+Capacity = Annotated[
+    Number,
+    Quantity(
+        "W",
+        "Most heat that the plant gives or takes",
+        Percent(20, "rated against site conditions"),
+        NOT_NEGATIVE,
+    ),
+]
+ScheduledFraction = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Fraction",
+        Fixed("acts through the forcing; vary the number that it multiplies"),
+        FRACTION,
+    ),
+]
+ScheduledTemperature = Annotated[
+    Number,
+    Quantity(
+        "degC",
+        "Temperature",
+        Fixed("acts through the forcing; vary a set point without a schedule"),
+        Limits(at_least=-60, at_most=90),
+    ),
+]
+
 # --- Convection ---------------------------------------------------------------------------------------------
 
 Film = Annotated[

@@ -11,12 +11,14 @@ from mascarin.model.convection import Doe2, Mowitt, Tarp
 from mascarin.model.envelope import NoLongwave, Side
 from mascarin.model.material import Resistance
 from mascarin.model.part import fault
+from mascarin.model.schedule import DAYS, Piece
 from mascarin.model.settling import faces_of
 
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
     from mascarin.model.building import Building
+    from mascarin.model.zone import Plant
 
 Faults = Iterator["InitErrorDetails"]
 
@@ -35,6 +37,8 @@ def faults(building: Building) -> Faults:
     yield from _sensors_inside_walls(building)
     yield from _columns_have_one_meaning(building)
     yield from _view_factors_close(building)
+    yield from _schedules_suit_their_use(building)
+    yield from _set_points_apart(building)
 
 
 def _something_to_simulate(building: Building) -> Faults:
@@ -202,3 +206,79 @@ def face_names(faces: list[tuple[str, str]]) -> list[str]:
     """Names of the faces of a zone: the surface's, with the side where both sides face the zone."""
     count: Mapping[str, int] = Counter(surface for surface, _ in faces)
     return [surface if count[surface] == 1 else f"{surface}.{side}" for surface, side in faces]
+
+
+def references(building: Building) -> Iterator[tuple[str, tuple[str, ...], str]]:
+    """Whatever follows a schedule: its name, where it is named, and the kind that is needed there."""
+    for name, zone in building.zones.items():
+        at = ("zones", name)
+        for section in ("gains", "ventilation"):
+            for key, part in getattr(zone, section).items():
+                if part.schedule is not None:
+                    yield part.schedule, (*at, section, key, "schedule"), "fraction"
+        for which, plant in zone.plants.items():
+            if plant.setpoint.schedule is not None:
+                yield plant.setpoint.schedule, (*at, which, "setpoint", "schedule"), "temperature"
+            if plant.schedule is not None:
+                yield plant.schedule, (*at, which, "schedule"), "fraction"
+    for section, parts in (("air_paths", building.air_paths), ("openings", building.openings)):
+        for name, part in parts.items():
+            if part.schedule is not None:
+                yield part.schedule, (section, name, "schedule"), "fraction"
+
+
+def _schedules_suit_their_use(building: Building) -> Faults:
+    for name, at, needed in references(building):
+        kind = building.schedules[name].kind
+        if kind != needed:
+            yield fault(
+                at,
+                f"'{name}', a schedule of kind {kind}",
+                f"a schedule of kind {needed}",
+                f"Name another one, or write 'kind: {needed}' under 'schedules.{name}:'.",
+            )
+
+
+def _set_points_apart(building: Building) -> Faults:
+    """Heating above cooling, at some time of a week, would have both work against each other."""
+    for name, zone in building.zones.items():
+        if len(zone.plants) < 2:
+            continue
+        heating, cooling = (_week(building, zone.plants[which]) for which in ("heating", "cooling"))
+        for (day, heats), (_, cools) in zip(heating, cooling, strict=True):
+            crossing = next(_crossings(heats, cools), None)
+            if crossing is None:
+                continue
+            minute, warm, cold = crossing
+            yield fault(
+                ("zones", name, "heating", "setpoint"),
+                f"heating to {warm:g} degC, above cooling to {cold:g} degC, on {day} at "
+                f"{int(minute // 60):02d}:{int(minute % 60):02d}",
+                "a heating set point at or below the cooling set point at all times",
+                "Lower the one or raise the other.",
+            )
+            break
+
+
+def _week(building: Building, plant: Plant) -> list[tuple[str, list[Piece]]]:
+    """Pieces of the set point on each day of the week, and on holidays; empty for a measured column."""
+    if plant.setpoint.schedule is None:
+        value = float(plant.setpoint.temperature or 0.0)
+        return [(day, [(0.0, 1440.0, value, value)]) for day in (*DAYS, "holidays")]
+    schedule = building.schedules[plant.setpoint.schedule]
+    days = [(day, schedule.pieces(weekday)) for weekday, day in enumerate(DAYS)]
+    return [*days, ("holidays", schedule.pieces(0, holiday=True))]
+
+
+def _crossings(heating: list[Piece], cooling: list[Piece]) -> Iterator[tuple[float, float, float]]:
+    """Minutes of the day at which heating lies above cooling, with both set points."""
+    for start, end, first, last in heating:
+        for other_start, other_end, other_first, other_last in cooling:
+            low, high = max(start, other_start), min(end, other_end)
+            for minute in (low, high) if low < high else ():
+                warm = first + (last - first) * (minute - start) / (end - start)
+                cold = other_first + (other_last - other_first) * (minute - other_start) / (
+                    other_end - other_start
+                )
+                if warm > cold + 1e-9:
+                    yield minute, warm, cold

@@ -13,6 +13,7 @@ from mascarin.model.material import PhaseChangeMaterial, TableLaw
 from mascarin.model.number import Number, Remark
 from mascarin.model.settling import enclosure, faces_of
 from mascarin.model.site import ASHRAE_WIND, CLARK, MARTIN
+from mascarin.model.zone import ASHRAE_OPENING
 
 if TYPE_CHECKING:
     from mascarin.model.building import Building
@@ -44,6 +45,7 @@ _AREA_VIEW = (
     "(view factors approximated by areas)"
 )
 _ATMOSPHERE = "ICAO Doc 7488, Manual of the ICAO Standard Atmosphere (density of the air)"
+_PLANT = "Hintermueller, Ito & Kunisch 2002, doi:10.1137/S1052623401383558 (loads of ideal plants)"
 _CURVE = "Fritsch & Butland 1984, doi:10.1137/0905021 (monotone interpolation of enthalpy tables)"
 
 #: What marks the text beside an assumed number as the name of a work.
@@ -99,6 +101,10 @@ def _of_methods(building: Building) -> Iterator[str]:
     yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
     if any(face.windy and face.side.height is not None for face in faces(building)):
         yield ASHRAE_WIND
+    if building.openings:
+        yield ASHRAE_OPENING
+    if any(zone.plants for zone in building.zones.values()):
+        yield _PLANT
     if _tabulated(building):
         yield _CURVE
     yield _TIME_STEPS

@@ -37,6 +37,11 @@ _FLOW_LABELS: Final = {
     "longwave": "long-wave exchange with sky and surroundings",
     "boundary": "imposed boundaries (ground, measured temperatures)",
     "infiltration": "outdoor air entering",
+    "ventilation": "outdoor air let in",
+    "interzone": "air between zones",
+    "gains": "people, light, machines",
+    "heating": "heating",
+    "cooling": "cooling",
 }
 
 

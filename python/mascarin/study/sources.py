@@ -150,12 +150,12 @@ def open_measurements(
     InputError
         A file, column or time zone is missing, or a value cannot be used.
     """
-    from mascarin.model.border import channels
+    from mascarin.model.border import measured_columns
 
     table: Table = study.measurements
     with places.blame("measurements", "table"):
         path = find(table.table, beside)
-    driving = channels(building)
+    driving = measured_columns(building)
     # What asks for each column, for errors.
     asks = {name: places.at("measurements", "inspect") for name in table.inspect}
     for name in driving:
@@ -219,11 +219,11 @@ def filled(read: Measurements, building: Building, longest: str) -> Measurements
 
     from mascarin.climate.gaps import fill_linearly
     from mascarin.climate.table import seconds_of
-    from mascarin.model.border import channels
+    from mascarin.model.border import measured_columns
 
     limit = seconds_of(longest, "fill_gaps") / read.step_seconds
     data, notes = read.data.copy(), list(read.provenance)
-    for name in channels(building):
+    for name in measured_columns(building):
         values = data[name].to_numpy(dtype=np.float64).copy()
         count = fill_linearly(values, limit)
         if count:

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "every test program uses its own part")]
 
 use mascarin_engine::description::{
-    Construction, Convection, Description, DiffuseSky, Facing, Infiltration, Layer, Material,
+    Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer, Material,
     OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky, Surface, WindProfile,
     Zone, ZoneLongwave,
 };
@@ -62,6 +62,8 @@ impl Builder {
             materials: Vec::new(),
             constructions: Vec::new(),
             zones: Vec::new(),
+            air_paths: Vec::new(),
+            openings: Vec::new(),
             surfaces: Vec::new(),
             sensors: Vec::new(),
             channels: Vec::new(),
@@ -158,6 +160,10 @@ impl Builder {
             },
             longwave,
             view_weights: Vec::new(),
+            gains: Vec::new(),
+            ventilation: Vec::new(),
+            heating: None,
+            cooling: None,
         };
         self.description.zones.push(zone);
         self.description.zones.len() - 1
@@ -235,6 +241,7 @@ pub fn facing(facing: Facing, convection: Option<Convection>) -> Side {
         height: None,
         longwave: OutdoorLongwave::Exact,
         irradiance: None,
+        exposure: Exposure::default(),
     }
 }
 

@@ -1,0 +1,271 @@
+//! Ideal heating and cooling: the load that keeps the air of each zone between its set points.
+//!
+//! A load is the mean over a step and acts in all of its stages alike. (A load of its own for each stage would let the
+//! air overshoot.) It is the one that brings the air onto the set point at the end of the step, as far as the capacity
+//! goes, and nothing where the air stays between the set points without it.
+//!
+//! Step by step: the stages are solved with the loads of the step before; the response of the air at the end to each
+//! load follows from the factors in hand; new loads follow from both; and so on until they stay. In each of these
+//! sweeps a load is heating, cooling, off or at its capacity by what the air would do without it, so that the iteration is a
+//! Newton iteration on the complementarity of load and set point (an active set method: Hintermueller, Ito & Kunisch
+//! 2002, SIAM J. Optim. 13(3), doi:10.1137/S1052623401383558).
+
+use crate::coefficients::Zone;
+use crate::real::{Mask, Real};
+use crate::state::Unknowns;
+
+/// A load is found when correcting it would move the air by less than this [K].
+const TOLERANCE: f64 = 1e-8;
+/// Set point that is never reached, where there is no heating or no cooling [degC].
+const NEVER: f64 = 1e6;
+
+/// What one plant may do over a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits<S> {
+    /// Set points of heating and cooling [degC].
+    set_points: [S; 2],
+    /// Most heating and cooling [W].
+    most: [S; 2],
+}
+
+impl<S: Real> Limits<S> {
+    /// Reads the set points at the end of a step.
+    #[inline(always)]
+    fn at(zone: &Zone<S>, row: &[f64]) -> Self {
+        let nothing = |set_point| (S::constant(set_point), S::zero());
+        let (heating, most_heating) =
+            zone.heating.as_ref().map_or_else(|| nothing(-NEVER), |plant| plant.at(row));
+        let (cooling, most_cooling) =
+            zone.cooling.as_ref().map_or_else(|| nothing(NEVER), |plant| plant.at(row));
+        Self { set_points: [heating, cooling], most: [most_heating, most_cooling] }
+    }
+
+    /// Where a load would be by itself: the load, and whether it holds the air on a set point, and which.
+    #[inline(always)]
+    fn mode(&self, load: S, air: S, gain: S) -> Mode<S> {
+        let [heat, cool] = self.set_points;
+        let heating = load + (heat - air) / gain;
+        let cooling = load + (cool - air) / gain;
+        let heats = S::zero().lt(heating) & S::zero().lt(self.most[0]);
+        let cools = cooling.lt(S::zero()) & S::zero().lt(self.most[1]);
+        let full = (heats & self.most[0].lt(heating)) | (!heats & cools & cooling.lt(-self.most[1]));
+        let fixed = S::select(heats, self.most[0], S::select(cools, -self.most[1], S::zero()));
+        Mode { held: (heats | cools) & !full, set_point: S::select(heats, heat, cool), fixed }
+    }
+}
+
+/// What a plant does: it holds the air on a set point, or gives a fixed load.
+#[derive(Debug, Clone, Copy)]
+struct Mode<S: Real> {
+    held: S::Mask,
+    set_point: S,
+    fixed: S,
+}
+
+/// How a building answers to one watt of one plant over the step.
+#[derive(Debug, Clone)]
+pub(crate) struct Response<S> {
+    /// At the end of each stage [K/W].
+    pub(crate) stages: Vec<Unknowns<S>>,
+    /// In the enthalpies that the second stage starts from [J/(m3 W)].
+    pub(crate) held: Vec<S>,
+    /// Forward sweeps of the walls.
+    pub(crate) known: Vec<S>,
+    /// Right-hand side, then solution, of the room block.
+    pub(crate) right: Vec<S>,
+    /// Of the walls in the second stage [1/m2].
+    pub(crate) sources: Vec<[S; 2]>,
+}
+
+/// The plants of a building and the search for their loads in one step.
+#[derive(Debug, Clone)]
+pub(crate) struct Plants<S: Real> {
+    /// Zone of each plant.
+    zones: Vec<usize>,
+    limits: Vec<Limits<S>>,
+    /// Answers to each plant.
+    pub(crate) responses: Vec<Response<S>>,
+    /// Iterate about which each stage was last linearised, and its solution.
+    pub(crate) iterates: Vec<Unknowns<S>>,
+    pub(crate) solved: Vec<Unknowns<S>>,
+    /// Lanes that give a load, or have to.
+    asking: S::Mask,
+    correction: Vec<S>,
+    matrix: Vec<S>,
+    right: Vec<S>,
+}
+
+impl<S: Real> Plants<S> {
+    pub(crate) fn new(zones: &[usize], unknowns: &Unknowns<S>, rows: usize, stages: usize) -> Self {
+        let zeros = |n: usize| vec![S::zero(); n];
+        let count = zones.len();
+        let response = Response {
+            stages: vec![unknowns.clone(); stages],
+            held: zeros(unknowns.cells.len()),
+            known: zeros(unknowns.cells.len()),
+            right: zeros(rows),
+            sources: vec![[S::zero(); 2]; unknowns.faces.len() / 2],
+        };
+        let nothing = Limits { set_points: [S::zero(); 2], most: [S::zero(); 2] };
+        let kept = if count == 0 { 0 } else { stages };
+        Self {
+            zones: zones.to_vec(),
+            limits: vec![nothing; count],
+            responses: vec![response; count],
+            iterates: vec![unknowns.clone(); kept],
+            solved: vec![unknowns.clone(); kept],
+            asking: S::Mask::splat(false),
+            correction: zeros(count),
+            matrix: zeros(count * count),
+            right: zeros(count),
+        }
+    }
+
+    /// Sets out on a step that ends with a forcing row, from the loads of the step before.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, zones: &[Zone<S>], row: &[f64], loads: &mut [S]) {
+        self.asking = S::Mask::splat(false);
+        for (limits, &zone) in self.limits.iter_mut().zip(&self.zones) {
+            *limits = Limits::at(&zones[zone], row);
+            let load = loads[zone].min(limits.most[0]).max(-limits.most[1]);
+            loads[zone] = load;
+            self.asking = self.asking | S::zero().lt(load.abs());
+        }
+    }
+
+    /// Whether some lane needs the responses.
+    #[inline(always)]
+    pub(crate) fn asking(&self, active: S::Mask) -> bool {
+        (self.asking & active).any()
+    }
+
+    /// Keeps what a stage was linearised about, and its solution.
+    #[inline(always)]
+    pub(crate) fn keep(&mut self, stage: usize, iterate: &Unknowns<S>, solved: &Unknowns<S>) {
+        self.iterates[stage].copy_from(iterate);
+        self.solved[stage].copy_from(solved);
+    }
+
+    /// Looks at the air at the end of a sweep. True in the lanes whose loads are right; in the other active ones
+    /// that know the responses, and in `all` of them on demand, the loads are corrected.
+    #[inline(always)]
+    pub(crate) fn correct(&mut self, air: &[S], loads: &mut [S], active: S::Mask, all: bool) -> S::Mask {
+        let quiet = self.within_set_points(air);
+        let known = self.asking;
+        self.asking = self.asking | !quiet;
+        if !(known & active).any() {
+            self.correction.fill(S::zero());
+            return quiet;
+        }
+        self.solve(air, loads);
+        let mut small = S::Mask::splat(true);
+        for (p, &zone) in self.zones.iter().enumerate() {
+            let change = self.correction[p] - loads[zone];
+            small = small & (change * self.gain(p, p)).abs().lt(S::constant(TOLERANCE));
+            self.correction[p] = change;
+        }
+        let settled = (known & small) | (!known & quiet);
+        let moving = known & active & (!settled | S::Mask::splat(all));
+        for (p, &zone) in self.zones.iter().enumerate() {
+            self.correction[p] = S::select(moving, self.correction[p], S::zero());
+            loads[zone] += self.correction[p];
+        }
+        settled
+    }
+
+    /// Guesses of the stages of the next sweep: those of lanes at rest stay where they were.
+    #[inline(always)]
+    pub(crate) fn guess(&self, stage: usize, moving: S::Mask, guess: &mut Unknowns<S>) {
+        let (old, new) = (&self.iterates[stage], &self.solved[stage]);
+        let shift = |guess: &mut [S], old: &[S], new: &[S], part: fn(&Unknowns<S>) -> &[S]| {
+            for (i, guess) in guess.iter_mut().enumerate() {
+                let mut value = new[i];
+                for (response, &change) in self.responses.iter().zip(&self.correction) {
+                    value += part(&response.stages[stage])[i] * change;
+                }
+                *guess = S::select(moving, value, old[i]);
+            }
+        };
+        shift(&mut guess.faces, &old.faces, &new.faces, |unknowns| &unknowns.faces);
+        shift(&mut guess.air, &old.air, &new.air, |unknowns| &unknowns.air);
+        shift(&mut guess.cells, &old.cells, &new.cells, |unknowns| &unknowns.cells);
+    }
+
+    /// True where every air lies between its set points.
+    #[inline(always)]
+    fn within_set_points(&self, air: &[S]) -> S::Mask {
+        let slack = S::constant(TOLERANCE);
+        let mut within = S::Mask::splat(true);
+        for (limits, &zone) in self.limits.iter().zip(&self.zones) {
+            let [heat, cool] = limits.set_points;
+            let cold = air[zone].lt(heat - slack) & S::zero().lt(limits.most[0]);
+            let hot = (cool + slack).lt(air[zone]) & S::zero().lt(limits.most[1]);
+            within = within & !(cold | hot);
+        }
+        within
+    }
+
+    /// Answer of the air of plant `p` at the end of the step to plant `q` [K/W].
+    #[inline(always)]
+    fn gain(&self, p: usize, q: usize) -> S {
+        let stages = &self.responses[q].stages;
+        stages[stages.len() - 1].air[self.zones[p]]
+    }
+
+    /// The loads that the responses ask for, into `correction`.
+    #[inline(always)]
+    fn solve(&mut self, air: &[S], loads: &[S]) {
+        let n = self.zones.len();
+        for (load, &zone) in self.correction.iter_mut().zip(&self.zones) {
+            *load = loads[zone];
+        }
+        // Alone, a plant knows its mode at once; several may change each other's.
+        for _ in 0..(if n == 1 { 1 } else { 2 * n + 2 }) {
+            for (p, &zone) in self.zones.iter().enumerate() {
+                let mut now = air[zone];
+                let mut idle = air[zone];
+                for (q, &other) in self.zones.iter().enumerate() {
+                    now += self.gain(p, q) * (self.correction[q] - loads[other]);
+                    idle = idle - self.gain(p, q) * loads[other];
+                }
+                let mode = self.limits[p].mode(self.correction[p], now, self.gain(p, p));
+                self.right[p] = S::select(mode.held, mode.set_point - idle, mode.fixed);
+                for q in 0..n {
+                    let unit = if p == q { S::one() } else { S::zero() };
+                    self.matrix[p * n + q] = S::select(mode.held, self.gain(p, q), unit);
+                }
+            }
+            eliminate(&mut self.matrix, &mut self.right);
+            self.correction.copy_from_slice(&self.right);
+        }
+    }
+
+    /// Zone whose load moves most in a lane, and by how much its air would move [K].
+    pub(crate) fn worst(&self, lane: usize) -> (usize, f64) {
+        let moved = |p: usize| (self.correction[p] * self.gain(p, p)).lane(lane).abs();
+        let worst = (0..self.zones.len()).max_by(|&a, &b| moved(a).total_cmp(&moved(b))).unwrap_or(0);
+        (self.zones[worst], moved(worst))
+    }
+}
+
+/// Gaussian elimination without pivoting: responses are inverses of M-matrices, whose principal minors are positive.
+#[inline(always)]
+fn eliminate<S: Real>(matrix: &mut [S], right: &mut [S]) {
+    let n = right.len();
+    for k in 0..n {
+        let inverse = S::one() / matrix[k * n + k];
+        for i in k + 1..n {
+            let factor = matrix[i * n + k] * inverse;
+            for j in k..n {
+                matrix[i * n + j] = matrix[i * n + j] - factor * matrix[k * n + j];
+            }
+            right[i] = right[i] - factor * right[k];
+        }
+    }
+    for k in (0..n).rev() {
+        for j in k + 1..n {
+            right[k] = right[k] - matrix[k * n + j] * right[j];
+        }
+        right[k] = right[k] / matrix[k * n + k];
+    }
+}
