@@ -1,0 +1,101 @@
+"""The peers of the benches say what they should; none of them is run against a clock here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mascarin.simulation import Simulation
+
+
+@pytest.fixture
+def bench(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(repository / "bench"))
+
+
+@pytest.mark.usefixtures("bench")
+def test_the_program_written_by_hand_agrees_with_the_engine() -> None:
+    """The same cell from the same temperature: sheet and gap within what its radiation by quarters allows."""
+    import cell  # type: ignore[import-not-found]
+    import naive  # type: ignore[import-not-found]
+
+    building, weather = cell.building(), cell.table()
+    peer = naive.NaiveCell(building, weather.tz_localize("Etc/GMT-4"))
+    states = peer.run(24.0, np.arange(0.0, 86401.0, 900.0))
+    names = list(cell.OUTPUTS.values())
+    ours = Simulation(
+        building,
+        cell.climate(weather),
+        step=60.0,
+        start=cell.START,
+        end="2010-08-02",
+        outputs=names,
+        initial=24.0,
+    ).run()
+    records = ours.records[::15]
+    apart = {
+        name: float(np.sqrt(np.mean((peer.read(states, name) - records[:, k]) ** 2)))
+        for k, name in enumerate(names)
+    }
+    assert np.ptp(records[:, names.index("roof.inside_temperature")]) > 15.0
+    assert all(apart[name] < 0.01 for name in names[:3]), apart
+    assert all(apart[name] < 0.1 for name in names[3:]), apart
+
+
+@pytest.mark.usefixtures("bench")
+def test_energyplus_is_told_the_same_cell() -> None:
+    import cell
+    import energyplus  # type: ignore[import-not-found]
+
+    building = cell.building()
+    scheme = energyplus.Scheme(20, ("ceiling",))
+    model: dict[str, Any] = energyplus.write_model(
+        building, scheme, "2010-08-01", "2010-11-01", ["room.air_temperature"]
+    )
+    period = model["RunPeriod"]["period"]
+    assert (period["end_month"], period["end_day_of_month"]) == (10, 31)
+    assert (
+        len(model["BuildingSurface:Detailed"]) == len(building.surfaces) + 1 - 2
+    )  # twice the ceiling, no doors
+    assert set(model["FenestrationSurface:Detailed"]) == {"door", "jalousie"}
+    assert model["Construction"]["ceiling"] == {
+        "outside_layer": "ceiling energain",
+        "layer_2": "ceiling plasterboard",
+    }
+    assert model["Construction"]["ceiling reversed"]["outside_layer"] == "ceiling plasterboard"
+    assert model["Material"]["ceiling energain"]["specific_heat"] < 2833
+    view = model["ZoneProperty:UserViewFactors:BySurfaceName"]["air_gap view"]["view_factors"]
+    seen = sum(row["view_factor"] for row in view if row["from_surface"] == "roof")
+    assert seen == pytest.approx(1.0)
+    points = model["MaterialProperty:PhaseChange"]["ceiling energain"]["values"]
+    at = {row["temperature"]: row["enthalpy"] for row in points}
+    # From 0 to 60 degC: 23.4 K of solid, 36.6 K of liquid, and the latent heat.
+    assert at[60.0] - at[0.0] == pytest.approx(3134 * 23.4 + 2833 * 36.6 + 71000, rel=1e-4)
+    finite = {row["surface_name"] for row in model["SurfaceProperty:HeatTransferAlgorithm"].values()}
+    assert finite == {"ceiling", "ceiling seen from outside"}
+
+
+@pytest.mark.usefixtures("bench")
+def test_weather_for_energyplus(tmp_path: Path) -> None:
+    """One record for each step, as the format has it: spot values of its end, radiation as its mean."""
+    import cell
+    import energyplus
+
+    building, weather = cell.building(), cell.table()
+    file = tmp_path / "x.epw"
+    energyplus.write_weather(file, cell.climate(weather), building, "2010-08-01", "2010-08-03", 4)
+    lines = file.read_text(encoding="ascii").splitlines()
+    assert lines[7] == "DATA PERIODS,1,4,Data,Sunday,8/1,8/2"
+    rows = [line.split(",") for line in lines[8:]]
+    assert len(rows) == 192
+    assert [row[:5] for row in (rows[0], rows[-1])] == [
+        ["2010", "8", "1", "1", "15"],
+        ["2010", "8", "2", "24", "60"],
+    ]
+    assert float(rows[0][6]) == pytest.approx(weather["outdoor_air"].iloc[1], abs=1e-3)
+    noon = weather.index.get_loc("2010-08-01 12:00")
+    assert float(rows[noon][13]) == pytest.approx(weather["global_horizontal"].iloc[noon], rel=1e-3)
+    assert float(rows[noon][12]) == pytest.approx(weather["infrared"].iloc[noon], rel=0.01)
