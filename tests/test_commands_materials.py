@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from dsc_samples import LATENT, heat, temperatures, write
 from mascarin import cli
+from model_samples import ROOM
 
 
 def run(capsys: pytest.CaptureFixture[str], *words: str, code: int = 0) -> tuple[str, str]:
@@ -56,3 +58,40 @@ def test_plot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 )
 def test_refusals(words: tuple[str, ...], message: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert message in run(capsys, *words, code=2)[1]
+
+
+def test_a_material_from_a_calorimeters_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    t = temperatures()
+    file = write(tmp_path / "my wax.csv", {"temperature [degC]": t, "cp [J/(g K)]": heat(t) / 1000})
+    out, picture = tmp_path / "wax.yaml", tmp_path / "wax.svg"
+    words = [
+        "dsc",
+        str(file),
+        "-o",
+        str(out),
+        "--law",
+        "tanh",
+        "--conductivity",
+        "0.22,0.18",
+        "--density",
+        "855",
+    ]
+    assert cli.main([*words, "--plot", str(picture)]) == 0
+    printed, err = capsys.readouterr()
+    assert "latent heat    150.0 kJ/kg" in printed
+    assert f"wrote {out}" in err
+    assert picture.stat().st_size > 1000
+    building = tmp_path / "building.yaml"
+    lines = "\n".join(
+        line for line in out.read_text(encoding="utf-8").splitlines() if not line.startswith("#")
+    )
+    building.write_text(ROOM.replace("materials:", lines), encoding="utf-8")
+    assert cli.main(["parameters", str(building), "materials.my_wax.*"]) == 0
+    listed = capsys.readouterr()[0]
+    assert "materials.my_wax.law.width" in listed
+    assert cli.main(["dsc", str(file), "--json"]) == 0
+    found = json.loads(capsys.readouterr()[0])
+    assert found["runs"]["heating"]["latent_heat"] == pytest.approx(LATENT, rel=2e-3)
+    assert found["material"]["law"]["kind"] == "table"
+    assert cli.main(["dsc", str(file), "--density", "heavy"]) == 2
+    assert "expected VALUE or SOLID,LIQUID" in capsys.readouterr()[1]

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from mascarin.calibration import calibrate as calibrate
     from mascarin.climate import Climate as Climate
+    from mascarin.materials.dsc import from_dsc as from_dsc
     from mascarin.model import load as load
     from mascarin.simulation import simulate as simulate
     from mascarin.state_space import state_space as state_space
@@ -26,13 +27,24 @@ _HOME: Final = {
     "Climate": "mascarin.climate",
     "Study": "mascarin.study",
     "calibrate": "mascarin.calibration",
+    "from_dsc": "mascarin.materials.dsc",
     "load": "mascarin.model",
     "simulate": "mascarin.simulation",
     "state_space": "mascarin.state_space",
     "sweep": "mascarin.sweep",
 }
 
-__all__ = ["Climate", "Study", "__version__", "calibrate", "load", "simulate", "state_space", "sweep"]
+__all__ = [
+    "Climate",
+    "Study",
+    "__version__",
+    "calibrate",
+    "from_dsc",
+    "load",
+    "simulate",
+    "state_space",
+    "sweep",
+]
 
 if not TYPE_CHECKING:  # a type checker sees the imports above, and so finds a misspelt name
 

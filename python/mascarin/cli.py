@@ -50,6 +50,11 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "mascarin.commands.materials:materials",
             "Search the library of phase-change products.",
         ),
+        Command(
+            "dsc",
+            "mascarin.commands.materials:dsc",
+            "Make a phase-change material from a calorimeter's file.",
+        ),
         Command("cite", "mascarin.commands.model:cite", "List the sources that a building rests on."),
     ),
     "Run": (Command("run", "mascarin.commands.run:run", "Run a building in a climate."),),

@@ -1,8 +1,9 @@
-"""Commands about phase-change products: the library."""
+"""Commands about phase-change materials: the library, and a calorimeter's file."""
 
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,11 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from mascarin.commands.inputs import AsJson
-from mascarin.commands.output import print_json, print_table
+from mascarin.commands.output import print_json, print_table, writing
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.materials import Product
+    from mascarin.materials.dsc import DscMaterial
 
 
 def materials(
@@ -186,3 +188,103 @@ def described(one: Product) -> dict[str, Any]:
         "source": one.source,
         "note": one.note,
     }
+
+
+def dsc(
+    file: Path,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(name=("--out", "-o"))] = None,
+    name: str | None = None,
+    law: str = "table",
+    unit: str | None = None,
+    rate: float | None = None,
+    mass: float | None = None,
+    specific_heat: str | None = None,
+    melting: Annotated[str | None, Parameter(help="Range of melting, as LOW..HIGH in degC.")] = None,
+    conductivity: str | None = None,
+    density: str | None = None,
+    plot: Path | None = None,
+    as_json: AsJson = False,
+) -> None:
+    """Make a phase-change material from a calorimeter's file.
+
+    The file is CSV: a column of temperature, and heat flow, apparent specific heat or enthalpy, with units in
+    the names, such as "temperature [degC]" and "cp heating [J/(g K)]". Prints latent heat, onset, peak and
+    end, and how closely each law fits.
+
+    Parameters
+    ----------
+    file : Path
+        The calorimeter's file.
+    out : Path
+        Write the material as the lines of a building file.
+    name : str
+        Its name there; else that of the file.
+    law : str
+        What to write: table, the curve as measured, or a law of the report, such as "gumbel, tail low".
+    unit : str
+        Unit of the signal, where the file does not say: mW/mg, mW, J/(g K), J/(kg K), J/g, kJ/kg.
+    rate : float
+        Heating rate, where a heat flow has no column of time. [K/min]
+    mass : float
+        Mass of the sample, where the heat flow is that of all of it. [mg]
+    specific_heat : str
+        SOLID,LIQUID, where the file's baseline was taken off. [J/(kg K)]
+    conductivity : str
+        VALUE or SOLID,LIQUID to write beside the curve: a calorimeter does not measure it. [W/(m K)]
+    density : str
+        VALUE or SOLID,LIQUID likewise. [kg/m3]
+    plot : Path
+        Write a picture of enthalpy and apparent specific heat: SVG, PNG or PDF.
+    """
+    from mascarin.materials.dsc import from_dsc
+
+    span = _interval(melting)
+    material = from_dsc(
+        file,
+        unit=unit,
+        rate=rate,
+        mass=mass,
+        specific_heat=_values(specific_heat, "--specific-heat", 2),
+        melting_range=span,
+    )
+    described = material.description(
+        law,
+        conductivity=_values(conductivity, "--conductivity"),
+        density=_values(density, "--density"),
+    )
+    if out is not None:
+        _write(material, name or material.name, described, out)
+    if plot is not None:
+        material.plot(plot)
+        print(f"wrote {plot}", file=sys.stderr)
+    if as_json:
+        print_json({"material": described, **material.to_dict()})
+    else:
+        print(material.report())
+
+
+def _write(material: DscMaterial, name: str, described: dict[str, Any], out: Path) -> None:
+    from mascarin.materials.dsc import to_yaml
+
+    usable = re.sub(r"\W", "_", name)
+    usable = usable if usable[:1].isalpha() else f"pcm_{usable}"
+    with writing(out) as part:
+        text = to_yaml(usable, described, [f"from {material.name}", *material.report().splitlines()])
+        part.write_text(text, encoding="utf-8")
+    print(f"wrote {out}", file=sys.stderr)
+
+
+def _values(text: str | None, option: str, count: int = 0) -> Any:
+    """One value, or one for the solid and one for the liquid."""
+    if text is None:
+        return None
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) not in ((count,) if count else (1, 2)) or not all(value > 0.0 for value in values):
+        expected = "SOLID,LIQUID" if count else "VALUE or SOLID,LIQUID"
+        raise InputError(f"{option}: found '{text}'; expected {expected}, positive numbers")
+    return values[0] if len(values) == 1 else (values[0], values[1])

@@ -1,4 +1,4 @@
-"""What real phase-change products are made of, and what a calorimeter says about one's own."""
+"""What real phase-change products are made of; in `dsc`, what a calorimeter says about one's own."""
 
 from __future__ import annotations
 

@@ -1,0 +1,486 @@
+"""A material from a calorimeter's file: melting and sensible heat apart, the curve as a table, laws fitted.
+
+The signal becomes an apparent specific heat. Beside the peak it is that of the solid and of the liquid;
+beneath the peak the sensible heat goes from one to the other with the liquid fraction (Hemminger & Sarge
+1991, J. Thermal Anal. 37, 1455), so that ``h(T, xi) = c_s (T - Tr) + xi [L + (c_l - c_s)(T - Tr)]`` holds
+in the file as it does in the engine. What is left is melting.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.materials.dsc_file import Scan, Settings, read
+from mascarin.materials.laws import LAWS, LawFit, fit
+from mascarin.materials.units import check_heat
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import numpy.typing as npt
+
+    Array = npt.NDArray[np.float64]
+
+EDGE: Final = 0.08
+"""Share of the temperatures at either end that is taken as free of melting, unless a range is given."""
+
+MOST_POINTS: Final = 60
+"""Points of the curve in a description."""
+
+SLOW: Final = 0.5
+"""A heating rate above this broadens and shifts what a wall, at some kelvins an hour, would show [K/min]."""
+
+TAIL: Final = 0.002
+"""Liquid fraction at which melting counts as begun, and short of which as complete."""
+
+
+@dataclass(frozen=True)
+class Melting:
+    """What one run says.
+
+    Attributes
+    ----------
+    direction : str
+        ``heating`` or ``cooling``.
+    temperature, fraction : ndarray, shape (N,)
+        Liquid fraction over temperature, from 0 to 1 [degC, -].
+    heat : ndarray, shape (N,)
+        Apparent specific heat, sensible part included [J/(kg K)].
+    specific_heat : tuple of float
+        Of solid and liquid [J/(kg K)].
+    latent_heat : float
+        At the temperature at which half is liquid [J/kg].
+    onset, peak, end : float
+        Extrapolated onset and end (tangents at the steepest flanks), largest specific heat [degC].
+    rate : float or None
+        Heating rate [K/min].
+    fits : tuple of LawFit
+        Laws, the closest first.
+    """
+
+    direction: str
+    temperature: Array
+    fraction: Array
+    heat: Array
+    specific_heat: tuple[float, float]
+    latent_heat: float
+    onset: float
+    peak: float
+    end: float
+    rate: float | None
+    fits: tuple[LawFit, ...]
+
+    @property
+    def half(self) -> float:
+        """Temperature at which half is liquid [degC]."""
+        return float(np.interp(0.5, self.fraction, self.temperature))
+
+    @property
+    def melting_range(self) -> tuple[float, float]:
+        """Where melting has begun and is complete, but for `TAIL` [degC]."""
+        low, high = np.interp([TAIL, 1.0 - TAIL], self.fraction, self.temperature)
+        return float(low), float(high)
+
+
+@dataclass(frozen=True)
+class DscMaterial:
+    """A material as a calorimeter sees it.
+
+    Attributes
+    ----------
+    name : str
+        Name of the file, without its ending.
+    runs : tuple of Melting
+        Heating first.
+    warnings : tuple of str
+        What to keep in mind, and what was decided for the user.
+    """
+
+    name: str
+    runs: tuple[Melting, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def main(self) -> Melting:
+        """The run whose curve the material takes: heating where there is one."""
+        return self.runs[0]
+
+    def description(
+        self,
+        law: str = "table",
+        *,
+        conductivity: float | tuple[float, float] | None = None,
+        density: float | tuple[float, float] | None = None,
+    ) -> dict[str, Any]:
+        """The material as a building file writes it.
+
+        Parameters
+        ----------
+        law : str
+            ``table`` (the curve as measured) or the name of a fitted law.
+        conductivity, density : float or pair, optional
+            A calorimeter does not measure them; without them the description is not complete.
+            [W/(m K), kg/m3]
+
+        Raises
+        ------
+        InputError
+            There is no such law.
+        """
+        from mascarin.errors import did_you_mean
+
+        run = self.main
+        given = {"conductivity": conductivity, "density": density}
+        plain: dict[str, Any] = {"kind": "pcm"}
+        plain |= {key: _listed(value) for key, value in given.items() if value is not None}
+        plain["specific_heat"] = [round(heat, 1) for heat in run.specific_heat]
+        if law == "table":
+            temperatures, enthalpies = table(run)
+            start, end = (round(x, 3) for x in run.melting_range)
+            plain["law"] = {
+                "kind": "table",
+                "temperatures": temperatures,
+                "enthalpies": enthalpies,
+                "melting_range": [start, end],
+            }
+        else:
+            found = {one.law.name: one for one in run.fits}
+            if law not in found:
+                known = ("table", *found)
+                raise InputError(f"law: found '{law}'; expected a law. {did_you_mean(law, known)}")
+            plain["latent_heat"] = round(run.latent_heat)
+            plain["melting_temperature"] = round(found[law].melting_temperature, 3)
+            plain["law"] = found[law].description()
+        plain["source"] = f"DSC, {run.direction}" + (f" at {run.rate:g} K/min" if run.rate else "")
+        return plain
+
+    def report(self) -> str:
+        """What was found, and how well each law fits, as text."""
+        lines = [line for run in self.runs for line in _told(run)]
+        return "\n".join([*lines, *(f"warning: {text}" for text in self.warnings)])
+
+    def to_dict(self) -> dict[str, Any]:
+        """What was found as plain data, SI units."""
+        return {
+            "runs": {run.direction: _summary(run) for run in self.runs},
+            "warnings": list(self.warnings),
+        }
+
+    def plot(self, file: str | Path) -> None:
+        """Draw the runs and the closest law: enthalpy above, apparent specific heat below.
+
+        Parameters
+        ----------
+        file : str or Path
+            SVG, PNG or PDF.
+        """
+        from mascarin.materials.plots import with_figure
+
+        with_figure(Path(file), lambda above, below: _draw(self.runs, above, below))
+
+
+def from_dsc(
+    path: str | Path,
+    *,
+    unit: str | None = None,
+    rate: float | None = None,
+    mass: float | None = None,
+    specific_heat: tuple[float, float] | None = None,
+    melting_range: tuple[float, float] | None = None,
+) -> DscMaterial:
+    """Make a material from a calorimeter's file.
+
+    The file is CSV with named columns: a temperature, and a heat flow, an apparent specific heat or an
+    enthalpy, units in the names (``temperature [degC]``, ``DSC/(mW/mg)``, ``cp heating [J/(g K)]``).
+    Heating and cooling are columns of their own, or one after the other, or told apart by a column
+    ``direction``.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    unit : str, optional
+        Unit of the signal, where the file does not say or is wrong.
+    rate : float, optional
+        Heating rate, where a heat flow comes without a column of time. [K/min]
+    mass : float, optional
+        Mass of the sample, where the heat flow is that of all of it. [mg]
+    specific_heat : tuple of float, optional
+        Of solid and liquid, where the file's baseline was taken off. [J/(kg K)]
+    melting_range : tuple of float, optional
+        First and last temperature of melting; outside it everything is sensible. [degC]
+
+    Returns
+    -------
+    DscMaterial
+        Curves, latent heat, onset, peak and end, laws with their residuals, warnings.
+
+    Raises
+    ------
+    InputError
+        Columns, units or rows cannot be what the file says.
+    """
+    file = Path(path)
+    for name, value in (("rate", rate), ("mass", mass)):
+        if value is not None and not value > 0.0:
+            raise InputError(f"{name}: found {value:g}; expected a positive number")
+    scans = read(file, Settings(unit, rate, mass))
+    found = [_melting(scan, specific_heat, melting_range, str(file)) for scan in scans]
+    runs = tuple(sorted((run for run, _ in found), key=lambda run: run.direction != "heating"))
+    remarks = [remark for scan in scans for remark in scan.remarks]
+    remarks += [remark for _, one in found for remark in one]
+    return DscMaterial(file.stem, runs, (*dict.fromkeys(remarks), *_compared(runs)))
+
+
+def _melting(
+    scan: Scan,
+    given: tuple[float, float] | None,
+    span: tuple[float, float] | None,
+    where: str,
+) -> tuple[Melting, list[str]]:
+    t, heat = scan.temperature, scan.heat
+    low, high = _edges(t, span, f"{where}: {scan.direction}")
+    solid, liquid = (float(np.median(heat[part])) for part in (t <= low, t >= high))
+    remarks = []
+    height = float(heat.max()) - 0.5 * (solid + liquid)
+    if max(abs(solid), abs(liquid)) < 0.02 * height and max(abs(solid), abs(liquid)) < 100.0:
+        if given is None:
+            raise InputError(
+                f"{where}: {scan.direction}: found no sensible heat beside the peak: the baseline was "
+                "taken off; expected specific_heat=(solid, liquid) in J/(kg K)"
+            )
+        heat = heat + np.interp(t, [low, high], given)
+        solid, liquid = given
+    for base in (solid, liquid):
+        check_heat(base, scan.column, where, scan.factor)
+    if not height > 0.2 * max(solid, liquid):
+        raise InputError(
+            f"{where}: {scan.direction}: found no peak above the sensible heat ({heat.max():.4g} against "
+            f"{max(solid, liquid):.4g} J/(kg K)); expected a run through the melting"
+        )
+    fraction, latent = _fractions(t, heat, (solid, liquid), (low, high))
+    steepest = 0.03 * height
+    for part, name in ((t <= low, "begins"), (t >= high, "ends")):
+        if span is None and np.ptp(heat[part]) > steepest + 0.1 * max(solid, liquid):
+            remarks.append(
+                f"{scan.direction}: the file {name} where the specific heat still changes: latent heat "
+                "and tails are uncertain; measure further, or give melting_range"
+            )
+    if scan.rate is not None and scan.rate > SLOW:
+        remarks.append(
+            f"{scan.direction}: {scan.rate:g} K/min is faster than any wall: the sample lags behind the "
+            "oven, which broadens the curve and shifts it in the direction of the run; expect a kelvin "
+            "or more, and vary temperature_shift or the melting temperature"
+        )
+    onset, end = _tangents(t, heat, (solid, liquid))
+    fits = tuple(sorted((fit(law, t, fraction) for law in LAWS), key=lambda one: one.residual))
+    peak = float(t[np.argmax(heat)])
+    melting = Melting(
+        scan.direction, t, fraction, heat, (solid, liquid), latent, onset, peak, end, scan.rate, fits
+    )
+    return melting, remarks
+
+
+def _edges(t: Array, span: tuple[float, float] | None, where: str) -> tuple[float, float]:
+    if span is None:
+        return float(t[0] + EDGE * np.ptp(t)), float(t[-1] - EDGE * np.ptp(t))
+    low, high = span
+    if not t[0] < low < high < t[-1]:
+        raise InputError(
+            f"{where}: melting_range: found {low:g} to {high:g} degC; expected a range inside the file's "
+            f"{t[0]:g} to {t[-1]:g} degC"
+        )
+    return low, high
+
+
+def _fractions(
+    t: Array, heat: Array, heats: tuple[float, float], edges: tuple[float, float]
+) -> tuple[Array, float]:
+    """Liquid fraction and latent heat: the baseline follows the fraction, which follows the baseline."""
+    solid, liquid = heats
+    inside = (t > edges[0]) & (t < edges[1])
+    fraction = np.clip((t - edges[0]) / (edges[1] - edges[0]), 0.0, 1.0)
+    latent, centre = 1.0, 0.5 * (edges[0] + edges[1])
+    for _ in range(100):
+        excess = np.where(inside, heat - solid - (liquid - solid) * fraction, 0.0)
+        taken = _integral(t, excess)
+        before, latent = latent, _latent(t, excess, liquid - solid, centre, max(float(taken[-1]), 1.0))
+        rise = np.maximum(excess / (latent + (liquid - solid) * (t - centre)), 0.0)
+        grown = _integral(t, rise)
+        fraction = grown / grown[-1]
+        centre = float(np.interp(0.5, fraction, t))
+        if abs(latent - before) < 1e-9 * latent:
+            break
+    return fraction, latent
+
+
+def _latent(t: Array, excess: Array, difference: float, centre: float, guess: float) -> float:
+    """Latent heat at the centre for which the fraction ends at one."""
+    latent = guess
+    for _ in range(50):
+        whole = float(_integral(t, excess / (latent + difference * (t - centre)))[-1])
+        latent *= whole
+        if abs(whole - 1.0) < 1e-12:
+            break
+    return latent
+
+
+def _integral(t: Array, y: Array) -> Array:
+    """Integral from the first point on, by trapezia."""
+    return np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(t))])
+
+
+def _tangents(t: Array, heat: Array, heats: tuple[float, float]) -> tuple[float, float]:
+    """Extrapolated onset and end: the steepest tangents of the flanks meet the sensible heat."""
+    slope = np.gradient(heat, t)
+    top = int(np.argmax(heat))
+    up = int(np.argmax(slope[: top + 1]))
+    down = top + int(np.argmin(slope[top:]))
+    onset = t[up] - (heat[up] - heats[0]) / slope[up] if slope[up] > 0 else t[0]
+    end = t[down] - (heat[down] - heats[1]) / slope[down] if slope[down] < 0 else t[-1]
+    return float(max(onset, t[0])), float(min(end, t[-1]))
+
+
+def table(run: Melting) -> tuple[list[float], list[float]]:
+    """Enthalpy over temperature as a law of a building file holds it: rising, no more points than needed.
+
+    Parameters
+    ----------
+    run : Melting
+        The run.
+
+    Returns
+    -------
+    tuple of lists
+        Temperatures [degC] and enthalpies above the first [J/kg].
+    """
+    low, high = run.melting_range
+    t, fraction = run.temperature, run.fraction
+    levels = np.interp(np.linspace(0.0, 1.0, MOST_POINTS // 2), fraction, t)
+    even = np.linspace(max(low - 1.0, t[0]), min(high + 1.0, t[-1]), MOST_POINTS // 2)
+    points = np.unique(np.round(np.concatenate([levels, even]), 2))
+    points = points[(points >= even[0]) & (points <= even[-1])]
+    xi = np.interp(points, t, fraction)
+    solid, liquid = run.specific_heat
+    above = points - run.half
+    values = solid * above + xi * (run.latent_heat + (liquid - solid) * above)
+    return [round(float(x), 2) for x in points], [round(float(x - values[0]), 1) for x in values]
+
+
+def _compared(runs: Sequence[Melting]) -> list[str]:
+    """What heating and cooling say together."""
+    if len(runs) < 2:
+        return []
+    heating, cooling = runs
+    lines = []
+    apart = abs(heating.latent_heat - cooling.latent_heat) / heating.latent_heat
+    if apart > 0.05:
+        lines.append(
+            f"latent heat on heating and cooling differ by {apart:.0%}: different integration limits, or "
+            "a run that did not melt or freeze everything"
+        )
+    gap = heating.half - cooling.half
+    if gap > 0.5:
+        lines.append(
+            f"freezes {gap:.1f} K below where it melts: hysteresis, supercooling, or the lag of the runs"
+        )
+    if gap < 0.0:
+        lines.append(
+            f"freezes {-gap:.1f} K above where it melts, which no material does: check temperatures and lag"
+        )
+    return lines
+
+
+def _told(run: Melting) -> list[str]:
+    rate = f" at {run.rate:g} K/min" if run.rate else ""
+    low, high = run.melting_range
+    return [
+        f"{run.direction}{rate}",
+        f"  latent heat    {run.latent_heat / 1000.0:.1f} kJ/kg",
+        f"  specific heat  {run.specific_heat[0]:.0f} solid, {run.specific_heat[1]:.0f} liquid J/(kg K)",
+        f"  onset, peak, end  {run.onset:.2f}, {run.peak:.2f}, {run.end:.2f} degC; half at {run.half:.2f} "
+        "degC",
+        f"  range          {low:.2f} to {high:.2f} degC",
+        "  law                 rms of liquid fraction  largest  melting temperature, width",
+        *(
+            f"  {one.law.name:18}  {one.residual:22.4f}  {one.largest:7.4f}  "
+            f"{one.melting_temperature:.2f} degC, {', '.join(f'{w:.2f} K' for w in one.widths)}"
+            for one in run.fits
+        ),
+    ]
+
+
+def _summary(run: Melting) -> dict[str, Any]:
+    return {
+        "latent_heat": run.latent_heat,
+        "specific_heat": list(run.specific_heat),
+        "onset": run.onset,
+        "peak": run.peak,
+        "end": run.end,
+        "half": run.half,
+        "melting_range": list(run.melting_range),
+        "rate": run.rate,
+        "fits": {
+            one.law.name: {
+                "rms": one.residual,
+                "largest": one.largest,
+                "melting_temperature": one.melting_temperature,
+                "law": one.description(),
+            }
+            for one in run.fits
+        },
+    }
+
+
+def _listed(value: float | tuple[float, float]) -> float | list[float]:
+    return [float(x) for x in value] if isinstance(value, tuple | list) else float(value)
+
+
+def _draw(runs: Sequence[Melting], above: Any, below: Any) -> None:
+    for number, run in enumerate(runs):
+        colour, best = f"C{number}", run.fits[0]
+        for fraction, style, label in (
+            (run.fraction, "-", run.direction),
+            (best.law.shape(run.temperature, (best.melting_temperature, *best.widths)), ":", best.law.name),
+        ):
+            solid, liquid = run.specific_heat
+            over = run.temperature - run.half
+            h = solid * over + fraction * (run.latent_heat + (liquid - solid) * over)
+            above.plot(run.temperature, (h - h[0]) / 1000.0, style, color=colour, label=label)
+            heat = run.heat if style == "-" else np.gradient(h, run.temperature)
+            below.plot(run.temperature, heat / 1000.0, style, color=colour, label=label)
+
+
+def to_yaml(name: str, material: Mapping[str, Any], comments: Sequence[str] = ()) -> str:
+    """A material as the lines of a building file, comments above it.
+
+    Parameters
+    ----------
+    name : str
+        Its name there.
+    material : mapping
+        As `DscMaterial.description` gives it.
+    comments : sequence of str
+        Lines to put above.
+    """
+    lines = [*(f"# {text}" for text in comments), "materials:", f"  {name}:"]
+    for key, value in material.items():
+        lines += _entry(key, value, 4)
+    for key in ("conductivity", "density"):
+        if key not in material:
+            lines.append(f"    # {key}:   a calorimeter does not measure it: add it")
+    return "\n".join(lines) + "\n"
+
+
+def _entry(key: str, value: Any, indent: int) -> list[str]:
+    blank = " " * indent
+    if isinstance(value, dict):
+        return [f"{blank}{key}:", *(line for k, v in value.items() for line in _entry(k, v, indent + 2))]
+    if isinstance(value, list):
+        return [f"{blank}{key}: [{', '.join(f'{x:.10g}' for x in value)}]"]
+    return [f'{blank}{key}: "{value}"' if key == "source" else f"{blank}{key}: {value}"]

@@ -1,0 +1,174 @@
+"""Units of a calorimeter's columns: read from their names, checked against what such numbers can be."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from mascarin.errors import InputError
+
+#: Quantity -> unit as written without blanks, brackets and dots -> factor to SI. Heat flow is per kilogram.
+UNITS: Final[dict[str, dict[str, float]]] = {
+    "temperature": {"degc": 1.0, "°c": 1.0, "c": 1.0, "k": 1.0},
+    "time": {"s": 1.0, "min": 60.0, "h": 3600.0},
+    "heat flow": {"mw/mg": 1000.0, "w/g": 1000.0, "mw/g": 1.0, "w/kg": 1.0, "mw": 1e-3, "w": 1.0, "µw": 1e-6},
+    "specific heat": {"j/gk": 1000.0, "kj/kgk": 1000.0, "j/kgk": 1.0},
+    "enthalpy": {"j/g": 1000.0, "kj/kg": 1000.0, "j/kg": 1.0},
+}
+#: Units of heat flow that need the mass of the sample.
+OF_SAMPLE: Final = ("mw", "w", "µw")
+#: What specific heats of solids and liquids can be [J/(kg K)]: metals to water, with room.
+POSSIBLE_HEAT: Final = (200.0, 12000.0)
+
+_NAMES: Final = {
+    "temperature": ("temp", "temperature", "t", "theta", "sample temperature", "ts"),
+    "time": ("time", "zeit"),
+    "heat flow": ("heat flow", "heatflow", "dsc", "hf", "q", "phi"),
+    "specific heat": ("cp", "c", "specific heat", "heat capacity", "capacity", "apparent capacity", "cp app"),
+    "enthalpy": ("enthalpy", "h", "heat content"),
+    "direction": ("direction", "segment", "run"),
+}
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a column of the file holds.
+
+    Attributes
+    ----------
+    index : int
+        Its place, from 0.
+    name : str
+        Its name in the file.
+    quantity : str
+        A key of `UNITS`, or ``direction``.
+    unit : str or None
+        As in `UNITS`; None where the file does not say.
+    direction : str or None
+        ``heating`` or ``cooling``, where the name says so.
+    """
+
+    index: int
+    name: str
+    quantity: str
+    unit: str | None
+    direction: str | None
+
+
+def plain_unit(text: str) -> str:
+    """A unit without blanks, brackets and powers: ``J/(g·K)``, ``J g^-1 K^-1`` and ``J/g/K`` are one."""
+    bare = text.casefold().replace("μ", "µ").replace("⁻¹", "-1")
+    bare = re.sub(r"[\s()\[\]*·.^]", "", bare)
+    bare = re.sub(r"(k?g)-1", r"/\1", bare).replace("k-1", "k")
+    return re.sub(r"/(k?g)/?(k|°c|degc)$", r"/\1k", bare)
+
+
+def column_of(index: int, name: str) -> Column | None:
+    """Understand a column by its name; None where it means nothing here.
+
+    The unit stands in brackets or behind a slash: ``cp [J/(g K)]``, ``Temp./°C``, ``DSC/(mW/mg)``.
+    """
+    text = name.strip().strip('"#').strip()
+    found = re.match(r"^(?P<name>[^\[(/]+?)[\s._]*(?:\[(?P<a>.*)\]|\((?P<b>.*)\)|/\s*(?P<c>.+))?$", text)
+    if found is None:
+        return None
+    words = re.sub(r"[\s._-]+", " ", found["name"]).strip().casefold()
+    direction = next((one for one in ("heating", "cooling") if one in words), None)
+    if direction is not None:
+        words = re.sub(r"\s+", " ", words.replace(direction, "")).strip()
+    unit = next((plain_unit(found[key]) for key in "abc" if found[key]), None)
+    quantity = next((key for key, names in _NAMES.items() if words in names), None)
+    if quantity is None and unit is not None:
+        quantity = next((key for key, known in UNITS.items() if key != "temperature" and unit in known), None)
+    if quantity is None:
+        return None
+    return Column(index, text, quantity, unit, direction)
+
+
+def check_unit(column: Column, where: str) -> None:
+    """Refuse a unit that is none of its quantity.
+
+    Raises
+    ------
+    InputError
+        Naming the column, the unit and those that are known.
+    """
+    known = UNITS.get(column.quantity, {})
+    if column.unit is not None and column.unit not in known:
+        raise InputError(
+            f"{where}: column '{column.name}': found the unit '{column.unit}' for a {column.quantity}; "
+            f"expected one of {', '.join(SHOWN[column.quantity])}"
+        )
+
+
+SHOWN: Final = {
+    "temperature": ("degC", "K"),
+    "time": ("s", "min", "h"),
+    "heat flow": ("mW/mg", "W/g", "W/kg", "mW"),
+    "specific heat": ("J/(g K)", "kJ/(kg K)", "J/(kg K)"),
+    "enthalpy": ("J/g", "kJ/kg", "J/kg"),
+}
+"""Units as they are written to people."""
+
+
+_CHECK: Final = "Check unit, heating rate and mass, and that the file begins and ends outside the melting"
+
+
+def check_heat(base: float, column: Column, where: str, factor: float) -> None:
+    """Refuse a sensible specific heat that no material has: the unit is another than the file says.
+
+    Parameters
+    ----------
+    base : float
+        Specific heat beside the peak, by the unit that was taken [J/(kg K)].
+    column : Column
+        Where it comes from.
+    where : str
+        The file.
+    factor : float
+        The factor that was taken from the column's unit to SI.
+
+    Raises
+    ------
+    InputError
+        With the unit that would fit, if there is one.
+    """
+    low, high = POSSIBLE_HEAT
+    if low <= base <= high:
+        return
+    known = UNITS[column.quantity]
+    fitting = [
+        unit
+        for unit in SHOWN[column.quantity]
+        if plain_unit(unit) not in OF_SAMPLE and low <= base / factor * known[plain_unit(unit)] <= high
+    ]
+    unit = column.unit or "no unit"
+    advice = f"With {' or '.join(fitting)} it could be" if fitting else _CHECK
+    raise InputError(
+        f"{where}: column '{column.name}' ({unit}): found a specific heat of {base:.4g} J/(kg K) beside "
+        f"the peak; expected {low:g} to {high:g}. {advice}."
+    )
+
+
+def to_celsius(values: list[float], column: Column, where: str) -> list[float]:
+    """Temperatures in degC; a file without a unit is read by what its numbers can be.
+
+    Raises
+    ------
+    InputError
+        The numbers contradict the unit.
+    """
+    low, high = min(values), max(values)
+    kelvin = column.unit == "k" or (column.unit is None and low > 200.0)
+    if column.unit == "k" and low < 150.0:
+        raise InputError(
+            f"{where}: column '{column.name}': found {low:g} to {high:g} K; expected kelvins of a phase "
+            "change. They look like degC: write degC in the column's name"
+        )
+    if column.unit not in ("k", None) and low > 230.0:
+        raise InputError(
+            f"{where}: column '{column.name}': found {low:g} to {high:g} degC; expected a phase change of a "
+            "building material. They look like kelvins: write K in the column's name"
+        )
+    return [value - 273.15 for value in values] if kelvin else values
