@@ -56,7 +56,7 @@ def test_the_truth_lies_in_the_interval(building: Building, climate: Climate, me
     fit = calibrate(
         building, climate, measured, parameters=free, sensors=SENSORS, rules=Rules(starts=1), **SPAN
     )
-    assert fit.reason == "1 starts searched"
+    assert fit.reason == "1 start searched"
     for k, parameter in enumerate(fit.problem.parameters):
         half = (fit.high[k] - fit.low[k]) / 2.0
         assert abs(fit.x[k] - TRUTH[parameter.path]) < 1.5 * half, parameter.path

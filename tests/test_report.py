@@ -101,6 +101,9 @@ def test_the_words_of_the_study_are_said(outline: Outline) -> None:
         "mascarin study lgi",
         "closes to 3.1×10⁻¹³",
         "80 mm in all (paper, table 1)",
+        "3.00\u00a0K3.10\u00a0K14:3014:45+15".replace("\u00a0", " "),
+        "coldest",
+        "the paper's seven: the published parameters",
         "Copyright (c) 2022 Leon Sorokin",
     ):
         assert words in text, words

@@ -206,3 +206,14 @@ def test_series_that_cannot_be_examined_are_refused() -> None:
         examine(MEASURED, MEASURED, step=0.0, hour=HOUR)
     with pytest.raises(InputError, match="3 values for 960"):
         explain(MEASURED, {"a": np.ones(3)})
+
+
+def test_the_cross_correlation_is_told_at_every_lag() -> None:
+    """A residual that is the sun two hours later goes with it most at two hours."""
+    late = np.roll(SUN, 8) / 900.0
+    found = examine(np.zeros(HOUR.size), late, step=STEP, hour=HOUR, drivers={"sun": SUN}).to_dict()
+    values = found["cross_correlation"]["sun"]
+    assert found["cross_lags"][:3] == [0.0, 0.25, 0.5]
+    assert found["cross_lags"][int(np.argmax(values))] == 2.0
+    assert max(values) == pytest.approx(1.0, abs=1e-9)
+    assert values[0] < 0.95

@@ -195,7 +195,7 @@ def _least_squares(
         x = problem.values(end[None])[0]
         cost = float(evaluator.costs(x[None])[0])
         minima.append(Minimum(k, problem.values(z[None])[0], x, cost, squares.asked, str(found.message)))
-    text = f"{len(minima)} starts searched"
+    text = f"{len(minima)} start{'s' * (len(minima) != 1)} searched"
     return minima, text + (f", {skipped} skipped because the model fails there" if skipped else "")
 
 

@@ -163,8 +163,10 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
     if len(cuts) < 3:
         return None
     low, high = every[:, 1:].min(axis=0), every[:, 1:].max(axis=0)
-    width, height, margin = 420.0, 360.0, 46.0
-    room = 150.0 if sensors else margin
+    longest = max((len(str(info.get("label", ""))) for info in sensors.values()), default=0)
+    # So wide that the longest name fits beside the section, about 6.4 px a letter.
+    room = max(150.0, 46.0 + 6.4 * longest) if sensors else 46.0
+    width, height, margin = 270.0 + room, 360.0, 46.0
     scale = min((width - margin - room) / (high[0] - low[0]), (height - 2 * margin) / (high[1] - low[1]))
 
     def place(points: Array) -> Array:
@@ -175,7 +177,7 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
         return np.column_stack([x, y])
 
     svg = Svg(width, height)
-    _zone_fills(svg, cuts, place)
+    _zone_fills(svg, cuts, [str(zone.get("name")) for zone in building.get("zones", [])], place)
     for surface, cut in cuts:
         (x1, y1), (x2, y2) = place(cut)
         kind = _construction_class(building, str(surface.get("construction"))).replace("fill", "stroke")
@@ -183,7 +185,7 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
     bottom = float(place(low[None, :])[0][1])
     svg.label(margin, bottom + 22, "S", "small", "middle")
     svg.label(margin + scale * float(high[0] - low[0]), bottom + 22, "N", "small", "middle")
-    _sensor_marks(svg, cuts, sensors, place)
+    _sensor_marks(svg, cuts, sensors, place, width - room + 12.0)
     return svg.markup("Section from south to north with the zones and the places of the sensors")
 
 
@@ -203,21 +205,32 @@ def _facing(surface: Mapping[str, Any], zone: str) -> bool:
     return zone in (surface.get("outside"), surface.get("inside"))
 
 
-def _zone_fills(svg: Svg, cuts: Sequence[tuple[Mapping[str, Any], Array]], place: Any) -> None:
-    zones = dict.fromkeys(
-        str(side)
-        for surface, _ in cuts
-        for side in (surface.get("inside"), surface.get("outside"))
-        if side not in ("outdoors", "ground", "adiabatic") and not str(side).startswith("measured")
-    )
+def _zone_fills(
+    svg: Svg, cuts: Sequence[tuple[Mapping[str, Any], Array]], zones: Sequence[str], place: Any
+) -> None:
     for number, zone in enumerate(zones):
-        ends = np.vstack([cut for surface, cut in cuts if _facing(surface, zone)])
+        bounds = [cut for surface, cut in cuts if _facing(surface, zone)]
+        if len(bounds) < 2:
+            continue
+        ends = np.vstack(bounds)
         centre = ends.mean(axis=0)
         order = np.argsort(np.arctan2(ends[:, 1] - centre[1], ends[:, 0] - centre[0]))
         outline = place(ends[order])
         svg.polygon(outline, f"zone zone-{number % 4}")
         x = 0.72 * float(outline[:, 0].min()) + 0.28 * float(outline[:, 0].max())
-        svg.label(x, _height_at(outline, x) + 4.0, text.plain_path(zone), "zone-name", "middle")
+        y = _height_at(outline, x)
+        # A name in a thin slanted zone lies along it.
+        slope = math.degrees(math.atan2(_height_at(outline, x + 10.0) - y, 10.0))
+        turned = f"rotate({slope:.1f} {x:.1f} {y:.1f})"
+        svg.add(
+            "text",
+            text.plain_path(zone),
+            x=x,
+            y=y + 4.0,
+            class_="t zone-name",
+            text_anchor="middle",
+            transform=turned if abs(slope) > 15.0 else "rotate(0)",
+        )
 
 
 def _height_at(outline: Array, x: float) -> float:
@@ -231,7 +244,11 @@ def _height_at(outline: Array, x: float) -> float:
 
 
 def _sensor_marks(
-    svg: Svg, cuts: Sequence[tuple[Mapping[str, Any], Array]], sensors: Mapping[str, Any], place: Any
+    svg: Svg,
+    cuts: Sequence[tuple[Mapping[str, Any], Array]],
+    sensors: Mapping[str, Any],
+    place: Any,
+    x_text: float,
 ) -> None:
     spots = []
     for number, info in enumerate(sensors.values(), start=1):
@@ -239,7 +256,6 @@ def _sensor_marks(
         if spot is not None:
             spots.append((number, str(info.get("label", "")), spot))
     spots.sort(key=lambda item: item[2][1])
-    x_text = svg.width - 138.0
     spread = 24.0
     y_first = (
         max(24.0, float(np.mean([s[2][1] for s in spots])) - 0.5 * spread * len(spots)) if spots else 0.0

@@ -167,12 +167,11 @@ def _short_day(time: datetime) -> str:
 
 @dataclass(frozen=True)
 class SensorCarpet:
-    """Carpets of one sensor's error, one per model, on one scale."""
+    """Carpets of one sensor's error: of the main model, and of the nominal one."""
 
     sensor: str
     label: str
     unit: str
-    limit: str
     pictures: list[tuple[str, str, Carpet]]
     """Model key, model label, picture."""
 
@@ -194,19 +193,21 @@ def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
         main = series.columns.get(f"{model}/{sensor}")
         if observed is None or main is None or len(series) * series.step < 1.5 * 86400.0:
             continue
-        error = np.abs(main.values - observed.values)
-        finite = error[np.isfinite(error)]
-        limit = round_limit(float(np.quantile(finite, 0.98))) if finite.size else 1.0
         pictures = []
-        for key, entry in study.get("models", {}).items():
+        # Each on its own scale: on that of a good model a bad one is a single colour.
+        for key in dict.fromkeys((model, "nominal")):
             column = series.columns.get(f"{key}/{sensor}")
-            if column is not None:
-                picture = carpet(series, column.values - observed.values, limit)
-                pictures.append((key, str(entry.get("label", key)), picture))
-        pictures.sort(key=lambda item: item[0] != model)
+            if key is not None and column is not None:
+                label = str(study.get("models", {}).get(key, {}).get("label", key))
+                pictures.append((key, label, _own_carpet(series, column.values - observed.values)))
         unit = text.difference_unit(unit_of(study, sensor))
-        found.append(SensorCarpet(sensor, label_of(study, sensor), unit, text.significant(limit), pictures))
+        found.append(SensorCarpet(sensor, label_of(study, sensor), unit, pictures))
     return found
+
+
+def _own_carpet(series: Series, error: Array) -> Carpet:
+    finite = np.abs(error[np.isfinite(error)])
+    return carpet(series, error, round_limit(float(np.quantile(finite, 0.98))) if finite.size else 1.0)
 
 
 # --- sensitivity ----------------------------------------------------------------------------------
@@ -337,9 +338,28 @@ def residual_figures(study: Mapping[str, Any], sensor: str, entry: Mapping[str, 
     if entry.get("hour_mean"):
         drawn = _by_hour(study, sensor, entry).markup(f"Residual by hour of day, {label}")
         found.append(Figure("Hour of day", drawn))
-    if entry.get("correlation"):
+    if entry.get("cross_correlation"):
+        drawn = _cross(entry).markup(f"Correlation of the residual with the climate over the lag, {label}")
+        found.append(Figure("Cross-correlation", drawn))
+    elif entry.get("correlation"):
         found.append(Figure("Correlation with the climate", _correlation(label, entry)))
     return found
+
+
+def _cross(entry: Mapping[str, Any]) -> Chart:
+    """Correlation with each channel over the time by which the residual comes later."""
+    lags = np.asarray(entry["cross_lags"], dtype=np.float64)
+    y = Axis(-1.0, 1.0, (-1.0, -0.5, 0.0, 0.5, 1.0), ("−1", "−0.5", "0", "0.5", "1"))
+    high = float(lags.max(initial=1.0))
+    marks = [float(m) for m in np.arange(0.0, high + 1e-9, 2.0)]
+    chart = _small(Axis(0.0, high, marks, [f"{m:g}" for m in marks]), y, "residual later by, h")
+    band = float(entry.get("correlation_band") or 0.0)
+    if band > 0.0:
+        chart.bar(0.0, high, -band, band, "null-band")
+    for number, name in enumerate(sorted(entry["cross_correlation"])):
+        values = np.array([np.nan if v is None else v for v in entry["cross_correlation"][name]])
+        chart.curve(lags, values, f"d{number % 4}")
+    return chart
 
 
 def _small(x: Axis, y: Axis, x_label: str, y_label: str = "") -> Chart:
@@ -441,7 +461,7 @@ def parameter_range(entry: Mapping[str, Any]) -> Markup:
     entry : mapping
         As in :class:`~mascarin.report.payload.ParameterEntry`.
     """
-    svg = Svg(180.0, 22.0)
+    svg = Svg(180.0, 34.0)
     low, high = (float(end) for end in entry["range"])
     values = [low, high, *(float(entry[k]) for k in ("nominal", "fitted") if k in entry)]
     first, last = min(values), max(values)
@@ -453,6 +473,8 @@ def parameter_range(entry: Mapping[str, Any]) -> Markup:
     svg.line(place(low), 11.0, place(high), 11.0, "range")
     for end in (low, high):
         svg.line(place(end), 7.0, place(end), 15.0, "range")
+        anchor = "start" if end == low else "end"
+        svg.label(place(end) - (4.0 if end == low else -4.0), 30.0, text.significant(end), "tick", anchor)
     if entry.get("low") is not None and entry.get("high") is not None:
         a, b = place(float(entry["low"])), place(float(entry["high"]))
         svg.add("rect", x=a, y=5.0, width=max(b - a, 1.5), height=12.0, class_="interval")
@@ -478,19 +500,22 @@ def enthalpy_loop(entry: Mapping[str, Any]) -> Figure | None:
     if not (path_t.size or law_t.size):
         return None
     chart = Chart(
-        Axis.over(path_t, law_t, count=6),
-        Axis.over(path_h, law_h),
+        Axis.over(path_t, law_t, count=9),
+        Axis.over(path_h, law_h, count=9),
         width=420.0,
         height=260.0,
         y_label="enthalpy, kJ/kg",
-        x_label="temperature, °C",
+        x_label="mean of its two faces, °C",
     )
     if law_t.size:
         chart.curve(law_t, law_h, "law")
+    days = entry.get("days", [])
     every = max(1, path_t.size // 1500)
-    chart.curve(path_t[::every], path_h[::every], "path")
+    chart.curve(path_t[::every], path_h[::every], "path faint" if days else "path")
+    for number, day in enumerate(days):
+        chart.curve(np.asarray(day["temperature"]), np.asarray(day["enthalpy"]), f"d{number % 4}")
     label = str(entry.get("label", "phase-change layer"))
-    return Figure(label, chart.markup(f"Enthalpy over temperature of {label}"))
+    return Figure("Enthalpy loop", chart.markup(f"Enthalpy over temperature of {label}"))
 
 
 def liquid_fraction(

@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from mascarin.report.page import context, explorer
 from mascarin.report.payload import Series
-from mascarin.report.text import typeset
+from mascarin.report.text import significant, typeset
 
 
 def page(study: Mapping[str, Any], series: Series) -> str:
@@ -36,6 +36,7 @@ def page(study: Mapping[str, Any], series: Series) -> str:
         keep_trailing_newline=True,
     )
     environment.filters["typeset"] = typeset
+    environment.filters["significant"] = significant
     template = environment.from_string(_asset("template.html"))
     return template.render(
         **context(study, series),

@@ -245,7 +245,10 @@ def _model(study: Mapping[str, Any]) -> dict[str, Any] | None:
         ],
         "surfaces": [_surface(s) for s in building.get("surfaces", [])],
         "site": [[text.plain_path(str(k)), text.typeset(str(v))] for k, v in building.get("site", [])],
-        "choices": [[text.plain_path(str(k)), text.choice(str(v))] for k, v in building.get("choices", [])],
+        "choices": [
+            *([text.plain_path(str(k)), text.choice(str(v))] for k, v in building.get("choices", [])),
+            *([["state at the start", text.typeset(str(study["start"]))]] if study.get("start") else []),
+        ],
         "assumptions": _assumptions(study),
     }
 
@@ -439,7 +442,6 @@ def _parameters(study: Mapping[str, Any]) -> dict[str, Any] | None:
                 "nominal": text.significant(entry.get("nominal")),
                 "fitted": text.significant(entry.get("fitted")),
                 "interval": _between(interval) if None not in interval else "",
-                "range": _between(allowed) if allowed else text.NONE,
                 "drawing": figures.parameter_range(entry) if allowed else "",
                 "reference_nominal": text.significant(entry.get("reference_nominal")),
                 "reference_fitted": text.significant(entry.get("reference_fitted")),
@@ -453,7 +455,35 @@ def _parameters(study: Mapping[str, Any]) -> dict[str, Any] | None:
         "reference": study.get("reference", {}).get("label", "Publication"),
         "facts": study.get("identification", []),
         "correlation": _correlation(study),
+        "published": _published(study),
     }
+
+
+def _published(study: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Estimates of the models whose parameters a publication has too, beside its own."""
+    found = []
+    for model, entries in study.get("variant_parameters", {}).items():
+        rows = [
+            {
+                "label": _parameter_label(study, path),
+                "path": path,
+                "unit": text.unit(str(entry.get("unit", ""))),
+                "nominal": text.significant(entry.get("nominal")),
+                "fitted": text.significant(entry.get("fitted")),
+                "interval": _between([entry["low"], entry["high"]])
+                if None not in (entry.get("low"), entry.get("high"))
+                else text.NONE,
+                "reference_nominal": text.significant(entry.get("reference_nominal")),
+                "reference_fitted": text.significant(entry.get("reference_fitted")),
+                "at_bound": bool(entry.get("at_bound")),
+            }
+            for path, entry in entries.items()
+        ]
+        # A model that shares but one or two of them is not the published one.
+        if 2 * sum("reference_fitted" in entry for entry in entries.values()) > len(entries):
+            note = study.get("models", {}).get(model, {}).get("note", "")
+            found.append({"model": _model_label(study, model), "note": note, "rows": rows})
+    return found
 
 
 def _between(ends: Sequence[Any]) -> str:
@@ -608,7 +638,7 @@ def _carpets(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
     found = figures.carpets(study, series)
     if not found:
         return None
-    return {"sensors": found, "scale": legend(), "models": [p[1] for p in found[0].pictures]}
+    return {"sensors": found, "scale": legend()}
 
 
 def _phase_change(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]] | None:
@@ -622,27 +652,60 @@ def _phase_change(study: Mapping[str, Any], series: Series) -> list[dict[str, An
                 "label": entry.get("label", ""),
                 "figures": [f for f in drawn if f is not None],
                 "rows": entry.get("rows", []),
+                "days": [
+                    {"class": f"d{number % 4}", "label": str(day.get("label", ""))}
+                    for number, day in enumerate(entry.get("days", []))
+                ],
+                "law": bool(entry.get("law_temperature")),
                 "period": _period_label(study, short[-1]) if short else "",
             }
         )
     return found or None
 
 
-def _residuals(study: Mapping[str, Any]) -> list[dict[str, Any]] | None:
+def _residuals(study: Mapping[str, Any]) -> dict[str, Any] | None:
     found = []
+    drivers: list[str] = []
     for sensor, entry in study.get("residuals", {}).items():
         drawn = figures.residual_figures(study, sensor, entry)
         if drawn:
             period = entry.get("period")
+            drivers = drivers or sorted(entry.get("cross_correlation", {}))
             found.append(
                 {
                     "label": figures.label_of(study, sensor),
                     "figures": drawn,
                     "period": _period_label(study, str(period)) if period else "",
-                    "effective": text.significant(entry.get("effective_n"), 2),
                 }
             )
-    return found or None
+    if not found:
+        return None
+    keys = [{"class": f"d{number % 4}", "label": name} for number, name in enumerate(drivers)]
+    return {"sensors": found, "keys": keys, "rows": _statistics(study)}
+
+
+def _statistics(study: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Numbers of each residual: what its samples are worth, and its daily cycle."""
+    rows = []
+    for sensor, entry in study.get("residuals", {}).items():
+        cycle = entry.get("daily_cycle") or {}
+        unit = text.difference_unit(figures.unit_of(study, sensor))
+        rows.append(
+            {
+                "label": figures.label_of(study, sensor),
+                "samples": text.significant(entry.get("n"), 5),
+                "effective": text.significant(entry.get("effective_n"), 2),
+                "strongest": _strongest_link(entry),
+                "hours": text.percent(entry.get("hour_share"), 0),
+                "amplitudes": [
+                    f"{text.fixed(cycle.get(f'{which}_amplitude'))}\u00a0{unit}"
+                    for which in ("measured", "simulated")
+                ],
+                "peaks": [text.clock(cycle.get(f"{which}_peak")) for which in ("measured", "simulated")],
+                "delay": text.fixed(cycle.get("delay_minutes"), 0, sign=True),
+            }
+        )
+    return rows
 
 
 def _energy(study: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -673,12 +736,33 @@ def _reproduce(study: Mapping[str, Any]) -> dict[str, Any] | None:
     }
 
 
+def _strongest_link(entry: Mapping[str, Any]) -> str:
+    """The climate channel that the residual follows most, and how."""
+    links = {name: value for name, value in entry.get("correlation", {}).items() if value is not None}
+    if not links:
+        return text.NONE
+    name = max(links, key=lambda one: abs(links[one]))
+    lag = entry.get("correlation_lag", {}).get(name, 0.0)
+    later = f", {lag:.2g}\u00a0h later" if lag else ""
+    return f"{name} {text.fixed(links[name], sign=True)}{later}"
+
+
 def _notes(study: Mapping[str, Any]) -> list[dict[str, Any]] | None:
     """Notes under their titles, those of one title together."""
     found: dict[str, list[str]] = {}
     for note in study.get("notes", []):
-        found.setdefault(str(note.get("title", "")), []).extend(str(note.get("text", "")).split("\n\n"))
+        texts = [_named(study, words) for words in str(note.get("text", "")).split("\n\n")]
+        found.setdefault(str(note.get("title", "")), []).extend(texts)
     return [{"title": title, "paragraphs": paragraphs} for title, paragraphs in found.items()] or None
+
+
+def _named(study: Mapping[str, Any], words: str) -> str:
+    """A note with the sensor that it begins with by its name for people."""
+    for sensor in study.get("sensor_info", {}):
+        for begin, end in ((f"{sensor}: ", ": "), (f"'{sensor}' ", " ")):
+            if words.startswith(begin):
+                return f"{figures.label_of(study, sensor)}{end}{words.removeprefix(begin)}"
+    return words
 
 
 def _source(source: Mapping[str, str]) -> Markup:

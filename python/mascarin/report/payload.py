@@ -238,6 +238,16 @@ class Residuals(TypedDict, total=False):
     correlation: dict[str, float]
     """Correlation with sun, wind, outdoor air, ... by channel label."""
     correlation_band: float
+    correlation_lag: dict[str, float]
+    """How long the residual comes after the channel. [h]"""
+    cross_lags: list[float]
+    """[h]"""
+    cross_correlation: dict[str, list[float | None]]
+    """Correlation with each channel at each lag."""
+    daily_cycle: dict[str, float] | None
+    """``measured_amplitude``, ``measured_peak`` [h], the same ``simulated_``, ``delay_minutes``."""
+    hour_share: float
+    """Part of the variance that the hour of the day explains."""
     effective_n: float
 
 
@@ -263,9 +273,11 @@ class PhaseChange(TypedDict, total=False):
 
     label: str
     temperature: list[float]
-    """Path followed: mean layer temperature [degC]."""
+    """Path followed: mean of the layer's two faces [degC]."""
     enthalpy: list[float]
     """Path followed: enthalpy [kJ/kg]."""
+    days: list[dict[str, Any]]
+    """Single days of it: ``label``, ``temperature``, ``enthalpy``."""
     law_temperature: list[float]
     law_enthalpy: list[float]
     column: str
@@ -317,6 +329,8 @@ class Study(TypedDict, total=False):
     assumptions: list[Assumption]
     quality: list[QualityEntry]
     parameters: dict[str, ParameterEntry]
+    variant_parameters: dict[str, dict[str, ParameterEntry]]
+    """The same of other models that were identified."""
     correlation: dict[str, Any]
     """``paths`` and ``matrix`` of the correlation between the estimates."""
     identification: list[list[str]]
@@ -327,6 +341,8 @@ class Study(TypedDict, total=False):
     spectra: dict[str, Spectrum]
     day_shares: dict[str, DayShares]
     residuals: dict[str, Residuals]
+    start: str
+    """How the state at the start of the run was found."""
     ledger: Ledger
     phase_change: list[PhaseChange]
     tables: list[Table]

@@ -151,5 +151,13 @@ def duration(seconds: float) -> str:
     return f"{minutes}\u00a0min {rest}\u00a0s"
 
 
+def clock(hours: float | None) -> str:
+    """Hour of the day as a time, e.g. 14:30."""
+    if hours is None or not math.isfinite(hours):
+        return NONE
+    minutes = round(60.0 * hours) % 1440
+    return f"{minutes // 60}:{minutes % 60:02d}"
+
+
 def _superscript(number: int) -> str:
     return str(number).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))

@@ -274,6 +274,9 @@ class Variant(Part):
         description="Whether it may become the fitted model: of all candidates and the building as "
         "described, the one with the lowest cost on the identification period does",
     )
+    alone: bool = Field(
+        False, description="Whether only its own parameters are identified, all others as in the building"
+    )
     parameters: dict[str, Stated] = Field(
         default_factory=dict,
         description="Path -> bounds of what it adds to the identification; what it has not is left out",
@@ -285,6 +288,8 @@ class Variant(Part):
         if not self.identify and (self.candidate or self.parameters):
             what = "candidate" if self.candidate else "parameters"
             insist(fault((what,), "identify: false", "identify: true", "A candidate has to be identified."))
+        if self.alone and not self.parameters:
+            insist(fault(("alone",), "no parameters", "parameters: of its own", "Name what is identified."))
         return self
 
 
@@ -296,6 +301,7 @@ class StudyFile(Part):
     observed: str = Field(
         "measurement", description="What the data are called: measurement, virtual experiment"
     )
+    observed_note: str = Field("", description="What whoever reads the numbers must know of the data")
     building: str = Field(description="Building file, beside the study")
     set: dict[str, Any] = Field(
         default_factory=dict, description="Path -> value, on top of the building file"

@@ -10,6 +10,7 @@ import numpy as np
 
 from mascarin import __version__
 from mascarin.examples import STUDIES
+from mascarin.study.melting import law_curve, melting_layers, path
 from mascarin.study.pipeline import scores_of
 from mascarin.validation.observation import PERIODS
 
@@ -20,12 +21,19 @@ if TYPE_CHECKING:
     from mascarin.calibration import Fit
     from mascarin.model import Building
     from mascarin.sensitivity.spectral import SpectralSensitivity
-    from mascarin.study.description import StudyFile
+    from mascarin.study.description import IdentificationPlan, StudyFile
+    from mascarin.study.melting import MeltingLayer
     from mascarin.study.pipeline import Findings, ModelRun, Study
     from mascarin.validation.criteria import Verdict
 
 #: Parameters named in the spectra and shares over the day.
 _SHOWN: Final = 8
+_COSTS: Final = {
+    "nll": "negative log-likelihood",
+    "sd": "sum of the standard deviations",
+    "rmse": "sum of the root mean squares",
+    "cv_rmse": "sum of the root mean squares over the means",
+}
 _WORDS: Final = {
     "identification": ("Identification", "the parameters were found on these days"),
     "corroboration": ("Corroboration", "held back: the fit has not seen these days"),
@@ -73,7 +81,12 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
             *({"title": "The estimates", "text": text} for text in findings.fit.warnings),
             *({"title": "What is left", "text": text} for text in findings.diagnosis),
         ],
-        "phase_change": _phase_change(findings.fitted),
+        "phase_change": _phase_change(study, findings.fitted),
+        "variant_parameters": {
+            name: _parameters(study, run.fit, study.plan_of(name if name in study.file.variants else None))
+            for name, run in findings.variants.items()
+            if run.fit is not None
+        },
     }
     if findings.sensitivity is not None:
         content |= importance(study, findings.sensitivity)
@@ -95,7 +108,7 @@ def header(study: Study, command: str) -> dict[str, Any]:
         "mascarin_version": __version__,
         "title": file.name,
         "intro": [part.strip() for part in file.about.split("\n\n") if part.strip()],
-        "observed": {"label": file.observed},
+        "observed": {"label": file.observed, "note": file.observed_note},
         "seed": _seed(file),
         "timezone": study.climate.timezone,
         "command": [f"mascarin {command} {_called(study)} -o out/"],
@@ -126,6 +139,7 @@ def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdi
         "models": {name: {"label": run.label, "note": run.note} for name, run in models.items()},
         "sensors": _scores(models, main),
         "criteria": _criteria(verdicts),
+        "start": models[main].results.provenance.start,
         "ledger": _ledger(models[main]),
     }
 
@@ -133,7 +147,7 @@ def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdi
 def estimates(study: Study, fit: Fit) -> dict[str, Any]:
     """Parameters with their uncertainty, and how they were found."""
     return {
-        "parameters": _parameters(study, fit),
+        "parameters": _parameters(study, fit, study.sought),
         "correlation": {"paths": list(fit.problem.paths), "matrix": _plain(fit.correlation)},
         "identification": _identification(fit),
     }
@@ -242,9 +256,12 @@ def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, di
     }
 
 
-def _parameters(study: Study, fit: Fit) -> dict[str, dict[str, Any]]:
-    plan = study.sought.parameters
-    given = {study.building.parameter(path).path: free for path, free in plan.items()}
+def _parameters(study: Study, fit: Fit, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
+    known = {parameter.path for parameter in study.building.parameters()}
+    given = {
+        study.building.parameter(path).path if path in known else path: free
+        for path, free in plan.parameters.items()
+    }
     # A candidate may have parameters that the building as described has not.
     sources = {parameter.path: parameter.source for parameter in study.building.parameters()}
     entries = {}
@@ -267,7 +284,7 @@ def _parameters(study: Study, fit: Fit) -> dict[str, dict[str, Any]]:
 def _identification(fit: Fit) -> list[list[str]]:
     return [
         ["method", fit.method.replace("_", " ")],
-        ["cost", fit.cost_name],
+        ["cost", _COSTS.get(fit.cost_name, fit.cost_name)],
         ["searches", str(len(fit.minima))],
         ["distinct minima", str(len(fit.distinct_minima()))],
         ["evaluations", str(len(fit.trace.cost))],
@@ -284,25 +301,69 @@ def _criteria(judged: Mapping[str, list[Verdict]]) -> list[dict[str, Any]]:
     ]
 
 
-def _phase_change(run: ModelRun) -> list[dict[str, Any]]:
-    """How far each phase-change layer melted over the record."""
-    entries = []
-    for k, output in enumerate(run.results.outputs):
-        if output.kind != "liquid_fraction":
-            continue
-        fraction = run.results.records[:, k]
-        entries.append(
+def _phase_change(study: Study, run: ModelRun) -> list[dict[str, Any]]:
+    """What each phase-change layer did over the record."""
+    building = run.simulation.building.replace(run.results.provenance.changed)
+    return [_melting(study, run, building, layer) for layer in melting_layers(building)]
+
+
+def _melting(study: Study, run: ModelRun, building: Building, layer: MeltingLayer) -> dict[str, Any]:
+    names = [output.name for output in run.results.outputs]
+    fraction = run.results.records[:, names.index(layer.liquid_fraction)]
+    temperature, enthalpy = path(run.results, building, layer)
+    margin = 0.05 * float(np.ptp(temperature))
+    ends = float(temperature.min()) - margin, float(temperature.max()) + margin
+    law = law_curve(layer.of(building), *ends)
+    every = max(1, round(3600.0 / run.simulation.step_seconds))
+    days = _telling_days(run, study, enthalpy)
+    moved = max((float(np.ptp(enthalpy[rows])) for _, _, rows in days), default=0.0)
+    return {
+        "label": f"{layer.surface}: {layer.layer}",
+        "column": f"state/{layer.liquid_fraction}",
+        "temperature": _rounded(temperature[::every]),
+        "enthalpy": _rounded(enthalpy[::every]),
+        "days": [
             {
-                "label": output.name.removesuffix("_liquid_fraction").replace(".", ": "),
-                "column": f"state/{output.name}",
-                "rows": [
-                    ["smallest liquid fraction", f"{fraction.min():.3f}"],
-                    ["largest liquid fraction", f"{fraction.max():.3f}"],
-                    ["mean liquid fraction", f"{fraction.mean():.3f}"],
-                ],
+                "label": f"{what}, {day}",
+                "temperature": _rounded(temperature[rows]),
+                "enthalpy": _rounded(enthalpy[rows]),
             }
-        )
-    return entries
+            for what, day, rows in days
+        ],
+        **({} if law is None else {"law_temperature": _rounded(law[0]), "law_enthalpy": _rounded(law[1])}),
+        "rows": [
+            ["liquid fraction at the start", f"{fraction[0]:.3f}"],
+            ["smallest liquid fraction", f"{fraction.min():.3f}"],
+            ["largest liquid fraction", f"{fraction.max():.3f}"],
+            ["mean liquid fraction", f"{fraction.mean():.3f}"],
+            ["most heat taken up within a day", f"{moved:.0f} kJ/kg"],
+        ],
+    }
+
+
+def _telling_days(
+    run: ModelRun, study: Study, enthalpy: npt.NDArray[np.float64]
+) -> list[tuple[str, str, npt.NDArray[np.intp]]]:
+    """The coldest and the warmest whole day that are compared, and the one that moves most heat."""
+    index = run.results.index
+    day = index.tz_localize(None).normalize()
+    whole = round(86400.0 / run.simulation.step_seconds)
+    rows = {date: np.flatnonzero((day == date) & (index >= study.compared_from)) for date in day.unique()}
+    rows = {date: at for date, at in rows.items() if at.size >= whole}
+    if len(rows) < 3:
+        return []
+    mean = {date: float(enthalpy[at].mean()) for date, at in rows.items()}
+    swing = {date: float(np.ptp(enthalpy[at])) for date, at in rows.items()}
+    chosen = {
+        "coldest": min(mean, key=mean.__getitem__),
+        "warmest": max(mean, key=mean.__getitem__),
+        "most heat moved": max(swing, key=swing.__getitem__),
+    }
+    return [(what, f"{date:%d %b %Y}", rows[date]) for what, date in chosen.items()]
+
+
+def _rounded(values: npt.NDArray[np.float64]) -> list[float]:
+    return [round(float(value), 4) for value in values]
 
 
 def _ledger(run: ModelRun) -> dict[str, Any]:

@@ -27,6 +27,7 @@ from mascarin.simulation import Simulation
 from mascarin.study.description import IdentificationPlan, SensitivityPlan, StudyFile, Variant, read_study
 from mascarin.study.fitting import fit_parameters, identify, problem
 from mascarin.study.keeping import Workspace
+from mascarin.study.melting import melting_layers
 from mascarin.study.places import Faults, Places
 from mascarin.study.screening import factors, screen
 from mascarin.study.sources import filled, find, open_climate, open_measurements, require_one_clock
@@ -305,9 +306,10 @@ class Study:
             return self.building.replace(self.file.variants[variant].changes)
 
     def whole(self, variant: str | None = None) -> Simulation:
-        """A model over the whole record, with how far its phase-change layers have melted."""
+        """A model over the whole record, with the state of its phase-change layers."""
         building = self.building_of(variant)
-        states = [output.name for output in building.outputs() if output.kind == "liquid_fraction"]
+        seen = {building.output(sensor.output).name for sensor in self.file.sensors.values()}
+        states = [name for layer in melting_layers(building) for name in layer.outputs if name not in seen]
         return self._once(("whole", variant), lambda: self._simulate(building, self.start, self.end, states))
 
     def short(self, variant: str | None = None) -> Simulation:
@@ -381,12 +383,13 @@ class Study:
         if variant is None:
             return plan
         known = {parameter.path for parameter in self.building_of(variant).parameters()}
+        own = self.file.variants[variant]
         shared = {
             path: free
             for path, free in plan.parameters.items()
-            if self.building.parameter(path).path in known
+            if not own.alone and self.building.parameter(path).path in known
         }
-        return plan.model_copy(update={"parameters": shared | self.file.variants[variant].parameters})
+        return plan.model_copy(update={"parameters": shared | own.parameters})
 
     @cached_property
     def observation(self) -> Observation:

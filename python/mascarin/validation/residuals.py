@@ -55,6 +55,8 @@ class Link:
         What 95 % of unrelated series with the same memory stay below. [-]
     slope : float
         Change of the residual per unit of the driver. [unit per unit of the driver]
+    lags, correlations : tuple of float
+        The correlation at each lag looked at; NaN where there is none. [h], [-]
     """
 
     driver: str
@@ -62,6 +64,8 @@ class Link:
     lag: float
     limit: float
     slope: float
+    lags: tuple[float, ...] = ()
+    correlations: tuple[float, ...] = ()
 
     @property
     def real(self) -> bool:
@@ -186,6 +190,10 @@ class Examination:
             "correlation": {link.driver: _number(link.correlation) for link in self.links},
             "correlation_lag": {link.driver: link.lag for link in self.links},
             "correlation_band": max(limits, default=None),
+            "cross_lags": list(self.links[0].lags) if self.links else [],
+            "cross_correlation": {
+                link.driver: [_number(value) for value in link.correlations] for link in self.links
+            },
             "daily_cycle": cycle,
         }
 
@@ -411,21 +419,25 @@ def _link(name: str, r: Floats, driver: Floats, step: float) -> Link:
     most = min(int(_DRIVER_LAG * 3600.0 / step), r.size // 4)
     every = max(1, round(900.0 / step))
     best, best_lag = math.nan, 0
-    for lag in range(0, most + 1, every):
+    looked = range(0, most + 1, every)
+    found = dict.fromkeys(looked, math.nan)
+    for lag in looked:
         a, b = r[lag:], driver[: r.size - lag]
         both = np.isfinite(a) & np.isfinite(b)
         if both.sum() < _FEWEST or np.ptp(a[both]) == 0.0 or np.ptp(b[both]) == 0.0:
             continue
         value = float(np.corrcoef(a[both], b[both])[0, 1])
+        found[lag] = value
         if math.isnan(best) or abs(value) > abs(best):
             best, best_lag = value, lag
+    lags, values = tuple(lag * step / 3600.0 for lag in looked), tuple(found.values())
     if math.isnan(best):
-        return Link(name, math.nan, 0.0, math.inf, math.nan)
+        return Link(name, math.nan, 0.0, math.inf, math.nan, lags, values)
     a, b = r[best_lag:], driver[: r.size - best_lag]
     both = np.isfinite(a) & np.isfinite(b)
     slope = best * float(np.std(a[both]) / np.std(b[both]))
     limit = min(_SEARCHED * correlate(a, b)[1], 1.0)
-    return Link(name, best, best_lag * step / 3600.0, limit, slope)
+    return Link(name, best, best_lag * step / 3600.0, limit, slope, lags, values)
 
 
 def _daily_cycle(series: Floats, hours: Floats) -> DailyCycle:

@@ -1,0 +1,60 @@
+"""Phase-change layers in a study: the law's curve in closed form, and where a run was."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mascarin.climate import Climate, Measurements
+from mascarin.examples import STUDIES
+from mascarin.model import load
+from mascarin.model.gamma import peak_capacity
+from mascarin.simulation import Simulation
+from mascarin.study.melting import law_curve, melting_layers, path
+
+CELL = load(STUDIES["lgi"].with_name("building.yaml"))
+TABLE = STUDIES["lgi"].with_name("lgi_virtual.csv")
+
+
+def test_the_curve_holds_the_latent_heat_and_the_peak_of_the_law() -> None:
+    (layer,) = melting_layers(CELL)
+    assert (layer.surface, layer.layer, layer.material) == ("ceiling", "energain", "energain")
+    assert layer.faces == ("ceiling.outside_temperature", "ceiling.interface_1_temperature")
+    curve = law_curve(layer.of(CELL), 23.4 - 8.0, 23.4 + 8.0)
+    assert curve is not None
+    temperature, enthalpy = curve
+    # From wholly solid to wholly liquid: 8 K of the one, the latent heat, 8 K of the other.
+    assert enthalpy[-1] - enthalpy[0] == pytest.approx(8 * 3.134 + 71.0 + 8 * 2.833, rel=1e-6)
+    # The specific heat in the middle; width 1 K is gamma 0.04 with a step of 0.01 K.
+    peak = np.gradient(enthalpy, temperature, edge_order=2).max() * 1000.0
+    assert peak == pytest.approx(peak_capacity(0.04, (3134.0, 2833.0), 71000.0, 0.01), rel=0.01)
+
+
+def test_a_layer_at_one_temperature_is_on_its_law() -> None:
+    """At the start of a run all has one temperature, and the engine's enthalpy is the curve's."""
+    (layer,) = melting_layers(CELL)
+    columns = ("air_temperature", "relative_humidity", "wind_speed", "wind_direction", "pressure")
+    names = ("outdoor_air", *columns[1:])
+    climate = Climate.from_table(
+        TABLE,
+        timezone="UTC+4",
+        columns=dict(zip(columns, names, strict=True))
+        | {k: k for k in ("global_horizontal", "diffuse_horizontal")},
+        latitude=-21.34,
+        longitude=55.48,
+        altitude=55.0,
+    )
+    for start in (18.0, 23.4, 25.0):
+        results = Simulation(
+            CELL,
+            climate,
+            start="2010-08-10",
+            end="2010-08-10T00:15",
+            outputs=list(layer.outputs),
+            initial=start,
+            measurements=Measurements.from_table(TABLE, timezone="UTC+4", columns=["slab_underside"]),
+        ).run()
+        _, enthalpy = path(results, CELL, layer)
+        curve = law_curve(layer.of(CELL), start, start + 1.0)
+        assert curve is not None
+        assert enthalpy[0] == pytest.approx(curve[1][0], abs=1e-9)
