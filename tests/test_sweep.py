@@ -15,7 +15,7 @@ from mascarin.climate import Climate, Measurements
 from mascarin.errors import InputError, SolverError
 from mascarin.model import Building, load
 from mascarin.simulation import Failure, Simulation, simulate
-from mascarin.sweep import Store, sweep, sweep_into
+from mascarin.sweep import Statistic, Store, latin_hypercube, sweep, sweep_into
 from mascarin.sweep import workers as sweep_workers
 from study_support import BUILDING, drivers, open_climate
 from sweep_support import Forgetful, always_deadly, coldest, deadly, warmest
@@ -291,3 +291,29 @@ def test_failing_members_are_kept_with_their_reason(setting: Setting, tmp_path: 
     assert not np.isnan(found[JOINT][3]).any()
     assert kept.table()["failure"][2] == "step 4: the wall did not converge"
     assert kept.dataset().attrs["failures"] == found.attrs["failures"]
+
+
+def test_statistics_in_words(setting: Setting) -> None:
+    series = setting.sweep(SOME)[JOINT]
+    words = [f"{kind}:{JOINT}" for kind in ("min", "mean", "max", "sd")]
+    words += [f"above:12:{JOINT}", f"below:12:{JOINT}"]
+    found = setting.sweep(SOME, objectives={text: Statistic.read(text) for text in words})
+    np.testing.assert_allclose(found[words[1]], series.mean("time"), rtol=1e-14)
+    np.testing.assert_allclose(found[words[3]], series.std("time"), rtol=1e-12)
+    np.testing.assert_array_equal(found[words[4]], (series[:, 1:] > 12.0).sum("time"))
+    np.testing.assert_array_equal(found[words[4]] + found[words[5]], 48.0)
+    for text in ("mx:a", "max", "above:a", "max:1:a", "above::a"):
+        with pytest.raises(InputError, match="objective: found"):
+            Statistic.read(text)
+
+
+def test_members_are_drawn_evenly_and_again_the_same(building: Building) -> None:
+    drawn = latin_hypercube(building, 50, seed=3, paths=[K, FILM])
+    parameter = building.parameter(K)
+    strata = (drawn[K].to_numpy() - parameter.low) / (parameter.high - parameter.low) * 50
+    assert sorted(strata.astype(int).tolist()) == list(range(50))
+    assert drawn.equals(latin_hypercube(building, 50, seed=3, paths=[K, FILM]))
+    assert not drawn.equals(latin_hypercube(building, 50, seed=4, paths=[K, FILM]))
+    assert "site.latitude" not in latin_hypercube(building, 2, seed=3)
+    with pytest.raises(InputError, match="structural"):
+        latin_hypercube(building, 2, seed=3, paths=["site.latitude"])

@@ -57,7 +57,10 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         ),
         Command("cite", "mascarin.commands.model:cite", "List the sources that a building rests on."),
     ),
-    "Run": (Command("run", "mascarin.commands.run:run", "Run a building in a climate."),),
+    "Run": (
+        Command("run", "mascarin.commands.run:run", "Run a building in a climate."),
+        Command("sweep", "mascarin.commands.sweep:sweep", "Run many members of a building into a folder."),
+    ),
     "Prove": (
         Command(
             "study", "mascarin.commands.study:study", "Compare, identify and corroborate on measurements."
