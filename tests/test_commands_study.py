@@ -41,13 +41,29 @@ def test_sensitivity_ranks_every_parameter(
     table = pd.read_csv(tmp_path / "tables" / "sensitivity.csv")
     assert len(table) == 2 * len(joint)
     assert {path.name for path in (tmp_path / "figures").iterdir()} == {
-        f"{sensor}-{kind}.svg" for sensor in ("joint", "core") for kind in ("spectrum", "tornado")
+        f"{sensor}-{kind}.svg" for sensor in ("joint", "core") for kind in ("spectrum", "tornado", "day")
     }
     # Again, from what was kept: the same, as a table.
     code, printed, _ = run(capsys, "sensitivity", str(bench.study), "-o", str(tmp_path))
     lines = printed.splitlines()
     assert lines[0].split() == ["sensor", "parameter", "share", "low", "high"]
     assert lines[1].split()[:2] == ["joint", "materials.insulation.conductivity"]
+
+
+def test_sensitivity_by_another_method(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("sensitivity", str(bench.study), "-o", str(tmp_path), "--method", "morris", "--json")
+    code, printed, _ = run(capsys, *words)
+    assert code == 0
+    content = json.loads(printed)
+    assert ["method", "morris"] in content["sensitivity_design"]
+    assert "spectra" not in content
+    core = content["sensitivity"]["core"]
+    assert max(core, key=lambda path: core[path]["share"]) == "sensors.core.depth"
+    assert {path.name for path in (tmp_path / "figures").iterdir()} == {
+        "joint-tornado.svg", "core-tornado.svg",
+    }  # fmt: skip
 
 
 def test_sensitivity_needs_no_plan_of_its_own(

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from mascarin.errors import InputError
 from mascarin.sensitivity.factors import Factor
-from mascarin.sensitivity.spectral import Accumulator, analyse, batches, design, run
+from mascarin.sensitivity.runs import batches, run
+from mascarin.sensitivity.spectral import Accumulator, analyse, design
 
 Floats = NDArray[np.float64]
 

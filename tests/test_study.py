@@ -89,7 +89,9 @@ def test_only_json_on_stdout(done: Done) -> None:
 
 def test_the_files_that_are_left(done: Done) -> None:
     names = {path.relative_to(done.out).as_posix() for path in done.out.rglob("*") if path.is_file()}
-    figures = {f"figures/{s}{kind}.svg" for s in ("joint", "core") for kind in ("", "-spectrum", "-tornado")}
+    figures = {
+        f"figures/{s}{kind}.svg" for s in ("joint", "core") for kind in ("", "-spectrum", "-tornado", "-day")
+    }
     tables = {
         f"tables/{name}.csv"
         for name in ("metrics", "parameters", "criteria", "quality", "series", "sensitivity")

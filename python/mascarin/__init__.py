@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from mascarin.climate import Climate as Climate
     from mascarin.materials.dsc import from_dsc as from_dsc
     from mascarin.model import load as load
+    from mascarin.sensitivity import screen as screen
     from mascarin.simulation import simulate as simulate
     from mascarin.state_space import state_space as state_space
     from mascarin.study import Study as Study
@@ -29,6 +30,7 @@ _HOME: Final = {
     "calibrate": "mascarin.calibration",
     "from_dsc": "mascarin.materials.dsc",
     "load": "mascarin.model",
+    "screen": "mascarin.sensitivity",
     "simulate": "mascarin.simulation",
     "state_space": "mascarin.state_space",
     "sweep": "mascarin.sweep",
@@ -41,6 +43,7 @@ __all__ = [
     "calibrate",
     "from_dsc",
     "load",
+    "screen",
     "simulate",
     "state_space",
     "sweep",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from cyclopts import Parameter
 
@@ -54,12 +54,13 @@ def sensitivity(
     /,
     *,
     out: Annotated[Path, Parameter(alias="-o")],
+    method: Literal["spectral", "rbd-fast", "sobol", "morris"] | None = None,
     as_json: AsJson = False,
 ) -> None:
     """Find which parameters of a study matter.
 
-    Spectral sensitivity over every parameter that has a range, on the days of the identification. Survives
-    interruption as the whole study does, which goes on from what is done here.
+    Over every parameter that has a range, on the days of the identification. Survives interruption as the
+    whole study does, which goes on from what is done here.
 
     Parameters
     ----------
@@ -67,10 +68,12 @@ def sensitivity(
         Study file (YAML), or the name of a study that comes with Mascarin.
     out : Path
         Folder for sensitivity.json, a table, figures, and unfinished work.
+    method : str
+        In the place of the study's; all but spectral need the package SALib.
     """
     from mascarin.study import parts
 
-    content = parts.sensitivity(_open(file), out)
+    content = parts.sensitivity(_open(file), out, method=method)
     if as_json:
         print_json(content)
         return

@@ -150,3 +150,20 @@ def check_factors(factors: Sequence[Factor]) -> tuple[Factor, ...]:
             raise InputError(msg)
         seen.add(factor.path)
     return tuple(factors)
+
+
+def grouped(factors: Sequence[Factor]) -> tuple[tuple[str, ...], NDArray[np.int64]]:
+    """Names of what is judged, in order of appearance, and which of them each factor belongs to.
+
+    Raises
+    ------
+    InputError
+        When a group bears the path of a parameter.
+    """
+    names: dict[str, int] = {}
+    for factor in factors:
+        if factor.group is None and factor.path in {f.group for f in factors}:
+            msg = f"'{factor.path}' is the path of a parameter and the name of a group: rename the group"
+            raise InputError(msg)
+        names.setdefault(factor.group or factor.path, len(names))
+    return tuple(names), np.array([names[f.group or f.path] for f in factors], dtype=np.int64)

@@ -200,6 +200,37 @@ def tornado(result: Sensitivity, output: str, *, top: int = 15) -> Figure:
     return figure
 
 
+def save_all(
+    result: Sensitivity, output: str, folder: Path, stem: str, hour: ArrayLike | None = None
+) -> list[Path]:
+    """Write every figure that a method can give of one output.
+
+    Parameters
+    ----------
+    result : Sensitivity
+        The analysis, of any method; spectra and shares over the day are those of the spectral one.
+    output : str
+        Which output.
+    folder : Path
+        Where to.
+    stem : str
+        File names begin with it.
+    hour : array_like, shape (T,), optional
+        Hour of the day of each time, see `shares_over_time`. [h]
+
+    Returns
+    -------
+    list of Path
+        What was written.
+    """
+    figures = {"tornado": tornado(result, output)}
+    if isinstance(result, SpectralSensitivity):
+        figures["spectrum"] = spectrum(result, output)
+        if result.variance_t[:, result.output_index(output)].any():
+            figures["day"] = shares_over_time(result, output, hour=hour)
+    return [save(figure, folder / f"{stem}-{kind}.svg") for kind, figure in figures.items()]
+
+
 def save(figure: Figure, path: Path) -> Path:
     """Write a figure as SVG; the file appears only when it is complete.
 

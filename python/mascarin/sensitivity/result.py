@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Floats = NDArray[np.float64]
+
+VARIANCE: Final = "first-order share of the variance"
+"""What `Sensitivity.share` is, unless a method says otherwise."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -32,7 +35,7 @@ class Sensitivity:
     units : tuple of str, length S
         Unit of each output.
     share : ndarray, shape (G, S)
-        First-order share of the variance, summed over time before dividing. [-]
+        Share of the variance, summed over time before dividing; see `measure`. [-]
     low, high : ndarray, shape (G, S)
         Confidence interval of the share. [-]
     effect : ndarray, shape (G, S)
@@ -48,6 +51,11 @@ class Sensitivity:
         Of the random numbers.
     warnings : tuple of str
         What a reader must know.
+    measure : str
+        What `share` is, in words: the first-order share for all methods but Morris'.
+    total, total_low, total_high : ndarray, shape (G, S), optional
+        Share that goes when the parameter is held, interactions included, with its interval; None for
+        methods that do not tell. [-]
     """
 
     method: str
@@ -63,6 +71,10 @@ class Sensitivity:
     runs: int
     seed: int
     warnings: tuple[str, ...] = field(default=())
+    measure: str = VARIANCE
+    total: Floats | None = None
+    total_low: Floats | None = None
+    total_high: Floats | None = None
 
     @property
     def rest(self) -> Floats:
@@ -127,6 +139,7 @@ class Sensitivity:
                     "low": _number(self.low[i, s]),
                     "high": _number(self.high[i, s]),
                     "effect": _number(self.effect[i, s]),
+                    **self._totals(i, s),
                 }
                 for i, name in enumerate(self.names)
             }
@@ -144,8 +157,16 @@ class Sensitivity:
         ]
         return pd.DataFrame(rows, columns=["output", "parameter", *self._columns()])
 
+    def _totals(self, i: int, s: int) -> dict[str, float | None]:
+        """The total share with its interval, where the method tells it."""
+        if self.total is None or self.total_low is None or self.total_high is None:
+            return {}
+        values = (self.total[i, s], self.total_low[i, s], self.total_high[i, s])
+        return dict(zip(_TOTALS, map(_number, values), strict=True))
+
     def _columns(self) -> list[str]:
-        return ["share", "low", "high", "effect", "unit", "significant"]
+        columns = ["share", "low", "high", "effect", "unit", "significant"]
+        return columns if self.total is None else [*columns, *_TOTALS]
 
     def _row(self, i: int, s: int) -> tuple[object, ...]:
         return (
@@ -155,7 +176,11 @@ class Sensitivity:
             float(self.effect[i, s]),
             self.units[s],
             bool(self.significant[i, s]),
+            *self._totals(i, s).values(),
         )
+
+
+_TOTALS: Final = ("total", "total_low", "total_high")
 
 
 def _number(value: float) -> float | None:

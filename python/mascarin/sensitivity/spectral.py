@@ -33,7 +33,7 @@ https://doi.org/10.1214/aos/1176345462
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -41,8 +41,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mascarin.errors import InputError
-from mascarin.sensitivity.factors import Factor, Floats, check_factors, unit_factors
+from mascarin.sensitivity.factors import Factor, Floats, check_factors, grouped, unit_factors
+from mascarin.sensitivity.jackknife import Ratio, interval
 from mascarin.sensitivity.result import Sensitivity
+from mascarin.sensitivity.runs import Collector
 from mascarin.sensitivity.spectrum import Peak, Spectrum, power_threshold
 
 Complexes = NDArray[np.complex128]
@@ -89,6 +91,11 @@ class Design:
     seed: int
 
     @property
+    def method(self) -> str:
+        """Name of the method."""
+        return "spectral"
+
+    @property
     def replicates(self) -> int:
         """Number of replicates. [-]"""
         return int(self.frequencies.shape[0])
@@ -130,6 +137,10 @@ class Design:
     def members(self, group: int) -> Integers:
         """Positions of the factors of one group."""
         return np.flatnonzero(self.group_of == group)
+
+    def collector(self, outputs: Sequence[str], units: Sequence[str] | None = None) -> Accumulator:
+        """What takes the outputs of the runs and analyses them."""
+        return Accumulator(self, outputs, units=units)
 
 
 def design(
@@ -173,7 +184,7 @@ def design(
     """
     chosen = unit_factors(factors) if isinstance(factors, int) else factors
     checked = check_factors(chosen)
-    groups, group_of = _grouped(checked)
+    groups, group_of = grouped(checked)
     if replicates < 3:
         msg = f"replicates: found {replicates}, expected at least 3: intervals come from their spread"
         raise InputError(msg)
@@ -187,204 +198,6 @@ def design(
     dealt = np.stack([_deal(pool, len(groups), m, rng) for _ in range(replicates)])
     phases = _phases(group_of, replicates, rng)
     return Design(checked, groups, group_of, m, n, dealt, phases, seed)
-
-
-class Accumulator:
-    """Takes the outputs of a design's runs as they come and keeps only what the analysis needs.
-
-    One replicate's outputs are held until it is complete; what stays of it are the coefficients of the
-    parameters' own lines (``8 G M T S`` bytes).
-
-    Parameters
-    ----------
-    design : Design
-        The runs.
-    outputs : sequence of str, length S
-        Output names.
-    units : sequence of str, length S, optional
-        Their units.
-    """
-
-    def __init__(self, design: Design, outputs: Sequence[str], *, units: Sequence[str] | None = None) -> None:
-        self.design = design
-        self.outputs = tuple(outputs)
-        self.units = tuple(units) if units is not None else ("",) * len(self.outputs)
-        if not self.outputs or len(self.units) != len(self.outputs):
-            msg = f"{len(self.outputs)} outputs, {len(self.units)} units: give at least one, each with a unit"
-            raise InputError(msg)
-        self._shape: tuple[int, int] | None = None
-        self._filling: dict[int, tuple[Floats, NDArray[np.bool_]]] = {}
-        self._done: dict[int, _Replicate] = {}
-
-    @property
-    def missing(self) -> int:
-        """Number of runs whose outputs have not come yet. [-]"""
-        held = sum(int(filled.sum()) for _, filled in self._filling.values())
-        return len(self.design) - self.design.runs * len(self._done) - held
-
-    def add(self, first: int, values: ArrayLike) -> None:
-        """Outputs of consecutive runs.
-
-        Parameters
-        ----------
-        first : int
-            Number of the first run among all runs of the design, from 0.
-        values : array_like, shape (m, T, S)
-            Outputs by run, time and output; (m, T) when there is one output. [unit of each output]
-
-        Raises
-        ------
-        InputError
-            When shapes do not fit, a run comes twice, or a value is not a finite number.
-        """
-        y = self._checked(first, np.asarray(values, dtype=np.float64))
-        n = self.design.runs
-        done = 0
-        while done < y.shape[0]:
-            replicate, row = divmod(first + done, n)
-            take = min(n - row, y.shape[0] - done)
-            self._fill(replicate, row, y[done : done + take])
-            done += take
-
-    def result(self, *, confidence: float = 0.95) -> SpectralSensitivity:
-        """The analysis of all runs.
-
-        Parameters
-        ----------
-        confidence : float
-            Of the intervals. [-]
-
-        Raises
-        ------
-        InputError
-            While runs are missing.
-        """
-        if self.missing:
-            msg = (
-                f"{self.missing} of {len(self.design)} runs have not been added: the analysis needs them all"
-            )
-            raise InputError(msg)
-        if not 0.0 < confidence < 1.0:
-            msg = f"confidence: found {confidence:g}, expected a number between 0 and 1, such as 0.95"
-            raise InputError(msg)
-        parts = [self._done[r] for r in range(self.design.replicates)]
-        return _analyse(self.design, parts, self.outputs, self.units, confidence)
-
-    def _checked(self, first: int, y: Floats) -> Floats:
-        if y.ndim == 2 and len(self.outputs) == 1:
-            y = y[:, :, None]
-        if y.ndim != 3 or y.shape[2] != len(self.outputs) or y.shape[1] == 0:
-            msg = f"outputs of shape {y.shape}: expected (runs, times, {len(self.outputs)} outputs)"
-            raise InputError(msg)
-        if self._shape is None:
-            self._shape = (y.shape[1], y.shape[2])
-        if y.shape[1:] != self._shape:
-            msg = (
-                f"outputs at {y.shape[1]} times, before there were {self._shape[0]}: every run needs the same"
-            )
-            raise InputError(msg)
-        if first < 0 or first + y.shape[0] > len(self.design):
-            msg = f"runs {first} to {first + y.shape[0] - 1}: the design has runs 0 to {len(self.design) - 1}"
-            raise InputError(msg)
-        bad = ~np.isfinite(y)
-        if bad.any():
-            run, time, output = (int(k) for k in np.argwhere(bad)[0])
-            msg = (
-                f"run {first + run}: '{self.outputs[output]}' is not a finite number at time {time}; a run "
-                f"that failed cannot be left out of a spectral design: narrow the range that makes it fail"
-            )
-            raise InputError(msg)
-        return y
-
-    def _fill(self, replicate: int, row: int, y: Floats) -> None:
-        n = self.design.runs
-        if replicate in self._done:
-            msg = f"run {replicate * n + row} was added before"
-            raise InputError(msg)
-        if replicate not in self._filling:
-            self._filling[replicate] = (np.empty((n, *y.shape[1:])), np.zeros(n, dtype=np.bool_))
-        held, filled = self._filling[replicate]
-        if filled[row : row + y.shape[0]].any():
-            again = row + int(np.argmax(filled[row : row + y.shape[0]]))
-            msg = f"run {replicate * n + again} was added before"
-            raise InputError(msg)
-        held[row : row + y.shape[0]] = y
-        filled[row : row + y.shape[0]] = True
-        if filled.all():
-            del self._filling[replicate]
-            self._done[replicate] = _transform(self.design, replicate, held)
-
-
-def analyse(
-    design: Design,
-    outputs: ArrayLike,
-    *,
-    names: Sequence[str] | None = None,
-    units: Sequence[str] | None = None,
-    confidence: float = 0.95,
-) -> SpectralSensitivity:
-    """Analyse outputs that are all at hand.
-
-    Parameters
-    ----------
-    design : Design
-        The runs.
-    outputs : array_like, shape (R * N,), (R * N, T) or (R * N, T, S)
-        Outputs by run, time and output, in the order of `Design.all_samples`. [unit of each output]
-    names, units : sequence of str, length S, optional
-        Names and units of the outputs.
-    confidence : float
-        Of the intervals. [-]
-    """
-    y = np.asarray(outputs, dtype=np.float64)
-    y = y.reshape((*y.shape, *(1,) * (3 - y.ndim)))
-    labels = tuple(names) if names is not None else tuple(f"y{k + 1}" for k in range(y.shape[2]))
-    accumulator = Accumulator(design, labels, units=units)
-    accumulator.add(0, y)
-    return accumulator.result(confidence=confidence)
-
-
-def run(
-    design: Design,
-    evaluate: Callable[[Floats], ArrayLike],
-    *,
-    outputs: Sequence[str],
-    units: Sequence[str] | None = None,
-    batch: int = 256,
-    confidence: float = 0.95,
-    progress: Callable[[int, int], object] | None = None,
-) -> SpectralSensitivity:
-    """Make the runs of a design in batches and analyse them.
-
-    Parameters
-    ----------
-    design : Design
-        The runs.
-    evaluate : callable
-        ``(m, P) -> (m, T, S)``: outputs of a batch of runs.
-    outputs, units : sequence of str, length S
-        Names and units of the outputs.
-    batch : int
-        Largest number of runs handed over at once. [-]
-    confidence : float
-        Of the intervals. [-]
-    progress : callable, optional
-        Called with the number of runs done and their total.
-    """
-    accumulator = Accumulator(design, outputs, units=units)
-    for first, x in batches(design, batch):
-        accumulator.add(first, evaluate(x))
-        if progress is not None:
-            progress(first + x.shape[0], len(design))
-    return accumulator.result(confidence=confidence)
-
-
-def batches(design: Design, size: int) -> Iterator[tuple[int, Floats]]:
-    """The runs of a design in order, as pairs of the first run's number and the samples (m, P)."""
-    for r in range(design.replicates):
-        x = design.samples(r)
-        for row in range(0, design.runs, size):
-            yield r * design.runs + row, x[row : row + size]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -464,18 +277,62 @@ class SpectralSensitivity(Sensitivity):
         return (*super()._row(i, s), float(self.effect_rms[i, s]), float(self.raw_share[i, s]))
 
 
+class Accumulator(Collector[Design, SpectralSensitivity]):
+    """Takes the outputs of a design's runs as they come and keeps only what the analysis needs.
+
+    What stays of a replicate are the coefficients of the parameters' own lines (``8 G M T S`` bytes).
+
+    Parameters
+    ----------
+    design : Design
+        The runs.
+    outputs : sequence of str, length S
+        Output names.
+    units : sequence of str, length S, optional
+        Their units.
+    """
+
+    def __init__(self, design: Design, outputs: Sequence[str], *, units: Sequence[str] | None = None) -> None:
+        super().__init__(design, outputs, units=units)
+        self._done: list[_Replicate] = []
+
+    def _take(self, replicate: int, y: Floats) -> None:
+        self._done.append(_transform(self.plan, replicate, y))
+
+    def _result(self, confidence: float) -> SpectralSensitivity:
+        return _analyse(self.plan, self._done, self.outputs, self.units, confidence)
+
+
+def analyse(
+    design: Design,
+    outputs: ArrayLike,
+    *,
+    names: Sequence[str] | None = None,
+    units: Sequence[str] | None = None,
+    confidence: float = 0.95,
+) -> SpectralSensitivity:
+    """Analyse outputs that are all at hand.
+
+    Parameters
+    ----------
+    design : Design
+        The runs.
+    outputs : array_like, shape (R * N,), (R * N, T) or (R * N, T, S)
+        Outputs by run, time and output, in the order of `Design.all_samples`. [unit of each output]
+    names, units : sequence of str, length S, optional
+        Names and units of the outputs.
+    confidence : float
+        Of the intervals. [-]
+    """
+    y = np.asarray(outputs, dtype=np.float64)
+    y = y.reshape((*y.shape, *(1,) * (3 - y.ndim)))
+    labels = tuple(names) if names is not None else tuple(f"y{k + 1}" for k in range(y.shape[2]))
+    accumulator = Accumulator(design, labels, units=units)
+    accumulator.add(0, y)
+    return accumulator.result(confidence=confidence)
+
+
 # --- design -------------------------------------------------------------------------------------------
-
-
-def _grouped(factors: Sequence[Factor]) -> tuple[tuple[str, ...], Integers]:
-    """Names of the groups in order of appearance and the group of each factor."""
-    names: dict[str, int] = {}
-    for factor in factors:
-        if factor.group is None and factor.path in {f.group for f in factors}:
-            msg = f"'{factor.path}' is the path of a parameter and the name of a group: rename the group"
-            raise InputError(msg)
-        names.setdefault(factor.group or factor.path, len(names))
-    return tuple(names), np.array([names[f.group or f.path] for f in factors], dtype=np.int64)
 
 
 def _pool(
@@ -635,15 +492,15 @@ def _analyse(
     for s, output in enumerate(outputs):
         real = np.stack([part.real[..., s] for part in parts])
         power = np.stack([part.power[..., s] for part in parts])
-        variance = _Ratio.variance(
+        variance = _variance(
             np.stack([part.variance[:, s] for part in parts]), np.stack([part.mean[:, s] for part in parts])
         )
         scale = max(float(np.abs(part.mean[:, s]).max()) for part in parts)
         floor = (1e-12 * scale) ** 2 + np.finfo(float).tiny
-        numerator = _Ratio.power(real, power, coherent)
+        numerator = _power(real, power, coherent)
         steady = variance.value <= floor
         variance_t[:, s] = np.where(steady, 0.0, variance.value)
-        share_t[:, :, s], low_t[:, :, s], high_t[:, :, s] = _interval(numerator, variance, quantile)
+        share_t[:, :, s], low_t[:, :, s], high_t[:, :, s] = interval(numerator, variance, quantile)
         for array in (share_t, low_t, high_t):
             array[:, steady, s] = np.nan
         effect_t[:, :, s] = (real[:, :, 0] / gain[:, :, None]).mean(axis=0)
@@ -653,9 +510,9 @@ def _analyse(
         if total.value <= floor:
             warnings.append(f"'{output}' does not depend on any of the varied parameters")
             continue
-        share[:, s], low[:, s], high[:, s] = _interval(numerator.summed(), total, quantile)
+        share[:, s], low[:, s], high[:, s] = interval(numerator.summed(), total, quantile)
         # What is left of a linear model's silence is rounding.
-        significant[:, s] = (_interval(numerator.summed(), total, strict)[1] > 0.0) & (share[:, s] > 1e-12)
+        significant[:, s] = (interval(numerator.summed(), total, strict)[1] > 0.0) & (share[:, s] > 1e-12)
         plain = np.mean([part.variance[:, s].sum() for part in parts])
         raw[:, s] = np.mean([part.raw[:, s] for part in parts], axis=0) / plain
         spectra[:, :, s] = np.stack([part.lines[:, s] / part.variance[:, s].sum() for part in parts])
@@ -688,63 +545,35 @@ def _analyse(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Ratio:
-    """One half of a share: its value from all replicates, and with each one left out.
+def _power(real: Floats, power: Floats, coherent: NDArray[np.bool_]) -> Ratio:
+    """Power of each parameter: products of different replicates, or means for groups of several.
 
-    Attributes: `value` (..., T) or (...), `without` (R, ..., T) or (R, ...).
+    `real` has shape (R, G, M, T), `power` (R, G, T).
     """
-
-    value: Floats
-    without: Floats
-
-    def summed(self) -> _Ratio:
-        """The same summed over time, the last axis."""
-        return _Ratio(self.value.sum(axis=-1), self.without.sum(axis=-1))
-
-    @staticmethod
-    def power(real: Floats, power: Floats, coherent: NDArray[np.bool_]) -> _Ratio:
-        """Power of each parameter: products of different replicates, or means for groups of several.
-
-        `real` has shape (R, G, M, T), `power` (R, G, T).
-        """
-        r = real.shape[0]
-        total = real.sum(axis=0)
-        # Mean over the other replicates of the products with replicate k.
-        products = 0.5 * np.sum(real * (total - real), axis=2) / (r - 1)
-        pairs = products.mean(axis=0)
-        mean = power.mean(axis=0)
-        mask = coherent[:, None]
-        return _Ratio(
-            np.where(mask, pairs, mean),
-            np.where(mask, (r * pairs - 2.0 * products) / (r - 2), (r * mean - power) / (r - 1)),
-        )
-
-    @staticmethod
-    def variance(variance: Floats, mean: Floats) -> _Ratio:
-        """Variance over the parameters' whole space from those within the replicates, each (R, T).
-
-        The mean of a replicate wanders a little with its phases; the variance between the means is the part
-        of the whole variance that no replicate sees.
-        """
-        r = variance.shape[0]
-        deviation = (mean - mean.mean(axis=0)) ** 2
-        between = deviation.sum(axis=0)
-        without = (between - deviation * r / (r - 1)) / (r - 2)
-        return _Ratio(
-            variance.mean(axis=0) + between / (r - 1),
-            (variance.sum(axis=0) - variance) / (r - 1) + without,
-        )
+    r = real.shape[0]
+    total = real.sum(axis=0)
+    # Mean over the other replicates of the products with replicate k.
+    products = 0.5 * np.sum(real * (total - real), axis=2) / (r - 1)
+    pairs = products.mean(axis=0)
+    mean = power.mean(axis=0)
+    mask = coherent[:, None]
+    return Ratio(
+        np.where(mask, pairs, mean),
+        np.where(mask, (r * pairs - 2.0 * products) / (r - 2), (r * mean - power) / (r - 1)),
+    )
 
 
-def _interval(above: _Ratio, below: _Ratio, quantile: float) -> tuple[Floats, Floats, Floats]:
-    """Share with its interval, from the spread of the leave-one-out values; all within [0, 1]."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = above.value / below.value
-        # Two axes more in front: parameters for the denominators.
-        under = below.without[:, None] if above.without.ndim > below.without.ndim else below.without
-        without = above.without / under
-    r = without.shape[0]
-    spread = np.sqrt((r - 1) / r * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
-    low, high = share - quantile * spread, share + quantile * spread
-    return np.clip(share, 0.0, 1.0), np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
+def _variance(variance: Floats, mean: Floats) -> Ratio:
+    """Variance over the parameters' whole space from those within the replicates, each (R, T).
+
+    The mean of a replicate wanders a little with its phases; the variance between the means is the part
+    of the whole variance that no replicate sees.
+    """
+    r = variance.shape[0]
+    deviation = (mean - mean.mean(axis=0)) ** 2
+    between = deviation.sum(axis=0)
+    without = (between - deviation * r / (r - 1)) / (r - 2)
+    return Ratio(
+        variance.mean(axis=0) + between / (r - 1),
+        (variance.sum(axis=0) - variance) / (r - 1) + without,
+    )

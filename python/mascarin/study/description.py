@@ -11,6 +11,8 @@ from mascarin.errors import InputError
 from mascarin.model.names import Name
 from mascarin.model.number import problem
 from mascarin.model.part import Part, fault, insist
+from mascarin.sensitivity.factors import DistributionName
+from mascarin.sensitivity.methods import MethodName
 from mascarin.validation.criteria import Criterion
 
 if TYPE_CHECKING:
@@ -177,14 +179,29 @@ class Quality(Part):
 
 
 class SensitivityPlan(Part):
-    """Spectral sensitivity over all parameters that have a range."""
+    """Sensitivity to all parameters that have a range; docs/sensitivity.md says which method when."""
 
+    method: MethodName = Field("spectral", description="Method; all but spectral need SALib")
     replicates: int = Field(8, ge=3, description="Independent repetitions of the design")
-    order: int | None = Field(None, ge=1, description="Harmonics counted as a parameter's own")
+    samples: int | None = Field(
+        None,
+        ge=1,
+        description="Size of a replicate: runs (spectral, rbd-fast), base points (sobol), trajectories "
+        "(morris); what the method needs when absent",
+    )
+    order: int | None = Field(
+        None, ge=1, description="Harmonics counted as a parameter's own (spectral, rbd-fast)"
+    )
     seed: int = Field(1, description="Of the random numbers")
     interval: Duration = Field("1h", description="Spacing of the outputs that are analysed")
     ranges: dict[str, tuple[float, float]] = Field(
         default_factory=dict, description="Ranges that replace those of the building"
+    )
+    distributions: dict[str, DistributionName] = Field(
+        default_factory=dict, description="Path -> distribution over its range; uniform when absent"
+    )
+    groups: dict[str, tuple[str, ...]] = Field(
+        default_factory=dict, description="Name -> paths that are judged together"
     )
     leave_out: tuple[str, ...] = Field((), description="Parameters that stay at their value")
 

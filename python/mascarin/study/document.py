@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from mascarin.calibration import Fit
     from mascarin.model import Building
+    from mascarin.sensitivity import Sensitivity
     from mascarin.sensitivity.spectral import SpectralSensitivity
     from mascarin.study.description import IdentificationPlan, StudyFile
     from mascarin.study.melting import MeltingLayer
@@ -495,22 +496,33 @@ def _facing(side: Any) -> str:
 # --- sensitivity --------------------------------------------------------------------------------------------
 
 
-def importance(study: Study, found: SpectralSensitivity) -> dict[str, Any]:
-    """Which parameters matter: shares, spectra, shares over the day."""
-    hours = _hours(study, found.share_t.shape[1])
-    return {
-        "sensitivity": found.to_dict(),
-        "sensitivity_design": [
-            ["parameters", str(len(found.names))],
-            ["runs", str(len(found.design))],
+def importance(study: Study, found: Sensitivity) -> dict[str, Any]:
+    """Which parameters matter: shares, and of the spectral method the spectra and shares over the day."""
+    from mascarin.sensitivity.spectral import SpectralSensitivity
+
+    rows = [
+        ["method", found.method],
+        ["what a share is", found.measure],
+        ["parameters", str(len(found.names))],
+        ["runs", str(found.runs)],
+        ["seed", str(found.seed)],
+    ]
+    content: dict[str, Any] = {"sensitivity": found.to_dict()}
+    if isinstance(found, SpectralSensitivity):
+        hours = _hours(study, found.share_t.shape[1])
+        rows += [
             ["replicates", str(found.design.replicates)],
             ["harmonics counted", str(found.design.order)],
-            ["seed", str(found.design.seed)],
-            *([["warning", text] for text in found.warnings]),
-        ],
-        "spectra": {output: _spectrum(found, output) for output in found.outputs},
-        "day_shares": {output: _day_shares(found, output, hours) for output in found.outputs},
-    }
+        ]
+        content["spectra"] = {output: _spectrum(found, output) for output in found.outputs}
+        content["day_shares"] = {output: _day_shares(found, output, hours) for output in found.outputs}
+    return {**content, "sensitivity_design": [*rows, *(["warning", text] for text in found.warnings)]}
+
+
+def analysed_hours(study: Study, found: Sensitivity) -> npt.NDArray[np.float64] | None:
+    """Hour of the day of each analysed time, local; None for methods that keep no times. [h]"""
+    times = getattr(found, "variance_t", None)
+    return None if times is None or len(times) < 2 else _hours(study, len(times))
 
 
 def _hours(study: Study, count: int) -> npt.NDArray[np.float64]:
@@ -532,12 +544,13 @@ def _spectrum(found: SpectralSensitivity, output: str) -> dict[str, Any]:
         "threshold": float(spectrum.threshold),
         "peaks": [
             {"frequency": peak.line, "power": peak.power, "path": peak.label or "unnamed", "harmonic": 1}
-            for peak in spectrum.peaks
+            # The strongest first: a report that shows only some shows these.
+            for peak in sorted(spectrum.peaks, key=lambda peak: -peak.power)
         ],
     }
 
 
-def _day_shares(found: Any, output: str, hours: npt.NDArray[np.float64]) -> dict[str, Any]:
+def _day_shares(found: SpectralSensitivity, output: str, hours: npt.NDArray[np.float64]) -> dict[str, Any]:
     """Shares by hour of the day of the parameters that matter most, variances added up over the days."""
     s = found.output_index(output)
     names = found.ranking(output, _SHOWN)

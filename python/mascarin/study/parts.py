@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mascarin.study.description import SensitivityPlan
-from mascarin.study.document import comparison, estimates, header, importance
+from mascarin.study.document import analysed_hours, comparison, estimates, header, importance
 from mascarin.study.keeping import Workspace, write_whole
 from mascarin.study.pipeline import Study, Teller
 from mascarin.study.writing import criteria_table, metrics_table, quality_table, write_tables
@@ -19,8 +19,12 @@ from mascarin.study.writing import criteria_table, metrics_table, quality_table,
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.sensitivity import MethodName
 
-def sensitivity(study: Study, out: Path, *, quiet: bool = False) -> dict[str, Any]:
+
+def sensitivity(
+    study: Study, out: Path, *, method: MethodName | None = None, quiet: bool = False
+) -> dict[str, Any]:
     """Which parameters matter.
 
     Parameters
@@ -29,6 +33,8 @@ def sensitivity(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
         Without a ``sensitivity`` of its own it gets the usual one.
     out : Path
         Folder for sensitivity.json, tables/sensitivity.csv and the figures.
+    method : str, optional
+        In the place of the study's, with the usual number of samples.
     quiet : bool
         No progress on stderr.
 
@@ -36,19 +42,24 @@ def sensitivity(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
     -------
     dict
         What sensitivity.json holds.
+
+    Raises
+    ------
+    InputError
+        The method cannot do what the study asks for.
     """
-    from mascarin.sensitivity.plots import save, spectrum, tornado
+    from mascarin.sensitivity.plots import save_all
 
     with Workspace(out, study.inputs()) as workspace:
         # A default of pydantic's own, so that every other key is the usual one.
         plan = study.file.sensitivity or SensitivityPlan.model_validate({})
+        if method is not None and method != plan.method:
+            plan = plan.model_copy(update={"method": method, "samples": None, "order": None})
         found = study.screened(plan, workspace, Teller(quiet))
-        drawn = {}
-        for name in found.outputs:
-            drawn[out / "figures" / f"{name}-spectrum.svg"] = spectrum(found, name)
-            drawn[out / "figures" / f"{name}-tornado.svg"] = tornado(found, name)
-        for path, figure in drawn.items():
-            save(figure, path)
+        hours = analysed_hours(study, found)
+        drawn = [
+            path for name in found.outputs for path in save_all(found, name, out / "figures", name, hours)
+        ]
         content = {**header(study, "sensitivity"), **importance(study, found)}
         _write(workspace, "sensitivity", content, {"sensitivity": found.table()}, drawn)
     return content

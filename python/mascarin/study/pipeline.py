@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from mascarin.climate.grid import Grid
     from mascarin.climate.quality import Stretch
-    from mascarin.sensitivity.spectral import SpectralSensitivity
+    from mascarin.sensitivity import Sensitivity
 
     Flags = npt.NDArray[np.bool_]
 
@@ -97,7 +97,7 @@ class Findings:
         The model before and after the identification.
     variants : dict of str to ModelRun
         Other model choices.
-    sensitivity : SpectralSensitivity or None
+    sensitivity : Sensitivity or None
         Which parameters matter.
     fit : Fit
         The identification.
@@ -116,7 +116,7 @@ class Findings:
     nominal: ModelRun
     fitted: ModelRun
     variants: dict[str, ModelRun]
-    sensitivity: SpectralSensitivity | None
+    sensitivity: Sensitivity | None
     fit: Fit
     examinations: dict[str, Examination]
     diagnosis: list[str]
@@ -491,7 +491,7 @@ class Study:
         where = f"{self.path}: criteria"
         return {run.label: judge(self.criteria, run.scores, where=where) for run in runs}
 
-    def screened(self, plan: SensitivityPlan, workspace: Workspace, tell: Teller) -> SpectralSensitivity:
+    def screened(self, plan: SensitivityPlan, workspace: Workspace, tell: Teller) -> Sensitivity:
         """Which parameters matter on the days of the identification.
 
         Parameters

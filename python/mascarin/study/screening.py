@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.climate.table import seconds_of
-from mascarin.errors import InputError, SolverError
-from mascarin.sensitivity.factors import Factor
-from mascarin.sensitivity.spectral import Accumulator, Design, SpectralSensitivity, design
+from mascarin.sensitivity.buildings import checked_range, factors_of, made
+from mascarin.sensitivity.methods import plan as design
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.model import Building
     from mascarin.progress import Progress
+    from mascarin.sensitivity import Factor, Sensitivity
+    from mascarin.sensitivity.runs import Plan
     from mascarin.simulation import Simulation
     from mascarin.study.description import SensitivityPlan
     from mascarin.study.keeping import Workspace
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 #: At most so much work is lost when a study is killed. [s]
 CHUNK_SECONDS: Final = 1.0
 _FIRST_CHUNK: Final = 8
-_NAME: Final = "sensitivity"
 
 
 def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> None:
@@ -39,46 +39,56 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
     InputError
         Unknown or structural path, a range the wrong way round or beyond what the parameter can be.
     """
-    for path, (low, high) in plan.ranges.items():
+    for path, span in plan.ranges.items():
         with places.blame("sensitivity", "ranges", path):
-            parameter = building.parameter(path)
-            if parameter.structural:
-                raise InputError(f"is structural ({parameter.reason}) and cannot be varied; leave it out")
-            if not parameter.lower <= low < high <= parameter.upper:
-                raise InputError(
-                    f"found [{low:g}, {high:g}] {parameter.unit}, expected a lower and a higher value from "
-                    f"{parameter.lower:g} to {parameter.upper:g}; correct the range"
-                )
+            checked_range(building, path, span)
+    for path in plan.distributions:
+        with places.blame("sensitivity", "distributions", path):
+            building.parameter(path)
+    for name, paths in plan.groups.items():
+        with places.blame("sensitivity", "groups", name):
+            for path in paths:
+                building.parameter(path)
     for path in plan.leave_out:
         with places.blame("sensitivity", "leave_out"):
             building.parameter(path)
     with places.blame("sensitivity"):
-        factors(building, plan)
+        runs_of(plan, factors(building, plan))
 
 
 def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
-    """All parameters that act and have a range, with the study's own ranges in place of the building's.
-
-    A number that the description knows to be idle (a wind exponent where no film depends on wind) takes no
-    part: its share is zero, and an estimate could only add noise to that.
+    """All parameters that act and have a range, as the plan says.
 
     Raises
     ------
     InputError
-        A path does not exist.
+        As for `mascarin.sensitivity.factors_of`.
     """
-    ranges = {building.parameter(path).path: span for path, span in plan.ranges.items()}
-    fixed = {building.parameter(path).path for path in plan.leave_out}
-    found = []
-    for parameter in building.parameters():
-        low, high = ranges.get(parameter.path, (parameter.low, parameter.high))
-        if parameter.reason is None and parameter.path not in fixed and low < high:
-            found.append(Factor(parameter.path, low, high, parameter.unit))
-    if not found:
-        raise InputError(
-            "found no parameter with a range, expected at least one; give ranges: {path: [low, high]}"
-        )
-    return found
+    return factors_of(
+        building,
+        ranges=plan.ranges,
+        distributions=plan.distributions,
+        groups=plan.groups,
+        leave_out=plan.leave_out,
+    )
+
+
+def runs_of(plan: SensitivityPlan, chosen: list[Factor]) -> Plan:
+    """The runs that a plan asks for.
+
+    Raises
+    ------
+    InputError
+        Numbers or groups that the method cannot use; SALib is not installed.
+    """
+    return design(
+        chosen,
+        plan.method,
+        replicates=plan.replicates,
+        samples=plan.samples,
+        order=plan.order,
+        seed=plan.seed,
+    )
 
 
 def screen(
@@ -89,15 +99,15 @@ def screen(
     names: tuple[str, ...],
     workspace: Workspace,
     progress: Progress,
-) -> SpectralSensitivity:
-    """Make the runs of the spectral design and analyse them.
+) -> Sensitivity:
+    """Make the runs and analyse them.
 
     Parameters
     ----------
     simulation : Simulation
         Covers the lead and the period that is analysed.
     plan : SensitivityPlan
-        Replicates, order, seed.
+        Method, replicates, seed.
     chosen : list of Factor
         What varies.
     lead_seconds : float
@@ -114,34 +124,25 @@ def screen(
     SolverError
         A run failed; the text names its parameters.
     """
-    runs = design(chosen, replicates=plan.replicates, order=plan.order, seed=plan.seed)
-    accumulator = Accumulator(runs, names, units=[output.unit for output in simulation.outputs])
+    runs = runs_of(plan, chosen)
+    collector = runs.collector(names, [output.unit for output in simulation.outputs])
     done = np.zeros(len(runs), dtype=bool)
-    for first, values in workspace.kept(_NAME):
-        accumulator.add(first, values)
+    name = f"sensitivity-{plan.method}"
+    for first, values in workspace.kept(name):
+        collector.add(first, values)
         done[first : first + len(values)] = True
-    positions = [simulation.position(path) for path in runs.paths]
+    skipped = round(lead_seconds / simulation.step_seconds)
     every = max(1, round(seconds_of(plan.interval) / simulation.step_seconds))
     pace = _Pace()
     for first, samples in _missing(runs, done, pace):
         began = time.monotonic()
-        vectors = np.tile(simulation.vector({}), (len(samples), 1))
-        vectors[:, positions] = samples
-        records, _, failures = simulation.ensemble(
-            vectors, record_from=round(lead_seconds / simulation.step_seconds), record_every=every
-        )
-        if failures:
-            worst = failures[0]
-            raise SolverError(
-                f"sensitivity: run {first + worst.member} failed: {worst.reason} Its parameters: "
-                + ", ".join(f"{p}={v:g}" for p, v in zip(runs.paths, samples[worst.member], strict=True))
-            )
-        workspace.keep(_NAME, first, records)
-        accumulator.add(first, records)
+        records = made(simulation, runs.paths, samples, first, start=skipped, every=every)
+        workspace.keep(name, first, records)
+        collector.add(first, records)
         done[first : first + len(samples)] = True
         pace.learn(len(samples), time.monotonic() - began)
         progress.update(int(done.sum()), len(runs))
-    return accumulator.result()
+    return collector.result()
 
 
 class _Pace:
@@ -156,7 +157,7 @@ class _Pace:
         self.size = int(np.clip(whole, 1, 2048))
 
 
-def _missing(runs: Design, done: npt.NDArray[np.bool_], pace: _Pace) -> Iterator[tuple[int, Array]]:
+def _missing(runs: Plan, done: npt.NDArray[np.bool_], pace: _Pace) -> Iterator[tuple[int, Array]]:
     """Runs that have not been made, in consecutive pieces of one replicate."""
     for replicate in range(runs.replicates):
         start = replicate * runs.runs

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.study.document import document
+from mascarin.study.document import analysed_hours, document
 from mascarin.study.keeping import Workspace, write_whole
 from mascarin.study.pipeline import DRIVERS
 
@@ -161,23 +161,21 @@ def _series(study: Study, findings: Findings) -> Any:
 
 
 def _figures(study: Study, findings: Findings, folder: Path) -> list[Path]:
-    from mascarin.sensitivity.plots import save, spectrum, tornado
+    from mascarin.sensitivity.plots import save, save_all
 
     observation = study.observation
     models = {
         run.label: observation.simulated(run.results.index, run.results.records)
         for run in (findings.nominal, findings.fitted)
     }
-    drawn: dict[Path, Any] = {}
+    drawn = []
     for s, name in enumerate(observation.names):
         curves = {label: values[:, s] for label, values in models.items()}
-        drawn[folder / f"{name}.svg"] = _comparison(study, s, curves)
+        drawn.append(save(_comparison(study, s, curves), folder / f"{name}.svg"))
         if findings.sensitivity is not None:
-            drawn[folder / f"{name}-spectrum.svg"] = spectrum(findings.sensitivity, name)
-            drawn[folder / f"{name}-tornado.svg"] = tornado(findings.sensitivity, name)
-    for path, figure in drawn.items():
-        save(figure, path)
-    return list(drawn)
+            hours = analysed_hours(study, findings.sensitivity)
+            drawn += save_all(findings.sensitivity, name, folder, name, hours)
+    return drawn
 
 
 def _comparison(study: Study, s: int, models: dict[str, Any]) -> Any:
