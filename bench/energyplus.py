@@ -28,7 +28,7 @@ from mascarin.climate import CHANNELS, Climate
 from mascarin.model import Building
 from mascarin.model.envelope import Side, Surface
 from mascarin.model.geometry import Polygon, parents, view_factors
-from mascarin.model.material import PhaseChangeMaterial, Resistance, TableLaw, TanhLaw, phase
+from mascarin.model.material import PhaseChangeMaterial, Resistance, phase
 from mascarin.model.settling import enclosure, faces_of, outlines
 
 Array = npt.NDArray[np.float64]
@@ -453,17 +453,13 @@ def enthalpies(material: PhaseChangeMaterial) -> tuple[Array, Array]:
     """Points of a material's enthalpy curve from -20 to 100 degC: temperatures [degC], enthalpies [J/kg]."""
     solid, liquid = (phase(material.specific_heat, name) for name in ("solid", "liquid"))
     law = material.law
-    if isinstance(law, TanhLaw):
-        centre, latent, width = (
-            float(material.melting_temperature or 0),
-            float(material.latent_heat or 0),
-            law.half_width,
-        )
-        near = centre + width * np.linspace(-5.0, 5.0, 101)
+    if law.kind == "tanh":
+        centre, latent = float(material.melting_temperature or 0.0), float(material.latent_heat or 0.0)
+        near = centre + law.half_width * np.linspace(-5.0, 5.0, 101)
         t = np.concatenate([[-20.0, 0.0], near, [60.0, 100.0]])
-        f = 0.5 + 0.5 * np.tanh((t - centre) / width)
+        f = 0.5 + 0.5 * np.tanh((t - centre) / law.half_width)
         return t, solid * (t - centre) + f * (latent + (liquid - solid) * (t - centre))
-    assert isinstance(law, TableLaw)
+    assert law.kind == "table", "tanh and table only"
     t = np.array(law.temperatures, dtype=np.float64)
     h = np.array(law.enthalpies, dtype=np.float64)
     first, last = h[0] - solid * (t[0] + 20.0), h[-1] + liquid * (100.0 - t[-1])

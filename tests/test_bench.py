@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -99,3 +100,27 @@ def test_weather_for_energyplus(tmp_path: Path) -> None:
     noon = weather.index.get_loc("2010-08-01 12:00")
     assert float(rows[noon][13]) == pytest.approx(weather["global_horizontal"].iloc[noon], rel=1e-3)
     assert float(rows[noon][12]) == pytest.approx(weather["infrared"].iloc[noon], rel=0.01)
+
+
+@pytest.mark.usefixtures("bench")
+def test_the_page_beside_energyplus_holds_the_recorded_numbers(repository: Path) -> None:
+    """Tables and numbers were written by one run, and the numbers say what the page says in words."""
+    import energyplus_pcm  # type: ignore[import-not-found]
+
+    numbers = json.loads(energyplus_pcm.NUMBERS.read_text(encoding="utf-8"))
+    page = energyplus_pcm.PAGE.read_text(encoding="utf-8")
+    assert page == energyplus_pcm.filled(page, numbers)
+    assert numbers["days"] == 92
+    assert max(numbers["tabulated"]["fine"]["apart"][name] for name in energyplus_pcm.cell.OUTPUTS) < 0.1
+    case = numbers["hysteresis"]
+    assert (
+        abs(case["balance"]["ours"])
+        < 0.1 * case["capacity"]
+        < case["capacity"]
+        < abs(case["balance"]["fine"])
+    )
+    assert abs(case["balance"]["one curve"]) < case["capacity"]
+    assert case["closure"] < 1e-10
+    assert numbers["thin_sheet"]["severe"] == 0
+    with pytest.raises(ValueError, match="no place for the table 'tabulated'"):
+        energyplus_pcm.filled("", numbers)
