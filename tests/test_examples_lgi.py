@@ -147,7 +147,8 @@ def test_the_identified_cell_holds_on_days_it_has_not_seen(tmp_path: Path) -> No
     from mascarin.study.pipeline import Study, Teller
 
     study = Study(STUDIES["lgi"])
-    run, fit = study.candidate(None, Workspace(tmp_path, study.inputs()), Teller(True))
+    with Workspace(tmp_path, study.inputs()) as workspace:
+        run, fit = study.candidate(None, workspace, Teller(True))
     assert run.results.energy.closure < 1e-10
     assert not fit.on_bound
     for periods, held, blind in zip(run.scores.values(), CORROBORATION, BLIND, strict=True):

@@ -39,7 +39,9 @@ def sweep(
     settings: Settings = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run many members of a building into a folder; stopped and called again, it goes on.
+    """Run many members of a building into a folder.
+
+    Stopped and called again, it goes on where it was.
 
     Parameters
     ----------
