@@ -317,8 +317,8 @@ def test_a_mask_is_shown_and_only_acts_on_sensors(quick: Bench, capsys: pytest.C
 # --- killed --------------------------------------------------------------------------------------------
 
 
-#: A study that kills itself while it writes its n-th piece of the sensitivity, or once it keeps n evaluations:
-#: where it ends depends on the count, never on how fast the machine is.
+#: A study that kills itself while it writes its n-th piece of the sensitivity, or once it keeps n
+#: evaluations: where it ends depends on the count, never on how fast the machine is.
 KILLED = """
 import os, signal, sys
 from mascarin import cli
