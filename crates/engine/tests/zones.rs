@@ -1,0 +1,291 @@
+//! Zones with plants, gains, ventilation, openings and paths: loads, lanes, derivatives, books.
+
+mod common;
+
+use common::{Builder, cell, cell_probes, cell_weather, facing, forcing, options, position, relative, run};
+use common::{set, try_run, values, warmup};
+use mascarin_engine::batch::ensemble;
+use mascarin_engine::description::{
+    AirPath, Description, Facing, Gain, Opening, ParamId, Parameter, Plant, SetPoint, Ventilation,
+    ZoneLongwave,
+};
+use mascarin_engine::forcing::Forcing;
+use mascarin_engine::ledger::Flow;
+use mascarin_engine::march::{Watch, march};
+use mascarin_engine::plan::Plan;
+use mascarin_engine::probe::Probe;
+use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::step::Scheme;
+
+const STEP: f64 = 900.0;
+const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
+
+fn number(description: &mut Description, path: &str, value: f64) -> ParamId {
+    description.parameters.push(Parameter { path: path.to_owned(), value });
+    ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
+}
+
+fn plant(description: &mut Description, path: &str, set_point: f64, capacity: f64) -> Plant {
+    Plant {
+        setpoint: SetPoint::Constant {
+            temperature: number(description, &format!("{path}.setpoint"), set_point),
+        },
+        capacity: Some(number(description, &format!("{path}.capacity"), capacity)),
+        schedule: None,
+    }
+}
+
+/// The cell with everything that can act on the air of its zones: channel 1 opens and shuts.
+fn conditioned(gamma: f64) -> Description {
+    let mut d = cell(gamma);
+    d.channels.push("fan".to_owned());
+    d.zones[0].heating = Some(plant(&mut d, "room.heating", 22.0, 300.0));
+    d.zones[0].cooling = Some(plant(&mut d, "room.cooling", 24.0, 80.0));
+    d.zones[1].heating = Some(plant(&mut d, "gap.heating", 21.0, 1000.0));
+    let gain = Gain {
+        name: "people".to_owned(),
+        power: number(&mut d, "gain.power", 100.0),
+        radiative: number(&mut d, "gain.radiative", 0.6),
+        schedule: Some(1),
+    };
+    d.zones[0].gains.push(gain);
+    let fan = Ventilation {
+        name: "fan".to_owned(),
+        air_changes: Some(number(&mut d, "fan.air_changes", 2.0)),
+        flow: None,
+        schedule: Some(1),
+    };
+    d.zones[0].ventilation.push(fan);
+    let path = AirPath {
+        name: "hatch".to_owned(),
+        between: [1, 0],
+        flow: number(&mut d, "hatch.flow", 0.003),
+        schedule: None,
+    };
+    d.air_paths.push(path);
+    let opening = Opening {
+        name: "slot".to_owned(),
+        zone: 1,
+        area: number(&mut d, "slot.area", 0.01),
+        height: number(&mut d, "slot.height", 0.2),
+        discharge: number(&mut d, "slot.discharge", 0.6),
+        wind_coefficient: number(&mut d, "slot.wind_coefficient", 0.25),
+        schedule: None,
+    };
+    d.openings.push(opening);
+    d
+}
+
+fn conditioned_weather(time: f64, row: &mut [f64]) {
+    cell_weather(time, row);
+    set(row, 1, if (time / 3600.0).rem_euclid(24.0) < 9.0 { 1.0 } else { 0.25 });
+}
+
+fn probes() -> Vec<Probe> {
+    let mut probes = cell_probes();
+    for zone in 0..2 {
+        probes.push(Probe::HeatingLoad { zone });
+        probes.push(Probe::CoolingLoad { zone });
+        probes.push(Probe::AirChanges { zone });
+    }
+    probes
+}
+
+/// The books close, the paths between zones cancel, and all modes of a plant are seen.
+#[test]
+fn energy_closes_with_plants() {
+    let plan = Plan::new(conditioned(0.04)).unwrap();
+    for scheme in SCHEMES {
+        let rows = forcing(&plan, scheme, 480, STEP, conditioned_weather);
+        let result = run(&plan, &rows, &options(scheme, STEP, probes()));
+        assert!(result.ledger.closure() < 1e-12, "closure {} with {scheme:?}", result.ledger.closure());
+        let into = |flow: Flow| result.ledger.into[flow as usize];
+        assert!(into(Flow::Interzone).abs() < 1e-12 * result.ledger.turnover);
+        assert!(into(Flow::Heating) > 0.0 && into(Flow::Cooling) < 0.0 && into(Flow::Gains) > 0.0);
+        let width = probes().len();
+        let (mut held, mut full, mut off, mut cooled) = (0, 0, 0, 0);
+        for record in result.records.chunks(width).skip(1) {
+            let (air, heating, cooling) = (record[0], record[10], record[11]);
+            assert!(heating >= 0.0 && cooling >= 0.0 && heating * cooling == 0.0);
+            match heating {
+                h if h >= 300.0 - 1e-9 => {
+                    full += 1;
+                    assert!(h < 300.0 + 1e-9 && air < 22.0 + 1e-7);
+                }
+                h if h > 0.0 => {
+                    held += 1;
+                    assert!((air - 22.0).abs() < 1e-7, "{air} at {h} W");
+                }
+                _ if cooling > 0.0 && cooling < 80.0 - 1e-9 => {
+                    cooled += 1;
+                    assert!((air - 24.0).abs() < 1e-7);
+                }
+                _ if cooling > 0.0 => assert!(cooling < 80.0 + 1e-9 && air > 24.0 - 1e-7),
+                _ => {
+                    off += 1;
+                    assert!(air > 22.0 - 1e-7 && air < 24.0 + 1e-7);
+                }
+            }
+        }
+        assert!(held > 5 && off > 5 && cooled + full > 0, "{held} {full} {off} {cooled}");
+    }
+}
+
+/// A member's bits do not depend on its neighbours, whatever their plants do.
+#[test]
+fn lanes_are_scalars_with_plants() {
+    let plan = Plan::new(conditioned(0.04)).unwrap();
+    let width = plan.description.parameters.len();
+    let (heating, cooling) =
+        (position(&plan, "room.heating.setpoint"), position(&plan, "room.cooling.setpoint"));
+    let (capacity, power) = (position(&plan, "room.heating.capacity"), position(&plan, "gain.power"));
+    let mut numbers = Vec::new();
+    for member in 0..11 {
+        let x = member as f64;
+        let mut one = values(&plan);
+        one[heating] = 19.0 + 0.5 * x;
+        one[cooling] = one[heating] + 0.3 * (member % 4) as f64;
+        one[capacity] = [0.0, 60.0, 300.0, 5000.0][member % 4];
+        one[power] *= 1.0 + (1.7 * x).sin();
+        numbers.extend(one);
+    }
+    for scheme in SCHEMES {
+        let rows = forcing(&plan, scheme, 2 * 96, STEP, conditioned_weather);
+        let mut options = options(scheme, STEP, probes());
+        options.warmup = Some(warmup(STEP));
+        let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
+        let watch = Watch::default();
+        let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
+        assert!(together.failures.is_empty(), "{:?}", together.failures);
+        let row = together.records.len() / 11;
+        for (member, numbers) in numbers.chunks(width).enumerate() {
+            let alone = march(&plan, numbers, &drive, &options, &watch).unwrap();
+            for (i, (a, b)) in alone.records.iter().zip(&together.records[member * row..]).enumerate() {
+                assert_eq!(
+                    a.to_bits(),
+                    b.to_bits(),
+                    "{a} is not {b}: member {member}, reading {i}, {scheme:?}"
+                );
+            }
+            assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
+        }
+    }
+}
+
+/// Forward derivatives of airs and loads agree with central differences.
+#[test]
+fn duals_are_differences_with_plants() {
+    let plan = Plan::new(conditioned(0.04)).unwrap();
+    let numbers = values(&plan);
+    let rows = forcing(&plan, Scheme::Sdirk2, 40, STEP, conditioned_weather);
+    let options = options(Scheme::Sdirk2, STEP, probes());
+    let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
+    let size = probes().len();
+    let scale = |i: usize| {
+        if i % size >= 10 && (i % size - 10) % 3 < 2 { 0.01 } else { f64::from(u8::from(i % size != 8)) }
+    };
+    let weight = |i: usize| scale(i) * (1.0 + (0.37 * i as f64).sin());
+    let figure = |numbers: &[f64]| -> f64 {
+        let records = try_run(&plan, numbers, &rows, &options).unwrap().records;
+        records.iter().enumerate().map(|(i, r)| weight(i) * r).sum()
+    };
+    let mut differ = Vec::new();
+    let names =
+        ["heating.setpoint", "cooling.setpoint", "capacity", "gain.", "fan.", "hatch.", "slot.", "volume"];
+    for (which, parameter) in plan.description.parameters.iter().enumerate() {
+        if !names.iter().any(|name| parameter.path.contains(name)) {
+            continue;
+        }
+        let variable = |(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) };
+        let duals: Vec<Dual<f64, 1>> = numbers.iter().enumerate().map(variable).collect();
+        let records = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap().records;
+        let slope: f64 = records.iter().enumerate().map(|(i, r)| weight(i) * r.slope[0]).sum();
+        let step = 1e-5 * numbers[which].abs().max(1e-3);
+        let shifted = |sign: f64| {
+            let mut numbers = numbers.clone();
+            numbers[which] += sign * step;
+            figure(&numbers)
+        };
+        let difference = (shifted(1.0) - shifted(-1.0)) / (2.0 * step);
+        // The loads are found to within 1e-8 K of the air.
+        if (slope - difference).abs() > 1e-4 * difference.abs() + 1e-7 / step {
+            differ.push(format!("{}: dual {slope:e}, difference {difference:e}", parameter.path));
+        }
+    }
+    assert!(differ.is_empty(), "{}", differ.join("\n"));
+}
+
+/// Numbering zones and surfaces the other way round changes nothing beyond round-off.
+#[test]
+fn order_of_zones_and_surfaces_does_not_matter() {
+    let forward = Plan::new(conditioned(0.04)).unwrap();
+    let mut description = conditioned(0.04);
+    description.zones.reverse();
+    description.surfaces.reverse();
+    let last = description.surfaces.len() - 1;
+    for surface in &mut description.surfaces {
+        for side in [&mut surface.outside, &mut surface.inside] {
+            if let Facing::Zone { zone } = &mut side.facing {
+                *zone = 1 - *zone;
+            }
+        }
+    }
+    for sensor in &mut description.sensors {
+        sensor.surface = last - sensor.surface;
+    }
+    description.air_paths[0].between = [0, 1];
+    description.openings[0].zone = 0;
+    let backward = Plan::new(description).unwrap();
+    let readings = |plan: &Plan, zones: [usize; 2]| {
+        let rows = forcing(plan, Scheme::Sdirk2, 192, STEP, conditioned_weather);
+        let probes = zones
+            .into_iter()
+            .flat_map(|zone| {
+                [
+                    Probe::AirTemperature { zone },
+                    Probe::MeanRadiantTemperature { zone },
+                    Probe::HeatingLoad { zone },
+                    Probe::CoolingLoad { zone },
+                ]
+            })
+            .collect();
+        run(plan, &rows, &options(Scheme::Sdirk2, STEP, probes)).records
+    };
+    let (one, other) = (readings(&forward, [0, 1]), readings(&backward, [1, 0]));
+    for (i, (a, b)) in one.iter().zip(&other).enumerate() {
+        // Loads answer to a K of the air with some 100 W.
+        let slack = if i % 4 < 2 { 1e-7 } else { 1e-4 };
+        assert!((a - b).abs() < slack, "reading {i}: {a} and {b}");
+    }
+}
+
+/// Two heated zones behind adiabatic faces: each gives what it loses, by wall, path and outdoor air.
+#[test]
+fn coupled_loads_by_hand() {
+    let mut b = Builder::new();
+    let board = b.solid("board", 0.2, 500.0, 1000.0);
+    let wall = b.construction("wall", &[(board, 0.1, 3)]);
+    let zones =
+        [("a", 1.0), ("b", 0.0)].map(|(name, changes)| b.zone(name, 40.0, changes, ZoneLongwave::None));
+    let (film_out, film_in) = (b.film(4.0), b.film(4.0));
+    let [outside, inside] = [(zones[0], film_out), (zones[1], film_in)]
+        .map(|(zone, film)| facing(Facing::Zone { zone }, Some(film)));
+    b.surface("between", wall, [12.0, 90.0, 0.0], outside, inside);
+    let mut d = b.describe();
+    d.zones[0].heating = Some(plant(&mut d, "a.heating", 22.0, 1e5));
+    d.zones[1].heating = Some(plant(&mut d, "b.heating", 18.0, 1e5));
+    d.zones[1].cooling = Some(plant(&mut d, "b.cooling", 18.0, 1e5));
+    let flow = number(&mut d, "door.flow", 0.02);
+    d.air_paths.push(AirPath { name: "door".to_owned(), between: [0, 1], flow, schedule: None });
+    d.site.air_density = Some(number(&mut d, "site.air_density", 1.2));
+    let plan = Plan::new(d).unwrap();
+    let rows = forcing(&plan, Scheme::Sdirk2, 20 * 96, STEP, |_, row| row[0] = 5.0);
+    let probes = vec![Probe::HeatingLoad { zone: 0 }, Probe::CoolingLoad { zone: 1 }];
+    let result = run(&plan, &rows, &options(Scheme::Sdirk2, STEP, probes));
+    let across = (12.0 / (0.1 / 0.2 + 2.0 / 4.0) + 0.02 * 1.2 * 1006.0) * 4.0;
+    let fresh = 40.0 / 3600.0 * 1.2 * 1006.0 * 17.0;
+    let [a, b] = [result.records[result.records.len() - 2], result.records[result.records.len() - 1]];
+    // The air is held to within 1e-8 K, and answers with some 100 W to a K.
+    assert!(relative(a, across + fresh) < 1e-7, "{a} and {}", across + fresh);
+    assert!(relative(b, across) < 1e-7, "{b} and {across}");
+}
