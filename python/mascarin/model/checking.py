@@ -48,6 +48,7 @@ def check(building: Building, step_seconds: float = 900.0) -> list[str]:
         f"{building.name}: {_count(len(building.zones), 'zone')}, "
         f"{_count(len(building.surfaces), 'surface')}, {_count(len(building.parameters()), 'parameter')}",
         *_zones(building),
+        *_in_zones(building),
         *_surfaces(building),
         *_constructions(building, mesh),
         *_melting(building),
@@ -76,6 +77,32 @@ def _zones(building: Building) -> Iterator[str]:
             f"UA {total:.2f} W/K by the U values below, "
             f"infiltration {air:.2f} W/K (air of {heavy:.3f} kg/m3), {_exchange(building, name)}"
         )
+
+
+def _in_zones(building: Building) -> Iterator[str]:
+    """What heats and airs the zones, as it is described."""
+    heat = density(building.site) * SPECIFIC_HEAT
+    for name, zone in building.zones.items():
+        for key, gain in zone.gains.items():
+            words = f"{gain.power:g} W, {100 * gain.radiative:g} % radiated"
+            yield f"zone {name}: gain {key} of {words}{_scheduled(gain.schedule)}"
+        for key, air in zone.ventilation.items():
+            flow = float(air.flow or 0.0) + float(air.air_changes or 0.0) * float(zone.volume or 0.0) / 3600.0
+            yield f"zone {name}: ventilation {key} of {flow * heat:.2f} W/K{_scheduled(air.schedule)}"
+        for which, plant in zone.plants.items():
+            given = plant.setpoint.schedule
+            target = f"{plant.setpoint.temperature:g} degC" if given is None else f"schedule {given}"
+            most = "without limit" if plant.capacity is None else f"at most {plant.capacity:g} W"
+            yield f"zone {name}: {which} to {target}, {most}{_scheduled(plant.schedule)}"
+    for name, path in building.air_paths.items():
+        ends = " and ".join(path.between)
+        yield f"air path {name}: {path.flow * heat:.2f} W/K between {ends}{_scheduled(path.schedule)}"
+    for name, opening in building.openings.items():
+        yield f"opening {name}: {opening.area:g} m2 in {opening.zone}{_scheduled(opening.schedule)}"
+
+
+def _scheduled(schedule: str | None) -> str:
+    return "" if schedule is None else f", by schedule {schedule}"
 
 
 def _exchange(building: Building, zone: str) -> str:
