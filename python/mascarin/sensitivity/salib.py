@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 
 from mascarin.errors import InputError
 from mascarin.sensitivity.factors import Factor, Floats, check_factors, grouped
-from mascarin.sensitivity.jackknife import Ratio, interval
+from mascarin.sensitivity.jackknife import Ratio, above_zero, interval
 from mascarin.sensitivity.result import VARIANCE, Sensitivity
 from mascarin.sensitivity.runs import Collector
 
@@ -259,22 +259,18 @@ class SalibCollector(Collector[SalibPlan, Sensitivity]):
         self._parts.append(_Part(first, total, variance, effect))
 
     def _result(self, confidence: float) -> Sensitivity:
-        from scipy import stats
-
         plan, parts = self.plan, self._parts
-        r, count = plan.replicates, len(plan.groups)
-        quantile = float(stats.t.ppf(0.5 + 0.5 * confidence, r - 1))
-        strict = float(stats.t.isf((1.0 - confidence) / count, r - 1))
+        strict = 1.0 - (1.0 - confidence) / len(plan.groups)
         variance = Ratio.mean(np.stack([part.variance for part in parts]))
         # Rounding is no variance.
         still = variance.value <= (1e-12 * self._scale) ** 2 + np.finfo(float).tiny
         first = Ratio.mean(np.stack([part.first for part in parts]))
-        shares = [np.where(still, 0.0, array) for array in interval(first, variance, quantile)]
-        sure = np.where(still, 0.0, interval(first, variance, strict)[1]) > 0.0
+        shares = [np.where(still, 0.0, array) for array in interval(first, variance, confidence)]
+        sure = ~still & above_zero(first, variance, strict)
         totals: list[Floats] = []
         if plan.method == "sobol":
             total = Ratio.mean(np.stack([part.total for part in parts]))
-            totals = [np.where(still, 0.0, array) for array in interval(total, variance, quantile)]
+            totals = [np.where(still, 0.0, array) for array in interval(total, variance, confidence)]
         return Sensitivity(
             method=plan.method,
             names=plan.groups,

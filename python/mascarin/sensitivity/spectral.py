@@ -14,10 +14,11 @@ is an unbiased estimate of :math:`a_{i,m}^2`, and
 
 .. math:: share_i = \frac{\sum_t \sum_m \overline{a^{(r)} a^{(s)}}_{r \ne s} / 2}{\sum_t V}
 
-with V likewise free of bias. Intervals come from leaving out one replicate at a time; a parameter is called
-significant when its interval, widened so that it holds for all parameters at once (Bonferroni), excludes
-zero. The plain share of the method, the power on the lines of i over the variance, is kept as `raw_share`,
-with the threshold below which noise would stay; it holds what falls on these lines by coincidence too.
+with V likewise free of bias. Intervals come from leaving out one replicate at a time (see `jackknife`); a
+parameter is called significant when its share is above zero with all parameters looked at together
+(Bonferroni). The plain share of the method, the power on the lines of i over the variance, is kept as
+`raw_share`, with the threshold below which noise would stay; it holds what falls on these lines by
+coincidence too.
 
 References
 ----------
@@ -27,8 +28,8 @@ Saltelli A., Tarantola S., Chan K. (1999), Technometrics 41, 39.
 https://doi.org/10.1080/00401706.1999.10485594
 Tarantola S., Gatelli D., Mara T.A. (2006), Reliab. Eng. Syst. Saf. 91, 717.
 https://doi.org/10.1016/j.ress.2005.06.003
-Efron B., Stein C. (1981), Ann. Stat. 9, 586 (the jackknife variance errs on the safe side).
-https://doi.org/10.1214/aos/1176345462
+Hartigan J.A. (1969), J. Am. Stat. Assoc. 64, 1303 (intervals from subsets of the replicates).
+https://doi.org/10.1080/01621459.1969.10501057
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mascarin.errors import InputError
 from mascarin.sensitivity.factors import Factor, Floats, check_factors, grouped, unit_factors
-from mascarin.sensitivity.jackknife import Ratio, interval
+from mascarin.sensitivity.jackknife import Ratio, above_zero, interval
 from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import Collector
 from mascarin.sensitivity.spectrum import Peak, Spectrum, power_threshold
@@ -474,8 +475,6 @@ def _analyse(
     confidence: float,
 ) -> SpectralSensitivity:
     """Put the replicates together, one output at a time."""
-    from scipy import stats
-
     count, r = len(plan.groups), plan.replicates
     times = parts[0].mean.shape[0]
     shape, shape_t = (count, len(outputs)), (count, times, len(outputs))
@@ -485,8 +484,7 @@ def _analyse(
     variance_t = np.zeros((times, len(outputs)))
     spectra = np.zeros((r, parts[0].lines.shape[0], len(outputs)))
     coherent = np.bincount(plan.group_of) == 1
-    quantile = float(stats.t.ppf(0.5 + 0.5 * confidence, r - 1))
-    strict = float(stats.t.isf((1.0 - confidence) / count, r - 1))
+    strict = 1.0 - (1.0 - confidence) / count
     gain = np.stack([part.gain for part in parts])
     warnings = []
     for s, output in enumerate(outputs):
@@ -500,7 +498,7 @@ def _analyse(
         numerator = _power(real, power, coherent)
         steady = variance.value <= floor
         variance_t[:, s] = np.where(steady, 0.0, variance.value)
-        share_t[:, :, s], low_t[:, :, s], high_t[:, :, s] = interval(numerator, variance, quantile)
+        share_t[:, :, s], low_t[:, :, s], high_t[:, :, s] = interval(numerator, variance, confidence)
         for array in (share_t, low_t, high_t):
             array[:, steady, s] = np.nan
         effect_t[:, :, s] = (real[:, :, 0] / gain[:, :, None]).mean(axis=0)
@@ -510,9 +508,9 @@ def _analyse(
         if total.value <= floor:
             warnings.append(f"'{output}' does not depend on any of the varied parameters")
             continue
-        share[:, s], low[:, s], high[:, s] = interval(numerator.summed(), total, quantile)
+        share[:, s], low[:, s], high[:, s] = interval(numerator.summed(), total, confidence)
         # What is left of a linear model's silence is rounding.
-        significant[:, s] = (interval(numerator.summed(), total, strict)[1] > 0.0) & (share[:, s] > 1e-12)
+        significant[:, s] = above_zero(numerator.summed(), total, strict) & (share[:, s] > 1e-12)
         plain = np.mean([part.variance[:, s].sum() for part in parts])
         raw[:, s] = np.mean([part.raw[:, s] for part in parts], axis=0) / plain
         spectra[:, :, s] = np.stack([part.lines[:, s] / part.variance[:, s].sum() for part in parts])
