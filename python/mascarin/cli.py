@@ -77,6 +77,11 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "Hold a building as described against measurements.",
         ),
         Command("verify", "mascarin.commands.verify:verify", "Hold the simulation against closed answers."),
+        Command(
+            "bestest",
+            "mascarin.commands.bestest:bestest",
+            "Hold the cases of ASHRAE Standard 140 against six programs.",
+        ),
     ),
     "Optimise": (
         Command(

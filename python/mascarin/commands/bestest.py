@@ -1,0 +1,135 @@
+"""The command that holds the cases of Standard 140 against six programs."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from mascarin.commands.inputs import AsJson, Flag, Step, seconds
+from mascarin.commands.output import number, print_json, print_table
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from mascarin.validation.bestest.quantities import Quantity
+    from mascarin.validation.bestest.reference import Range
+
+PAGE = "bestest.html"
+SUFFIXES = (".yaml", ".yml")
+
+
+def bestest(
+    *cases: str,
+    weather: Path | None = None,
+    out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    step: Step = "15min",
+    workers: int = 2,
+    list_cases: Annotated[bool, Flag, Parameter(name="--list")] = False,
+    as_json: AsJson = False,
+) -> int:
+    """Hold the cases of ASHRAE Standard 140 against six programs.
+
+    Runs building thermal fabric cases (BESTEST) through the year of Denver, and puts their loads, peaks,
+    free-floating temperatures and sun beside what six programs found. Ends with 1 if any number is outside
+    their range. docs/bestest.md says what the cases are, and what was chosen where they leave a choice.
+
+    Parameters
+    ----------
+    cases : str
+        Numbers of cases, such as 600 900FF, and building files (.yaml) of your own, which are run in the same
+        way and held against nothing. Default: all 39 cases.
+    weather : Path
+        The standard's weather file, 725650TYCST.epw.
+    out : Path
+        Folder for a page with charts, hourly days and tables (bestest.html).
+    workers : int
+        How many cases run at a time.
+    list_cases : bool
+        Only list the cases: what each changes, and its building file.
+
+    Returns
+    -------
+    int
+        0, or 1 if a number is outside.
+    """
+    from mascarin.validation.bestest.catalogue import CASES, chosen
+
+    own = [Path(word) for word in dict.fromkeys(cases) if word.endswith(SUFFIXES)]
+    wanted = chosen([word for word in cases if not word.endswith(SUFFIXES)] if cases else list(CASES))
+    if list_cases:
+        rows = [(case.name, case.base, case.change, str(case.file)) for case in wanted]
+        if as_json:
+            print_json([dict(zip(("case", "base", "change", "file"), row, strict=True)) for row in rows])
+        else:
+            print_table(("case", "base", "change", "file"), rows)
+        return 0
+    _can_be_made(out)
+    if workers < 1:
+        raise InputError(f"--workers: found {workers}; expected 1 or more")
+    from mascarin.progress import Progress
+    from mascarin.validation.bestest.quantities import quantities, quantities_of
+    from mascarin.validation.bestest.running import run
+    from mascarin.validation.bestest.weather import read
+
+    climate = read(weather)
+    started = time.monotonic()
+    with Progress("cases") as progress:
+        years, others = run(wanted, climate, own=own, step=seconds(step), workers=workers, progress=progress)
+    took = time.monotonic() - started
+    rows_found = [row for case in wanted for row in quantities(years, case)]
+    rows_found += [row for file, series in others.items() for row in quantities_of(str(file), series)]
+    if out is not None:
+        from mascarin.report.bestest import write
+
+        facts = {
+            "Command": " ".join(("mascarin bestest", *cases, "--weather", climate.file, "--step", step)),
+            "Weather": f"{climate.file}, SHA-256 {climate.sha256}",
+            "Time step": step,
+            "Took": f"{took:.0f} s",
+        }
+        out.mkdir(exist_ok=True)
+        print(f"wrote {write(out / PAGE, rows_found, years, facts)}", file=sys.stderr)
+    if as_json:
+        print_json([row.to_dict() for row in rows_found])
+    else:
+        _print(rows_found)
+    held = [row.passed for row in rows_found if row.passed is not None]
+    outside = held.count(False)
+    print(
+        f"{len(held) - outside} of {len(held)} numbers inside the range of the six programs", file=sys.stderr
+    )
+    return 1 if outside else 0
+
+
+def _can_be_made(out: Path | None) -> None:
+    """Refuse a folder that could not be made, before the work is done."""
+    if out is not None and (out.is_file() or not out.parent.is_dir()):
+        raise InputError(f"--out: found '{out}'; expected a folder, or a name in a folder that exists")
+
+
+def _print(rows: Sequence[Quantity]) -> None:
+    lines = [
+        (
+            row.case,
+            row.quantity,
+            row.unit,
+            number(row.value),
+            row.when,
+            *_beside(row.range),
+            _verdict(row.passed),
+        )
+        for row in rows
+    ]
+    print_table(("case", "quantity", "unit", "value", "hour", "min", "mean", "max", ""), lines)
+
+
+def _beside(theirs: Range | None) -> tuple[str, str, str]:
+    return ("", "", "") if theirs is None else (number(theirs.low), number(theirs.mean), number(theirs.high))
+
+
+def _verdict(passed: bool | None) -> str:
+    return "" if passed is None else "inside" if passed else "OUTSIDE"

@@ -1,0 +1,377 @@
+"""The page of Standard 140: its cases beside the six programs, as one HTML file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+
+from mascarin import __version__
+from mascarin.report import text
+from mascarin.report.svg import Axis, Chart
+from mascarin.validation.bestest.catalogue import CASES, IN_DEPTH, MAIN, Case
+from mascarin.validation.bestest.quantities import (
+    COLDEST_BIN,
+    MONTHS,
+    ORIENTATIONS,
+    THROUGH_GLASS,
+    Quantity,
+    Year,
+    bins,
+    energy,
+    hours_of,
+    months,
+    when,
+)
+from mascarin.validation.bestest.reference import PROGRAMS, Range, ranges
+
+if TYPE_CHECKING:
+    from mascarin.validation.bestest.quantities import Array
+
+_WORDS: Final = {
+    "annual_heating": "Annual heating",
+    "annual_cooling": "Annual sensible cooling",
+    "peak_heating": "Peak heating",
+    "peak_cooling": "Peak sensible cooling",
+    "max_temperature": "Highest temperature",
+    "min_temperature": "Lowest temperature",
+    "mean_temperature": "Mean temperature",
+}
+_CLASSES: Final = ("c0", "c1", "c2", "c3", "c6", "c7")
+"""Colour of each program; ours stands out by its own."""
+_HOURS: Final = np.arange(24, dtype=np.float64) + 0.5
+
+
+def write(path: Path, rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[str, str]) -> Path:
+    """Write the page to a file, which appears only when it is complete.
+
+    Parameters
+    ----------
+    path : Path
+        Where to.
+    rows : sequence of Quantity
+        Every quantity that was found.
+    years : mapping of str to Year
+        Hourly means by case.
+    facts : mapping of str to str
+        How to get the same result, as name and value.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    content = render(rows, years, facts)
+    draft = path.with_name(path.name + ".part")
+    draft.write_text(content, encoding="utf-8", newline="\n")
+    draft.replace(path)
+    return path
+
+
+def render(rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[str, str]) -> str:
+    """Make the page; the parameters are those of `write`."""
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    held = [row for row in rows if row.range is not None]
+    found = {(row.case, row.quantity): row for row in held}
+    sections = [
+        {"id": key, "title": title, "content": content}
+        for key, title, content in (
+            ("loads", "Loads", _bars(found, ("annual_heating", "annual_cooling"), "MWh")),
+            ("peaks", "Peaks", _bars(found, ("peak_heating", "peak_cooling"), "kW")),
+            ("floating", "Free-floating temperatures", _floating(found)),
+            ("sun", "The sun", _sun(found)),
+            ("differences", "What each change does", _differences(found)),
+            ("days", "Three days, hour by hour", _days(years)),
+            ("months", "Month by month", _months(years)),
+            ("bins", "Hours at each temperature", _bins(years)),
+            ("table", "Every number", _table(rows)),
+            ("repeat", "How to get the same result", dict(facts)),
+        )
+        if content
+    ]
+    style = _asset("report.css") + "\n" + _asset("bestest.css")
+    outside = [row for row in held if not row.passed]
+    return environment.from_string(_asset("bestest.html")).render(
+        style=Markup(style),  # noqa: S704  (our own files)
+        policy=_policy(),
+        version=__version__,
+        sections=sections,
+        programs=list(zip(PROGRAMS, _CLASSES, strict=True)),
+        count=len(held),
+        inside=len(held) - len(outside),
+        outside=[f"{row.case}: {_words(row.quantity)}" for row in outside],
+        cases=len({row.case for row in held}),
+        closure=text.significant(max((year.closure for year in years.values()), default=0.0), 2),
+    )
+
+
+def _policy() -> str:
+    """Content security policy: no script runs, and nothing is loaded."""
+    return "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
+
+
+def _asset(name: str) -> str:
+    return files("mascarin.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _words(quantity: str) -> str:
+    if quantity in _WORDS:
+        return _WORDS[quantity]
+    kind, _, plane = quantity.rpartition("_")
+    return f"{kind.replace('_', ' ').replace('solar', 'sun').capitalize()}, {plane}"
+
+
+# ------------------------------------------------------------------ bars beside the six programs
+
+Found = Mapping[tuple[str, str], Quantity]
+Group = tuple[str, tuple[Case, ...]]
+_GROUPS: Final[tuple[Group, ...]] = (
+    ("low mass", MAIN[:8]),
+    ("high mass and sunspace", MAIN[8:]),
+    ("in depth, 195 to 250", tuple(case for case in IN_DEPTH if case.name < "260")),
+    ("in depth, 270 to 320", tuple(case for case in IN_DEPTH if "260" < case.name < "330")),
+    ("in depth, 395 to 440, 800 and 810", tuple(case for case in IN_DEPTH if case.name > "330")),
+)
+
+
+def _bars(found: Found, quantities: Sequence[str], unit: str) -> list[dict[str, Any]]:
+    figures = []
+    for quantity in quantities:
+        for title, cases in _GROUPS:
+            rows = [found[key] for case in cases if (key := (case.name, quantity)) in found]
+            if rows:
+                figures.append(_bar_chart(f"{_words(quantity)}, {title}", [(r.case, r) for r in rows], unit))
+    return figures
+
+
+def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> dict[str, Any]:
+    """A group of bars for each row: the six programs, then ours, with a band from their lowest to highest."""
+    values = [v for _, row in rows for v in (*_theirs(row).programs.values(), row.value)]
+    y = Axis.over(values, around=0.0)
+    centres = np.arange(len(rows)) + 0.5
+    axis = Axis(0.0, float(len(rows)), tuple(centres), tuple(name for name, _ in rows))
+    chart = Chart(axis, y, width=max(340.0, 90.0 + 62.0 * len(rows)), height=210.0, y_label=text.unit(unit))
+    width = 0.105
+    for centre, (_, row) in zip(centres, rows, strict=True):
+        left = centre - 3.5 * width
+        theirs = _theirs(row)
+        chart.bar(left - 0.03, left + 7 * width + 0.03, theirs.low, theirs.high, "sensor-band")
+        for index, program in enumerate(PROGRAMS):
+            if program in theirs.programs:
+                x = left + index * width
+                chart.bar(x, x + 0.85 * width, 0.0, theirs.programs[program], _CLASSES[index])
+        x = left + 6 * width
+        chart.bar(x, x + width, 0.0, row.value, "ours" if row.passed else "ours outside")
+    said = "; ".join(f"{name}: {text.significant(row.value)} of {_span(row)}" for name, row in rows)
+    return {"title": f"{title}, {text.unit(unit)}", "drawing": chart.markup(f"{title}. {said}")}
+
+
+def _span(row: Quantity) -> str:
+    return f"{text.significant(_theirs(row).low)} to {text.significant(_theirs(row).high)}"
+
+
+def _theirs(row: Quantity) -> Range:
+    """What the six programs found for a quantity that is held against them."""
+    return ranges()[row.case, row.quantity]
+
+
+def _floating(found: Found) -> list[dict[str, Any]]:
+    figures = []
+    for quantity in ("max_temperature", "min_temperature", "mean_temperature"):
+        rows = [(case, row) for (case, name), row in found.items() if name == quantity]
+        if rows:
+            figures.append(_bar_chart(_words(quantity), rows, "degC"))
+    return figures
+
+
+def _sun(found: Found) -> list[dict[str, Any]]:
+    kinds = (
+        ("incident_solar", "Sun on each plane over the year, case 600", "kWh/m2"),
+        ("transmitted_solar", "Sun through the glass over the year", "kWh/m2"),
+        ("transmissivity", "Share of the sun that the glass lets through", "-"),
+        ("shading_coefficient", "Share that the shades keep off", "-"),
+    )
+    figures = []
+    for start, title, unit in kinds:
+        rows = [
+            (f"{name.removeprefix(start + '_')}" if start == "incident_solar" else case, row)
+            for (case, name), row in found.items()
+            if name.startswith(start)
+        ]
+        if rows:
+            figures.append(_bar_chart(title, rows, unit))
+    return figures
+
+
+# ------------------------------------------------------------------ differences between cases
+
+
+def _differences(found: Found) -> list[dict[str, Any]]:
+    """Each case less its base: the way to see which part of a model is off."""
+    rows = []
+    for case in CASES.values():
+        cells: list[dict[str, Any]] = []
+        for quantity in ("annual_heating", "annual_cooling", "peak_heating", "peak_cooling"):
+            one, other = found.get((case.name, quantity)), found.get((case.base, quantity))
+            if case.name == case.base or one is None or other is None:
+                break
+            cells.append(_difference(one, other))
+        else:
+            rows.append({"name": f"{case.name} − {case.base}", "change": case.change, "cells": cells})
+    return rows
+
+
+def _difference(one: Quantity, other: Quantity) -> dict[str, Any]:
+    theirs = [
+        value - _theirs(other).programs[program]
+        for program, value in _theirs(one).programs.items()
+        if program in _theirs(other).programs
+    ]
+    ours = one.value - other.value
+    low, high = min(theirs), max(theirs)
+    return {
+        "ours": text.fixed(ours, sign=True),
+        "theirs": f"{text.fixed(low, sign=True)} to {text.fixed(high, sign=True)}",
+        "inside": low <= ours <= high,
+    }
+
+
+# ------------------------------------------------------------------ hourly days, months, bins
+
+
+def _days(years: Mapping[str, Year]) -> list[dict[str, Any]]:
+    """The charts that the standard asks for; a case that was not run is left out."""
+    figures = []
+    for title, month, day, unit, curves in _DAYS:
+        drawn = [
+            (label, _day_values(years[case], series, month, day))
+            for label, case, series in curves
+            if case in years and (series in ("load", "temperature") or series in years[case].series)
+        ]
+        if drawn:
+            figures.append(_curves(f"{title}, {day} {month}", drawn, unit))
+    return figures
+
+
+def _day_values(year: Year, series: str, month: str, day: int) -> Array:
+    hours = hours_of(month, day)
+    if series == "load":
+        return (year.heating[hours] - year.cooling[hours]) / 1e3
+    values = year.temperature if series == "temperature" else year.series[series]
+    return values[hours]
+
+
+def _curves(title: str, drawn: Sequence[tuple[str, Array]], unit: str) -> dict[str, Any]:
+    y = Axis.over(*[values for _, values in drawn], around=0.0 if unit != "degC" else None)
+    x = Axis(0.0, 24.0, (0.0, 6.0, 12.0, 18.0, 24.0), ("0", "6", "12", "18", "24"))
+    chart = Chart(x, y, width=340.0, height=200.0, x_label="hour", y_label=text.unit(unit))
+    for index, (_, values) in enumerate(drawn):
+        chart.curve(np.asarray(_HOURS, dtype=np.float64), values, f"s{index}")
+    said = "; ".join(
+        f"{label}: {text.significant(float(values.min()))} to {text.significant(float(values.max()))}"
+        for label, values in drawn
+    )
+    return {
+        "title": title,
+        "drawing": chart.markup(f"{title}, {text.unit(unit)}. {said}"),
+        "keys": [(label, f"s{index}") for index, (label, _) in enumerate(drawn)],
+    }
+
+
+def _each(cases: Sequence[str], series: str) -> list[tuple[str, str, str]]:
+    return [(case, case, series) for case in cases]
+
+
+_PLANES: Final = [(plane, "600", ORIENTATIONS[plane]) for plane in ("horizontal", "south", "west")]
+_DAYS: Final = (
+    ("Load, heating above zero", "Feb", 1, "kW", _each(("600", "640", "900", "940"), "load")),
+    ("Air temperature", "Feb", 1, "degC", _each(("640", "940"), "temperature")),
+    ("Free-floating temperature", "Feb", 1, "degC", _each(("600FF", "900FF"), "temperature")),
+    ("Load, cooling below zero", "Jul", 14, "kW", _each(("600", "900"), "load")),
+    ("Free-floating temperature", "Jul", 14, "degC", _each(("650FF", "950FF"), "temperature")),
+    ("Sun on three planes", "May", 4, "W/m2", _PLANES),
+    ("Sun on three planes", "Jul", 14, "W/m2", _PLANES),
+    *(
+        (title, month, day, unit, [(label, "600", series)])
+        for title, unit, label, series in (
+            ("Sun through south glass", "W/m2", "600", THROUGH_GLASS),
+            ("Sky temperature", "degC", "600", "sky_temperature"),
+        )
+        for month, day in (("Feb", 1), ("May", 4), ("Jul", 14))
+    ),
+)  # fmt: skip
+
+
+def _months(years: Mapping[str, Year]) -> list[dict[str, Any]]:
+    return [
+        {
+            "case": name,
+            "rows": [_month(years[name], hours, word) for word, hours in zip(MONTHS, months(), strict=True)],
+        }
+        for name in ("600", "900")
+        if name in years
+    ]
+
+
+def _month(year: Year, hours: slice, word: str) -> dict[str, str]:
+    cells = {"name": word}
+    for kind, watts in (("heating", year.heating), ("cooling", year.cooling)):
+        part = watts[hours]
+        top = int(np.argmax(part))
+        cells[kind] = text.fixed(1e3 * energy(part), 1)
+        cells[f"{kind}_peak"] = text.fixed(float(part[top]) / 1e3, 3)
+        cells[f"{kind}_when"] = when(hours.start + top) if part[top] > 0.0 else text.NONE
+    return cells
+
+
+def _bins(years: Mapping[str, Year]) -> list[dict[str, Any]]:
+    if "900FF" not in years:
+        return []
+    counts = bins(years["900FF"].temperature)
+    shown = np.flatnonzero(counts)
+    first, last = int(shown[0]) - 1, int(shown[-1]) + 2
+    ticks = [float(t) for t in range(COLDEST_BIN + first, COLDEST_BIN + last + 1) if t % 5 == 0]
+    x = Axis(float(COLDEST_BIN + first), float(COLDEST_BIN + last), ticks, [text.fixed(t, 0) for t in ticks])
+    chart = Chart(x, Axis.over(counts, around=0.0), width=680.0, height=220.0, x_label="°C", y_label="hours")
+    for index in shown:
+        chart.bar(COLDEST_BIN + index + 0.06, COLDEST_BIN + index + 0.94, 0.0, float(counts[index]), "ours")
+    title = "Case 900FF, hours in each bin of 1 K"
+    return [
+        {
+            "title": title,
+            "drawing": chart.markup(f"{title}; most at {COLDEST_BIN + int(np.argmax(counts))} °C"),
+        }
+    ]
+
+
+def _table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
+    return [
+        {
+            "case": row.case,
+            "quantity": _words(row.quantity),
+            "unit": text.unit(row.unit),
+            "value": _shown(row, row.value),
+            "when": row.when,
+            "passed": row.passed,
+        }
+        | _beside(row)
+        for row in rows
+    ]
+
+
+def _beside(row: Quantity) -> dict[str, str]:
+    theirs = row.range
+    if theirs is None:
+        return dict.fromkeys(("low", "mean", "high"), text.NONE)
+    return {key: _shown(row, getattr(theirs, key)) for key in ("low", "mean", "high")}
+
+
+def _shown(row: Quantity, value: float) -> str:
+    return text.fixed(value, {"kWh/m2": 0, "degC": 1}.get(row.unit, 3))
