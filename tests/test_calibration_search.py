@@ -93,7 +93,7 @@ def test_intervals_hold_the_truth_and_the_table_says_so() -> None:
 @pytest.mark.parametrize("cost", ["sd", "rmse", "cv_rmse", "nll"])
 def test_pattern_search_finds_the_minimum_of_every_cost(cost: Any) -> None:
     rules = Rules(agree=1, reductions=12, together=1)
-    fit = solve(_problem(noise=0.05), method="pattern_search", cost=cost, rules=rules, seed=3)
+    fit = solve(_problem(noise=0.05), method="hooke-jeeves", cost=cost, rules=rules, seed=3)
     if cost == "sd":
         # Blind to bias, it sees the room's swing alone and that only tells the ratio of mass and inner film.
         assert fit.x[2] / fit.x[3] == pytest.approx(TRUTH[2] / TRUTH[3], rel=0.01)
@@ -125,7 +125,7 @@ def _two_wells(depth: float) -> CalibrationProblem:
 
 def test_sequences_end_in_different_minima_and_the_lowest_wins() -> None:
     rules = Rules(agree=5, sequences=60, reductions=14)
-    fit = solve(_two_wells(0.1), method="pattern_search", cost="rmse", rules=rules)
+    fit = solve(_two_wells(0.1), method="hooke-jeeves", cost="rmse", rules=rules)
     assert fit.x[0] == pytest.approx(0.2, abs=1e-3)
     groups = fit.distinct_minima()
     assert len(groups) == 2
@@ -139,7 +139,7 @@ def test_sequences_end_in_different_minima_and_the_lowest_wins() -> None:
 
 def test_agreement_waits_for_the_lowest_minimum() -> None:
     rules = Rules(agree=10, sequences=4, reductions=14)
-    fit = solve(_two_wells(0.1), method="pattern_search", cost="rmse", rules=rules)
+    fit = solve(_two_wells(0.1), method="hooke-jeeves", cost="rmse", rules=rules)
     assert fit.reason == "all 4 sequences searched, without agreement of 10"
     assert len(fit.minima) == 4
 
@@ -148,7 +148,7 @@ def test_number_side_by_side_does_not_change_the_result() -> None:
     fits = [
         solve(
             _problem(noise=0.3),
-            method="pattern_search",
+            method="hooke-jeeves",
             cost="rmse",
             rules=Rules(agree=3, sequences=8, reductions=3, together=together),
             seed=5,
@@ -163,14 +163,14 @@ def test_number_side_by_side_does_not_change_the_result() -> None:
 def test_lanes_are_filled_by_many_sequences() -> None:
     cell = Cell()
     rules = Rules(agree=20, sequences=20, together=16, reductions=2)
-    solve(_problem(cell, noise=0.3), method="pattern_search", cost="rmse", rules=rules)
+    solve(_problem(cell, noise=0.3), method="hooke-jeeves", cost="rmse", rules=rules)
     assert np.median(cell.batches) >= 12
 
 
 def test_budget_of_evaluations_stops_every_sequence() -> None:
     cell = Cell()
     rules = Rules(agree=10, evaluations=100, together=4)
-    fit = solve(_problem(cell), method="pattern_search", cost="rmse", rules=rules)
+    fit = solve(_problem(cell), method="hooke-jeeves", cost="rmse", rules=rules)
     assert "budget of 100 evaluations" in fit.reason
     assert cell.members < 130
     assert fit.cost == fit.trace.cost.min()
@@ -179,7 +179,7 @@ def test_budget_of_evaluations_stops_every_sequence() -> None:
 def test_an_optimiser_of_ones_own() -> None:
     fit = solve(
         _problem(noise=0.05),
-        method="pattern_search",
+        method="hooke-jeeves",
         cost="rmse",
         optimiser=lambda space: NelderMead(space, accuracy=1e-6),
         rules=Rules(agree=1, together=1),
@@ -244,7 +244,7 @@ def test_a_prior_settles_what_the_data_leave_open() -> None:
 
 
 def test_bias_costs_without_intervals() -> None:
-    fit = solve(_problem(noise=0.1), method="pattern_search", cost="nmbe", rules=Rules(agree=2, sequences=3))
+    fit = solve(_problem(noise=0.1), method="hooke-jeeves", cost="nmbe", rules=Rules(agree=2, sequences=3))
     assert np.isnan(fit.low).all()
     assert fit.to_dict()["film"]["low"] is None
     assert fit.warnings[0].startswith("the cost 'nmbe' compares means only")
@@ -257,11 +257,11 @@ class Killed(BaseException):
     """Stands for the process being killed."""
 
 
-@pytest.mark.parametrize("method", ["least_squares", "pattern_search"])
+@pytest.mark.parametrize("method", ["least-squares", "hooke-jeeves"])
 def test_an_interrupted_calibration_goes_on_and_ends_the_same(method: Any, tmp_path: Path) -> None:
     keywords: dict[str, Any] = {
         "method": method,
-        "cost": "nll" if method == "least_squares" else "rmse",
+        "cost": "nll" if method == "least-squares" else "rmse",
         "rules": Rules(starts=2, agree=2, sequences=4, reductions=4),
     }
     whole = solve(_problem(noise=0.2), **keywords)
@@ -293,7 +293,7 @@ def test_an_interrupted_calibration_goes_on_and_ends_the_same(method: Any, tmp_p
 
 def test_a_larger_budget_goes_on_from_the_record(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
-    keywords: dict[str, Any] = {"method": "pattern_search", "cost": "rmse", "record": path}
+    keywords: dict[str, Any] = {"method": "hooke-jeeves", "cost": "rmse", "record": path}
     solve(_problem(noise=0.2), rules=Rules(agree=9, sequences=2, reductions=4), **keywords)
     fit = solve(_problem(noise=0.2), rules=Rules(agree=9, sequences=4, reductions=4), **keywords)
     assert 0 < fit.trace.replayed < fit.trace.x.shape[0]
@@ -309,9 +309,9 @@ def test_members_that_fail_are_recorded_and_avoided(tmp_path: Path) -> None:
 
     parameters = (FitParameter("film", 1.0, 20.0, start=8.0), *_parameters()[1:])
     path = tmp_path / "record.jsonl"
-    for method, cost in (("pattern_search", "rmse"), ("least_squares", "nll")):
+    for method, cost in (("hooke-jeeves", "rmse"), ("least-squares", "nll")):
         problem = CalibrationProblem(parameters, _problem(noise=0.05).sensors, Fragile())
-        record = path if method == "pattern_search" else None
+        record = path if method == "hooke-jeeves" else None
         fit = solve(
             problem,
             method=method,  # type: ignore[arg-type]
@@ -327,7 +327,7 @@ def test_members_that_fail_are_recorded_and_avoided(tmp_path: Path) -> None:
 def test_foreign_and_damaged_records_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
     rules = Rules(agree=1, sequences=1, reductions=2)
-    keywords: dict[str, Any] = {"method": "pattern_search", "rules": rules, "record": path}
+    keywords: dict[str, Any] = {"method": "hooke-jeeves", "rules": rules, "record": path}
     solve(_problem(), cost="rmse", **keywords)
     with pytest.raises(InputError, match=r"another calibration \(differing: cost\)"):
         solve(_problem(), cost="sd", **keywords)
@@ -373,7 +373,7 @@ def test_a_cost_that_is_no_number_at_the_start_stops_at_once() -> None:
 def test_unknown_method_and_costs_that_do_not_fit() -> None:
     with pytest.raises(InputError, match="method 'newton' is not known"):
         solve(_problem(), method="newton")  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="for the cost 'sd' use the method 'pattern_search'"):
+    with pytest.raises(InputError, match="for the cost 'sd' use a method such as 'hooke-jeeves'"):
         solve(_problem(), cost="sd")
     with pytest.raises(InputError, match="between 0 and 1, such as"):
         solve(_problem(), confidence=95.0)

@@ -34,7 +34,7 @@ def _fit(noise: Floats, design: Floats, cost: str = "nll") -> Fit:
     problem = CalibrationProblem(parameters, sensors, lambda x: 20.0 + np.einsum("tsp,mp->mts", design, x))
     if cost == "nll":
         return solve(problem, rules=Rules(starts=1))
-    return solve(problem, method="pattern_search", cost=cost, rules=Rules(agree=1, reductions=14, together=1))  # type: ignore[arg-type]
+    return solve(problem, method="hooke-jeeves", cost=cost, rules=Rules(agree=1, reductions=14, together=1))  # type: ignore[arg-type]
 
 
 def test_white_noise_gives_the_interval_of_linear_regression() -> None:
@@ -48,8 +48,10 @@ def test_white_noise_gives_the_interval_of_linear_regression() -> None:
     sd = np.sqrt(np.diag(np.linalg.inv(x.T @ x)) * squares / (120 - 3))
     quantile = stats.t.ppf(0.975, 120 - 3)
     np.testing.assert_allclose(fit.x, estimate, rtol=1e-6)
-    np.testing.assert_allclose(fit.low, estimate - quantile * sd, rtol=1e-5)
-    np.testing.assert_allclose(fit.high, estimate + quantile * sd, rtol=1e-5)
+    # Where nothing is autocorrelated the simulated quantile is Student's, up to a few of the drawn fits that
+    # see an autocorrelation by chance.
+    np.testing.assert_allclose(estimate - fit.low, quantile * sd, rtol=2e-3)
+    np.testing.assert_allclose(fit.high - estimate, quantile * sd, rtol=2e-3)
     covariance = np.linalg.inv(x.T @ x)
     expected = covariance[1, 2] / math.sqrt(covariance[1, 1] * covariance[2, 2])
     assert fit.correlation[1, 2] == pytest.approx(expected, abs=1e-5)

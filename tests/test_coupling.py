@@ -365,7 +365,7 @@ def test_the_project_is_searched_like_a_calibration(
     )
     outcome = optimise(ini, RunOptions(workers=1))
     rules = Rules(sequences=1, agree=1, step=0.125, reductions=3)
-    fit = solve(Study(copy / "study.yaml").problem(), method="pattern_search", cost="sd", rules=rules)
+    fit = solve(Study(copy / "study.yaml").problem(), method="hooke-jeeves", cost="sd", rules=rules)
     assert len(fit.trace.x) == len(without_processes) > 20
     assert [r.key[1] for r in outcome.records] == [tuple(x) for x in fit.trace.x]
     assert [r.costs[0] for r in outcome.records if r.costs] == list(fit.trace.cost)

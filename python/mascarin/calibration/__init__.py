@@ -10,23 +10,29 @@ from mascarin.calibration.buildings import Sensor, calibrate
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.fit import Fit, Minimum
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor, require_known
+from mascarin.calibration.profile import Profile, profiles
 from mascarin.calibration.record import Evaluator, Trace
-from mascarin.calibration.search import Rules, solve
+from mascarin.calibration.rules import METHODS, MethodName, Rules
+from mascarin.calibration.search import solve
 from mascarin.calibration.uncertainty import Uncertainty
 
 __all__ = [
+    "METHODS",
     "CalibrationProblem",
     "Cost",
     "Evaluator",
     "Fit",
     "FitParameter",
     "FitSensor",
+    "MethodName",
     "Minimum",
+    "Profile",
     "Rules",
     "Sensor",
     "Trace",
     "Uncertainty",
     "calibrate",
+    "profiles",
     "require_known",
     "solve",
 ]

@@ -12,7 +12,8 @@ import numpy as np
 from mascarin.calibration.cost import CostName
 from mascarin.calibration.fit import Fit
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
-from mascarin.calibration.search import MethodName, Rules, solve
+from mascarin.calibration.rules import MethodName, Rules
+from mascarin.calibration.search import solve
 from mascarin.climate.table import seconds_of
 from mascarin.errors import InputError
 from mascarin.simulation import Simulation
@@ -161,7 +162,7 @@ def calibrate(
     step: str | float = "15min",
     lead: str | float = "3d",
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
-    method: MethodName = "least_squares",
+    method: MethodName = "least-squares",
     cost: CostName = "nll",
     rules: Rules | None = None,
     seed: int = 0,

@@ -84,6 +84,10 @@ class Fit:
         All evaluations.
     seed : int
         Of the random numbers.
+    uncertainty_method : str
+        How the intervals were made.
+    samples : ndarray, shape (n, P), optional
+        Posterior sample of the method ``emcee``. [unit of each parameter]
     """
 
     problem: CalibrationProblem
@@ -106,6 +110,7 @@ class Fit:
     seed: int
 
     uncertainty_method: str = METHOD
+    samples: Floats | None = None
 
     @property
     def values(self) -> dict[str, float]:

@@ -58,7 +58,7 @@ class Evaluator:
     path : Path, optional
         File of the record; continued when it exists. Without it nothing is written.
     keep_residuals : bool
-        Whether residuals are kept and recorded too; least squares needs them.
+        Whether residuals are kept and recorded too; least squares needs them. `costs` never keeps them.
     batch : int
         Largest number of members handed to the model at once. [-]
     progress : callable, optional
@@ -88,7 +88,7 @@ class Evaluator:
         # Flat, because a multi-start search makes a million evaluations.
         self._x = array("d")
         self._of_sensors = array("d")
-        self._residuals: list[Floats] = []
+        self._residuals: dict[int, Floats] = {}
         self._lowest = np.inf
         if path is not None:
             self._open(path)
@@ -112,15 +112,23 @@ class Evaluator:
 
     def costs(self, x: Floats) -> Floats:
         """Total costs of members (M, P), shape (M,)."""
-        rows = self._evaluated(x)
+        return self.cost.total(x, self.of_sensors(x))
+
+    def prepare(self, x: Floats) -> None:
+        """Evaluate members (M, P), with residuals where they are kept."""
+        self._evaluated(x, keep=self._keep)
+
+    def of_sensors(self, x: Floats) -> Floats:
+        """Cost of each sensor of members (M, P), shape (M, S)."""
         n = len(self.cost.problem.sensors)
-        return self.cost.total(x, np.array([self._of_sensors[k * n : (k + 1) * n] for k in rows]))
+        rows = self._evaluated(x, keep=False)
+        return np.array([self._of_sensors[k * n : (k + 1) * n] for k in rows])
 
     def residuals(self, x: Floats) -> Floats:
         """Residuals of members (M, P), shape (M, T, S); NaN for those that could not be simulated. [unit]"""
         if not self._keep:
             return self.cost.problem.residuals(x)
-        return np.stack([self._residuals[k] for k in self._evaluated(x)])
+        return np.stack([self._residuals[k] for k in self._evaluated(x, keep=True)])
 
     def trace(self) -> Trace:
         """Everything evaluated so far."""
@@ -129,22 +137,26 @@ class Evaluator:
         of_sensors = np.array(self._of_sensors, dtype=np.float64).reshape(-1, len(problem.sensors))
         return Trace(x, self.cost.total(x, of_sensors), of_sensors, self.replayed)
 
-    def _evaluated(self, x: Floats) -> list[int]:
-        """Row of each member, evaluated where it is new."""
+    def _evaluated(self, x: Floats, *, keep: bool) -> list[int]:
+        """Row of each member, evaluated where it is new, or where residuals are wanted that were not kept."""
         keys = [row.tobytes() for row in np.ascontiguousarray(x, dtype=np.float64)]
-        fresh = list(dict.fromkeys(k for k in keys if k not in self._rows))
+        fresh = list(dict.fromkeys(k for k in keys if self._lacks(k, keep)))
         members = np.array([np.frombuffer(k) for k in fresh]).reshape(len(fresh), x.shape[1])
         for first in range(0, len(fresh), self._batch):
-            self._run(members[first : first + self._batch])
+            self._run(members[first : first + self._batch], keep)
         return [self._rows[k] for k in keys]
 
-    def _run(self, x: Floats) -> None:
+    def _lacks(self, key: bytes, keep: bool) -> bool:
+        return key not in self._rows or (keep and self._rows[key] not in self._residuals)
+
+    def _run(self, x: Floats, keep: bool) -> None:
         residuals = self.cost.problem.residuals(x)
         of_sensors = self.cost.of_sensors(residuals)
         lines = []
         for k in range(x.shape[0]):
-            self._remember(x[k], of_sensors[k], residuals[k])
-            lines.append(self._line(x[k], of_sensors[k], residuals[k]))
+            kept = residuals[k] if keep else None
+            self._remember(x[k], of_sensors[k], kept)
+            lines.append(self._line(x[k], of_sensors[k], kept))
         if self._path is not None:
             # One write per batch; the system keeps it even if the program is killed the moment after.
             self._file.write("".join(lines).encode())
@@ -152,16 +164,15 @@ class Evaluator:
         if self._progress is not None:
             self._progress(self.count, float(self._lowest))
 
-    def _remember(self, x: Floats, of_sensors: Floats, residuals: Floats) -> None:
+    def _remember(self, x: Floats, of_sensors: Floats, residuals: Floats | None) -> None:
         key = x.tobytes()
-        if key in self._rows:
-            return
-        self._rows[key] = len(self._rows)
-        self._x.extend(x.tolist())
-        self._of_sensors.extend(of_sensors.tolist())
-        self._lowest = min(self._lowest, float(self.cost.total(x[None], of_sensors[None])[0]))
-        if self._keep:
-            self._residuals.append(residuals)
+        if key not in self._rows:
+            self._rows[key] = len(self._rows)
+            self._x.extend(x.tolist())
+            self._of_sensors.extend(of_sensors.tolist())
+            self._lowest = min(self._lowest, float(self.cost.total(x[None], of_sensors[None])[0]))
+        if residuals is not None:
+            self._residuals[self._rows[key]] = residuals
 
     # --- the file -------------------------------------------------------------------------------------
 
@@ -177,13 +188,13 @@ class Evaluator:
             "sensors": [s.name for s in problem.sensors],
         }
 
-    def _line(self, x: Floats, of_sensors: Floats, residuals: Floats) -> str:
+    def _line(self, x: Floats, of_sensors: Floats, residuals: Floats | None) -> str:
         # repr of a float is its shortest text that reads back to the same bits; NaN is written as null.
         entry: dict[str, Any] = {
             "x": x.tolist(),
             "c": [c if np.isfinite(c) else None for c in of_sensors.tolist()],
         }
-        if self._keep:
+        if residuals is not None:
             # Little-endian on every machine.
             entry["r"] = base64.b64encode(residuals.astype("<f8").tobytes()).decode("ascii")
         return json.dumps(entry, allow_nan=False) + "\n"
@@ -234,10 +245,10 @@ class Evaluator:
         try:
             x = np.array(entry["x"], dtype=np.float64)
             costs = np.array([np.nan if c is None else c for c in entry["c"]], dtype=np.float64)
-            residuals = np.empty(problem.measured.shape)
-            if self._keep:
+            residuals = None
+            if "r" in entry:
                 data = base64.b64decode(entry["r"], validate=True)
-                residuals[...] = np.frombuffer(data, dtype="<f8").reshape(residuals.shape)
+                residuals = np.frombuffer(data, dtype="<f8").reshape(problem.measured.shape).astype(float)
             fits = x.shape == (len(problem.parameters),) and costs.shape == (len(problem.sensors),)
         except (KeyError, TypeError, ValueError):
             fits = False

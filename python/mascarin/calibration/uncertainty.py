@@ -7,10 +7,19 @@ models are strongly autocorrelated, and those of neighbouring sensors resemble e
 diagonal gives intervals that are many times too narrow. Here each sensor's residuals are described by an
 autoregressive model (order by BIC), with correlated innovations between sensors, which gives Omega.
 
+Omega is itself estimated, from residuals of which the fit has already swallowed a part, so that a standard
+deviation from it scatters and is a little small. How much is found by simulation: errors are drawn from the
+fitted autoregressive models, put through the linearised fit and the same estimate. With the known standard
+deviation of what was drawn, the errors that are so many *estimated* standard deviations wide hold it with a
+probability that can be computed; where 95 % need more of them than Student's quantile, that many are taken
+(a bootstrap-t).
+
 References
 ----------
 Seber G.A.F., Wild C.J. (1989), Nonlinear Regression, chapter 6 (autocorrelated errors).
 https://doi.org/10.1002/0471725315
+Efron B., Tibshirani R.J. (1993), An Introduction to the Bootstrap, chapter 12 (bootstrap-t).
+https://doi.org/10.1201/9780429246593
 """
 
 from __future__ import annotations
@@ -29,8 +38,9 @@ Floats = NDArray[np.float64]
 
 METHOD: Final = (
     "covariance of the estimates from the Jacobian, with the residuals' own autocorrelation (one "
-    "autoregressive model per sensor, order by BIC) and correlation between sensors; Student quantile with "
-    "the effective number of independent residuals"
+    "autoregressive model per sensor, order by BIC) and correlation between sensors; the quantile from "
+    "simulated fits to errors of these models (bootstrap-t), at least Student's with the effective number of "
+    "independent residuals"
 )
 """How the intervals are made, for reports."""
 
@@ -42,6 +52,8 @@ _SAME = 0.999
 _UNDETERMINED = 0.8  # share of the range that an interval may cover
 _SETTLED = 0.05  # share of the range below which an interval is narrow, whatever it goes with
 _AT_BOUND = 1e-4  # of the range
+_DRAWN: Final = 60  # simulated fits
+_SEED: Final = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +73,18 @@ class Uncertainty:
     order : tuple of int, length S
         Order of each sensor's autoregressive model. [-]
     freedom : float
-        Degrees of freedom of the quantile. [-]
+        Degrees of freedom of Student's quantile. [-]
+    quantile : ndarray, shape (P,)
+        Half-width of the intervals in standard deviations. [-]
+    covariance : ndarray, shape (P, P)
+        Of the estimates, in ranges. [-]
+    information : ndarray, shape (P, P)
+        That independent errors of the stated uncertainty would have, priors included. [-]
+    error : tuple of float, length S
+        Standard deviation of each sensor's errors about the model. [unit]
+    stretch : ndarray, shape (P, P)
+        By how much to draw positions towards the estimates so that the likelihood of independent errors
+        gets the covariance of the data without priors; symmetric. [-]
     """
 
     low: Floats
@@ -71,6 +94,11 @@ class Uncertainty:
     effective_samples: tuple[float, ...]
     order: tuple[int, ...]
     freedom: float
+    quantile: Floats
+    covariance: Floats
+    information: Floats
+    error: tuple[float, ...]
+    stretch: Floats
 
 
 def estimate(
@@ -124,16 +152,19 @@ def estimate(
     # The fit has swallowed a part of the errors, as many independent ones as there are parameters. A prior
     # is data with known, independent error: it enters the middle as it enters the information.
     swallowed = max(sum(effective), 1.0) / freedom
-    middle = _middle(r, wj, models) * swallowed + np.diag(priors)
+    noise = _Noise.of(r, models, swallowed)
+    middle = noise.middle(wj) + np.diag(priors)
     covariance = _sandwich(information, middle)
     inside = (z > _AT_BOUND) & (z < 1.0 - _AT_BOUND)
     sd = np.sqrt(np.diag(covariance))
-    if inside.any() and not inside.all():
-        # A parameter held by its bound is not free to trade off against the others.
-        free = np.flatnonzero(inside)
-        sub = _sandwich(information[np.ix_(free, free)], middle[np.ix_(free, free)])
-        sd[free] = np.sqrt(np.diag(sub))
-    reach = float(stats.t.ppf(0.5 + 0.5 * confidence, freedom)) * sd
+    quantile = np.full(z.size, float(stats.t.ppf(0.5 + 0.5 * confidence, freedom)))
+    # A parameter held by its bound is not free to trade off against the others.
+    free = np.flatnonzero(inside) if inside.any() else np.arange(z.size)
+    block = np.ix_(free, free)
+    sd[free] = np.sqrt(np.diag(_sandwich(information[block], middle[block])))
+    drawn = _drawn_quantile(noise, j[..., free], wj[..., free], priors[free], mask, confidence)
+    quantile[free] = np.maximum(quantile[free], drawn)
+    reach = quantile * sd
     return Uncertainty(
         low=np.clip(z - reach, 0.0, 1.0),
         high=np.clip(z + reach, 0.0, 1.0),
@@ -142,6 +173,14 @@ def estimate(
         effective_samples=effective,
         order=tuple(m.order for m in models),
         freedom=freedom,
+        quantile=quantile,
+        covariance=covariance,
+        information=information,
+        error=tuple(
+            math.sqrt(max(m.variance, 0.0) * swallowed + float(np.nanmean(r[:, s])) ** 2)
+            for s, m in enumerate(models)
+        ),
+        stretch=_stretch(information - np.diag(priors), middle - np.diag(priors)),
     )
 
 
@@ -223,28 +262,102 @@ def on_bounds(problem: CalibrationProblem, z: Floats, slope: Floats, found: Unce
     return reasons
 
 
-def _middle(r: Floats, wj: Floats, models: tuple[Autoregression, ...]) -> Floats:
-    """``J' W Omega W J`` from one autoregressive model per sensor.
+@dataclass(frozen=True, eq=False)
+class _Noise:
+    """Errors of all sensors: one autoregressive model each, with correlated innovations.
 
-    Omega of one sensor is ``innovation * Psi Psi'`` with Psi the response to an innovation; the product with
-    Psi' is the recursion run backwards in time, and goes on before the first sample until it has died away.
+    Attributes
+    ----------
+    models : tuple of Autoregression, length S
+        Of each sensor.
+    innovation : ndarray, shape (S, S)
+        Covariance of the innovations. [unit^2]
+    memory : int
+        Number of samples after which an innovation has died away. [-]
     """
-    from scipy.signal import lfilter
 
-    memory = max((m.memory() for m in models), default=0)
-    memory = min(memory, 20 * r.shape[0])
-    times, sensors, parameters = wj.shape
-    filtered = np.empty((times + memory, sensors, parameters))
-    padded = np.concatenate([wj[::-1], np.zeros((memory, sensors, parameters))])
-    impulse = np.zeros(times + memory)
-    impulse[0] = 1.0
-    responses = np.empty((times + memory, sensors))
-    for s, model in enumerate(models):
-        denominator = np.concatenate([[1.0], -model.coefficients])
-        filtered[:, s] = lfilter([1.0], denominator, padded[:, s], axis=0)
-        responses[:, s] = lfilter([1.0], denominator, impulse)
-    innovation = _innovations(r, models, responses)
-    return np.asarray(np.einsum("tsp,su,tuq->pq", filtered, innovation, filtered, optimize=True))
+    models: tuple[Autoregression, ...]
+    innovation: Floats
+    memory: int
+
+    @staticmethod
+    def of(r: Floats, models: tuple[Autoregression, ...], factor: float = 1.0) -> _Noise:
+        """Errors like the residuals r (T, S), NaN for gaps; their variance times a factor."""
+        memory = min(max((m.memory() for m in models), default=0), 20 * r.shape[0])
+        noise = _Noise(models, np.eye(len(models)), memory)
+        impulse = np.zeros((r.shape[0] + memory, len(models)))
+        impulse[0] = 1.0
+        return _Noise(models, factor * _innovations(r, models, noise.answer(impulse)), memory)
+
+    def answer(self, innovations: Floats) -> Floats:
+        """Series (T, S, ...) that innovations of the same shape give."""
+        from scipy.signal import lfilter
+
+        series = np.empty_like(innovations)
+        for s, model in enumerate(self.models):
+            denominator = np.concatenate([[1.0], -model.coefficients])
+            series[:, s] = lfilter([1.0], denominator, innovations[:, s], axis=0)
+        return series
+
+    def middle(self, wj: Floats) -> Floats:
+        """``J' W Omega W J`` from weighted derivatives (T, S, P).
+
+        Omega of one sensor is ``innovation * Psi Psi'`` with Psi the response to an innovation; the product
+        with Psi' is the recursion run backwards in time, and goes on before the first sample until it has
+        died away.
+        """
+        filtered = self.answer(np.concatenate([wj[::-1], np.zeros((self.memory, *wj.shape[1:]))]))
+        shape = (-1, wj.shape[2])
+        mixed = np.einsum("su,tuq->tsq", self.innovation, filtered)
+        return np.asarray(filtered.reshape(shape).T @ mixed.reshape(shape))
+
+    def draw(self, times: int, count: int) -> Floats:
+        """Random errors, shape (T, S, count), always the same ones. [unit]"""
+        value, vector = np.linalg.eigh(self.innovation)
+        root = vector * np.sqrt(np.maximum(value, 0.0))
+        normal = np.random.default_rng(_SEED).standard_normal((times + self.memory, len(self.models), count))
+        return self.answer(np.einsum("su,tuk->tsk", root, normal))[self.memory :]
+
+
+def _drawn_quantile(
+    noise: _Noise, j: Floats, wj: Floats, priors: Floats, mask: NDArray[np.bool_], confidence: float
+) -> Floats:
+    """Size of error over standard deviation that simulated fits keep at the confidence, shape (P,). [-]"""
+    if not np.any(np.diag(noise.innovation) > 0.0):
+        return np.zeros(j.shape[2])
+    information = np.einsum("tsp,tsq->pq", wj, j) + np.diag(priors)
+    inverse, _ = _inverted(information)
+    true = _diagonal(inverse, noise.middle(wj) + np.diag(priors))
+    errors = noise.draw(j.shape[0], _DRAWN)
+    beside = np.random.default_rng(_SEED + 1).standard_normal((priors.size, _DRAWN))
+    moved = -inverse @ (np.einsum("tsp,tsk->pk", wj, errors) + np.sqrt(priors)[:, None] * beside)
+    left = errors + np.einsum("tsp,pk->tsk", j, moved)
+    ratio = np.ones_like(moved)
+    for k in range(_DRAWN):
+        r = np.where(mask, left[:, :, k], np.nan)
+        models = tuple(fit_autoregression(r[:, s]) for s in range(r.shape[1]))
+        effective = max(sum(m.effective_samples for m in models), 1.0)
+        found = _Noise.of(r, models, effective / max(effective - priors.size, 1.0))
+        variance = _diagonal(inverse, found.middle(wj) + np.diag(priors))
+        ratio[:, k] = np.sqrt(np.divide(variance, true, out=np.ones_like(true), where=true > 0.0))
+    return _widened(ratio, confidence)
+
+
+def _diagonal(inverse: Floats, middle: Floats) -> Floats:
+    return np.asarray(np.einsum("ip,pq,iq->i", inverse, middle, inverse))
+
+
+def _widened(ratio: Floats, confidence: float) -> Floats:
+    """Quantile of a normal variable in units of a standard deviation that scatters, rows of (P, K). [-]"""
+    from scipy.special import ndtr
+
+    low, high = np.zeros(len(ratio)), np.full(len(ratio), 1e3)
+    # Bisection: the probability rises with the quantile.
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        inside = np.mean(2.0 * ndtr(middle[:, None] * ratio) - 1.0, axis=1)
+        low, high = np.where(inside < confidence, middle, low), np.where(inside < confidence, high, middle)
+    return np.asarray(high)
 
 
 def _innovations(r: Floats, models: tuple[Autoregression, ...], responses: Floats) -> Floats:
@@ -268,16 +381,36 @@ def _innovations(r: Floats, models: tuple[Autoregression, ...], responses: Float
     return np.asarray(correlation * np.outer(size, size))
 
 
-def _sandwich(information: Floats, middle: Floats) -> Floats:
-    """``B middle B``, ``B = information^-1``; what the data do not see gets the variance `FREE` squared."""
+def _inverted(information: Floats) -> tuple[Floats, Floats]:
+    """Inverse of the information where the data see something, and the directions that they do not see."""
     value, vector = np.linalg.eigh(information)
     largest = float(value.max(initial=0.0))
     seen = value > max(1e-13 * largest, np.finfo(float).tiny)
     inverse = np.where(seen, 1.0 / np.where(seen, value, 1.0), 0.0)
-    b = (vector * inverse) @ vector.T
-    unseen = vector[:, ~seen]
+    return np.asarray((vector * inverse) @ vector.T), np.asarray(vector[:, ~seen])
+
+
+def _sandwich(information: Floats, middle: Floats) -> Floats:
+    """``B middle B``, ``B = information^-1``; what the data do not see gets the variance `FREE` squared."""
+    b, unseen = _inverted(information)
     covariance = b @ middle @ b + FREE**2 * unseen @ unseen.T
     return np.asarray(0.5 * (covariance + covariance.T))
+
+
+def symmetric_power(matrix: Floats, exponent: float) -> Floats:
+    """Power of a symmetric matrix without negative eigenvalues. [-]"""
+    value, vector = np.linalg.eigh(matrix)
+    floor = np.finfo(float).eps * max(float(value.max(initial=0.0)), np.finfo(float).tiny)
+    return np.asarray((vector * np.maximum(value, floor) ** exponent) @ vector.T)
+
+
+def _stretch(information: Floats, middle: Floats) -> Floats:
+    """Symmetric C with ``C information C`` the inverse of the sandwich: a geometric mean of matrices."""
+    wanted = symmetric_power(_sandwich(information, middle), -1.0)
+    # Where the data see nothing the likelihood is flat and any finite stretch will do.
+    root = symmetric_power(information + np.eye(len(information)), 0.5)
+    back = symmetric_power(information + np.eye(len(information)), -0.5)
+    return np.asarray(back @ symmetric_power(root @ wanted @ root, 0.5) @ back)
 
 
 def _correlation(covariance: Floats) -> Floats:

@@ -167,6 +167,9 @@ class CovarianceSearch(Optimiser):
         Number of evaluations after which the search stops [-].
     seed : int
         Seed of the random numbers [-].
+    finest : float, optional
+        Ends the search when its standard deviations are smaller, in ranges or steps; a hundred-billionth of
+        the first when absent [-].
     observer, remember
         See `Optimiser`.
 
@@ -183,6 +186,7 @@ class CovarianceSearch(Optimiser):
         population: int | None = None,
         max_evaluations: int = 1000,
         seed: int = 1,
+        finest: float | None = None,
         observer: Observer | None = None,
         remember: bool = True,
     ) -> None:
@@ -193,7 +197,7 @@ class CovarianceSearch(Optimiser):
             msg = "the evolution of a covariance needs at least two parameters"
             raise InputError(msg)
         self._sigma, self._population = sigma, population
-        self._limit, self._seed = max_evaluations, seed
+        self._limit, self._seed, self._finest = max_evaluations, seed, finest
         # One unit is the range of a bounded parameter, else its step.
         self._unit = [c.upper - c.lower if c.bounded else c.step for c in space.continuous]
 
@@ -240,6 +244,8 @@ class CovarianceSearch(Optimiser):
             "seed": math.nan,
             "randn": lambda *shape: random.standard_normal(shape),
         }
+        if self._finest is not None:
+            options["tolx"] = self._finest
         if self._population is not None:
             options["popsize"] = self._population
         return cma.CMAEvolutionStrategy([0.0] * len(cs), self._sigma, options)

@@ -117,7 +117,7 @@ def identify(
     """
     return solve(
         stated,
-        method="least_squares" if plan.method == "least-squares" else "pattern_search",
+        method=plan.method,
         cost=plan.cost,
         seed=plan.seed,
         rules=Rules(starts=plan.starts, sequences=max(plan.starts, 10), evaluations=plan.budget),

@@ -1,0 +1,314 @@
+"""Profile likelihood: how much worse the fit becomes when one parameter is held.
+
+Where a profile is a parabola the interval from the covariance is the whole truth; where it is flat to one
+side the data bound the parameter on the other side only. The likelihood is that of independent errors,
+weakened parameter by parameter so that its curvature at the minimum is that of the covariance which the
+autocorrelated residuals give; the limit is the square of the same quantile as for the intervals of the fit.
+
+All points of all profiles are minimised side by side, each with a Jacobian of its own that begins as that of
+the minimum and learns from every step (Broyden).
+
+References
+----------
+Raue A. et al. (2009), Bioinformatics 25, 1923. https://doi.org/10.1093/bioinformatics/btp358
+Broyden C.G. (1965), Math. Comp. 19, 577. https://doi.org/10.1090/S0025-5718-1965-0198670-6
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration.cost import Cost
+from mascarin.calibration.squares import derivative, scale_of
+from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from mascarin.calibration.fit import Fit
+
+Floats = NDArray[np.float64]
+
+_REACH: Final = 1.6  # intervals to each side
+_WIDER: Final = 8  # times that a grid is made wider
+_STEPS: Final = 25
+_SETTLED: Final = 1e-3  # change of the deviance from which a point goes on, in squared quantiles
+_DIFFERENCE: Final = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """The profile of one parameter.
+
+    Attributes
+    ----------
+    path, unit : str
+        The parameter.
+    estimate : float
+        Its estimate. [unit]
+    values : ndarray, shape (K,)
+        Where it was held, rising. [unit]
+    rise : ndarray, shape (K,)
+        Twice the loss of log-likelihood there, weakened for the autocorrelation. [-]
+    others : ndarray, shape (K, P)
+        All parameters there. [unit of each]
+    limit : float
+        What the rise stays below within the interval. [-]
+    low, high : float
+        Interval; the end of the range where the profile stays below the limit up to it. [unit]
+    open_low, open_high : bool
+        Whether the interval ends only because the range does.
+    """
+
+    path: str
+    unit: str
+    estimate: float
+    values: Floats
+    rise: Floats
+    others: Floats
+    limit: float
+    low: float
+    high: float
+    open_low: bool
+    open_high: bool
+
+    @property
+    def words(self) -> str:
+        """What the profile says. Empty when it bounds the parameter on both sides."""
+        if self.open_low and self.open_high:
+            return f"{self.path}: the data bound it on neither side"
+        if self.open_low or self.open_high:
+            side, end = ("below", self.low) if self.open_low else ("above", self.high)
+            where = f"{end:g} {self.unit}".rstrip()
+            return (
+                f"{self.path}: the data do not bound it {side}; the interval ends with the range at {where}"
+            )
+        return ""
+
+
+def profiles(
+    fit: Fit, paths: Sequence[str] | None = None, *, points: int = 11, batch: int = 64
+) -> list[Profile]:
+    """Profiles about the minimum of a fit.
+
+    Parameters
+    ----------
+    fit : Fit
+        By least squares or any other method; its cost is ``nll``.
+    paths : sequence of str, optional
+        Parameters wanted; all when absent.
+    points : int
+        Number of values each is held at. [-]
+    batch : int
+        Largest number of members handed to the model at once. [-]
+
+    Returns
+    -------
+    list of Profile
+
+    Raises
+    ------
+    InputError
+        Another cost than ``nll``, an unknown parameter, or fewer than 5 points.
+    """
+    if fit.cost_name != "nll":
+        msg = f"a profile needs a likelihood: found the cost '{fit.cost_name}', expected 'nll'"
+        raise InputError(msg)
+    if points < 5:
+        msg = f"points: found {points}, expected at least 5"
+        raise InputError(msg)
+    known = fit.problem.paths
+    wanted = known if paths is None else tuple(paths)
+    for path in wanted:
+        if path not in known:
+            raise InputError(f"profile: '{path}' was not fitted. {did_you_mean(path, known)}")
+    search = _Search(fit, batch)
+    held = [known.index(path) for path in wanted]
+    grids = [_grid(fit, i, points) for i in held]
+    found = [(np.empty(0), np.empty((0, len(known))), np.empty(0))] * len(held)
+    for _ in range(_WIDER):
+        z, rise = search.minima(np.repeat(held, [grid.size for grid in grids]), np.concatenate(grids))
+        ends = np.cumsum([grid.size for grid in grids])[:-1]
+        parts = zip(grids, np.split(z, ends), np.split(rise, ends), strict=True)
+        found = [_joined(old, new) for old, new in zip(found, parts, strict=True)]
+        grids = [_further(fit, i, *piece) for i, piece in zip(held, found, strict=True)]
+        if not any(grid.size for grid in grids):
+            break
+    return [_profile(fit, i, *piece) for i, piece in zip(held, found, strict=True)]
+
+
+_Piece = tuple[Floats, Floats, Floats]
+"""Where a parameter was held (K,), all positions there (K, P), and the rise (K,)."""
+
+
+def _joined(old: _Piece, new: _Piece) -> _Piece:
+    """Both in rising order of where the parameter was held."""
+    order = np.argsort(np.concatenate([old[0], new[0]]), kind="stable")
+    a, b, c = (np.concatenate(pair)[order] for pair in zip(old, new, strict=True))
+    return a, b, c
+
+
+def _further(fit: Fit, i: int, grid: Floats, _: Floats, rise: Floats) -> Floats:
+    """Points twice as far out, where a profile has not left the limit and the range has not ended."""
+    centre = float(fit.problem.positions(fit.x)[i])
+    limit = float(fit.uncertainty.quantile[i] ** 2)
+    return np.array(
+        [
+            min(max(centre + 2.0 * (grid[end] - centre), 0.0), 1.0)
+            for end in (0, -1)
+            if rise[end] <= limit and 0.0 < grid[end] < 1.0
+        ]
+    )
+
+
+def _grid(fit: Fit, i: int, points: int) -> Floats:
+    """Where a parameter is held: about the estimate, as far as its interval reaches and further."""
+    centre = float(fit.problem.positions(fit.x)[i])
+    found = fit.uncertainty
+    reach = _REACH * float(found.quantile[i]) * math.sqrt(max(found.covariance[i, i], 0.0))
+    reach = min(max(reach, 1e-9), 1.0)
+    side = np.linspace(0.0, 1.0, points // 2 + 1)[1:]
+    grid = np.concatenate([centre - reach * side[::-1], [centre], centre + reach * side])
+    return np.unique(np.clip(grid, 0.0, 1.0))
+
+
+class _Search:
+    """Minimises over the others at many points at once."""
+
+    def __init__(self, fit: Fit, batch: int) -> None:
+        problem = fit.problem
+        self._problem, self._batch = problem, batch
+        self._cost = Cost(problem, "nll")
+        self._scale = scale_of(problem)
+        self._centre = problem.positions(fit.x)
+        self._limit = fit.uncertainty.quantile**2
+        _, jacobian = derivative(problem, self._centre, _DIFFERENCE)
+        self._r = self._weighted(self._centre[None])[0]
+        data = jacobian[problem.mask] * self._scale[:, None]
+        priors = self._prior_slopes()
+        self._j = np.concatenate([data, priors])
+        information = self._j.T @ self._j
+        variance = np.diag(np.linalg.pinv(information))
+        # By how much the autocorrelation weakens what the likelihood says of each parameter.
+        self._weight = variance / np.maximum(np.diag(fit.uncertainty.covariance), 1e-300)
+        self._lowest = float(self._r @ self._r)
+
+    def minima(self, held: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
+        """Positions (N, P) of the lowest cost with one parameter held, and the weakened rise (N,)."""
+        count = len(held)
+        z = np.tile(self._centre, (count, 1))
+        jacobians = np.tile(self._j, (count, 1, 1))
+        rows = np.arange(count)
+        moved = np.zeros_like(z)
+        moved[rows, held] = at - self._centre[held]
+        for k in range(count):
+            free = self._others(int(held[k]))
+            follow = -np.linalg.lstsq(self._j[:, free], self._j[:, held[k]])[0] * moved[k, held[k]]
+            moved[k, free] = np.clip(z[k, free] + follow, 0.0, 1.0) - z[k, free]
+        z = z + moved
+        z[rows, held] = at
+        r = self._weighted(z)
+        for k in range(count):
+            _learn(jacobians[k], r[k] - self._r, moved[k])
+        damping = np.zeros(count)
+        active = np.ones(count, dtype=np.bool_)
+        for _ in range(_STEPS):
+            todo = np.flatnonzero(active)
+            if not todo.size:
+                break
+            trial = np.array([self._step(z[k], r[k], jacobians[k], int(held[k]), damping[k]) for k in todo])
+            answer = self._weighted(trial)
+            for n, k in enumerate(todo.tolist()):
+                step = trial[n] - z[k]
+                if np.any(step != 0.0) and np.isfinite(answer[n]).all():
+                    _learn(jacobians[k], answer[n] - r[k], step)
+                gain = float(r[k] @ r[k] - answer[n] @ answer[n]) * self._weight[held[k]]
+                if gain > 0.0:
+                    z[k], r[k] = trial[n], answer[n]
+                    damping[k] /= 10.0
+                else:
+                    damping[k] = max(10.0 * damping[k], 1e-3)
+                active[k] = gain > _SETTLED * self._limit[held[k]] or (gain <= 0.0 and 0.0 < damping[k] < 1.0)
+        risen = (np.einsum("ni,ni->n", r, r) - self._lowest) * self._weight[held]
+        return z, np.maximum(risen, 0.0)
+
+    def _step(self, z: Floats, r: Floats, jacobian: Floats, held: int, damping: float) -> Floats:
+        """A damped Gauss-Newton step within the range; what is at a bound and pulled outward stays."""
+        slope = jacobian.T @ r
+        free = self._others(held)
+        stuck = ((z <= 0.0) & (slope > 0.0)) | ((z >= 1.0) & (slope < 0.0))
+        free = free[~stuck[free]]
+        square = jacobian[:, free].T @ jacobian[:, free]
+        damped = square + damping * np.diag(np.diag(square))
+        new = z.copy()
+        new[free] = np.clip(z[free] - np.linalg.pinv(damped, hermitian=True) @ slope[free], 0.0, 1.0)
+        return new
+
+    def _others(self, held: int) -> NDArray[np.int64]:
+        return np.delete(np.arange(self._centre.size), held)
+
+    def _weighted(self, z: Floats) -> Floats:
+        """Residuals over their uncertainty, then those of the priors, of members (N, P)."""
+        found = []
+        for first in range(0, len(z), self._batch):
+            x = self._problem.values(z[first : first + self._batch])
+            data = self._problem.residuals(x)[:, self._problem.mask] * self._scale
+            found.append(np.concatenate([data, self._cost.prior_residuals(x)], axis=1))
+        return np.concatenate(found)
+
+    def _prior_slopes(self) -> Floats:
+        """Derivative of the priors' residuals by the positions, shape (number of priors, P)."""
+        ahead = np.clip(self._centre + _DIFFERENCE, 0.0, 1.0)
+        behind = np.clip(self._centre - _DIFFERENCE, 0.0, 1.0)
+        columns = []
+        for i in range(self._centre.size):
+            pair = np.tile(self._centre, (2, 1))
+            pair[:, i] = ahead[i], behind[i]
+            values = self._cost.prior_residuals(self._problem.values(pair))
+            columns.append((values[0] - values[1]) / (ahead[i] - behind[i]))
+        return np.column_stack(columns)
+
+
+def _learn(jacobian: Floats, change: Floats, step: Floats) -> None:
+    """Broyden's update in place: the Jacobian explains the change that the step made."""
+    square = float(step @ step)
+    if square > 0.0:
+        jacobian += np.outer((change - jacobian @ step) / square, step)
+
+
+def _profile(fit: Fit, i: int, grid: Floats, z: Floats, rise: Floats) -> Profile:
+    parameter = fit.problem.parameters[i]
+    limit = float(fit.uncertainty.quantile[i] ** 2)
+    middle = int(np.argmin(rise))
+    low, open_low = _crossing(grid[middle::-1], rise[middle::-1], limit)
+    high, open_high = _crossing(grid[middle:], rise[middle:], limit)
+    return Profile(
+        path=parameter.path,
+        unit=parameter.unit,
+        estimate=float(fit.x[i]),
+        values=np.array([parameter.value(float(v)) for v in grid]),
+        rise=rise,
+        others=fit.problem.values(z),
+        limit=limit,
+        low=parameter.value(low),
+        high=parameter.value(high),
+        open_low=open_low,
+        open_high=open_high,
+    )
+
+
+def _crossing(grid: Floats, rise: Floats, limit: float) -> tuple[float, bool]:
+    """Where the profile leaves the limit, going outward; the root of the rise is nearly straight."""
+    above = np.flatnonzero(rise > limit)
+    if not above.size:
+        return float(grid[-1]), True
+    k = int(above[0])
+    if k == 0:
+        return float(grid[0]), False
+    a, b = math.sqrt(rise[k - 1]), math.sqrt(rise[k])
+    part = (math.sqrt(limit) - a) / (b - a)
+    return float(grid[k - 1] + part * (grid[k] - grid[k - 1])), False

@@ -1,0 +1,102 @@
+"""The methods by name, and how long and how finely they search."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from mascarin.errors import InputError
+
+MethodName = Literal["least-squares", "hooke-jeeves", "particle-swarm", "hybrid", "cma-es", "emcee"]
+
+METHODS: Final[tuple[MethodName, ...]] = (
+    "least-squares", "hooke-jeeves", "particle-swarm", "hybrid", "cma-es", "emcee",
+)  # fmt: skip
+
+WITH_SQUARES: Final = ("least-squares", "emcee")
+"""Methods that know sums of squares, and so the cost ``nll`` only."""
+
+FINEST: Final = 24
+"""Halvings after which a mesh on the binary grid of the sequences is still exact."""
+
+_AGREE: Final = {"hooke-jeeves": 10}
+_AGREE_OTHERS: Final = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """How long and how finely to search.
+
+    *Sequences* are those of every method that asks and tells: pattern search, swarm, hybrid, evolution
+    strategy, and a user's own.
+
+    Attributes
+    ----------
+    starts : int
+        Least squares: number of starts, the given one and others spread over the ranges by a Latin
+        hypercube. [-]
+    difference : float
+        Least squares and uncertainty: step of the finite differences, in ranges. [-]
+    tolerance : float
+        Least squares: relative change of cost or position at which a search ends. [-]
+    agree : int, optional
+        Number of sequences that must have reached the same minimum; 10 for Hooke-Jeeves as in the reference
+        study, 2 for methods that search the whole range in each. [-]
+    within : float
+        Costs within this share of the lowest are the same minimum, see `Cost.tolerance`. [-]
+    sequences : int
+        Largest number of sequences. [-]
+    evaluations : int, optional
+        Number of evaluations at which every sequence is stopped where it stands. [-]
+    step : float
+        Pattern search: first step, in ranges; evolution strategy: first standard deviation. [-]
+    reductions : int
+        Pattern search: how often the step is halved before a sequence ends. [-]
+    together : int
+        Number of sequences that run side by side; unless `evaluations` ends the search, it changes only the
+        time it takes. [-]
+    particles, generations : int
+        Swarm: its size and how long it flies. [-]
+    walkers : int, optional
+        emcee: number of walkers, an even number; twice the parameters, at least 32, when absent. [-]
+    moves : int
+        emcee: how often each walker moves; the first fifth is thrown away. [-]
+    """
+
+    starts: int = 5
+    difference: float = 1e-4
+    tolerance: float = 1e-8
+    agree: int | None = None
+    within: float = 1e-3
+    sequences: int = 200
+    evaluations: int | None = None
+    step: float = 0.1
+    reductions: int = 10
+    together: int = 16
+    particles: int = 16
+    generations: int = 30
+    walkers: int | None = None
+    moves: int = 500
+
+    def __post_init__(self) -> None:
+        least = {"starts": 1, "sequences": 1, "reductions": 1, "together": 1, "agree": 1}
+        least |= {"evaluations": 1, "particles": 4, "generations": 2, "walkers": 4, "moves": 50}
+        for name, smallest in least.items():
+            found = getattr(self, name)
+            if found is not None and found < smallest:
+                msg = f"{name}: found {found}, expected at least {smallest}"
+                raise InputError(msg)
+        if self.reductions > FINEST:
+            msg = f"reductions: found {self.reductions}, expected at most {FINEST}"
+            raise InputError(msg)
+        if self.walkers is not None and self.walkers % 2:
+            msg = f"walkers: found {self.walkers}, expected an even number: they move in two halves"
+            raise InputError(msg)
+        for name in ("difference", "step"):
+            if not 0.0 < getattr(self, name) <= 0.5:
+                msg = f"{name}: found {getattr(self, name):g}, expected a share of the range, 0 to 0.5"
+                raise InputError(msg)
+
+    def agreeing(self, method: str) -> int:
+        """Number of sequences of a method that must have reached the same minimum. [-]"""
+        return self.agree if self.agree is not None else _AGREE.get(method, _AGREE_OTHERS)
