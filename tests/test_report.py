@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 VOID = {"meta", "link", "img", "br", "input"}
 SECTIONS = ["criteria", "model", "data", "sensitivity", "parameters", "comparison", "curves", "carpets",
-            "phase-change", "residuals", "energy", "notes", "reproduce"]  # fmt: skip
+            "phase-change", "residuals", "shortfall", "energy", "notes", "reproduce"]  # fmt: skip
 
 
 class Outline(HTMLParser):
@@ -118,6 +118,23 @@ def test_tables_hold_the_numbers(outline: Outline) -> None:
     assert row[2].replace("−", "-") == f"{steel['bias']:+.2f}"
     assert row[4] == f"{steel['sd']:.2f}"
     assert row[5] == "1.6"
+
+
+def test_what_would_take_the_rest_away_is_told(outline: Outline) -> None:
+    study, _ = report_example.lgi()
+    text = re.sub(r"\s+", " ", " ".join(outline.text))
+    table = text[text.index("each week judged with changes found on other weeks") :]
+    table = table[: table.index("Where the heat went")]
+    labels = ("as it is", "with roof · steel · thickness", "and site · cloud · c3", "all 173", "aim")
+    rows = [table.index(label) for label in labels]
+    assert rows == sorted(rows)
+    # The last step's changes are those that belong together.
+    assert "with roof · steel · thickness +33" in table
+    assert "and site · cloud · c3 −12" in table
+    steel = study["shortfall"]["every"]["sd"]["steel_sheet"]
+    assert f"{steel:.2f}" in table[rows[3] : rows[4]]
+    met = sum(aim["passed"] for aim in study["aims"])
+    assert f"{met} of 6 are reached" in text
 
 
 def test_the_page_can_be_read_without_seeing_it(outline: Outline) -> None:

@@ -452,8 +452,9 @@ def _biased(problem: CalibrationProblem, residuals: Floats, found: Uncertainty) 
         r = residuals[sensor.mask, s]
         bias, spread = float(r.mean()), float(r.std())
         if abs(bias) > 3.0 * spread / math.sqrt(max(found.effective_samples[s], 1.0)) and abs(bias) > 1e-9:
+            unit = sensor.unit.replace("degC", "K")
             texts.append(
-                f"'{sensor.name}' keeps a bias of {bias:+.2g} {sensor.unit}; the intervals do not cover what "
-                f"causes it"
+                f"'{sensor.name}' keeps a bias of {bias:+.2g} {unit}; the intervals do not cover what "
+                "causes it"
             )
     return texts

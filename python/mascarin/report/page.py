@@ -124,6 +124,7 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
         ("carpets", "When it errs", _carpets(study, series)),
         ("phase-change", "The phase change", _phase_change(study, series)),
         ("residuals", "What is left in the residuals", _residuals(study)),
+        ("shortfall", "What would take the rest away", _shortfall(study)),
         ("energy", "Where the heat went", _energy(study)),
         ("notes", "What the numbers say", _notes(study)),
         ("reproduce", "How to get the same result", _reproduce(study)),
@@ -708,6 +709,78 @@ def _statistics(study: Mapping[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
+def _shortfall(study: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Aims, and the parameters that would lead to them."""
+    aims, found = study.get("aims", []), study.get("shortfall", {})
+    if not aims and not found.get("steps"):
+        return None
+    sensors = list(found.get("sd", {}))
+    changes = found["steps"][-1]["changes"] if found.get("steps") else {}
+    rows = [{"label": "as it is", "change": "", "cells": _scatter(found.get("sd", {}), sensors)}]
+    rows += [
+        {
+            "label": f"{'with' if number == 0 else 'and'} {_parameter_label(study, step['path'])}",
+            "change": text.fixed(100.0 * changes[step["path"]], 0, sign=True),
+            "cells": _scatter(step["sd"], sensors),
+        }
+        for number, step in enumerate(found.get("steps", []))
+    ]
+    if "every" in found:
+        label = f"all {found['every']['parameters']} parameters"
+        rows.append({"label": label, "change": "", "cells": _scatter(found["every"]["sd"], sensors)})
+    wished = _aimed_scatter(aims, str(found.get("period", "")), sensors)
+    units = {text.difference_unit(figures.unit_of(study, sensor)) for sensor in sensors}
+    return {
+        "aims": _aims(study, aims),
+        "met": sum(1 for aim in aims if aim.get("passed")),
+        "judged": len(aims),
+        "labels": [figures.label_of(study, sensor) for sensor in sensors],
+        "rows": rows if sensors else [],
+        "wished": wished,
+        "period": _period_label(study, str(found.get("period", ""))).lower(),
+        "unit": units.pop() if len(units) == 1 else "",
+    }
+
+
+def _scatter(sd: Mapping[str, float], sensors: Sequence[str]) -> list[str]:
+    return [text.fixed(sd.get(sensor)) for sensor in sensors]
+
+
+def _aimed_scatter(aims: Sequence[Mapping[str, Any]], period: str, sensors: Sequence[str]) -> list[str]:
+    """The standard deviation aimed at, by sensor; nothing where there is no such aim."""
+    wished = {
+        aim.get("sensor"): aim.get("limit")
+        for aim in aims
+        if aim.get("metric") == "sd" and aim.get("period") == period
+    }
+    return [text.fixed(wished.get(sensor)) for sensor in sensors] if wished else []
+
+
+def _aims(study: Mapping[str, Any], aims: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Aims with what was reached in each period beside each other."""
+    periods = list(dict.fromkeys(str(aim.get("period", "")) for aim in aims))
+    rows: dict[tuple[str, str, float], dict[str, Any]] = {}
+    for aim in aims:
+        key = (str(aim.get("name", "")), str(aim.get("sensor", "")), float(aim.get("limit", 0.0)))
+        row = rows.setdefault(
+            key,
+            {
+                "label": figures.label_of(study, key[1]) if key[1] else "",
+                "name": text.typeset(key[0]),
+                "limit": f"{text.fixed(key[2])}\u00a0{text.difference_unit(str(aim.get('unit', '')))}",
+                "found": {},
+            },
+        )
+        row["found"][str(aim.get("period", ""))] = {
+            "text": text.fixed(aim.get("value")),
+            "passed": bool(aim.get("passed")),
+        }
+    return {
+        "periods": [_period_label(study, period) for period in periods],
+        "rows": [{**row, "cells": [row["found"].get(period) for period in periods]} for row in rows.values()],
+    }
+
+
 def _energy(study: Mapping[str, Any]) -> dict[str, Any] | None:
     ledger = study.get("ledger")
     if not ledger:
@@ -762,6 +835,8 @@ def _named(study: Mapping[str, Any], words: str) -> str:
         for begin, end in ((f"{sensor}: ", ": "), (f"'{sensor}' ", " ")):
             if words.startswith(begin):
                 return f"{figures.label_of(study, sensor)}{end}{words.removeprefix(begin)}"
+    for path in study.get("parameters", {}):
+        words = words.replace(path, _parameter_label(study, path))
     return words
 
 

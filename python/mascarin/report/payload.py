@@ -251,6 +251,18 @@ class Residuals(TypedDict, total=False):
     effective_n: float
 
 
+class Shortfall(TypedDict, total=False):
+    """What would take the rest of the error away, parameter by parameter; ``sd`` is by sensor."""
+
+    sd: dict[str, float]
+    """As it is."""
+    period: str
+    steps: list[dict[str, Any]]
+    """Each with ``path`` (what is changed besides those before), ``changes`` by path [ranges], and ``sd``."""
+    every: dict[str, Any]
+    """``parameters``, their number, and ``sd`` with all of them changed."""
+
+
 class LedgerTerm(TypedDict, total=False):
     """One entry of the energy ledger."""
 
@@ -336,6 +348,9 @@ class Study(TypedDict, total=False):
     identification: list[list[str]]
     """Rows of name and value about how the fit was found."""
     criteria: list[Criterion]
+    aims: list[Criterion]
+    """Limits that one would have liked to reach; missing one fails nothing."""
+    shortfall: Shortfall
     sensitivity: dict[str, dict[str, Share]]
     sensitivity_design: list[list[str]]
     spectra: dict[str, Spectrum]
@@ -537,7 +552,7 @@ def tidy(study: Mapping[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict
-        The same without the repetitions, in periods, metrics and criteria.
+        The same without the repetitions, in periods, metrics, criteria and aims.
     """
     kept: dict[str, Any] = {}
     for key, period in study.get("periods", {}).items():
@@ -547,8 +562,11 @@ def tidy(study: Mapping[str, Any]) -> dict[str, Any]:
         sensor: {key: entries for key, entries in periods.items() if key in kept}
         for sensor, periods in study.get("sensors", {}).items()
     }
-    criteria = [c for c in study.get("criteria", []) if not c.get("period") or c["period"] in kept]
-    changed = {"periods": kept, "sensors": sensors, "criteria": criteria}
+    limits = {
+        what: [c for c in study.get(what, []) if not c.get("period") or c["period"] in kept]
+        for what in ("criteria", "aims")
+    }
+    changed = {"periods": kept, "sensors": sensors, **limits}
     return {**study, **{key: value for key, value in changed.items() if key in study}}
 
 

@@ -71,11 +71,12 @@ def names(study: Study, faults: Faults) -> None:
             if found in seen:
                 raise InputError(f"is the same as {seen[found]}, expected each parameter once; remove one")
             seen[found] = path
-    for k, criterion in enumerate(file.criteria):
-        for key, known in (("sensors", tuple(file.sensors)), ("periods", PERIODS)):
-            for name in getattr(criterion, key) or ():
-                with places.noting(faults, "criteria", k, key):
-                    _require_known(name, known)
+    for what, limits in (("criteria", file.criteria), ("aims", file.aims)):
+        for k, criterion in enumerate(limits):
+            for key, known in (("sensors", tuple(file.sensors)), ("periods", PERIODS)):
+                for name in getattr(criterion, key) or ():
+                    with places.noting(faults, what, k, key):
+                        _require_known(name, known)
     for name in {} if file.reference is None else file.reference.sensors:
         with places.noting(faults, "reference", "sensors", name):
             _require_known(name, tuple(file.sensors))

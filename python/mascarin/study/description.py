@@ -331,6 +331,11 @@ class StudyFile(Part):
     periods: Periods = Field(description="Which part of the record is for what")
     quality: Quality = Field(default_factory=lambda: Quality(mask=()), description="Suspicious stretches")
     criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit 1 when one is missed")
+    aims: tuple[Limit, ...] = Field(
+        (),
+        description="Limits that one would like to reach: where one is missed the report says what would "
+        "take the rest of the error away, and nothing fails",
+    )
     sensitivity: SensitivityPlan | None = Field(None, description="Which parameters matter")
     identification: IdentificationPlan | None = Field(
         None, description="Which parameters to identify; without it the building can only be compared"

@@ -13,6 +13,7 @@ from mascarin.examples import STUDIES
 from mascarin.study.melting import law_curve, melting_layers, path
 from mascarin.study.pipeline import scores_of
 from mascarin.validation.observation import PERIODS
+from mascarin.validation.shortfall import words
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -81,7 +82,10 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
         "notes": [
             *({"title": "The estimates", "text": text} for text in findings.fit.warnings),
             *({"title": "What is left", "text": text} for text in findings.diagnosis),
+            *({"title": "Where an aim is missed", "text": text} for text in _missed(findings)),
         ],
+        "aims": [{**verdict.to_dict(), "model": "fitted"} for verdict in findings.aims],
+        **({} if findings.rest is None else {"shortfall": {**findings.rest.to_dict(), "period": "blind"}}),
         "phase_change": _phase_change(study, findings.fitted),
         "variant_parameters": {
             name: _parameters(study, run.fit, study.plan_of(name if name in study.file.variants else None))
@@ -92,6 +96,12 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
     if findings.sensitivity is not None:
         content |= importance(study, findings.sensitivity)
     return content
+
+
+def _missed(findings: Findings) -> list[str]:
+    if findings.rest is None:
+        return []
+    return words(findings.aims, findings.rest, "blind")
 
 
 def header(study: Study, command: str) -> dict[str, Any]:

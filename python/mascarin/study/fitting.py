@@ -79,17 +79,29 @@ def problem(
     InputError
         A parameter or a sensor that cannot be used.
     """
-    weight = 1.0
-    if plan.independent is not None:
-        weight = min(1.0, observation.interval / seconds_of(plan.independent, "identification.independent"))
     return problem_of(
         simulation,
         observation,
         use,
         fit_parameters(simulation.building, plan),
         {name: sensor.uncertainty for name, sensor in sensors.items() if sensor.use},
-        weight,
+        independent_weight(plan, observation.interval),
     )
+
+
+def independent_weight(plan: IdentificationPlan, interval: float) -> float:
+    """What one of many samples counts, where samples closer together than some time share one weight.
+
+    Parameters
+    ----------
+    plan : IdentificationPlan
+        Says after which time samples count as independent.
+    interval : float
+        Spacing of the samples. [s]
+    """
+    if plan.independent is None:
+        return 1.0
+    return min(1.0, interval / seconds_of(plan.independent, "identification.independent"))
 
 
 def identify(

@@ -25,7 +25,8 @@ from mascarin.progress import Progress
 from mascarin.results import Results
 from mascarin.simulation import Simulation
 from mascarin.study.description import IdentificationPlan, SensitivityPlan, StudyFile, Variant, read_study
-from mascarin.study.fitting import fit_parameters, identify, problem
+from mascarin.study.effects import Effects
+from mascarin.study.fitting import fit_parameters, identify, independent_weight, problem
 from mascarin.study.keeping import Workspace
 from mascarin.study.melting import melting_layers
 from mascarin.study.places import Faults, Places
@@ -35,6 +36,7 @@ from mascarin.validation.criteria import Criterion, Verdict, judge
 from mascarin.validation.metrics import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
 from mascarin.validation.residuals import Examination, diagnose, examine
+from mascarin.validation.shortfall import Shortfall, shortfall
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -54,6 +56,10 @@ DRIVERS: Final = {
 }
 #: Fewer samples than this are not examined.
 FEWEST_EXAMINED: Final = 24
+#: Effects of parameters are kept for so many values at most.
+MOST_EFFECTS: Final = 20_000_000
+#: Half-width of a normal distribution's 95 % in standard deviations.
+NORMAL_95: Final = 1.96
 
 Scores = dict[str, dict[str, Metrics]]
 """Metrics by sensor and period."""
@@ -106,7 +112,11 @@ class Findings:
     examinations : dict of str to Examination
         What is left of each sensor on the blind days, after the identification.
     diagnosis : list of str
-        The same in words, with the parameters that could account for it.
+        The same in words.
+    aims : list of Verdict
+        What one would have liked to reach, and whether the fitted model does.
+    rest : Shortfall or None
+        What would take the rest of the error away on the blind days; None where too little is compared.
     quality : list of Stretch
         Suspicious stretches of the measured columns.
     seconds : float
@@ -120,6 +130,8 @@ class Findings:
     fit: Fit
     examinations: dict[str, Examination]
     diagnosis: list[str]
+    aims: list[Verdict]
+    rest: Shortfall | None
     verdicts: dict[str, list[Verdict]]
     quality: list[Stretch]
     seconds: float = field(default=0.0)
@@ -463,6 +475,7 @@ class Study:
         variants = self._varied(workspace, tell)
         verdicts = self.judged(nominal, fitted)
         examinations = self._examined(fitted)
+        rest = self._rest(fitted, fit, tell)
         return Findings(
             nominal,
             fitted,
@@ -471,6 +484,8 @@ class Study:
             fit,
             examinations,
             diagnose(examinations.values()),
+            judge(self.file.aims, fitted.scores, where=f"{self.path}: aims"),
+            rest,
             verdicts,
             self.quality,
             time.monotonic() - began,
@@ -608,6 +623,28 @@ class Study:
             for s, name in enumerate(observation.names)
             if np.isfinite(observation.measured[self.during["blind"], s]).sum() >= FEWEST_EXAMINED
         }
+
+    def _rest(self, run: ModelRun, fit: Fit, tell: Teller) -> Shortfall | None:
+        """What would take the rest of the error away on the blind days."""
+        observation, blind = self.observation, self.during["blind"].copy()
+        error = observation.simulated(run.results.index, run.results.records) - observation.measured
+        if np.isfinite(error[blind]).sum(axis=0).min() < FEWEST_EXAMINED:
+            return None
+        effects = Effects(run.simulation, run.results, run.simulation.vector(fit.values))
+        # Of a long record every other instant, or every third, says the same.
+        values = int(blind.sum()) * len(observation.names) * effects.count
+        blind &= np.arange(blind.size) % math.ceil(values / MOST_EFFECTS) == 0
+        with tell.about("what is left") as progress:
+            found = effects.found(observation, blind, progress.update)
+        local = observation.times.tz_localize(None)
+        return shortfall(
+            dict(zip(observation.names, error[blind].T, strict=True)),
+            found,
+            uncertainty=[sensor.uncertainty / NORMAL_95 for sensor in self.file.sensors.values()],
+            room=effects.room,
+            days=np.asarray((local[blind] - local[0]).days),
+            weight=independent_weight(self.sought, observation.interval),
+        )
 
 
 class Teller:

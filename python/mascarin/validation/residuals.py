@@ -1,8 +1,7 @@
 """What is left when the simulation is taken from the measurement, and what it says about the model.
 
 A good model leaves noise: no memory, no favourite hour, no likeness to the sun or the wind. `examine` puts
-numbers to this for one sensor, `explain` looks for parameters whose effect has the shape of the residual, and
-`diagnose` says both in words. Residuals are *simulated minus measured*.
+numbers to this for one sensor, and `diagnose` says it in words. Residuals are *simulated minus measured*.
 
 References
 ----------
@@ -13,7 +12,7 @@ autocorrelated series).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -36,7 +35,6 @@ _TOLD_CORRELATION: Final = 0.3
 _TOLD_HOURS: Final = 0.25
 _TOLD_RATIO: Final = 0.1
 _TOLD_LAG: Final = 20.0  # min
-_TOLD_EXPLAINED: Final = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,25 +196,6 @@ class Examination:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class Explanation:
-    """A parameter whose effect over time has the shape of the residual.
-
-    Attributes
-    ----------
-    path : str
-        Path of the parameter.
-    share : float
-        Share of the mean squared residual that changing it would take away. [-]
-    change : float
-        By how much to change it, in ranges: 0.5 is half the way from the low to the high end. [-]
-    """
-
-    path: str
-    share: float
-    change: float
-
-
 def examine(
     measured: ArrayLike,
     simulated: ArrayLike,
@@ -298,56 +277,13 @@ def examine(
     )
 
 
-def explain(residual: ArrayLike, effects: Mapping[str, ArrayLike], *, limit: int = 3) -> list[Explanation]:
-    """Parameters that could account for a residual, each alone.
-
-    Parameters
-    ----------
-    residual : array_like, shape (n,)
-        Simulated minus measured, NaN where there is none. [unit]
-    effects : mapping of str to array_like, shape (n,)
-        Change of the simulated series at the same instants when the parameter goes through its range, as
-        `SpectralSensitivity.effect_t` holds it. [unit]
-    limit : int
-        Largest number of explanations. [-]
-
-    Returns
-    -------
-    list of Explanation
-        By falling share; a change of more than the whole range is no explanation and left out.
-    """
-    r = np.asarray(residual, dtype=np.float64)
-    keep = np.isfinite(r)
-    square = float(np.sum(r[keep] ** 2))
-    found = []
-    for path, effect in effects.items():
-        e = np.asarray(effect, dtype=np.float64)
-        if e.shape != r.shape:
-            msg = f"effect of '{path}': {e.size} values for {r.size} residuals"
-            raise InputError(msg)
-        e = np.nan_to_num(e[keep])
-        size = float(e @ e)
-        if size <= 0.0 or square <= 0.0:
-            continue
-        # The change c that makes sum (r + c e)^2 smallest.
-        change = -float(r[keep] @ e) / size
-        share = change * change * size / square
-        if abs(change) <= 1.0:
-            found.append(Explanation(path, share, change))
-    return sorted(found, key=lambda e: -e.share)[:limit]
-
-
-def diagnose(
-    examinations: Iterable[Examination], explanations: Mapping[str, Sequence[Explanation]] | None = None
-) -> list[str]:
-    """What is wrong, in words, and what could be behind it.
+def diagnose(examinations: Iterable[Examination]) -> list[str]:
+    """What is wrong, in words.
 
     Parameters
     ----------
     examinations : iterable of Examination
         One per sensor.
-    explanations : mapping of str to sequence of Explanation, optional
-        What `explain` found, by sensor.
 
     Returns
     -------
@@ -359,9 +295,7 @@ def diagnose(
         found = [*_bias_words(e), *_cycle_words(e), *_link_words(e), *_hour_words(e)]
         if not found and not e.white:
             found = [_memory_words(e)]
-        if found:
-            found += _explanation_words((explanations or {}).get(e.sensor, ()))
-        else:
+        if not found:
             found = ["what is left is noise: nothing points to an error of the model"]
         sentences += [f"{e.sensor}: {text}." for text in found]
     return sentences
@@ -473,7 +407,7 @@ def _bias_words(e: Examination) -> list[str]:
     if abs(e.bias) <= 3.0 * e.sd / math.sqrt(max(e.effective, 1.0)) or abs(e.bias) < 0.5 * e.sd:
         return []
     side = "above" if e.bias > 0.0 else "below"
-    return [f"the model is {abs(e.bias):.2g} {e.unit} {side} the measurement on average"]
+    return [f"the model is {abs(e.bias):.2g} {_of_difference(e)} {side} the measurement on average"]
 
 
 def _cycle_words(e: Examination) -> list[str]:
@@ -490,7 +424,7 @@ def _cycle_words(e: Examination) -> list[str]:
         )
         texts.append(
             f"over the day the model swings {more} than measured, by {e.simulated.amplitude:.2g} against "
-            f"{e.measured.amplitude:.2g} {e.unit}: {cause}"
+            f"{e.measured.amplitude:.2g} {_of_difference(e)}: {cause}"
         )
     if swings and abs(e.delay) > _TOLD_LAG:
         late = "late" if e.delay > 0.0 else "early"
@@ -517,7 +451,8 @@ def _hour_words(e: Examination) -> list[str]:
     highest, lowest = int(np.nanargmax(e.hour_mean)), int(np.nanargmin(e.hour_mean))
     return [
         f"the hour of the day explains {100.0 * e.hour_share:.0f} % of its scatter, from "
-        f"{e.hour_mean[lowest]:+.2g} at {lowest} h to {e.hour_mean[highest]:+.2g} {e.unit} at {highest} h"
+        f"{e.hour_mean[lowest]:+.2g} at {lowest} h to {e.hour_mean[highest]:+.2g} {_of_difference(e)} "
+        f"at {highest} h"
     ]
 
 
@@ -533,16 +468,9 @@ def _memory_words(e: Examination) -> str:
     )
 
 
-def _explanation_words(explanations: Sequence[Explanation]) -> list[str]:
-    told = [x for x in explanations if x.share >= _TOLD_EXPLAINED]
-    if not told:
-        return []
-    parts = [
-        f"{x.path} {'higher' if x.change > 0.0 else 'lower'} by {abs(x.change):.2f} of its range "
-        f"({100.0 * x.share:.0f} % of the squared error)"
-        for x in told
-    ]
-    return [f"each of these alone would take part of it away: {'; '.join(parts)}"]
+def _of_difference(e: Examination) -> str:
+    """Unit of a difference: kelvins for temperatures."""
+    return e.unit.replace("degC", "K")
 
 
 def _size(value: float) -> float:
