@@ -92,8 +92,10 @@ def test_the_files_that_are_left(done: Done) -> None:
     }
     tables = {
         f"tables/{name}.csv"
-        for name in ("metrics", "parameters", "criteria", "quality", "series", "sensitivity")
-    }
+        for name in (
+            "metrics", "parameters", "criteria", "quality", "series", "sensitivity", "evaluations",
+        )
+    }  # fmt: skip
     assert names >= {"study.json", "report.html"} | figures | tables
     assert not [name for name in names if name.endswith((".part", ".npy"))]
     for figure in figures:
@@ -129,6 +131,28 @@ def test_the_schema_of_the_result(done: Done) -> None:
         "study", "building", "climate", "measurements",
     }  # fmt: skip
     assert all(len(entry["sha256"]) == 64 for entry in content["inputs"])
+
+
+def test_the_band_holds_on_days_it_has_not_seen(done: Done) -> None:
+    """The data are our own model with white noise: the band is the noise, and a little for the estimates."""
+    for sensor, found in done.content["band"].items():
+        assert found["error"] == pytest.approx(NOISE, rel=0.15)
+        assert 0.0 < found["parameters"] < 0.5 * found["error"]
+        assert found["half_width"] == pytest.approx(
+            1.96 * math.hypot(found["error"], found["parameters"]), rel=0.05
+        )
+        assert all(0.91 < share < 0.98 for share in found["held"].values()), (sensor, found)
+    series = done.table("series")
+    assert np.mean(series["joint.band"]) == pytest.approx(
+        done.content["band"]["joint"]["half_width"], rel=1e-5
+    )
+    (table,) = done.content["tables"]
+    assert table["columns"][-1] == "blind"
+    assert "What the model foresaw" in (done.out / "report.html").read_text(encoding="utf-8")
+    trace = done.table("evaluations")
+    best = trace.sort_values("cost").to_dict("records")[0]
+    for path, entry in done.content["parameters"].items():
+        assert best[path] == pytest.approx(entry["fitted"], rel=1e-3)
 
 
 def test_the_tables_say_what_the_json_says(done: Done) -> None:
@@ -337,8 +361,8 @@ def torn(path, content):
         os.kill(os.getpid(), signal.SIGKILL)
     write(path, content)
 
-def cut(self, x):
-    run(self, x)
+def cut(self, x, keep):
+    run(self, x, keep)
     if where == "identification" and self.count >= count:
         self._file.write(b'{"x": [0.0')
         self._file.flush()

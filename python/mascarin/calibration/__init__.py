@@ -6,7 +6,7 @@ evaluated in batches, `solve` finds the parameters, and the `Fit` says how certa
 
 from __future__ import annotations
 
-from mascarin.calibration.buildings import Sensor, calibrate
+from mascarin.calibration.buildings import Sensor, calibrate, fit_parameter
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.fit import Fit, Minimum
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor, require_known
@@ -32,6 +32,7 @@ __all__ = [
     "Trace",
     "Uncertainty",
     "calibrate",
+    "fit_parameter",
     "profiles",
     "require_known",
     "solve",

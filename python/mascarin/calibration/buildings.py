@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal, Protocol
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from mascarin.validation.observation import Observation, observe
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    import pandas as pd
 
     from mascarin.climate import Climate, Measurements
     from mascarin.model import Building
@@ -29,7 +30,10 @@ if TYPE_CHECKING:
     Flags = npt.NDArray[np.bool_]
 
 #: A sensor's band is read as 95 % of a normal distribution.
-_BAND = 1.96
+_BAND: Final = 1.96
+#: What the quality check calls a sensor that repeats itself, and the part of a period from which it is dead.
+DEAD: Final = ("stuck", "forward_filled")
+MOST_DEAD: Final = 0.5
 
 
 @dataclass(frozen=True)
@@ -44,11 +48,14 @@ class Sensor:
         Column of the measured table, or several whose mean is taken.
     uncertainty : float
         Half-width of the 95 % band. [unit of the output]
+    relative : float
+        Further half-width as a share of the measured value. [-]
     """
 
     output: str
     column: str | Sequence[str]
     uncertainty: float = 0.5
+    relative: float = 0.0
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -56,11 +63,28 @@ class Sensor:
         return (self.column,) if isinstance(self.column, str) else tuple(self.column)
 
 
+class Certain(Protocol):
+    """A sensor as far as its uncertainty goes."""
+
+    @property
+    def uncertainty(self) -> float:
+        """Half-width of the 95 % band. [unit]"""
+        ...
+
+    @property
+    def relative(self) -> float:
+        """Further half-width as a share of the measured value. [-]"""
+        ...
+
+
 def fit_parameter(
     building: Building,
     path: str,
     bounds: tuple[float | None, float | None] = (None, None),
     prior: float | None = None,
+    *,
+    start: float | None = None,
+    scale: Literal["linear", "log"] = "linear",
 ) -> FitParameter:
     """A parameter of a building as something to fit.
 
@@ -74,6 +98,10 @@ def fit_parameter(
         Lowest and highest value; those of the parameter's range where None. [unit]
     prior : float, optional
         Standard deviation of a normal prior about the building's value. [unit]
+    start : float, optional
+        Where the search begins; the building's value when absent. [unit]
+    scale : str
+        ``linear`` or ``log``: how distances are measured in the search.
 
     Raises
     ------
@@ -97,6 +125,8 @@ def fit_parameter(
         unit=parameter.unit,
         limits=(parameter.lower, parameter.upper),
         prior=None if prior is None else (parameter.value, prior),
+        start=start,
+        scale=scale,
     )
 
 
@@ -105,7 +135,7 @@ def problem_of(
     observation: Observation,
     use: Flags,
     parameters: Sequence[FitParameter],
-    uncertainties: Mapping[str, float],
+    sensors: Mapping[str, Certain],
     weight: float = 1.0,
 ) -> CalibrationProblem:
     """A simulation and its measured series as a calibration problem.
@@ -120,13 +150,13 @@ def problem_of(
         Instants to compare.
     parameters : sequence of FitParameter
         What is found.
-    uncertainties : mapping of str to float
-        Half-width of the 95 % band of the sensors that take part. [unit]
+    sensors : mapping of str to Certain
+        The sensors that take part, with the half-widths of their 95 % bands.
     weight : float
         How much each sample counts. [-]
     """
     positions = [simulation.position(parameter.path) for parameter in parameters]
-    columns = [s for s, name in enumerate(observation.names) if name in uncertainties]
+    columns = [s for s, name in enumerate(observation.names) if name in sensors]
     rows = np.flatnonzero(use)
 
     def model(x: Array) -> Array:
@@ -135,18 +165,19 @@ def problem_of(
         records, _, _ = simulation.ensemble(vectors)
         return observation.simulated(simulation.index, records)[:, rows][:, :, columns]
 
-    sensors = tuple(
+    met = tuple(
         FitSensor(
             observation.names[s],
             observation.measured[rows, s],
-            uncertainty=uncertainties[observation.names[s]] / _BAND,
+            uncertainty=sensors[observation.names[s]].uncertainty / _BAND,
+            relative=sensors[observation.names[s]].relative / _BAND,
             unit=simulation.outputs[s].unit,
             weight=weight,
         )
         for s in columns
     )
     return CalibrationProblem(
-        tuple(parameters), sensors, model, identity=simulation.identity, step=observation.interval
+        tuple(parameters), met, model, identity=simulation.identity, step=observation.interval
     )
 
 
@@ -155,7 +186,7 @@ def calibrate(
     climate: Climate,
     measurements: Measurements,
     *,
-    parameters: Sequence[str] | Mapping[str, tuple[float, float]],
+    parameters: Sequence[str | FitParameter] | Mapping[str, tuple[float, float]],
     sensors: Mapping[str, Sensor] | Mapping[str, str],
     start: object,
     end: object,
@@ -179,8 +210,9 @@ def calibrate(
         The weather.
     measurements : Measurements
         The measured table; sensors and measured boundaries are columns of it.
-    parameters : sequence of str, or mapping of str to (float, float)
-        Paths to fit, with bounds or with the building's own ranges. [unit of each]
+    parameters : sequence of str or FitParameter, or mapping of str to (float, float)
+        Paths to fit, with bounds or with the building's own ranges; from `fit_parameter` with start, scale
+        and prior. [unit of each]
     sensors : mapping
         Name -> `Sensor`, or output -> column for the usual uncertainty of 0.5 degC.
     start, end : str, datetime or pandas.Timestamp
@@ -209,9 +241,12 @@ def calibrate(
     named = {
         name: given if isinstance(given, Sensor) else Sensor(name, given) for name, given in sensors.items()
     }
-    bounds = parameters if isinstance(parameters, Mapping) else dict.fromkeys(parameters, (None, None))
-    free = [fit_parameter(building, path, span) for path, span in bounds.items()]
+    if isinstance(parameters, Mapping):
+        free = [fit_parameter(building, path, span) for path, span in parameters.items()]
+    else:
+        free = [p if isinstance(p, FitParameter) else fit_parameter(building, p) for p in parameters]
     begin = moment(start, climate.grid.zone, "start")
+    _require_alive(measurements, named, begin, moment(end, climate.grid.zone, "end"))
     simulation = Simulation(
         building,
         climate,
@@ -225,9 +260,8 @@ def calibrate(
     )
     observation = observe(simulation, measurements, named, begin)
     use = np.ones(len(observation.times), dtype=np.bool_)
-    uncertainties = {name: sensor.uncertainty for name, sensor in named.items()}
     return solve(
-        problem_of(simulation, observation, use, free, uncertainties),
+        problem_of(simulation, observation, use, free, named),
         method=method,
         cost=cost,
         seed=seed,
@@ -235,3 +269,20 @@ def calibrate(
         record=None if record is None else Path(record),
         progress=progress,
     )
+
+
+def _require_alive(
+    measurements: Measurements, sensors: Mapping[str, Sensor], start: pd.Timestamp, end: pd.Timestamp
+) -> None:
+    """Refuse a sensor that repeats itself over most of the period."""
+    stretches = [stretch for stretch in measurements.quality() if stretch.kind in DEAD]
+    for name, sensor in sensors.items():
+        for stretch in stretches:
+            shared = (min(end, stretch.end) - max(start, stretch.start)).total_seconds()
+            if stretch.channel in sensor.columns and shared > MOST_DEAD * (end - start).total_seconds():
+                raise InputError(
+                    f"{measurements.file}: sensor '{name}', column {stretch.channel}: "
+                    f"{stretch.kind.replace('_', '-')} from {stretch.start:%Y-%m-%d %H:%M} to "
+                    f"{stretch.end:%Y-%m-%d %H:%M} ({stretch.detail}), over most of the period; expected a "
+                    "sensor that measures: leave it out, mask the stretch, or choose another period"
+                )

@@ -141,6 +141,14 @@ class Fit:
         columns = ["parameter", "nominal", "fitted", "low", "high", "unit", "remark"]
         return pd.DataFrame(rows, columns=columns)
 
+    def evaluations(self) -> pd.DataFrame:
+        """Every evaluation in its order: the parameters, the cost of each sensor and the total."""
+        import pandas as pd
+
+        columns = {path: self.trace.x[:, i] for i, path in enumerate(self.problem.paths)}
+        sensors = {f"cost {s.name}": self.trace.of_sensors[:, k] for k, s in enumerate(self.problem.sensors)}
+        return pd.DataFrame({**columns, **sensors, "cost": self.trace.cost})
+
     def distinct_minima(self, *, within: float = 1e-3, apart: float = 0.02) -> list[list[Minimum]]:
         """Minima grouped by where they are, the lowest group first.
 

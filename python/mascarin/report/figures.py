@@ -127,6 +127,10 @@ def _period_curves(
     pick = slice(None, None, every)
     if band > 0.0:
         chart.band(hours[pick], seen[pick] - band, seen[pick] + band, "sensor-band")
+    foreseen = series.columns.get(f"band/{sensor}")
+    if foreseen is not None:
+        half = foreseen.values[part][pick]
+        chart.band(hours[pick], made[pick] - half, made[pick] + half, "model-band")
     if nominal is not None and main_model(study) != "nominal":
         chart.curve(hours[pick], before[pick], "nominal")
     chart.curve(hours[pick], seen[pick], "observed")

@@ -630,6 +630,7 @@ def _curves(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
         "model": _model_label(study, model),
         "nominal": _model_label(study, "nominal") if "nominal" in study.get("models", {}) else "",
         "band": any(info.get("uncertainty") for info in study.get("sensor_info", {}).values()),
+        "foreseen": any(key.startswith("band/") for key in series.columns),
         "step": text.significant(series.step / 60.0),
         "timezone": study.get("timezone", ""),
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Final
 
+from mascarin.calibration.buildings import DEAD, MOST_DEAD
 from mascarin.errors import InputError, did_you_mean
 from mascarin.study.fitting import free_parameter
 from mascarin.study.screening import check_plan
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from mascarin.study.pipeline import Study
     from mascarin.study.places import Faults
 
-#: A sensor that repeats itself over more than this part of the identification is not fitted to.
-_MOST_DEAD: Final = 0.5
-_DEAD: Final = ("stuck", "forward_filled")
 #: Measured temperatures of a building lie between these. [degC]
 _TEMPERATURES: Final = (-100.0, 200.0)
 #: An irradiance that never exceeds this may be in kW/m2. [W/m2]
@@ -141,12 +139,12 @@ def _alive(study: Study) -> None:
     """Refuse to fit to a sensor that repeats itself and that nobody asked to mask."""
     start, end = study.identification
     for name, sensor in study.file.sensors.items():
-        kinds = [kind for kind in _DEAD if kind not in study.file.quality.mask]
+        kinds = [kind for kind in DEAD if kind not in study.file.quality.mask]
         for stretch in study.quality:
             if not sensor.use or stretch.channel not in sensor.columns or stretch.kind not in kinds:
                 continue
             shared = (min(end, stretch.end) - max(start, stretch.start)).total_seconds()
-            if shared > _MOST_DEAD * (end - start).total_seconds():
+            if shared > MOST_DEAD * (end - start).total_seconds():
                 with study.places.blame("sensors", name, "column"):
                     raise InputError(
                         f"found column {stretch.channel} {stretch.kind.replace('_', '-')} from "

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
+from mascarin.calibration.rules import WITH_SQUARES
+from mascarin.calibration.rules import MethodName as FitMethod
 from mascarin.errors import InputError
 from mascarin.model.names import Name
 from mascarin.model.number import problem
@@ -69,7 +71,7 @@ Columns = str | tuple[str, ...] | dict[str, Any]
 #: Names that the results give to models, metrics and series, so that no variant may bear them.
 TAKEN: Final = (
     "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
-    "max_error_percent", "measured_range", "measured", "as described", "observed", "weather", "state",
+    "max_error_percent", "measured_range", "measured", "band", "as described", "observed", "weather", "state",
 )  # fmt: skip
 
 
@@ -146,6 +148,9 @@ class Sensor(Part):
     uncertainty: float = Field(
         0.5, gt=0, description="Half-width of the 95 % band of the sensor [unit of the output]"
     )
+    relative: float = Field(
+        0.0, ge=0, lt=1, description="Further half-width as a share of the measured value, such as 0.05 [-]"
+    )
     label: str | None = Field(None, description="What the report calls it")
     use: bool = Field(True, description="Whether it takes part in the identification")
 
@@ -214,6 +219,10 @@ class Free(Part):
     prior: float | None = Field(
         None, gt=0, description="Standard deviation of a normal prior about the value"
     )
+    start: float | None = Field(None, description="Where the search begins; the building's value when absent")
+    scale: Literal["linear", "log"] = Field(
+        "linear", description="How distances are measured in the search; log for what spans decades"
+    )
     at_bound: str | None = Field(None, description="Why an estimate on a bound would be right")
     reference: tuple[float, float] | None = Field(
         None, description="Before and after in a publication, shown beside ours"
@@ -230,13 +239,26 @@ class IdentificationPlan(Part):
     parameters: dict[str, Stated] = Field(
         min_length=1, description="Path -> what is known of it; nothing after the colon for the usual"
     )
-    method: Literal["least-squares", "hooke-jeeves"] = Field("least-squares", description="Optimiser")
-    starts: int = Field(4, ge=1, description="Starts of the multi-start")
-    seed: int = Field(1, description="Of the random starts")
+    method: FitMethod = Field("least-squares", description="Optimiser; docs/calibration.md says which when")
+    starts: int = Field(4, ge=1, description="Starts of least squares and of a coupled GenOpt project")
+    sequences: int = Field(
+        100, ge=1, description="Most sequences of the other methods; they end when enough of them agree"
+    )
+    agree: int | None = Field(
+        None,
+        ge=1,
+        description="Sequences that must have reached the same minimum; 10 for hooke-jeeves and 2 for the "
+        "others when absent",
+    )
+    moves: int = Field(500, ge=50, description="How often the walkers of emcee move")
+    profiles: bool = Field(
+        False, description="Whether the profile likelihood of every parameter is made and drawn"
+    )
+    seed: int = Field(1, description="Of all random numbers")
     lead: Duration = Field("3d", description="Run before the identification period starts to be compared")
-    budget: int | None = Field(None, ge=1, description="Largest number of evaluations of a pattern search")
+    budget: int | None = Field(None, ge=1, description="Largest number of evaluations of all sequences")
     cost: Literal["nll", "sd", "rmse", "cv_rmse"] = Field(
-        "nll", description="What is minimised; least squares knows nll only, priors need it"
+        "nll", description="What is minimised; least-squares and emcee know nll only, priors need it"
     )
     independent: Duration | None = Field(
         None,
@@ -248,8 +270,11 @@ class IdentificationPlan(Part):
     def _together(self) -> Self:
         if self.cost == "nll":
             return self
-        if self.method == "least-squares":
-            expected = "nll, the only cost that least squares knows"
+        if self.profiles:
+            expected = "nll, the likelihood of which profiles are made"
+            insist(fault(("profiles",), self.cost, expected, "Write cost: nll, or leave profiles out."))
+        if self.method in WITH_SQUARES:
+            expected = f"nll, the only cost that {self.method} knows"
             insist(fault(("cost",), self.cost, expected, "Write method: hooke-jeeves, or leave cost out."))
         weighed = [path for path, free in self.parameters.items() if free is not None and free.prior]
         if weighed:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from mascarin import __version__
 from mascarin.examples import STUDIES
+from mascarin.study.foresight import band_entry, band_table
 from mascarin.study.melting import law_curve, melting_layers, path
 from mascarin.study.pipeline import scores_of
 from mascarin.validation.observation import PERIODS
@@ -19,11 +20,12 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    from mascarin.calibration import Fit
+    from mascarin.calibration import Fit, Profile
     from mascarin.model import Building
     from mascarin.sensitivity import Sensitivity
     from mascarin.sensitivity.spectral import SpectralSensitivity
     from mascarin.study.description import IdentificationPlan, StudyFile
+    from mascarin.study.foresight import Band
     from mascarin.study.melting import MeltingLayer
     from mascarin.study.pipeline import Findings, ModelRun, Study
     from mascarin.validation.criteria import Verdict
@@ -76,11 +78,14 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
         **header(study, "study"),
         **comparison(models, findings.verdicts),
         **estimates(study, findings.fit),
+        **profile_entries(findings.profiles),
+        **foreseen(study, findings.band),
         "residuals": {
             name: {**found.to_dict(), "period": "blind"} for name, found in findings.examinations.items()
         },
         "notes": [
             *({"title": "The estimates", "text": text} for text in findings.fit.warnings),
+            *({"title": "The estimates", "text": p.words} for p in findings.profiles if p.words),
             *({"title": "What is left", "text": text} for text in findings.diagnosis),
             *({"title": "Where an aim is missed", "text": text} for text in _missed(findings)),
         ],
@@ -162,6 +167,28 @@ def estimates(study: Study, fit: Fit) -> dict[str, Any]:
         "correlation": {"paths": list(fit.problem.paths), "matrix": _plain(fit.correlation)},
         "identification": _identification(fit),
     }
+
+
+def profile_entries(found: Sequence[Profile]) -> dict[str, Any]:
+    """Profile likelihoods: path -> values, rise, limit, low, high; nothing where there are none."""
+    entries = {
+        profile.path: {
+            "unit": profile.unit,
+            "values": _plain(profile.values),
+            "rise": _plain(profile.rise),
+            "limit": profile.limit,
+            "low": profile.low,
+            "high": profile.high,
+            "bounded": [not profile.open_low, not profile.open_high],
+        }
+        for profile in found
+    }
+    return {"profiles": entries} if entries else {}
+
+
+def foreseen(study: Study, found: Band) -> dict[str, Any]:
+    """The band about the fitted model, in numbers and as a table of the report."""
+    return {"band": band_entry(study, found), "tables": [band_table(study, found)]}
 
 
 def for_report(content: Mapping[str, Any]) -> dict[str, Any]:

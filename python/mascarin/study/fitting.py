@@ -38,7 +38,9 @@ def free_parameter(building: Building, path: str, free: Free | None) -> FitParam
     """
     if free is None:
         return fit_parameter(building, path)
-    return fit_parameter(building, path, (free.low, free.high), free.prior)
+    return fit_parameter(
+        building, path, (free.low, free.high), free.prior, start=free.start, scale=free.scale
+    )
 
 
 def fit_parameters(building: Building, plan: IdentificationPlan) -> list[FitParameter]:
@@ -84,7 +86,7 @@ def problem(
         observation,
         use,
         fit_parameters(simulation.building, plan),
-        {name: sensor.uncertainty for name, sensor in sensors.items() if sensor.use},
+        {name: sensor for name, sensor in sensors.items() if sensor.use},
         independent_weight(plan, observation.interval),
     )
 
@@ -132,7 +134,13 @@ def identify(
         method=plan.method,
         cost=plan.cost,
         seed=plan.seed,
-        rules=Rules(starts=plan.starts, sequences=max(plan.starts, 10), evaluations=plan.budget),
+        rules=Rules(
+            starts=plan.starts,
+            sequences=plan.sequences,
+            agree=plan.agree,
+            evaluations=plan.budget,
+            moves=plan.moves,
+        ),
         record=record,
         batch=_batch(simulation),
         progress=progress,

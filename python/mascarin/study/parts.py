@@ -11,10 +11,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mascarin.study.description import SensitivityPlan
-from mascarin.study.document import analysed_hours, comparison, estimates, header, importance
+from mascarin.study.document import (
+    analysed_hours,
+    comparison,
+    estimates,
+    foreseen,
+    header,
+    importance,
+    profile_entries,
+)
+from mascarin.study.foresight import answers, band, band_words
 from mascarin.study.keeping import Workspace, write_whole
 from mascarin.study.pipeline import Study, Teller
-from mascarin.study.writing import criteria_table, metrics_table, quality_table, write_tables
+from mascarin.study.writing import criteria_table, fit_figures, metrics_table, quality_table, write_tables
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -73,7 +82,7 @@ def calibration(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
     study : Study
         Says what to identify.
     out : Path
-        Folder for calibration.json and its tables.
+        Folder for calibration.json, its tables and figures.
     quiet : bool
         No progress on stderr.
 
@@ -87,19 +96,31 @@ def calibration(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
         nominal = study.nominal()
         fitted, fit = study.fitted(workspace, Teller(quiet))
         models, verdicts = {"nominal": nominal, "fitted": fitted}, study.judged(nominal, fitted)
+        found = band(study, fitted, fit, answers(study, fitted, fit))
+        profiles = study.profiled(fit, Teller(quiet))
         content = {
             **header(study, "calibrate"),
             **comparison(models, verdicts),
             **estimates(study, fit),
-            "notes": [{"title": "The estimates", "text": text} for text in fit.warnings],
+            **profile_entries(profiles),
+            **foreseen(study, found),
+            "notes": [
+                {"title": "The estimates", "text": text}
+                for text in (
+                    *fit.warnings,
+                    *(p.words for p in profiles if p.words),
+                    *band_words(study, found),
+                )
+            ],
         }
         tables = {
             "parameters": fit.table(),
+            "evaluations": fit.evaluations(),
             "calibration_metrics": metrics_table([nominal, fitted]),
             "calibration_criteria": criteria_table(verdicts),
             "quality": quality_table(study.quality),
         }
-        _write(workspace, "calibration", content, tables)
+        _write(workspace, "calibration", content, tables, fit_figures(fit, profiles, out / "figures"))
     return content
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import __version__
-from mascarin.calibration import CalibrationProblem, Fit
+from mascarin.calibration import CalibrationProblem, Fit, Profile, profiles
 from mascarin.climate import Climate, Measurements
 from mascarin.climate.quality import mask
 from mascarin.climate.table import file_hash, seconds_of
@@ -27,6 +27,7 @@ from mascarin.simulation import Simulation
 from mascarin.study.description import IdentificationPlan, SensitivityPlan, StudyFile, Variant, read_study
 from mascarin.study.effects import Effects
 from mascarin.study.fitting import fit_parameters, identify, independent_weight, problem
+from mascarin.study.foresight import Band, answers, band, band_words
 from mascarin.study.keeping import Workspace
 from mascarin.study.melting import melting_layers
 from mascarin.study.places import Faults, Places
@@ -117,6 +118,10 @@ class Findings:
         What one would have liked to reach, and whether the fitted model does.
     rest : Shortfall or None
         What would take the rest of the error away on the blind days; None where too little is compared.
+    band : Band
+        What the fitted model foresees of every sensor, and how often that held.
+    profiles : list of Profile
+        Of every parameter, where the study asks for them.
     quality : list of Stretch
         Suspicious stretches of the measured columns.
     seconds : float
@@ -132,6 +137,8 @@ class Findings:
     diagnosis: list[str]
     aims: list[Verdict]
     rest: Shortfall | None
+    band: Band
+    profiles: list[Profile]
     verdicts: dict[str, list[Verdict]]
     quality: list[Stretch]
     seconds: float = field(default=0.0)
@@ -476,6 +483,7 @@ class Study:
         verdicts = self.judged(nominal, fitted)
         examinations = self._examined(fitted)
         rest = self._rest(fitted, fit, tell)
+        foreseen = band(self, fitted, fit, answers(self, fitted, fit))
         return Findings(
             nominal,
             fitted,
@@ -483,9 +491,11 @@ class Study:
             sensitivity,
             fit,
             examinations,
-            diagnose(examinations.values()),
+            [*band_words(self, foreseen), *diagnose(examinations.values())],
             judge(self.file.aims, fitted.scores, where=f"{self.path}: aims"),
             rest,
+            foreseen,
+            self.profiled(fit, tell),
             verdicts,
             self.quality,
             time.monotonic() - began,
@@ -542,6 +552,15 @@ class Study:
             what = "the building as described" if chosen is None else f"'{chosen}'"
             note += f"; of {len(runs)} candidates {what} has the lowest cost on the identification period"
         return replace(run, label="fitted", note=note), fit
+
+    def profiled(self, fit: Fit, tell: Teller) -> list[Profile]:
+        """Profile likelihoods, where the study asks for them."""
+        if not self.sought.profiles:
+            return []
+        with tell.about("profiles") as progress:
+            found = profiles(fit)
+            progress.update(len(found), len(found))
+        return found
 
     @property
     def candidates(self) -> list[str | None]:

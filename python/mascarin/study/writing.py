@@ -18,6 +18,7 @@ from mascarin.study.pipeline import DRIVERS
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.calibration import Fit, Profile
     from mascarin.climate.quality import Stretch
     from mascarin.study.pipeline import Findings, ModelRun, Study
     from mascarin.validation.criteria import Verdict
@@ -42,6 +43,7 @@ def write_all(study: Study, findings: Findings, workspace: Workspace) -> None:
     out = workspace.out
     written = [
         *_figures(study, findings, _folder(out / "figures")),
+        *fit_figures(findings.fit, findings.profiles, out / "figures"),
         *_tables(study, findings, _folder(out / "tables")),
         *(out / name for name in ("study.json", RUN, "report.html")),
     ]
@@ -68,6 +70,7 @@ def _tables(study: Study, findings: Findings, folder: Path) -> list[Path]:
     tables = {
         "metrics": metrics_table(list(_runs(findings))),
         "parameters": findings.fit.table(),
+        "evaluations": findings.fit.evaluations(),
         "criteria": criteria_table(findings.verdicts),
         "quality": quality_table(findings.quality),
         "series": _series(study, findings),
@@ -75,6 +78,29 @@ def _tables(study: Study, findings: Findings, folder: Path) -> list[Path]:
     if findings.sensitivity is not None:
         tables["sensitivity"] = findings.sensitivity.table()
     return write_tables(folder, tables)
+
+
+def fit_figures(fit: Fit, profiles: Sequence[Profile], folder: Path) -> list[Path]:
+    """The course of the search, where its sequences ended, and the profiles, as far as there are any.
+
+    Parameters
+    ----------
+    fit : Fit
+        The identification.
+    profiles : sequence of Profile
+        Perhaps none.
+    folder : Path
+        Where to.
+    """
+    from mascarin.calibration import plots
+    from mascarin.sensitivity.plots import save
+
+    figures = {"identification-course": plots.course(fit)}
+    if len(fit.minima) > 1:
+        figures["identification-minima"] = plots.minima(fit)
+    if profiles:
+        figures["identification-profiles"] = plots.profiles(profiles)
+    return [save(figure, folder / f"{name}.svg") for name, figure in figures.items()]
 
 
 def write_tables(folder: Path, tables: Mapping[str, pd.DataFrame]) -> list[Path]:
@@ -148,6 +174,8 @@ def _series(study: Study, findings: Findings) -> Any:
         simulated = observation.simulated(run.results.index, run.results.records)
         for s, name in enumerate(observation.names):
             table[f"{name}.{run.label}"] = np.round(simulated[:, s], 6)
+    for s, name in enumerate(observation.names):
+        table[f"{name}.band"] = np.round(findings.band.half_width[:, s], 6)
     fitted = findings.fitted
     for channel in DRIVERS.values():
         values = observation.sampled(fitted.results.index, fitted.simulation.weather(channel))
