@@ -209,8 +209,42 @@ def room() -> Building:
     return parse(ROOM, "room.yaml")
 
 
+#: Laws for the materials wax, salt and curve of `EVERYTHING`, beside those that stand there.
+MELTING = [
+    ("{kind: smooth_step, width: 1.2}", "{kind: gaussian, width: 0.8}", "capacity"),
+    ("{kind: gumbel, width: 0.6}", "{kind: linear, width: 1.0}", "fractions"),
+    (
+        "{kind: triangle, below: 2.0, above: 1.0}\n    hysteresis: {model: curve-switch, "
+        "freezing_temperature: 22.3, law: {kind: smooth_step, width: 1.0, continuity: 2}}",
+        "{kind: gumbel, width: 0.5, tail: high}",
+        "two curves",
+    ),
+]
+_CURVES = {
+    "capacity": """{kind: capacity, temperatures: [15, 20, 21, 22, 23],
+      capacities: [2000, 2500, 60000, 2500, 2000], melting_range: [20, 22]}
+    latent_heat: 60000""",
+    "fractions": """{kind: fractions, temperatures: [19, 21, 22], fractions: [0, 0.6, 1]}
+    latent_heat: 60000""",
+    "two curves": """{kind: fractions, temperatures: [23, 24.5, 25.2], fractions: [0, 0.6, 1]}
+    latent_heat: 60000
+    hysteresis:
+      model: curve_switch
+      law: {kind: fractions, temperatures: [22.7, 24.3, 25], fractions: [0, 0.6, 1]}""",
+}
+
+
+def everything_melting(wax: str, salt: str, curve: str) -> Building:
+    """`EVERYTHING` with other laws of phase change."""
+    text = EVERYTHING.replace("{kind: tanh, gamma: 0.04, delta_t: 0.01}", wax)
+    text = text.replace("{kind: tanh, width: 1.5}", salt)
+    start, end = text.index("\n      kind: table"), text.index("\nconstructions:")
+    return parse(text[:start] + " " + _CURVES[curve] + text[end:], "everything.yaml")
+
+
 def everything() -> list[Building]:
-    """Every kind of part, once for each sky; in the last the density of the air is written."""
+    """Every kind of part: once for each sky, with the density of the air, with each law of phase change."""
     building = parse(EVERYTHING, "everything.yaml")
     skies = [building.replace({"site.sky": sky}) for sky in SKIES]
-    return [*skies, building.replace({"site.air_density": 1.16})]
+    melting = [everything_melting(*laws) for laws in MELTING]
+    return [*skies, building.replace({"site.air_density": 1.16}), *melting]

@@ -13,7 +13,8 @@ import pytest
 from dsc_samples import CENTRE, LATENT, LIQUID, RATE, SOLID, WIDTH, enthalpy, heat, temperatures, write
 from mascarin.errors import InputError
 from mascarin.materials.dsc import DscMaterial, from_dsc, to_yaml
-from mascarin.model.material import PhaseChangeMaterial, TableLaw
+from mascarin.model.material import PhaseChangeMaterial
+from mascarin.model.melting import TableLaw
 from mascarin.model.reading import parse
 from model_samples import ROOM
 

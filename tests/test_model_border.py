@@ -30,6 +30,7 @@ STRUCTURAL = {
     "irradiance",
     "schedule",
     "between",
+    "continuity",
 }
 
 
@@ -115,7 +116,19 @@ def test_the_kinds_are_the_engine_s() -> None:
         "pcm",
         "pcm",
     ]
-    assert [m["law"]["kind"] for m in building["materials"][2:]] == ["tanh_gamma", "tanh_width", "tabulated"]
+    laws = [[m["law"] for m in described(b)["materials"][2:]] for b in everything()]
+    kinds = {tuple(law["kind"] for law in three) for three in laws}
+    assert kinds == {
+        ("melting", "melting", "tabulated"),
+        ("melting", "melting", "melting"),
+        ("hysteresis", "melting", "hysteresis"),
+    }
+    curves = [
+        law[key] for three in laws for law in three for key in ("curve", "heating", "cooling") if key in law
+    ]
+    assert {curve["kind"] for curve in curves} == {
+        "tanh_gamma", "tanh_width", "smooth_step", "gaussian", "gumbel", "linear", "triangle", "fractions",
+    }  # fmt: skip
     assert [zone["longwave"]["kind"] for zone in building["zones"]] == ["radiosity", "linearised", "none"]
     facings = {side["facing"]["kind"] for s in building["surfaces"] for side in (s["outside"], s["inside"])}
     assert facings == {"outdoors", "zone", "ground", "measured", "adiabatic"}

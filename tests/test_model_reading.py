@@ -417,7 +417,7 @@ LAWS = {
     # D (T - Tm) outweighs rho_l L on the cold side of a wide melting range.
     "falling enthalpy": (
         "    latent_heat: 71000\n",
-        "    latent_heat: 500\n",
+        "    latent_heat: 1500\n",
         "materials.wax.law",
         "an enthalpy that rises",
     ),
@@ -454,9 +454,9 @@ LAWS = {
     "melting backwards": ("[20, 22]", "[22, 20]", "materials.curve.law.melting_range", "Swap the two"),
     "latent heat beside a table": (
         "    conductivity: 0.2\n",
-        "    conductivity: 0.2\n    latent_heat: 1000\n",
+        "    conductivity: 0.2\n    latent_heat: 40000\n",
         "materials.curve.latent_heat",
-        "the enthalpy table holds it",
+        "what the table rises between 20 and 22 degC",
     ),
     "three phases": (
         "[0.22, 0.18]",

@@ -101,6 +101,13 @@ class Provenance:
         Parameters that differ from the description. [unit of each]
     newton_iterations : int
         Newton iterations over all stages.
+    nested_stages : int
+        Stages that only the nested iteration of Casulli & Zanolli solved.
+    halved_steps : int
+        Steps, or parts of steps, that had to be halved.
+    reversals : int
+        How often a phase-change cell with hysteresis melted and froze within one step: its memory, which
+        changes at the end of a step, saw only the sum. A shorter step makes it smaller.
     version : str
         Version of Mascarin.
     """
@@ -113,6 +120,9 @@ class Provenance:
     start: str
     changed: Mapping[str, float]
     newton_iterations: int
+    nested_stages: int = 0
+    halved_steps: int = 0
+    reversals: int = 0
     version: str = field(default=__version__)
 
     def to_dict(self) -> dict[str, Any]:
@@ -127,6 +137,9 @@ class Provenance:
             "start": self.start,
             "changed": dict(self.changed),
             "newton_iterations": self.newton_iterations,
+            "nested_stages": self.nested_stages,
+            "halved_steps": self.halved_steps,
+            "reversals": self.reversals,
         }
 
 

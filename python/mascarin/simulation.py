@@ -423,6 +423,9 @@ class Simulation:
             start=self._start_note(raw),
             changed=changed,
             newton_iterations=int(raw["iterations"]),
+            nested_stages=int(raw["nested"]),
+            halved_steps=int(raw["halvings"]),
+            reversals=int(raw["reversals"]),
         )
 
     def _start_note(self, raw: Mapping[str, Any]) -> str:

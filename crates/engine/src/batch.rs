@@ -12,7 +12,7 @@ use crate::error::EngineError;
 use crate::forcing::Forcing;
 use crate::march::{Options, Watch, check, march_in};
 use crate::plan::Plan;
-use crate::real::Real;
+use crate::real::{Mask, Real};
 
 /// What an ensemble leaves behind, by member.
 #[derive(Debug)]
@@ -82,8 +82,8 @@ struct Pack<'a> {
 }
 
 impl Packed for Pack<'_> {
-    /// Records and closure of each member.
-    type Output = Result<Vec<(Vec<f64>, f64)>, EngineError>;
+    /// Records and closure of each member; none for one whose iteration failed.
+    type Output = Result<Vec<Option<(Vec<f64>, f64)>>, EngineError>;
 
     fn run<S: Real>(self, pack: fn([f64; WIDTH]) -> S) -> Self::Output {
         let width = self.plan.description.parameters.len();
@@ -94,11 +94,11 @@ impl Packed for Pack<'_> {
         let run = march_in(self.plan, &lanes, self.weather, self.options, self.watch)?;
         let closure = run.ledger.closure();
         let of = |member| (run.records.iter().map(|r| r.lane(member)).collect(), closure.lane(member));
-        Ok((0..self.members).map(of).collect())
+        Ok((0..self.members).map(|member| (!run.failed.lane(member)).then(|| of(member))).collect())
     }
 }
 
-/// Runs a pack in lanes; when a lane fails, its members one by one.
+/// Runs a pack in lanes, and alone those of its members whose iteration failed there.
 fn run_pack(
     plan: &Plan,
     numbers: &[f64],
@@ -110,28 +110,23 @@ fn run_pack(
     let width = plan.description.parameters.len();
     let members = target.closure.len();
     let mut failures = Vec::new();
-    match run(Pack { plan, numbers, members, weather, options, watch }) {
-        Ok(results) => {
-            for (member, (records, closure)) in results.into_iter().enumerate() {
+    let results = match run(Pack { plan, numbers, members, weather, options, watch }) {
+        Err(EngineError::NotConverged { .. } | EngineError::NotSettled { .. }) => vec![None; members],
+        other => other?,
+    };
+    for (member, result) in results.into_iter().enumerate() {
+        let alone = || {
+            let numbers = &numbers[member * width..(member + 1) * width];
+            march_in(plan, numbers, weather, options, watch).map(|run| (run.records, run.ledger.closure()))
+        };
+        match result.map_or_else(alone, Ok) {
+            Ok((records, closure)) => {
                 target.records[member * target.row..(member + 1) * target.row].copy_from_slice(&records);
                 target.closure[member] = closure;
             }
+            Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
+            Err(error) => failures.push((member, error)),
         }
-        Err(EngineError::NotConverged { .. } | EngineError::NotSettled { .. }) => {
-            for member in 0..members {
-                let numbers = &numbers[member * width..(member + 1) * width];
-                match march_in(plan, numbers, weather, options, watch) {
-                    Ok(run) => {
-                        target.records[member * target.row..(member + 1) * target.row]
-                            .copy_from_slice(&run.records);
-                        target.closure[member] = run.ledger.closure();
-                    }
-                    Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
-                    Err(error) => failures.push((member, error)),
-                }
-            }
-        }
-        Err(error) => return Err(error),
     }
     watch.done.fetch_add(members, Ordering::Relaxed);
     Ok(failures)

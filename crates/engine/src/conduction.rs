@@ -8,7 +8,8 @@ use crate::coefficients::{Matter, Wall};
 use crate::pcm::{PcmMemory, PcmPoint};
 use crate::real::Real;
 
-/// Heat flux along a link, `left T_left - right T_right + offset` [W/m2], positive towards the inside.
+/// Heat flux along a link, `left x_left - right x_right + offset` [W/m2], positive towards the inside; x is the
+/// temperature above the place about which the end is linearised, see [`Storage`].
 #[derive(Debug, Clone, Copy)]
 pub struct Link<S> {
     /// Gain of the temperature on the outer side [W/(m2 K)].
@@ -22,28 +23,43 @@ pub struct Link<S> {
 }
 
 impl<S: Real> Link<S> {
-    /// Flux between two temperatures.
+    /// Flux between two temperatures above their places.
     #[inline(always)]
     pub fn flux(&self, left: S, right: S) -> S {
         self.left * left - self.right * right + self.offset
     }
 }
 
-/// Enthalpy of a cell near the current iterate, `offset + capacity T` [J/m3].
+/// Enthalpy of a cell near the current iterate, `offset + capacity (T - place)` [J/m3].
+///
+/// A phase-change cell is linearised about its iterate, and what the elimination finds is its way from there: with a
+/// sharp law the capacity is so large that the enthalpy could not be told from a rounded temperature.
 #[derive(Debug, Clone, Copy)]
 pub struct Storage<S> {
-    /// Enthalpy of the tangent at 0 degC [J/m3].
+    /// Temperature that the tangent touches at; 0 where the capacity is constant [degC].
+    pub place: S,
+
+    /// Enthalpy there [J/m3].
     pub offset: S,
 
     /// Slope [J/(m3 K)].
     pub capacity: S,
+
+    /// Way from the place to the solution [K].
+    moved: S,
 }
 
 impl<S: Real> Storage<S> {
-    /// Enthalpy at a temperature.
+    /// Constant properties.
     #[inline(always)]
-    pub fn at(&self, temperature: S) -> S {
-        self.offset + self.capacity * temperature
+    fn constant(capacity: S) -> Self {
+        Self { place: S::zero(), offset: S::zero(), capacity, moved: S::zero() }
+    }
+
+    /// Enthalpy at the solution.
+    #[inline(always)]
+    pub fn reached(&self) -> S {
+        self.offset + self.capacity * self.moved
     }
 }
 
@@ -99,6 +115,9 @@ pub struct Iterate<'a, S> {
 
     /// Its outside and inside face.
     pub faces: [S; 2],
+
+    /// Cells about which the concave part of the enthalpy is linearised; none: the iterate itself.
+    pub outer: Option<&'a [S]>,
 }
 
 /// A wall at the start of the step: temperatures [degC], enthalpies [J/m3], memory.
@@ -114,10 +133,11 @@ pub struct Start<'a, S> {
     pub memory: &'a [PcmMemory<S>],
 }
 
-/// Resistance of half a cell [m2 K/W] and `-d(resistance)/dT`.
+/// Resistance of half a cell [m2 K/W], `-d(resistance)/dT`, and the place it is linearised about [degC].
 struct End<S> {
     resistance: S,
     gain: S,
+    place: S,
 }
 
 /// What a link runs through.
@@ -132,7 +152,7 @@ enum Way {
 }
 
 impl Way {
-    fn of<S>(wall: &Wall<S>, i: usize) -> Self {
+    fn of<S: Real>(wall: &Wall<S>, i: usize) -> Self {
         let law = |cell: usize| match wall.cells[cell].matter {
             Matter::Pcm(law) => Some(law),
             Matter::Solid { .. } => None,
@@ -141,7 +161,11 @@ impl Way {
         // The face belongs to the layer behind it.
         match (law(i.saturating_sub(1)), law(i.min(last))) {
             (None, None) => Self::Solid,
-            (Some(left), Some(right)) if left == right && !wall.massless[i] => Self::Pcm(left),
+            (Some(left), Some(right))
+                if left == right && !wall.massless[i] && wall.pcm[left].integrable() =>
+            {
+                Self::Pcm(left)
+            }
             _ => Self::Mixed,
         }
     }
@@ -150,7 +174,7 @@ impl Way {
 impl<S: Real> End<S> {
     #[inline(always)]
     fn face() -> Self {
-        Self { resistance: S::zero(), gain: S::zero() }
+        Self { resistance: S::zero(), gain: S::zero(), place: S::zero() }
     }
 }
 
@@ -162,7 +186,7 @@ impl<S: Real> Chain<S> {
         let none = Link { left: S::zero(), right: S::zero(), offset: S::zero() };
         let mut chain = Self {
             links: vec![none; n + 1],
-            storage: vec![Storage { offset: S::zero(), capacity: S::zero() }; n],
+            storage: vec![Storage::constant(S::zero()); n],
             rate: zeros.clone(),
             inverse: zeros.clone(),
             known: zeros.clone(),
@@ -183,7 +207,7 @@ impl<S: Real> Chain<S> {
     fn link_solids(&mut self, wall: &Wall<S>) {
         for (storage, cell) in self.storage.iter_mut().zip(&wall.cells) {
             if let Matter::Solid { capacity, .. } = cell.matter {
-                storage.capacity = capacity;
+                *storage = Storage::constant(capacity);
             }
         }
         let half = |i: usize| match wall.cells[i].matter {
@@ -222,16 +246,17 @@ impl<S: Real> Chain<S> {
             let Matter::Pcm(law) = cell.matter else { continue };
             let (temperature, memory) = (at.cells[i], &start.memory[i]);
             let point = wall.pcm[law].at(temperature, memory);
-            self.storage[i] = match rule {
-                StorageRule::Enthalpy => Storage {
-                    offset: point.enthalpy - point.capacity * temperature,
-                    capacity: point.capacity,
-                },
-                StorageRule::ApparentCapacity => {
+            let (offset, capacity) = match (rule, at.outer) {
+                (StorageRule::Enthalpy, None) => (point.enthalpy, point.capacity),
+                (StorageRule::Enthalpy, Some(outer)) => {
+                    split_tangent(&wall.pcm[law], temperature, outer[i], memory)
+                }
+                (StorageRule::ApparentCapacity, _) => {
                     let capacity = wall.pcm[law].at(start.cells[i], memory).capacity;
-                    Storage { offset: start.enthalpy[i] - capacity * start.cells[i], capacity }
+                    (start.enthalpy[i] + capacity * (temperature - start.cells[i]), capacity)
                 }
             };
+            self.storage[i] = Storage { place: temperature, offset, capacity, moved: S::zero() };
             self.points[i] = point;
         }
         for i in 0..self.links.len() {
@@ -258,41 +283,48 @@ impl<S: Real> Chain<S> {
         start: &Start<'_, S>,
     ) -> Link<S> {
         let last = wall.cells.len() - 1;
-        let (left_temperature, left) = if i == 0 {
+        // Cells are reckoned from their iterate, faces from zero.
+        let (left_above, left) = if i == 0 {
             (at.faces[0], wall.pcm[law].at(at.faces[0], &start.memory[0]))
         } else {
-            (at.cells[i - 1], self.points[i - 1])
+            (S::zero(), self.points[i - 1])
         };
-        let (right_temperature, right) = if i > last {
+        let (right_above, right) = if i > last {
             (at.faces[1], wall.pcm[law].at(at.faces[1], &start.memory[last]))
         } else {
-            (at.cells[i], self.points[i])
+            (S::zero(), self.points[i])
         };
         let inverse = self.inverse_lengths[i];
         let (by_left, by_right) = (left.conductivity * inverse, right.conductivity * inverse);
         Link {
             left: by_left,
             right: by_right,
-            offset: (left.potential - right.potential) * inverse - by_left * left_temperature
-                + by_right * right_temperature,
+            offset: (left.potential - right.potential) * inverse - by_left * left_above
+                + by_right * right_above,
         }
     }
 
-    /// Newton form of `K (T_left - T_right)` with K from the half cells at their own temperatures.
+    /// Newton form of `K (T_left - T_right)` with K from the half cells at their own temperatures. Its derivatives are
+    /// kept from turning their sign where the conductivity changes steeply: the flux stays what it is.
     #[inline(always)]
     fn link_of_halves(&self, wall: &Wall<S>, i: usize, at: &Iterate<'_, S>) -> Link<S> {
+        const LEAST: f64 = 0.9;
         let n = wall.cells.len();
         let (left, left_temperature) =
             if i > 0 { (self.end(wall, i - 1), at.cells[i - 1]) } else { (End::face(), at.faces[0]) };
         let (right, right_temperature) =
             if i < n { (self.end(wall, i), at.cells[i]) } else { (End::face(), at.faces[1]) };
         let conductance = S::one() / (left.resistance + wall.extra[i] + right.resistance);
-        let square = conductance * conductance * (left_temperature - right_temperature);
-        let (by_left, by_right) = (square * left.gain, square * right.gain);
+        let difference = left_temperature - right_temperature;
+        let square = conductance * conductance * difference;
+        let most = conductance.scale(LEAST);
+        let by_left = conductance + (square * left.gain).max(-most);
+        let by_right = conductance - (square * right.gain).min(most);
+        let (left_above, right_above) = (left_temperature - left.place, right_temperature - right.place);
         Link {
-            left: conductance + by_left,
-            right: conductance - by_right,
-            offset: -(by_left * left_temperature + by_right * right_temperature),
+            left: by_left,
+            right: by_right,
+            offset: conductance * difference - by_left * left_above + by_right * right_above,
         }
     }
 
@@ -301,11 +333,14 @@ impl<S: Real> Chain<S> {
     fn end(&self, wall: &Wall<S>, cell: usize) -> End<S> {
         let half = wall.cells[cell].thickness.scale(0.5);
         match &wall.cells[cell].matter {
-            Matter::Solid { conductivity, .. } => End { resistance: half / *conductivity, gain: S::zero() },
+            Matter::Solid { conductivity, .. } => {
+                End { resistance: half / *conductivity, gain: S::zero(), place: S::zero() }
+            }
             Matter::Pcm(_) => {
                 let point = &self.points[cell];
                 let resistance = half / point.conductivity;
-                End { resistance, gain: resistance / point.conductivity * point.conductivity_slope }
+                let gain = resistance / point.conductivity * point.conductivity_slope;
+                End { resistance, gain, place: self.storage[cell].place }
             }
         }
     }
@@ -368,8 +403,13 @@ impl<S: Real> Chain<S> {
 
     /// Cell temperatures from the face temperatures.
     #[inline(always)]
-    pub fn temperatures(&self, faces: [S; 2], cells: &mut [S]) {
-        self.back_substitute(&self.known, faces, cells);
+    pub fn temperatures(&mut self, faces: [S; 2], cells: &mut [S]) {
+        let mut next = faces[1];
+        for i in (0..cells.len()).rev() {
+            next = self.known[i] + self.to_outside[i] * faces[0] + self.next[i] * next;
+            self.storage[i].moved = next;
+            cells[i] = self.storage[i].place + next;
+        }
     }
 
     #[inline(always)]
@@ -406,11 +446,31 @@ impl<S: Real> Chain<S> {
         self.back_substitute(known, faces, cells);
     }
 
-    /// Flux along link `i` at cell and face temperatures [W/m2], positive towards the inside.
+    /// Flux along link `i` at the solution with these face temperatures [W/m2], positive towards the inside.
     #[inline(always)]
-    pub fn link_flux(&self, i: usize, faces: [S; 2], cells: &[S]) -> S {
-        let left = if i == 0 { faces[0] } else { cells[i - 1] };
-        let right = if i == cells.len() { faces[1] } else { cells[i] };
+    pub fn link_flux(&self, i: usize, faces: [S; 2]) -> S {
+        let left = if i == 0 { faces[0] } else { self.storage[i - 1].moved };
+        let right = if i == self.storage.len() { faces[1] } else { self.storage[i].moved };
         self.links[i].flux(left, right)
     }
+
+    /// Liquid fraction of a phase-change cell at the last linearisation.
+    #[inline(always)]
+    pub fn liquid_fraction(&self, i: usize) -> S {
+        self.points[i].liquid_fraction
+    }
+}
+
+/// Enthalpy and slope at a temperature, the concave part of the enthalpy taken along its tangent at another one.
+fn split_tangent<S: Real>(
+    law: &crate::pcm::PcmCoefficients<S>,
+    temperature: S,
+    outer: S,
+    memory: &PcmMemory<S>,
+) -> (S, S) {
+    let (convex, convex_slope) = law.rising(temperature, memory);
+    let (all, (outer_convex, outer_slope)) = (law.at(outer, memory), law.rising(outer, memory));
+    let concave_slope = outer_slope - all.capacity;
+    let concave = outer_convex - all.enthalpy + concave_slope * (temperature - outer);
+    (convex - concave, convex_slope - concave_slope)
 }

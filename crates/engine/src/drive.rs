@@ -120,6 +120,28 @@ impl<S: Real> Drive<S> {
         }
     }
 
+    /// Numbers on the straight line through those of two moments, at a share of the way from the first to the second.
+    ///
+    /// What is no energy but a rate (films, wind) does not fall below zero beyond them.
+    pub fn between(&mut self, first: &Self, second: &Self, share: f64) {
+        let line = |a: S, b: S| a + (b - a).scale(share);
+        let rate = |a: S, b: S| line(a, b).max(S::zero());
+        for (at, (a, b)) in self.faces.iter_mut().zip(first.faces.iter().zip(&second.faces)) {
+            at.solar = line(a.solar, b.solar);
+            at.longwave = line(a.longwave, b.longwave);
+            at.temperature = line(a.temperature, b.temperature);
+            at.forced = [rate(a.forced[0], b.forced[0]), rate(a.forced[1], b.forced[1])];
+        }
+        for (at, (a, b)) in self.zones.iter_mut().zip(first.zones.iter().zip(&second.zones)) {
+            at.between(a, b, share);
+        }
+        for (at, (&a, &b)) in self.paths.iter_mut().zip(first.paths.iter().zip(&second.paths)) {
+            *at = rate(a, b);
+        }
+        self.outdoor_air = line(first.outdoor_air, second.outdoor_air);
+        self.wind = rate(first.wind, second.wind);
+    }
+
     /// Turns the weather into numbers at each face.
     #[inline(always)]
     pub fn update(&mut self, plan: &Plan, coefficients: &Coefficients<S>, numbers: &[S], now: &Instant<'_>) {

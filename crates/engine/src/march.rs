@@ -10,7 +10,7 @@ use crate::plan::Plan;
 use crate::probe::Probe;
 use crate::real::{Mask, Real};
 use crate::state::State;
-use crate::step::{Scheme, Stepper};
+use crate::step::{Effort, Scheme, Stepper};
 
 /// How a run is made.
 #[derive(Debug, Clone)]
@@ -62,7 +62,7 @@ pub struct Watch {
 
 /// A finished run (or a pack of members).
 #[derive(Debug, Clone)]
-pub struct Run<S> {
+pub struct Run<S: Real> {
     /// Rows x probes.
     pub records: Vec<S>,
     /// Heat since the start of the record's first step.
@@ -73,8 +73,10 @@ pub struct Run<S> {
     pub cycles: usize,
     /// Change in the last repetition [K].
     pub settled: S,
-    /// Newton iterations, all stages.
-    pub iterations: usize,
+    /// What it was spent on, the repetitions included.
+    pub effort: Effort<S>,
+    /// Lanes that failed: what they hold means nothing.
+    pub failed: S::Mask,
 }
 
 /// Runs a plan at a parameter vector.
@@ -126,7 +128,7 @@ pub(crate) fn march_in<S: Real>(
         }
         stepper.step(&mut state, weather, step, options.dt, &mut ledger)?;
     }
-    Ok(Run { records, ledger, state, cycles, settled, iterations: stepper.iterations })
+    Ok(Run { records, ledger, state, cycles, settled, effort: stepper.effort, failed: stepper.failed })
 }
 
 /// Repeats the first period until every lane has settled; a settled lane keeps its state.
@@ -152,7 +154,7 @@ fn warm_up<S: Real>(
         let change = next.distance(state);
         state.take(active, &next);
         settled = S::select(active, change, settled);
-        active = active & S::constant(warmup.tolerance).lt(change);
+        active = active & !stepper.failed & S::constant(warmup.tolerance).lt(change);
         if !active.any() {
             return Ok((cycle, settled));
         }

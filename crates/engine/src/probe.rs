@@ -51,6 +51,13 @@ pub enum Probe {
         /// Index of the layer, counted from outside.
         layer: usize,
     },
+    /// Mean temperature of a layer over its volume [degC].
+    LayerTemperature {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the layer, counted from outside.
+        layer: usize,
+    },
     /// Mean liquid fraction of a layer [-].
     LiquidFraction {
         /// Index of the surface.
@@ -109,7 +116,9 @@ impl Probe {
             }
             Self::InterfaceTemperature { surface, interface } => interface > 0 && interface < layers(surface),
             Self::LayerFlux { surface, layer } => layer < layers(surface),
-            Self::LiquidFraction { surface, layer } | Self::LayerEnthalpy { surface, layer } => {
+            Self::LayerTemperature { surface, layer }
+            | Self::LiquidFraction { surface, layer }
+            | Self::LayerEnthalpy { surface, layer } => {
                 layer < layers(surface)
                     && plan.walls[surface].layer_cells[layer].1 > plan.walls[surface].layer_cells[layer].0
             }
@@ -136,6 +145,7 @@ impl Probe {
                 interface_temperature(plan, stepper, state, surface, interface)
             }
             Self::LayerFlux { surface, layer } => layer_flux(plan, stepper, surface, layer),
+            Self::LayerTemperature { surface, layer } => layer_mean(plan, surface, layer, |k| state.cells[k]),
             Self::LiquidFraction { surface, layer } => {
                 layer_mean(plan, surface, layer, |k| state.memory[k].liquid_fraction)
             }

@@ -37,7 +37,7 @@ impl<S: Real> State<S> {
         blend(mask, &mut self.air, &other.air);
         blend(mask, &mut self.load, &other.load);
         for (a, b) in self.memory.iter_mut().zip(&other.memory) {
-            a.liquid_fraction = S::select(mask, b.liquid_fraction, a.liquid_fraction);
+            a.take(mask, b);
         }
     }
 
@@ -94,6 +94,7 @@ impl<S: Real> Unknowns<S> {
         Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
     }
 
+    /// Takes over other temperatures.
     #[inline(always)]
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.cells.copy_from_slice(&other.cells);
@@ -110,6 +111,7 @@ impl<S: Real> Unknowns<S> {
         from: &Temperatures<'_, S>,
         to: &Temperatures<'_, S>,
         ratio: f64,
+        memory: &[PcmMemory<S>],
     ) {
         for ((guess, &from), &to) in self.faces.iter_mut().zip(from.faces).zip(to.faces) {
             *guess = line(from, to, ratio);
@@ -122,7 +124,7 @@ impl<S: Real> Unknowns<S> {
                 let k = wall.first_cell + i;
                 let guess = line(from.cells[k], to.cells[k], ratio);
                 self.cells[k] = match cell.matter {
-                    Matter::Pcm(law) => numbers.pcm[law].limit(to.cells[k], guess).0,
+                    Matter::Pcm(law) => numbers.pcm[law].limit(to.cells[k], guess, &memory[k]).0,
                     Matter::Solid { .. } => guess,
                 };
             }

@@ -11,7 +11,7 @@ use crate::conduction::{Chain, Iterate, Start, StorageRule};
 use crate::drive::{Drive, FaceDrive, Instant, Weather};
 use crate::error::EngineError;
 use crate::ledger::{Flow, Ledger, Power};
-use crate::pcm::PcmMemory;
+use crate::pcm::{PcmMemory, reversed};
 use crate::plan::{FaceId, FaceRole, Plan};
 use crate::plant::{Plants, Response};
 use crate::real::{Mask, Real};
@@ -28,10 +28,12 @@ const FORESEEN: f64 = 1e-8;
 const FORESIGHT: f64 = 0.05;
 /// Iterations after which every third goes half-way only, lest it runs in a circle.
 const PATIENCE: usize = 20;
-/// Iterations before a step counts as unsolvable.
+/// Iterations before a step is given to the nested iteration, and rounds of that one before it is halved.
 const MAX_ITERATIONS: usize = 60;
 /// Searches for the loads of the plants before a step counts as unsolvable.
 const MAX_SWEEPS: usize = 40;
+/// How often a step may be halved before it counts as unsolvable.
+const MAX_HALVINGS: u32 = 6;
 
 /// Time-stepping scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,8 +110,46 @@ pub struct Stepper<'a, S: Real> {
     foresight: S,
     held: Vec<S>,
     held_air: Vec<S>,
-    /// Newton iterations since the start.
+    /// Liquid fractions at the first stage of a step, for [`Effort::reversals`].
+    midway: Vec<S>,
+    /// Lanes whose iteration failed: what they hold means nothing any more.
+    pub failed: S::Mask,
+    /// What is left of the step, the next part last.
+    parts: Vec<Part>,
+    /// What was spent since the start.
+    pub effort: Effort<S>,
+}
+
+/// What a run was spent on.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort<S> {
+    /// Newton iterations.
     pub iterations: usize,
+    /// Stages that only the nested iteration solved.
+    pub nested: usize,
+    /// Steps that were halved.
+    pub halvings: usize,
+    /// Steps of phase-change cells with hysteresis in which melting and freezing followed each other: the memory, which
+    /// changes at the end of a step, saw only the sum.
+    pub reversals: S,
+}
+
+/// A part of a step.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    step: usize,
+    /// Start and length, in steps.
+    from: f64,
+    share: f64,
+    halvings: u32,
+}
+
+impl Part {
+    fn halves(self) -> [Self; 2] {
+        let share = 0.5 * self.share;
+        let first = Self { share, halvings: self.halvings + 1, ..self };
+        [first, Self { from: self.from + share, ..first }]
+    }
 }
 
 impl<'a, S: Real> Stepper<'a, S> {
@@ -155,13 +195,16 @@ impl<'a, S: Real> Stepper<'a, S> {
             foresight: foresight * foresight,
             held: zeros(plan.n_cells),
             held_air: zeros(plan.zones.len()),
-            iterations: 0,
+            midway: zeros(plan.n_cells),
+            failed: S::Mask::splat(false),
+            parts: Vec::new(),
+            effort: Effort { iterations: 0, nested: 0, halvings: 0, reversals: S::zero() },
         }
     }
 
     /// A state at one temperature throughout [degC].
     pub fn uniform(&self, temperature: S) -> State<S> {
-        let nothing = PcmMemory { liquid_fraction: S::zero() };
+        let nothing = PcmMemory::new(S::zero(), temperature);
         let mut state = State {
             cells: vec![temperature; self.plan.n_cells],
             enthalpy: vec![S::zero(); self.plan.n_cells],
@@ -184,9 +227,9 @@ impl<'a, S: Real> Stepper<'a, S> {
                         state.enthalpy[k] = *capacity * state.cells[k];
                     }
                     Matter::Pcm(law) => {
-                        let point = wall.pcm[*law].at(state.cells[k], &state.memory[k]);
-                        state.enthalpy[k] = point.enthalpy;
-                        state.memory[k].liquid_fraction = point.liquid_fraction;
+                        let law = &wall.pcm[*law];
+                        state.memory[k] = law.begin(state.cells[k]);
+                        state.enthalpy[k] = law.at(state.cells[k], &state.memory[k]).enthalpy;
                     }
                 }
             }
@@ -231,17 +274,58 @@ impl<'a, S: Real> Stepper<'a, S> {
         S::vectorised(
             #[inline(always)]
             || {
-                self.start(state, self.scheme.diagonal());
-                self.remember(state);
-                let energy = if self.plan.plants.is_empty() {
-                    self.free_step(state, weather, step, dt)?
-                } else {
-                    self.regulated_step(state, weather, step, dt)?
-                };
-                self.accept(state, &energy, ledger);
+                self.parts.push(Part { step, from: 0.0, share: 1.0, halvings: 0 });
+                while let Some(part) = self.parts.pop() {
+                    match self.attempt(state, weather, part, dt, ledger) {
+                        Ok(()) if part.halvings == 0 => {}
+                        // Parts differ in length: none is guessed from the one before it.
+                        Ok(()) => self.forget(),
+                        Err(error) => self.halve(part, error)?,
+                    }
+                }
                 Ok(())
             },
         )
+    }
+
+    /// Puts two halves in the place of a part that could not be solved.
+    #[cold]
+    #[inline(never)]
+    fn halve(&mut self, part: Part, error: EngineError) -> Result<(), EngineError> {
+        let hopeless = S::LANES > 1 || part.halvings == MAX_HALVINGS;
+        // What is not a number comes of what drives the step: parts of it would fare no better.
+        let halved = matches!(error, EngineError::NotConverged { residual, .. } if !residual.is_nan());
+        if hopeless || !halved {
+            self.parts.clear();
+            return Err(error);
+        }
+        self.effort.halvings += 1;
+        let [first, second] = part.halves();
+        self.parts.extend([second, first]);
+        self.forget();
+        Ok(())
+    }
+
+    /// A part of a step; the state stays as it was when it fails.
+    #[inline(always)]
+    fn attempt(
+        &mut self,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        part: Part,
+        dt: f64,
+        ledger: &mut Ledger<S>,
+    ) -> Result<(), EngineError> {
+        let length = part.share * dt;
+        self.start(state, self.scheme.diagonal());
+        self.remember(state);
+        let energy = if self.plan.plants.is_empty() {
+            self.free_step(state, weather, part, length)?
+        } else {
+            self.regulated_step(state, weather, part, length)?
+        };
+        self.accept(state, &energy, ledger);
+        Ok(())
     }
 
     /// The stages of a step without plants, one after the other.
@@ -250,8 +334,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         &mut self,
         state: &State<S>,
         weather: &Weather<'_>,
-        step: usize,
-        dt: f64,
+        part: Part,
+        length: f64,
     ) -> Result<Power<S>, EngineError> {
         let (diagonal, weights) = (self.scheme.diagonal(), self.scheme.weights());
         let mut energy = Power::none();
@@ -259,9 +343,9 @@ impl<'a, S: Real> Stepper<'a, S> {
             if stage > 0 {
                 self.hold_over(state, diagonal);
             }
-            self.drive.update(self.plan, &self.coefficients, self.numbers, weather.at(step, stage));
-            self.solve_stage(state, diagonal * dt, (step, stage + 1), S::Mask::splat(true))?;
-            self.accumulate(weight * dt, &mut energy);
+            self.drive_at(weather, part, stage);
+            self.solve_stage(state, diagonal * length, (part.step, stage + 1), S::Mask::splat(true))?;
+            self.accumulate(weight * length, &mut energy);
         }
         Ok(energy)
     }
@@ -272,17 +356,17 @@ impl<'a, S: Real> Stepper<'a, S> {
         &mut self,
         state: &State<S>,
         weather: &Weather<'_>,
-        step: usize,
-        dt: f64,
+        part: Part,
+        length: f64,
     ) -> Result<Power<S>, EngineError> {
         let last = self.scheme.weights().len() - 1;
-        self.plants.begin(&self.coefficients.zones, weather.at(step, last).row, &mut self.load);
+        self.plants.begin(&self.coefficients.zones, weather.at(part.step, last).row, &mut self.load);
         let mut active = S::Mask::splat(true);
         let mut polish = S::DERIVATIVES;
         for sweep in 0..MAX_SWEEPS {
-            let energy = self.sweep(state, weather, (step, dt), sweep > 0, active)?;
+            let energy = self.sweep(state, weather, (part, length), sweep > 0, active)?;
             let settled = self.plants.correct(&self.solved.air, &mut self.load, active, polish);
-            let moving = active & !settled;
+            let moving = active & !settled & !self.failed;
             if moving.any() {
                 active = moving;
             } else if polish {
@@ -295,7 +379,13 @@ impl<'a, S: Real> Stepper<'a, S> {
         let lane = (0..S::LANES).find(|&lane| active.lane(lane)).unwrap_or(0);
         let (zone, residual) = self.plants.worst(lane);
         let place = format!("zone {} (load of its plant)", self.plan.description.zones[zone].name);
-        Err(EngineError::NotConverged { step, stage: last + 1, place, residual, iterations: MAX_SWEEPS })
+        Err(EngineError::NotConverged {
+            step: part.step,
+            stage: last + 1,
+            place,
+            residual,
+            iterations: MAX_SWEEPS,
+        })
     }
 
     /// All stages of a step at the loads in hand. Lanes that are not active repeat the sweep before bit for bit.
@@ -304,7 +394,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         &mut self,
         state: &State<S>,
         weather: &Weather<'_>,
-        (step, dt): (usize, f64),
+        (part, length): (Part, f64),
         again: bool,
         active: S::Mask,
     ) -> Result<Power<S>, EngineError> {
@@ -325,14 +415,14 @@ impl<'a, S: Real> Stepper<'a, S> {
             if again {
                 self.plants.guess(stage, active, &mut self.iterate);
             } else {
-                self.drive.update(self.plan, &self.coefficients, self.numbers, weather.at(step, stage));
+                self.drive_at(weather, part, stage);
             }
-            self.solve_stage(state, diagonal * dt, (step, stage + 1), active)?;
+            self.solve_stage(state, diagonal * length, (part.step, stage + 1), active)?;
             if answer {
-                self.respond(stage, diagonal * dt);
+                self.respond(stage, diagonal * length);
             }
             self.plants.keep(stage, &self.iterate, &self.solved);
-            self.accumulate(weight * dt, &mut energy);
+            self.accumulate(weight * length, &mut energy);
         }
         Ok(energy)
     }
@@ -424,6 +514,26 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
+    /// The weather at a stage of a step, or of a part of it.
+    ///
+    /// Within a step of two stages the weather is the straight line through both: SDIRK2 sums a straight line exactly,
+    /// so that the parts of a step add up to the heat of the whole one. With one stage it is constant.
+    #[inline(always)]
+    fn drive_at(&mut self, weather: &Weather<'_>, part: Part, stage: usize) {
+        let read = |drive: &mut Drive<S>, stage: usize| {
+            drive.update(self.plan, &self.coefficients, self.numbers, weather.at(part.step, stage));
+        };
+        read(&mut self.drive, stage);
+        if part.halvings > 0 && self.scheme.weights().len() > 1 {
+            let (mut first, mut second) = (self.drive.clone(), self.drive.clone());
+            read(&mut first, 0);
+            read(&mut second, 1);
+            let diagonal = self.scheme.diagonal();
+            let place = part.from + part.share * if stage == 0 { diagonal } else { 1.0 };
+            self.drive.between(&first, &second, (place - diagonal) / (1.0 - diagonal));
+        }
+    }
+
     /// Sets out from a state; guesses that it goes on as in the step before for a share of a step.
     #[inline(always)]
     fn start(&mut self, state: &State<S>, share: f64) {
@@ -438,6 +548,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                     &previous.view(),
                     &state.view(),
                     1.0 + share,
+                    &state.memory,
                 );
             }
             _ => {
@@ -464,8 +575,9 @@ impl<'a, S: Real> Stepper<'a, S> {
         for (wall, chain) in self.plan.walls.iter().zip(&self.chains) {
             for i in 0..wall.len() {
                 let k = wall.first_cell + i;
-                let reached = chain.storage[i].at(self.solved.cells[k]);
+                let reached = chain.storage[i].reached();
                 self.held[k] = state.enthalpy[k] + (reached - state.enthalpy[k]).scale(ratio);
+                self.midway[k] = chain.liquid_fraction(i);
             }
         }
         for (zone, held) in self.held_air.iter_mut().enumerate() {
@@ -477,6 +589,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             &state.view(),
             &self.solved.view(),
             1.0 / diagonal,
+            &state.memory,
         );
     }
 
@@ -489,14 +602,20 @@ impl<'a, S: Real> Stepper<'a, S> {
             for (i, cell) in numbers.cells.iter().enumerate() {
                 let k = wall.first_cell + i;
                 let temperature = self.solved.cells[k];
-                let mut enthalpy = chain.storage[i].at(temperature);
+                let mut enthalpy = chain.storage[i].reached();
                 if let Matter::Pcm(law) = cell.matter {
-                    let point = numbers.pcm[law].at(temperature, &state.memory[k]);
+                    let law = &numbers.pcm[law];
+                    let point = law.at(temperature, &state.memory[k]);
                     if self.scheme == Scheme::ApparentCapacity {
                         // What the material holds in truth, not what the scheme believes to have stored.
                         enthalpy = point.enthalpy;
                     }
-                    state.memory[k].liquid_fraction = point.liquid_fraction;
+                    if law.remembers() && self.scheme == Scheme::Sdirk2 {
+                        let start = state.memory[k].liquid_fraction;
+                        let turned = reversed(start, self.midway[k], point.liquid_fraction);
+                        self.effort.reversals += S::select(turned, S::one(), S::zero());
+                    }
+                    state.memory[k] = law.next(&state.memory[k], temperature, point.liquid_fraction);
                 }
                 stored += numbers.area * cell.thickness * (enthalpy - state.enthalpy[k]);
                 state.enthalpy[k] = enthalpy;
@@ -526,28 +645,85 @@ impl<'a, S: Real> Stepper<'a, S> {
         mut active: S::Mask,
     ) -> Result<(), EngineError> {
         self.prepare_linear_walls(length);
+        active = active & !self.failed;
         let mut polish = S::DERIVATIVES;
         // Square of the change before this one; zero where it says nothing of the next.
         let mut before = S::zero();
         for iteration in 0..MAX_ITERATIONS {
-            self.iterations += 1;
-            self.linearise_walls(state, length);
+            self.effort.iterations += 1;
+            self.linearise_walls(state, length, None);
             self.linearise_faces();
             self.solve_linear(length);
-            let change = self.change();
+            let change = self.distance(&self.iterate);
             active = active & !self.settled(change, before);
             if active.any() {
-                let limited = self.advance(active, iteration);
+                let limited = self.advance(active, iteration, &state.memory);
                 before = S::select(limited, S::zero(), change);
             } else if polish {
                 polish = false;
-                self.advance(S::Mask::splat(true), 0);
+                self.advance(S::Mask::splat(true), 0, &state.memory);
             } else {
                 self.finish_linear_walls();
                 return Ok(());
             }
         }
-        Err(self.not_converged(active, place))
+        if S::LANES > 1 {
+            // The lane is run again alone, with all that follows here; the others go on.
+            self.failed = self.failed | active;
+            self.finish_linear_walls();
+            return if (!self.failed).any() { Ok(()) } else { Err(self.not_converged(active, place)) };
+        }
+        let error = self.not_converged(active, place);
+        if self.solve_nested(state, length) { Ok(()) } else { Err(error) }
+    }
+
+    /// The nested iteration of Casulli & Zanolli (2010), doi:10.1137/100786320: the enthalpy is the difference of two
+    /// convex functions; the outer iteration goes along the tangent of the second, the inner one is Newton's on the
+    /// first. Each converges from one side as long as the rest is linear.
+    #[cold]
+    #[inline(never)]
+    fn solve_nested(&mut self, state: &State<S>, length: f64) -> bool {
+        // Colder than any melting: there the second function is zero.
+        const SOLID: f64 = -273.15;
+        let state = State { memory: self.complete_memory(state), ..state.clone() };
+        let enough = S::constant(TOLERANCE * TOLERANCE);
+        let mut outer =
+            Unknowns { cells: state.cells.clone(), faces: state.faces.clone(), air: state.air.clone() };
+        self.iterate.copy_from(&outer);
+        outer.cells.fill(S::constant(SOLID));
+        for _ in 0..MAX_ITERATIONS {
+            for _ in 0..MAX_ITERATIONS {
+                self.effort.iterations += 1;
+                self.linearise_walls(&state, length, Some(&outer.cells));
+                self.linearise_faces();
+                self.solve_linear(length);
+                let settled = self.distance(&self.iterate).lt(enough);
+                self.iterate.copy_from(&self.solved);
+                if settled.any() {
+                    break;
+                }
+            }
+            if self.distance(&outer).lt(enough).any() {
+                self.effort.nested += 1;
+                self.finish_linear_walls();
+                return true;
+            }
+            outer.copy_from(&self.solved);
+        }
+        false
+    }
+
+    fn complete_memory(&self, state: &State<S>) -> Vec<PcmMemory<S>> {
+        let mut memory = state.memory.clone();
+        for (wall, numbers) in self.plan.walls.iter().zip(&self.coefficients.walls) {
+            for (i, cell) in numbers.cells.iter().enumerate() {
+                if let Matter::Pcm(law) = cell.matter {
+                    let k = wall.first_cell + i;
+                    memory[k] = numbers.pcm[law].complete(&memory[k]);
+                }
+            }
+        }
+        memory
     }
 
     /// Where the changes (squared) are small, or the next is foreseen to be: Newton's iteration squares them.
@@ -574,13 +750,17 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     #[inline(always)]
-    fn linearise_walls(&mut self, state: &State<S>, length: f64) {
+    fn linearise_walls(&mut self, state: &State<S>, length: f64, outer: Option<&[S]>) {
         for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| wall.nonlinear) {
             let cells = wall.first_cell..wall.first_cell + wall.len();
             let numbers = &self.coefficients.walls[w];
             let at = Iterate {
                 cells: &self.iterate.cells[cells.clone()],
                 faces: [self.iterate.faces[2 * w], self.iterate.faces[2 * w + 1]],
+                outer: outer.map(
+                    #[inline(always)]
+                    |outer| &outer[cells.clone()],
+                ),
             };
             let start = Start {
                 cells: &state.cells[cells.clone()],
@@ -769,14 +949,15 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Sum of the squared changes of the iterate, by lane [K2]. Not a number when any part of it is not one.
+    /// Sum of the squared distances of the solution from an iterate, by lane [K2]. Not a number when any part of it is
+    /// not one.
     #[inline(always)]
-    fn change(&self) -> S {
-        let mut sum = squared_distance(&self.solved.faces, &self.iterate.faces)
-            + squared_distance(&self.solved.air, &self.iterate.air);
+    fn distance(&self, iterate: &Unknowns<S>) -> S {
+        let mut sum = squared_distance(&self.solved.faces, &iterate.faces)
+            + squared_distance(&self.solved.air, &iterate.air);
         for wall in self.plan.walls.iter().filter(|wall| wall.nonlinear) {
             let cells = wall.first_cell..wall.first_cell + wall.len();
-            sum += squared_distance(&self.solved.cells[cells.clone()], &self.iterate.cells[cells]);
+            sum += squared_distance(&self.solved.cells[cells.clone()], &iterate.cells[cells]);
         }
         sum
     }
@@ -784,7 +965,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Moves the iterate of the active lanes to the solution, limited where a melting range would be leapt over.
     /// True where it was limited.
     #[inline(always)]
-    fn advance(&mut self, active: S::Mask, iteration: usize) -> S::Mask {
+    fn advance(&mut self, active: S::Mask, iteration: usize, memory: &[PcmMemory<S>]) -> S::Mask {
         if iteration >= PATIENCE && iteration.is_multiple_of(3) {
             self.hold_back();
         }
@@ -800,7 +981,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 let (old, new) = (self.iterate.cells[k], self.solved.cells[k]);
                 let target = match cell.matter {
                     Matter::Pcm(law) if curved => {
-                        let (target, leaps) = numbers.pcm[law].limit(old, new);
+                        let (target, leaps) = numbers.pcm[law].limit(old, new, &memory[k]);
                         limited = limited | leaps;
                         target
                     }
@@ -918,10 +1099,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[must_use]
     #[inline(always)]
     pub fn link_flux(&self, w: usize, link: usize) -> S {
-        let wall = &self.plan.walls[w];
         let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
-        let cells = &self.solved.cells[wall.first_cell..wall.first_cell + wall.len()];
-        self.chains[w].link_flux(link, faces, cells)
+        self.chains[w].link_flux(link, faces)
     }
 
     /// Names the part that moves most in the first lane that failed.

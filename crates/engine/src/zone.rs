@@ -207,6 +207,17 @@ impl<S: Real> ZoneDrive<S> {
         Self { convective: zero, radiant: zero, ventilation: zero, open: vec![zero; zone.openings.len()] }
     }
 
+    /// Numbers on the straight line through two others; see [`Drive::between`](crate::drive::Drive::between).
+    pub(crate) fn between(&mut self, first: &Self, second: &Self, share: f64) {
+        let line = |a: S, b: S| a + (b - a).scale(share);
+        self.convective = line(first.convective, second.convective);
+        self.radiant = line(first.radiant, second.radiant);
+        self.ventilation = line(first.ventilation, second.ventilation).max(S::zero());
+        for (at, (&a, &b)) in self.open.iter_mut().zip(first.open.iter().zip(&second.open)) {
+            *at = line(a, b).max(S::zero()).min(S::one());
+        }
+    }
+
     /// Reads the schedules.
     #[inline(always)]
     pub(crate) fn update(&mut self, zone: &Zone<S>, row: &[f64]) {

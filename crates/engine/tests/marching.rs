@@ -104,7 +104,7 @@ fn lanes_are_scalars() {
                 );
             }
             assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
-            iterations.push(alone.iterations);
+            iterations.push(alone.effort.iterations);
             cycles.push(alone.cycles);
         }
         iterations.sort_unstable();
@@ -278,5 +278,5 @@ fn solver_counters() {
     let mut options = options(Scheme::Sdirk2, STEP, cell_probes());
     options.warmup = Some(warmup(STEP));
     let result = run(&plan, &rows, &options);
-    assert_eq!((result.cycles, result.iterations), (3, 5372));
+    assert_eq!((result.cycles, result.effort.iterations), (3, 5372));
 }

@@ -253,7 +253,10 @@ fn report_run(result: &Bound<'_, PyDict>, run: &Run<f64>) -> PyResult<()> {
     result.set_item("closure", run.ledger.closure())?;
     result.set_item("cycles", run.cycles)?;
     result.set_item("settled", run.settled)?;
-    result.set_item("iterations", run.iterations)
+    result.set_item("iterations", run.effort.iterations)?;
+    result.set_item("nested", run.effort.nested)?;
+    result.set_item("halvings", run.effort.halvings)?;
+    result.set_item("reversals", run.effort.reversals)
 }
 
 /// Compiled part of mascarin.

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 from mascarin.errors import InputError
 from mascarin.model.convection import Convection, Power
 from mascarin.model.envelope import Side, Surface
-from mascarin.model.material import Material, PhaseChangeMaterial, Phases, TanhLaw
+from mascarin.model.material import Material, PhaseChangeMaterial, Phases
+from mascarin.model.melting import CapacityLaw, FractionsLaw, GumbelLaw, SmoothStepLaw, TableLaw, TanhLaw
 from mascarin.model.mesh import choose
 from mascarin.model.number import Interval, Number
 from mascarin.model.part import Part
@@ -165,18 +166,46 @@ def _material(_: str, material: Material, ids: Ids) -> Json:
 
 def _law(material: PhaseChangeMaterial, ids: Ids) -> Json:
     law = material.law
-    if not isinstance(law, TanhLaw):
+    if isinstance(law, TableLaw | CapacityLaw):
+        points = (
+            {"enthalpies": list(map(float, law.enthalpies))}
+            if isinstance(law, TableLaw)
+            else {"capacities": list(map(float, law.capacities))}
+        )
         return _fields(law, ids, "law.") | {
             "kind": "tabulated",
             "temperatures": list(map(float, law.temperatures)),
-            "enthalpies": list(map(float, law.enthalpies)),
+            "points": points,
             "melting_range": list(law.melting),
         }
-    return _fields(law, ids, "law.") | {
-        "kind": "tanh_width" if law.width is not None else "tanh_gamma",
-        "latent_heat": ids("latent_heat"),
-        "melting_temperature": ids("melting_temperature"),
+    latent_heat = ids("latent_heat")
+    heating = _melting_curve(law, ids, "law.", "melting_temperature")
+    hysteresis = material.hysteresis
+    if hysteresis is None:
+        return {"kind": "melting", "latent_heat": latent_heat, "curve": heating}
+    shape, prefix = (law, "law.") if hysteresis.law is None else (hysteresis.law, "hysteresis.law.")
+    return {
+        "kind": "hysteresis",
+        "latent_heat": latent_heat,
+        "model": hysteresis.model,
+        "heating": heating,
+        "cooling": _melting_curve(shape, ids, prefix, "hysteresis.freezing_temperature"),
     }
+
+
+def _melting_curve(law: Part, ids: Ids, prefix: str, centre: str) -> Json:
+    written = _fields(law, ids, prefix)
+    if isinstance(law, FractionsLaw):
+        temperatures, fractions = (list(map(float, column)) for column in (law.temperatures, law.fractions))
+        return written | {"temperatures": temperatures, "fractions": fractions}
+    written |= {"melting_temperature": ids(centre)}
+    if isinstance(law, TanhLaw):
+        written["kind"] = "tanh_width" if law.width is not None else "tanh_gamma"
+    elif isinstance(law, SmoothStepLaw):
+        written["continuity"] = int(law.continuity)
+    elif isinstance(law, GumbelLaw):
+        written["tail"] = law.tail
+    return written
 
 
 def _construction(

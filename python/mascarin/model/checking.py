@@ -10,7 +10,9 @@ from mascarin.errors import InputError
 from mascarin.model.air import SPECIFIC_HEAT, density
 from mascarin.model.convection import Constant
 from mascarin.model.leaves import leaves
-from mascarin.model.material import PhaseChangeMaterial, Resistance, TanhLaw, phase
+from mascarin.model.material import PhaseChangeMaterial, Resistance, phase
+from mascarin.model.melting import CUT, ClosedLaw, FractionLaw, FractionsLaw, TanhLaw
+from mascarin.model.melting_rules import unordered_slopes
 from mascarin.model.mesh import Mesh, choose
 from mascarin.model.settling import enclosure, faces_of
 
@@ -141,13 +143,28 @@ def _melting(building: Building) -> Iterator[str]:
     for name, material in building.materials.items():
         if not isinstance(material, PhaseChangeMaterial):
             continue
-        if isinstance(material.law, TanhLaw):
-            temperature, latent = material.melting_temperature or 0.0, material.latent_heat or 0.0
-            width = material.law.half_width
-            yield f"material {name}: {latent:g} J/kg about {temperature:g} degC, half-width {width:g} K"
+        law, (low, high) = material.law, material.melting
+        if isinstance(law, ClosedLaw):
+            latent, width = material.latent_heat or 0.0, law.half_width
+            about = f"{latent:g} J/kg about {material.melting_temperature or 0.0:g} degC"
+            by = "" if isinstance(law, TanhLaw) else f" ({law.kind})"
+            yield f"material {name}: {about}, half-width {width:g} K{by}"
         else:
-            low, high = material.law.melting
-            yield f"material {name}: melts between {low:g} and {high:g} degC, by its table"
+            latent_text = f"{material.latent_heat:g} J/kg, " if isinstance(law, FractionsLaw) else ""
+            yield f"material {name}: {latent_text}melts between {low:g} and {high:g} degC, by its table"
+        if material.hysteresis is not None and material.cooling is not None:
+            yield f"material {name}: {_two_curves(material, material.hysteresis.model, *material.cooling)}"
+
+
+def _two_curves(material: PhaseChangeMaterial, model: str, cooling: FractionLaw, centre: float) -> str:
+    (low, high), (start, end) = material.melting, cooling.reach
+    text = (
+        f"{model}, melts from {low:.2f} to {high:.2f} degC, freezes from {centre + end:.2f} to "
+        f"{centre + start:.2f} degC"
+    )
+    if any(isinstance(law, ClosedLaw) and law.tails for law in (material.law, cooling)):
+        text += f"; tails below {100 * CUT:g} % are cut off and the rest is scaled to 0..1"
+    return text
 
 
 def u_value(building: Building, surface: Surface) -> float:
@@ -296,6 +313,7 @@ def warnings(building: Building, mesh: Mesh, step_seconds: float) -> Iterator[st
             f"{', '.join(quick)}: SDIRK2 may overshoot there after a jump (backward-euler never does)"
         )
     yield from _odd_materials(building)
+    yield from _odd_melting(building)
     yield from _odd_volumes(building)
     yield from _odd_faces(building)
     yield from _odd_areas(building)
@@ -324,6 +342,26 @@ def _odd_materials(building: Building) -> Iterator[str]:
                     f"{where}: a diffusivity of {diffusivity:.2g} m2/s lies outside {low:g} to {high:g}: "
                     "check the units of conductivity [W/(m K)], density [kg/m3] and specific_heat [J/(kg K)]"
                 )
+
+
+def _odd_melting(building: Building) -> Iterator[str]:
+    """Find small cycles that would make entropy vanish, and densities that make the liquid much thicker."""
+    for name, material in building.materials.items():
+        if not isinstance(material, PhaseChangeMaterial):
+            continue
+        odd = unordered_slopes(material)
+        if odd is not None:
+            yield (
+                f"materials.{name}.hysteresis: between {odd[0]:.2f} and {odd[1]:.2f} degC the heating curve "
+                "flattens faster than the cooling curve: with curve_scale a small cycle there would melt "
+                "colder than it freezes. Take curves of one shape and width, or curve_switch"
+            )
+        solid, liquid = (phase(material.density, state) for state in ("solid", "liquid"))
+        if abs(solid / liquid - 1.0) > 0.25:
+            yield (
+                f"materials.{name}.density: {solid:g} kg/m3 solid, {liquid:g} kg/m3 liquid: the layer keeps "
+                f"its mass and would be {100 * (solid / liquid - 1.0):+.0f} % thicker when molten"
+            )
 
 
 def _odd_faces(building: Building) -> Iterator[str]:

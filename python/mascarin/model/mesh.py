@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mascarin.model.material import PhaseChangeMaterial, Phases, Resistance, TanhLaw, phase
+from mascarin.model.material import PhaseChangeMaterial, Phases, Resistance, phase
+from mascarin.model.melting import ClosedLaw, Law, TanhLaw, TriangleLaw
 from mascarin.model.number import Interval
 
 if TYPE_CHECKING:
@@ -138,10 +139,19 @@ def _melting_count(name: str, material: PhaseChangeMaterial, thickness: float, w
 
 
 def _least_width(name: str, material: PhaseChangeMaterial, worst: _Worst) -> float:
-    law, path = material.law, f"materials.{name}.law"
-    if not isinstance(law, TanhLaw):
-        low, high = law.melting
-        return 0.5 * (high - low)
-    if law.gamma is None or law.delta_t is None:
+    """Half-width of the narrowest curve at the narrow end of the ranges [K]."""
+    widths = [_width(material.law, f"materials.{name}.law", worst)]
+    if material.hysteresis is not None and material.hysteresis.law is not None:
+        widths.append(_width(material.hysteresis.law, f"materials.{name}.hysteresis.law", worst))
+    return min(widths)
+
+
+def _width(law: Law, path: str, worst: _Worst) -> float:
+    if isinstance(law, TanhLaw) and law.gamma is not None and law.delta_t is not None:
+        return 4.0 * worst.ends(f"{path}.delta_t", law.delta_t)[0] / worst.ends(f"{path}.gamma", law.gamma)[1]
+    if isinstance(law, TriangleLaw):
+        below, above = worst.ends(f"{path}.below", law.below), worst.ends(f"{path}.above", law.above)
+        return 0.5 * (below[0] + above[0])
+    if isinstance(law, ClosedLaw):
         return worst.ends(f"{path}.width", law.half_width)[0]
-    return 4.0 * worst.ends(f"{path}.delta_t", law.delta_t)[0] / worst.ends(f"{path}.gamma", law.gamma)[1]
+    return law.half_width

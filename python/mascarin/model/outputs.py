@@ -22,6 +22,7 @@ Kind = Literal[
     "face_flux",
     "interface_temperature",
     "layer_flux",
+    "layer_temperature",
     "liquid_fraction",
     "layer_enthalpy",
     "sensor",
@@ -145,6 +146,10 @@ def _of_surface(building: Building, index: int, name: str) -> Iterator[Output]:
     for position, layer in enumerate(layers):
         kinds: list[tuple[str, str, Kind]] = [("flux", "W/m2", "layer_flux")]
         if isinstance(building.materials[layer.material], PhaseChangeMaterial):
-            kinds += [("liquid_fraction", "-", "liquid_fraction"), ("enthalpy", "J/m3", "layer_enthalpy")]
+            kinds += [
+                ("temperature", "degC", "layer_temperature"),
+                ("liquid_fraction", "-", "liquid_fraction"),
+                ("enthalpy", "J/m3", "layer_enthalpy"),
+            ]
         for word, unit, kind in kinds:
             yield Output(f"{name}.{layer.name}_{word}", unit, kind, surface=index, layer=position)

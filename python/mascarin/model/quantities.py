@@ -155,7 +155,7 @@ MeltingTemperature = Annotated[
     Number,
     Quantity(
         "degC",
-        "Temperature at which half of the material is liquid",
+        "Temperature of melting: half is liquid, or (triangle, gumbel) the capacity peaks",
         Within(1, "calorimeters at another rate and sample mass than the wall's"),
         TEMPERATURE,
     ),
@@ -185,6 +185,65 @@ DeltaT = Annotated[
         "Interval delta T of the melting curve; only gamma/delta_t acts, w = 4 delta_t/gamma",
         Percent(10, "a convention that goes with gamma"),
         Limits(above=0, at_most=100),
+    ),
+]
+FreezingTemperature = Annotated[
+    Number,
+    Quantity(
+        "degC",
+        "Temperature about which the material freezes, where hysteresis gives it a cooling curve",
+        Within(1, "calorimeters at another rate and sample mass than the wall's"),
+        TEMPERATURE,
+    ),
+]
+_WIDTH = Percent(50, "the width seen by a calorimeter depends on its heating rate")
+EndToMiddle = Annotated[
+    Number,
+    Quantity("K", "From the middle of the melting range to either end", _WIDTH, Limits(above=0, at_most=100)),
+]
+Deviation = Annotated[
+    Number,
+    Quantity("K", "Standard deviation of the latent capacity", _WIDTH, Limits(above=0, at_most=100)),
+]
+GumbelScale = Annotated[
+    Number,
+    Quantity("K", "Scale of the Gumbel distribution", _WIDTH, Limits(above=0, at_most=100)),
+]
+Flank = Annotated[
+    Number,
+    Quantity(
+        "K",
+        "From the peak of the latent capacity to the end of melting",
+        _WIDTH,
+        Limits(above=0, at_most=100),
+    ),
+]
+Continuity = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Continuous derivatives of the liquid fraction",
+        Fixed("chooses the polynomial"),
+        Limits(at_least=1, at_most=2),
+        whole=True,
+    ),
+]
+CurveFraction = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Liquid fraction of a point of the curve",
+        Fixed("shapes the curve; vary temperature_shift instead"),
+        Limits(at_least=0, at_most=1),
+    ),
+]
+CurveCapacity = Annotated[
+    Number,
+    Quantity(
+        "J/(kg K)",
+        "Apparent specific heat of a point of the curve, sensible heat included",
+        Fixed("shapes the curve; vary enthalpy_scale instead"),
+        Limits(above=0),
     ),
 ]
 CurveTemperature = Annotated[

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from mascarin.model.convection import SOURCES
 from mascarin.model.idle import faces, without_effect
 from mascarin.model.leaves import leaves
-from mascarin.model.material import PhaseChangeMaterial, TableLaw
+from mascarin.model.material import PhaseChangeMaterial
+from mascarin.model.melting import FractionsLaw, TableLaw
 from mascarin.model.number import Number, Remark
 from mascarin.model.settling import enclosure, faces_of
 from mascarin.model.site import ASHRAE_WIND, CLARK, MARTIN
@@ -150,4 +151,7 @@ def _tabulated(building: Building) -> bool:
     built = {surface.construction for surface in building.surfaces.values()}
     used = {layer.material for name in built for layer in building.constructions[name].layers}
     materials = (building.materials[name] for name in used)
-    return any(isinstance(one, PhaseChangeMaterial) and isinstance(one.law, TableLaw) for one in materials)
+    return any(
+        isinstance(one, PhaseChangeMaterial) and isinstance(one.law, TableLaw | FractionsLaw)
+        for one in materials
+    )

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.model.material import PhaseChangeMaterial, PhaseDensities, Phases, PhaseSpecificHeats, TanhLaw
+from mascarin.model.material import PhaseChangeMaterial, PhaseDensities, Phases, PhaseSpecificHeats
+from mascarin.model.melting import TanhLaw
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -4,8 +4,8 @@
 
 use mascarin_engine::description::{
     Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer, Material,
-    OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky, Surface, WindProfile,
-    Zone, ZoneLongwave,
+    MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky, Surface,
+    WindProfile, Zone, ZoneLongwave,
 };
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
@@ -116,20 +116,24 @@ impl Builder {
     }
 
     pub fn tanh(&mut self, latent_heat: f64, melting_temperature: f64, width: f64) -> PcmLaw {
-        PcmLaw::TanhWidth {
+        PcmLaw::Melting {
             latent_heat: self.number("law.latent_heat", latent_heat),
-            melting_temperature: self.number("law.melting_temperature", melting_temperature),
-            width: self.number("law.width", width),
+            curve: MeltingCurve::TanhWidth {
+                melting_temperature: self.number("law.melting_temperature", melting_temperature),
+                width: self.number("law.width", width),
+            },
         }
     }
 
     /// The paper's material: Table 2 with a sharpness.
     pub fn energain(&mut self, gamma: f64) -> usize {
-        let law = PcmLaw::TanhGamma {
+        let law = PcmLaw::Melting {
             latent_heat: self.number("materials.energain.latent_heat", 71e3),
-            melting_temperature: self.number("materials.energain.melting_temperature", 23.4),
-            gamma: self.number("materials.energain.law.gamma", gamma),
-            delta_t: self.number("materials.energain.law.delta_t", 0.01),
+            curve: MeltingCurve::TanhGamma {
+                melting_temperature: self.number("materials.energain.melting_temperature", 23.4),
+                gamma: self.number("materials.energain.law.gamma", gamma),
+                delta_t: self.number("materials.energain.law.delta_t", 0.01),
+            },
         };
         self.pcm("energain", [[0.22, 0.18], [3134.0, 2833.0]], 855.0, law)
     }
