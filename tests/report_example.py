@@ -161,6 +161,13 @@ def lgi() -> tuple[dict[str, Any], Series]:
     study["variant_parameters"] = {"the paper's seven": seven}
     _add_sensitivity(study)
     _add_residuals(study, series)
+    study["reference"] |= {
+        "tables": {"influential": "table 3", "identification": "table 5"},
+        "influential": [
+            {"frequency": 218, "symbol": "alpha_CI", "parameter": "surfaces.roof.outside.absorptance"}
+        ],
+    }
+    study["frequencies"] = {"surfaces.roof.outside.absorptance": 24}
     _add_shortfall(study)
     _add_energy(study)
     return study, series

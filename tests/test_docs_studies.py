@@ -34,6 +34,7 @@ SECTIONS = (
     ("Each of `identification.parameters`", description.Free),
     ("Each of `variants`", description.Variant),
     ("`reference`", description.Reference),
+    ("Each of `reference.influential`", description.Influential),
     ("Each period of each of `reference.sensors`", description.Published),
 )
 

@@ -120,6 +120,21 @@ def test_tables_hold_the_numbers(outline: Outline) -> None:
     assert row[5] == "1.6"
 
 
+def test_published_parameters_stand_beside_ours(lgi_page: str, outline: Outline) -> None:
+    study, _ = report_example.lgi()
+    path = "surfaces.roof.outside.absorptance"
+    output = max(study["sensitivity"], key=lambda name: study["sensitivity"][name][path]["share"])
+    share = study["sensitivity"][output][path]["share"]
+    text = re.sub(r"\s+", " ", " ".join(outline.text))
+    row = text[text.index("Rank of") :]
+    row = row[row.index("218") : row.index("Spectra")]
+    assert "α<sub>CI</sub>" in lgi_page
+    assert f"roof · outside · absorptance 24 {100 * share:.1f} %" in row
+    label = study["reference"]["label"]
+    assert f"(after table 3 of {label})" in text
+    assert f"(after table 5 of {label})" in text
+
+
 def test_what_would_take_the_rest_away_is_told(outline: Outline) -> None:
     study, _ = report_example.lgi()
     text = re.sub(r"\s+", " ", " ".join(outline.text))

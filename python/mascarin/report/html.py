@@ -37,6 +37,7 @@ def page(study: Mapping[str, Any], series: Series) -> str:
     )
     environment.filters["typeset"] = typeset
     environment.filters["significant"] = significant
+    environment.filters["symbol"] = _symbol
     template = environment.from_string(_asset("template.html"))
     return template.render(
         **context(study, series),
@@ -70,3 +71,10 @@ def _json(content: Mapping[str, Any]) -> Markup:
 
 def _asset(name: str) -> str:
     return files("mascarin.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _symbol(words: str) -> Markup:
+    """A symbol such as ``h_ci`` or ``alpha_CI``: Greek letters by their sign, an index below the line."""
+    base, _, index = words.partition("_")
+    letter = {"alpha": "α", "gamma": "γ", "epsilon": "ε", "lambda": "λ", "rho": "ρ"}.get(base, base)
+    return Markup("{}<sub>{}</sub>").format(letter, index) if index else Markup("{}").format(letter)

@@ -35,6 +35,7 @@ def context(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
         "sections": _sections(study, series),
         "version": study.get("mascarin_version", ""),
         "created": _created(study.get("created")),
+        "day": _created(study.get("created")).partition(",")[0],
     }
 
 
@@ -232,11 +233,7 @@ def _model(study: Mapping[str, Any]) -> dict[str, Any] | None:
             {
                 "name": text.plain_path(str(c.get("name"))),
                 "drawing": drawing.layers(building, c, sensors),
-                "surfaces": [
-                    text.plain_path(str(s.get("name")))
-                    for s in building.get("surfaces", [])
-                    if s.get("construction") == c.get("name")
-                ],
+                "surfaces": _built_so(building, str(c.get("name"))),
             }
             for c in building.get("constructions", [])
         ],
@@ -252,6 +249,16 @@ def _model(study: Mapping[str, Any]) -> dict[str, Any] | None:
         ],
         "assumptions": _assumptions(study),
     }
+
+
+def _built_so(building: Mapping[str, Any], construction: str) -> list[str]:
+    """Surfaces of a construction; none where it is but the one that bears its name."""
+    names = [
+        text.plain_path(str(surface.get("name")))
+        for surface in building.get("surfaces", [])
+        if surface.get("construction") == construction
+    ]
+    return [] if names == [text.plain_path(construction)] else names
 
 
 def _surface(surface: Mapping[str, Any]) -> dict[str, str]:
@@ -364,7 +371,42 @@ def _sensitivity(study: Mapping[str, Any]) -> dict[str, Any] | None:
         "spectra": [_spectrum(study, key, entry) for key, entry in study.get("spectra", {}).items()],
         "days": [figures.day_shares(study, key, entry) for key, entry in study.get("day_shares", {}).items()],
         "day_keys": _day_keys(study),
+        "influential": _influential(study, shares),
+        "reference": study.get("reference", {}).get("label", ""),
+        "layout": _layout(study, "influential"),
     }
+
+
+def _layout(study: Mapping[str, Any], what: str) -> str:
+    """Which table of the publication a table is laid out after, as the end of a caption."""
+    table = study.get("reference", {}).get("tables", {}).get(what)
+    return f" (after {table} of {study['reference']['label']})" if table else ""
+
+
+def _influential(
+    study: Mapping[str, Any], shares: Mapping[str, Mapping[str, Any]]
+) -> list[dict[str, str | int]]:
+    """The parameters that a publication names, and what became of them here."""
+    largest: dict[str, tuple[float, str]] = {}
+    for output, entries in shares.items():
+        for path, entry in entries.items():
+            largest[path] = max(largest.get(path, (-1.0, "")), (float(entry.get("share", 0.0)), output))
+    ranked = sorted(largest, key=lambda path: -largest[path][0])
+    lines = study.get("frequencies", {})
+    return [
+        {
+            "symbol": str(entry.get("symbol", "")),
+            "published": str(entry.get("frequency") or text.NONE),
+            "label": _parameter_label(study, entry["parameter"]),
+            "path": entry["parameter"],
+            "frequency": str(lines.get(entry["parameter"], text.NONE)),
+            "share": text.percent(largest[entry["parameter"]][0]),
+            "sensor": figures.label_of(study, largest[entry["parameter"]][1]),
+            "rank": ranked.index(entry["parameter"]) + 1,
+        }
+        for entry in study.get("reference", {}).get("influential", [])
+        if entry.get("parameter") in largest
+    ]
 
 
 def _strongest(shares: Mapping[str, Mapping[str, Any]]) -> list[str]:
@@ -453,6 +495,7 @@ def _parameters(study: Mapping[str, Any]) -> dict[str, Any] | None:
     return {
         "rows": rows,
         "referenced": referenced,
+        "layout": _layout(study, "parameters"),
         "reference": study.get("reference", {}).get("label", "Publication"),
         "facts": study.get("identification", []),
         "correlation": _correlation(study),
@@ -559,6 +602,7 @@ def _period_table(
     return {
         "label": _period_label(study, period),
         "rows": rows,
+        "layout": _layout(study, period) if published else "",
         "published": published,
         "unit": units[0] if len(units) == 1 else "",
     }
@@ -586,6 +630,7 @@ def _model_table(study: Mapping[str, Any]) -> dict[str, Any] | None:
             {
                 "label": _model_label(study, m),
                 "note": study["models"][m].get("note", ""),
+                "own": _own_estimates(study, m),
                 "cells": [
                     {"text": text.fixed(v), "best": v is not None and v == b}
                     for v, b in zip(values, best, strict=True)
@@ -596,6 +641,16 @@ def _model_table(study: Mapping[str, Any]) -> dict[str, Any] | None:
         labels = [figures.label_of(study, sensor) for sensor in sensors]
         return {"period": _period_label(study, period), "labels": labels, "rows": rows}
     return None
+
+
+def _own_estimates(study: Mapping[str, Any], model: str) -> str:
+    """What was identified in a model beside what the fitted one has, in words."""
+    entries = study.get("variant_parameters", {}).get(model, {})
+    return "; ".join(
+        f"{_parameter_label(study, path)} {text.with_unit(entry.get('fitted'), str(entry.get('unit', '')))}"
+        for path, entry in entries.items()
+        if path not in study.get("parameters", {})
+    )
 
 
 # --- curves, carpets, residuals and the rest ------------------------------------------------------

@@ -336,7 +336,8 @@ class Study(TypedDict, total=False):
     sensors: dict[str, dict[str, dict[str, Metrics]]]
     """sensor -> period -> model -> metrics; other keys beside the models are left alone."""
     reference: dict[str, Any]
-    """A publication to read the numbers by: ``label``, ``note``, ``sensors`` (as above, without models)."""
+    """A publication to read the numbers by: ``label``, ``note``, ``sensors`` (as above, without models), its
+    ``tables`` by what they hold, and its ``influential`` parameters with ``symbol`` and ``frequency``."""
     building: BuildingEntry
     assumptions: list[Assumption]
     quality: list[QualityEntry]
@@ -353,6 +354,8 @@ class Study(TypedDict, total=False):
     shortfall: Shortfall
     sensitivity: dict[str, dict[str, Share]]
     sensitivity_design: list[list[str]]
+    frequencies: dict[str, int]
+    """At which frequency each parameter swings in the spectra."""
     spectra: dict[str, Spectrum]
     day_shares: dict[str, DayShares]
     residuals: dict[str, Residuals]

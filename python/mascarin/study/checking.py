@@ -78,6 +78,9 @@ def names(study: Study, faults: Faults) -> None:
     for name in {} if file.reference is None else file.reference.sensors:
         with places.noting(faults, "reference", "sensors", name):
             _require_known(name, tuple(file.sensors))
+    for k, entry in enumerate(() if file.reference is None else file.reference.influential):
+        with places.noting(faults, "reference", "influential", k, "parameter"):
+            study.building.parameter(entry.parameter)
     if file.sensitivity is not None:
         with faults.kept():
             check_plan(study.building, file.sensitivity, places)

@@ -296,11 +296,23 @@ class Published(Part):
     mean_error_percent: float = Field(description="Mean of the magnitudes as a share of the range [%]")
 
 
+class Influential(Part):
+    """A parameter that a publication found to matter."""
+
+    parameter: str = Field(description="What stands for it here")
+    symbol: str = Field(description="What it is called there")
+    frequency: int | None = Field(None, ge=1, description="At which frequency it was heard there")
+
+
 class Reference(Part):
     """What a publication reached: a scale to read the numbers by, shown beside them."""
 
     label: str = Field(description="What the report calls it")
     note: str = Field(description="What it was compared with, and what the two can say of each other")
+    tables: dict[Literal["influential", "parameters", "identification", "corroboration", "blind"], str] = (
+        Field(default_factory=dict, description="Which of its tables ours are laid out after")
+    )
+    influential: tuple[Influential, ...] = Field((), description="The parameters that matter there")
     sensors: dict[str, dict[Literal["identification", "corroboration", "blind"], Published]] = Field(
         description="Sensor -> period -> numbers"
     )

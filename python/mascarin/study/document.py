@@ -551,9 +551,16 @@ def importance(study: Study, found: Sensitivity) -> dict[str, Any]:
             ["replicates", str(found.design.replicates)],
             ["harmonics counted", str(found.design.order)],
         ]
+        content["frequencies"] = _frequencies(found)
         content["spectra"] = {output: _spectrum(found, output) for output in found.outputs}
         content["day_shares"] = {output: _day_shares(found, output, hours) for output in found.outputs}
     return {**content, "sensitivity_design": [*rows, *(["warning", text] for text in found.warnings)]}
+
+
+def _frequencies(found: SpectralSensitivity) -> dict[str, int]:
+    """At which frequency each parameter swings in the first replicate, which the spectra show."""
+    lines = found.design.frequencies[0][found.design.group_of]
+    return {name: int(line) for name, line in zip(found.names, lines, strict=False)}
 
 
 def analysed_hours(study: Study, found: Sensitivity) -> npt.NDArray[np.float64] | None:
