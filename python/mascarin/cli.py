@@ -39,6 +39,11 @@ class Command(NamedTuple):
 GROUPS: Final[dict[str, tuple[Command, ...]]] = {
     "Describe": (
         Command(
+            "init",
+            "mascarin.commands.start:init",
+            "Start a study of your own from one that comes with Mascarin.",
+        ),
+        Command(
             "schema", "mascarin.commands.model:schema", "Print the JSON Schema of a building description."
         ),
         Command(

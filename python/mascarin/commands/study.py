@@ -184,7 +184,7 @@ def _judge(verdicts: Sequence[Mapping[str, Any]]) -> int:
     missed = [verdict for verdict in verdicts if not verdict["passed"]]
     for verdict in missed:
         value, unit = verdict["value"], verdict["unit"]
-        found = "nothing to compare" if value is None else f"{value:.3f} {unit}"
+        found = "nothing to compare" if value is None else f"{value:.3f} {unit.replace('degC', 'K')}"
         where = f"{verdict['sensor']}, {verdict['period']}"
         print(f"missed: {where}: {verdict['name']}; found {found}", file=sys.stderr)
     if verdicts:

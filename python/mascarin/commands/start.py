@@ -1,0 +1,48 @@
+"""The command that starts a study of one's own."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from mascarin.errors import InputError, did_you_mean
+
+
+def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example", "-e"))] = "lgi") -> None:
+    """Start a study of your own from one that comes with Mascarin.
+
+    Copies its building, study and tables into a new folder, and says how to go on.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to; made when it is missing.
+    example : str
+        lgi, a cell under a roof with a ceiling that melts; wall-bench, a single wall.
+    """
+    from mascarin.examples import STUDIES
+
+    if example not in STUDIES:
+        raise InputError(
+            f"--example: found '{example}', expected one of {', '.join(STUDIES)}. "
+            f"{did_you_mean(example, STUDIES)}".rstrip()
+        )
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: is a file; expected a new folder: choose another name")
+    if folder.is_dir() and any(folder.iterdir()):
+        raise InputError(f"{folder}: is not empty; expected a new folder, nothing is overwritten")
+    folder.mkdir(parents=True, exist_ok=True)
+    for source in sorted(STUDIES[example].parent.iterdir()):
+        if source.is_file():
+            (folder / source.name).write_bytes(source.read_bytes())
+            print(folder / source.name)
+    study = folder / "study.yaml"
+    print(
+        f"next: mascarin check '{folder / 'building.yaml'}'\n"
+        f"      mascarin validate '{study}'\n"
+        f"      mascarin study '{study}' -o '{folder / 'out'}'",
+        file=sys.stderr,
+    )

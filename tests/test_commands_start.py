@@ -1,0 +1,41 @@
+"""A study that was copied is the one that comes with Mascarin."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mascarin.cli import main
+from mascarin.examples import STUDIES
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_every_example_can_be_started_from(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "my own cell"
+    assert main(["init", str(folder), "--example", name]) == 0
+    said = capsys.readouterr()
+    written = [Path(line) for line in said.out.splitlines()]
+    source = STUDIES[name].parent
+    assert [path.name for path in written] == sorted(p.name for p in source.iterdir() if p.is_file())
+    assert all(path.read_bytes() == (source / path.name).read_bytes() for path in written)
+    assert f"mascarin study '{folder / 'study.yaml'}'" in said.err
+    # What was copied is understood where it is now.
+    assert main(["check", str(folder / "building.yaml")]) == 0
+
+
+def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine.txt").write_text("kept", encoding="utf-8")
+    assert main(["init", str(tmp_path)]) == 2
+    assert "is not empty" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    assert main(["init", str(tmp_path / "mine.txt")]) == 2
+    assert "is a file" in capsys.readouterr().err
+
+
+def test_an_unknown_example_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", str(tmp_path / "new"), "--example", "lgl"]) == 2
+    assert "Did you mean 'lgi'?" in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
