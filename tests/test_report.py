@@ -147,7 +147,7 @@ def test_what_would_take_the_rest_away_is_told(outline: Outline) -> None:
     assert "with roof · steel · thickness +33" in table
     assert "and site · cloud · c3 −12" in table
     steel = study["shortfall"]["every"]["sd"]["steel_sheet"]
-    assert f"{steel:.2f}" in table[rows[3] : rows[4]]
+    assert f"{steel:.3f}" in table[rows[3] : rows[4]]
     met = sum(aim["passed"] for aim in study["aims"])
     assert f"{met} of 6 are reached" in text
 

@@ -13,6 +13,8 @@ from mascarin.report.carpet import legend
 from mascarin.report.payload import Series, moment
 
 _STRONGEST = 14
+#: Notes of this title stand with the aims.
+_MISSED = "Where an aim is missed"
 
 
 def context(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
@@ -523,11 +525,15 @@ def _published(study: Mapping[str, Any]) -> list[dict[str, Any]]:
             }
             for path, entry in entries.items()
         ]
-        # A model that shares but one or two of them is not the published one.
-        if 2 * sum("reference_fitted" in entry for entry in entries.values()) > len(entries):
+        if _is_published(entries):
             note = study.get("models", {}).get(model, {}).get("note", "")
             found.append({"model": _model_label(study, model), "note": note, "rows": rows})
     return found
+
+
+def _is_published(entries: Mapping[str, Mapping[str, Any]]) -> bool:
+    """Whether most parameters of a model are those of a publication; one or two do not make it that."""
+    return 2 * sum("reference_fitted" in entry for entry in entries.values()) > len(entries)
 
 
 def _between(ends: Sequence[Any]) -> str:
@@ -646,6 +652,8 @@ def _model_table(study: Mapping[str, Any]) -> dict[str, Any] | None:
 def _own_estimates(study: Mapping[str, Any], model: str) -> str:
     """What was identified in a model beside what the fitted one has, in words."""
     entries = study.get("variant_parameters", {}).get(model, {})
+    if _is_published(entries):
+        return ""  # has a table of its own
     return "; ".join(
         f"{_parameter_label(study, path)} {text.with_unit(entry.get('fitted'), str(entry.get('unit', '')))}"
         for path, entry in entries.items()
@@ -793,13 +801,19 @@ def _shortfall(study: Mapping[str, Any]) -> dict[str, Any] | None:
         "labels": [figures.label_of(study, sensor) for sensor in sensors],
         "rows": rows if sensors else [],
         "wished": wished,
+        "notes": [
+            words
+            for note in study.get("notes", [])
+            if note.get("title") == _MISSED
+            for words in _note_words(study, note)
+        ],
         "period": _period_label(study, str(found.get("period", ""))).lower(),
         "unit": units.pop() if len(units) == 1 else "",
     }
 
 
 def _scatter(sd: Mapping[str, float], sensors: Sequence[str]) -> list[str]:
-    return [text.fixed(sd.get(sensor)) for sensor in sensors]
+    return [text.fixed(sd.get(sensor), 3) for sensor in sensors]
 
 
 def _aimed_scatter(aims: Sequence[Mapping[str, Any]], period: str, sensors: Sequence[str]) -> list[str]:
@@ -809,7 +823,7 @@ def _aimed_scatter(aims: Sequence[Mapping[str, Any]], period: str, sensors: Sequ
         for aim in aims
         if aim.get("metric") == "sd" and aim.get("period") == period
     }
-    return [text.fixed(wished.get(sensor)) for sensor in sensors] if wished else []
+    return [text.fixed(wished.get(sensor), 3) for sensor in sensors] if wished else []
 
 
 def _aims(study: Mapping[str, Any], aims: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -880,9 +894,13 @@ def _notes(study: Mapping[str, Any]) -> list[dict[str, Any]] | None:
     """Notes under their titles, those of one title together."""
     found: dict[str, list[str]] = {}
     for note in study.get("notes", []):
-        texts = [_named(study, words) for words in str(note.get("text", "")).split("\n\n")]
-        found.setdefault(str(note.get("title", "")), []).extend(texts)
+        if note.get("title") != _MISSED:
+            found.setdefault(str(note.get("title", "")), []).extend(_note_words(study, note))
     return [{"title": title, "paragraphs": paragraphs} for title, paragraphs in found.items()] or None
+
+
+def _note_words(study: Mapping[str, Any], note: Mapping[str, Any]) -> list[str]:
+    return [_named(study, words) for words in str(note.get("text", "")).split("\n\n")]
 
 
 def _named(study: Mapping[str, Any], words: str) -> str:
