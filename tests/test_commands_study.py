@@ -91,6 +91,7 @@ def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
     assert "criteria kept: 6 of 6" in said
     assert {path.name for path in (tmp_path / "tables").iterdir()} == {
         "parameters.csv", "calibration_metrics.csv", "calibration_criteria.csv", "quality.csv",
+        "evaluations.csv",
     }  # fmt: skip
     record = next((tmp_path / ".work").glob("evaluations-*.jsonl"))
     before = record.read_bytes()
