@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, Rules, solve
 from mascarin.simulation import Simulation
 
 
@@ -124,3 +125,34 @@ def test_the_page_beside_energyplus_holds_the_recorded_numbers(repository: Path)
     assert numbers["thin_sheet"]["severe"] == 0
     with pytest.raises(ValueError, match="no place for the table 'tabulated'"):
         energyplus_pcm.filled("", numbers)
+
+
+@pytest.mark.usefixtures("bench")
+def test_seven_parameters_of_the_cell_come_back_from_our_own_data() -> None:
+    """Noise-free data: within a thousandth, from a start about a quarter of the range away."""
+    import lgi_seven  # type: ignore[import-not-found]
+
+    case = lgi_seven.seven()
+    problem = case.measured()
+    start = problem.positions(np.array([p.first for p in problem.parameters]))
+    assert np.abs(start - problem.positions(case.truth)).mean() > 0.15
+    fit = solve(problem, rules=Rules(starts=1))
+    assert len(fit.x) == 7
+    np.testing.assert_allclose(fit.x, case.truth, rtol=1e-3)
+
+
+@pytest.mark.usefixtures("bench")
+def test_sequences_of_the_cell_go_on_where_they_were_stopped(tmp_path: Path) -> None:
+    import pattern_sequences  # type: ignore[import-not-found]
+
+    time = np.linspace(0.0, 3.0, 30)
+    problem = CalibrationProblem(
+        (FitParameter("rate", 0.0, 4.0), FitParameter("size", 0.1, 5.0)),
+        (FitSensor("s", 2.0 * np.exp(-0.8 * time) + 0.1 * np.sin(9.0 * time), 0.1),),
+        lambda x: (x[:, 1:] * np.exp(-x[:, :1] * time))[:, :, None],
+    )
+    first = pattern_sequences.searched(problem, 3, tmp_path)
+    more = pattern_sequences.searched(problem, 5, tmp_path)
+    assert more.trace.replayed == first.trace.cost.size
+    assert [m.cost for m in more.minima[:3]] == [m.cost for m in first.minima]
+    assert len(more.minima) == 5

@@ -156,7 +156,8 @@ class Evaluator:
         for k in range(x.shape[0]):
             kept = residuals[k] if keep else None
             self._remember(x[k], of_sensors[k], kept)
-            lines.append(self._line(x[k], of_sensors[k], kept))
+            if self._path is not None:
+                lines.append(self._line(x[k], of_sensors[k], kept))
         if self._path is not None:
             # One write per batch; the system keeps it even if the program is killed the moment after.
             self._file.write("".join(lines).encode())

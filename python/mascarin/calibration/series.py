@@ -47,21 +47,30 @@ def autocovariance(x: ArrayLike, lags: int) -> Floats:
         When there are fewer than two samples.
     """
     series = np.asarray(x, dtype=np.float64)
-    there = np.isfinite(series)
-    count = int(there.sum())
+    count = int(np.isfinite(series).sum())
     if count < 2:
         msg = f"autocovariance: the series has {count} samples, expected at least 2"
         raise InputError(msg)
-    centred = np.where(there, series - series[there].mean(), 0.0)
-    n = series.size
-    size = 2 * n
+    return np.asarray(_autocovariances(series[None], lags)[0])
+
+
+def _autocovariances(x: Floats, lags: int) -> Floats:
+    """Of series (B, n), shape (B, lags + 1); zero where fewer than two samples are there."""
+    there = np.isfinite(x)
+    count = there.sum(axis=1)
+    mean = np.where(there, x, 0.0).sum(axis=1) / np.maximum(count, 1)
+    centred = np.where(there & (count > 1)[:, None], x - mean[:, None], 0.0)
+    n = x.shape[1]
     most = min(lags, n - 1)
-    sums = np.fft.irfft(np.abs(np.fft.rfft(centred, size)) ** 2, size)[: most + 1]
-    pairs = np.fft.irfft(np.abs(np.fft.rfft(there.astype(np.float64), size)) ** 2, size)[: most + 1]
-    pairs = np.round(pairs)
+
+    def products(values: Floats) -> Floats:
+        spectrum = np.abs(np.fft.rfft(values, 2 * n)) ** 2
+        return np.asarray(np.fft.irfft(spectrum, 2 * n)[:, : most + 1])
+
+    sums, pairs = products(centred), np.round(products(there.astype(np.float64)))
+    gamma = np.zeros((len(x), lags + 1))
     taper = 1.0 - np.arange(most + 1) / n
-    gamma = np.zeros(lags + 1)
-    gamma[: most + 1] = np.where(pairs > 0, sums / np.maximum(pairs, 1.0), 0.0) * taper
+    gamma[:, : most + 1] = np.where(pairs > 0, sums / np.maximum(pairs, 1.0), 0.0) * taper
     return gamma
 
 
@@ -116,6 +125,9 @@ class Autoregression:
         """Number of steps after which a disturbance has died away. [samples]"""
         if not self.order:
             return 0
+        if self.order == 1:
+            size = min(abs(float(self.coefficients[0])), 0.999999)
+            return 1 + math.ceil(math.log(tolerance) / math.log(size)) if size > 0.0 else 1
         roots = np.abs(np.roots(np.concatenate([[1.0], -self.coefficients])))
         slowest = min(float(roots.max(initial=0.0)), 0.999999)
         if slowest <= 0.0:
@@ -137,28 +149,51 @@ def fit_autoregression(x: ArrayLike, *, longest: int | None = None) -> Autoregre
     -------
     Autoregression
     """
-    series = np.asarray(x, dtype=np.float64)
-    count = int(np.isfinite(series).sum())
+    return fit_autoregressions(np.asarray(x, dtype=np.float64)[None], longest=longest)[0]
+
+
+def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autoregression]:
+    """The same for several series of equal length at once.
+
+    Parameters
+    ----------
+    x : ndarray, shape (B, n)
+        Regularly sampled series, NaN for gaps. [unit]
+    longest : int, optional
+        As for `fit_autoregression`. [-]
+    """
+    count = np.isfinite(x).sum(axis=1)
     if longest is None:
-        longest = int(min(10.0 * math.log10(max(count, 2)), count / 10, _LONGEST_ORDER))
-    gamma = autocovariance(series, max(longest, 1))
-    white = Autoregression(np.empty(0), float(gamma[0]), float(gamma[0]), count)
-    if gamma[0] <= 0.0:
-        return white
-    best, lowest = white, count * math.log(gamma[0])
-    coefficients, innovation = np.empty(0), float(gamma[0])
-    for p in range(1, longest + 1):
-        reflection = (gamma[p] - coefficients @ gamma[p - 1 : 0 : -1]) / innovation
+        tried = np.minimum(np.minimum(10.0 * np.log10(np.maximum(count, 2)), count / 10), _LONGEST_ORDER)
+        most = tried.astype(np.int64)
+    else:
+        most = np.full(len(x), longest)
+    gamma = _autocovariances(x, int(max(most.max(initial=0), 1)))
+    alive = gamma[:, 0] > 0.0
+    innovation = np.where(alive, gamma[:, 0], 1.0)
+    lowest = count * np.log(innovation)
+    coefficients = np.zeros((len(x), gamma.shape[1] - 1))
+    best = [(np.empty(0), float(variance)) for variance in gamma[:, 0]]
+    for p in range(1, gamma.shape[1]):
+        before = coefficients[:, : p - 1]
+        reflection = (gamma[:, p] - np.sum(before * gamma[:, p - 1 : 0 : -1], axis=1)) / innovation
         # Gaps can make the estimated autocovariance one that no series has: the recursion ends there.
-        if abs(reflection) >= 1.0:
+        alive &= (np.abs(reflection) < 1.0) & (p <= most)
+        if not alive.any():
             break
-        coefficients = np.concatenate([coefficients - reflection * coefficients[::-1], [reflection]])
-        innovation *= 1.0 - reflection * reflection
-        score = count * math.log(innovation) + p * math.log(count)
-        if score < lowest:
-            lowest = score
-            best = Autoregression(coefficients, float(gamma[0]), innovation, count)
-    return best
+        reflection = np.where(alive, reflection, 0.0)
+        coefficients[:, : p - 1] = before - reflection[:, None] * before[:, ::-1]
+        coefficients[:, p - 1] = reflection
+        innovation = innovation * (1.0 - reflection * reflection)
+        score = count * np.log(innovation) + p * np.log(np.maximum(count, 1))
+        better = alive & (score < lowest)
+        lowest = np.where(better, score, lowest)
+        for k in np.flatnonzero(better):
+            best[k] = (coefficients[k, :p].copy(), float(innovation[k]))
+    return [
+        Autoregression(found, float(variance), own, int(number))
+        for (found, own), variance, number in zip(best, gamma[:, 0], count, strict=True)
+    ]
 
 
 def effective_samples(x: ArrayLike) -> float:

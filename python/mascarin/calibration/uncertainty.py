@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.series import Autoregression, fit_autoregression
+from mascarin.calibration.series import Autoregression, fit_autoregressions
 
 Floats = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ _SAME = 0.999
 _UNDETERMINED = 0.8  # share of the range that an interval may cover
 _SETTLED = 0.05  # share of the range below which an interval is narrow, whatever it goes with
 _AT_BOUND = 1e-4  # of the range
-_DRAWN: Final = 60  # simulated fits
+_DRAWN: Final = 40  # simulated fits
 _SEED: Final = 20
 
 
@@ -144,7 +144,7 @@ def estimate(
     if blind_to_bias:
         j = np.where(mask[:, :, None], j - j.sum(axis=0) / mask.sum(axis=0)[:, None], 0.0)
     r = np.where(mask, residuals, np.nan)
-    models = tuple(fit_autoregression(r[:, s]) for s in range(r.shape[1]))
+    models = tuple(fit_autoregressions(r.T))
     wj = weights[:, :, None] * j
     information = np.einsum("tsp,tsq->pq", wj, j) + np.diag(priors)
     effective = tuple(m.effective_samples for m in models)
@@ -333,9 +333,12 @@ def _drawn_quantile(
     moved = -inverse @ (np.einsum("tsp,tsk->pk", wj, errors) + np.sqrt(priors)[:, None] * beside)
     left = errors + np.einsum("tsp,pk->tsk", j, moved)
     ratio = np.ones_like(moved)
+    seen = np.where(mask[:, :, None], left, np.nan)
+    sensors = mask.shape[1]
+    fitted = fit_autoregressions(seen.reshape(len(seen), -1).T)
     for k in range(_DRAWN):
-        r = np.where(mask, left[:, :, k], np.nan)
-        models = tuple(fit_autoregression(r[:, s]) for s in range(r.shape[1]))
+        r = seen[:, :, k]
+        models = tuple(fitted[s * _DRAWN + k] for s in range(sensors))
         effective = max(sum(m.effective_samples for m in models), 1.0)
         found = _Noise.of(r, models, effective / max(effective - priors.size, 1.0))
         variance = _diagonal(inverse, found.middle(wj) + np.diag(priors))
@@ -362,19 +365,16 @@ def _widened(ratio: Floats, confidence: float) -> Floats:
 
 def _innovations(r: Floats, models: tuple[Autoregression, ...], responses: Floats) -> Floats:
     """Covariance of the innovations of all sensors, from that of the residuals; shape (S, S). [unit^2]"""
-    size = np.array([math.sqrt(max(m.innovation, 0.0)) for m in models])
-    sensors = len(models)
-    correlation = np.eye(sensors)
-    for s in range(sensors):
-        for u in range(s):
-            both = np.isfinite(r[:, s]) & np.isfinite(r[:, u])
-            if both.sum() < 3:
-                continue
-            a, b = r[both, s] - r[both, s].mean(), r[both, u] - r[both, u].mean()
-            shared = float(responses[:, s] @ responses[:, u])
-            scale = size[s] * size[u] * shared
-            if scale > 0.0:
-                correlation[s, u] = correlation[u, s] = np.clip(float(np.mean(a * b)) / scale, -1.0, 1.0)
+    size = np.sqrt([max(m.innovation, 0.0) for m in models])
+    there = np.isfinite(r)
+    pairs = there.T.astype(np.float64) @ there
+    mean = np.where(there, r, 0.0).sum(axis=0) / np.maximum(np.diag(pairs), 1.0)
+    centred = np.where(there, r - mean, 0.0)
+    together = centred.T @ centred / np.maximum(pairs, 1.0)
+    scale = np.outer(size, size) * (responses.T @ responses)
+    known = (scale > 0.0) & (pairs >= 3.0)
+    correlation = np.clip(np.divide(together, scale, out=np.zeros_like(scale), where=known), -1.0, 1.0)
+    np.fill_diagonal(correlation, 1.0)
     # Estimated pair by pair, so not always a covariance: take the nearest one.
     value, vector = np.linalg.eigh(correlation)
     correlation = (vector * np.maximum(value, 0.0)) @ vector.T

@@ -1,0 +1,131 @@
+"""Do seven parameters of the LGI cell come back from our own data, and do their intervals hold them?
+
+``python bench/calibration_lgi.py recover``: noise-free data, five starts; largest error of any parameter.
+``python bench/calibration_lgi.py cover KIND [repetitions]``: 95 % intervals for errors of 0.3 K, KIND being
+``white`` or ``1h`` (correlation time). Each repetition draws new errors and fits them, by default with the
+model replaced by its first-order expansion about the truth, which every fit shares: 1000 fits then cost
+minutes. ``cover KIND N full`` fits with the model itself, from the truth. Repetitions are kept in a file and
+never made twice; a run that was stopped goes on.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from lgi_seven import SENSOR_SD, Seven, seven
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from mascarin.calibration import CalibrationProblem, Rules, solve
+from mascarin.calibration.squares import derivative
+
+Floats = NDArray[np.float64]
+
+KINDS = {"white": 0.0, "1h": 1.0}
+_STEP = 0.25  # h
+KEPT = Path("calibration_lgi_kept")
+
+
+def recover() -> None:
+    """Print each parameter, what was found and the error in percent of the truth."""
+    case = seven()
+    fit = solve(case.measured(), rules=Rules(starts=5), seed=1)
+    error = 100.0 * np.abs(fit.x / case.truth - 1.0)
+    for path, truth, found, e in zip(case.problem.paths, case.truth, fit.x, error, strict=True):
+        say(f"| {path} | {truth:.6g} | {found:.6g} | {e:.2g} % |")
+    say(f"largest error {error.max():.2g} %, {fit.trace.cost.size} evaluations, {len(fit.minima)} starts")
+
+
+def cover(kind: str, repetitions: int, full: bool) -> None:
+    """Make the repetitions that are missing and print how often the intervals held."""
+    case = seven()
+    model = case.measured() if full else linear(case)
+    KEPT.mkdir(exist_ok=True)
+    path = KEPT / f"{kind}-{'full' if full else 'linear'}.jsonl"
+    done = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    seeds = {entry["seed"] for entry in done}
+    with path.open("a") as file:
+        for seed in range(repetitions):
+            if seed in seeds:
+                continue
+            entry = {"seed": seed, **one(case, model, kind, seed)}
+            file.write(json.dumps(entry) + "\n")
+            file.flush()
+            done.append(entry)
+    done = [entry for entry in done if entry["seed"] < repetitions]
+    inside = np.array([entry["inside"] for entry in done])
+    width = np.array([entry["width"] for entry in done])
+    say(f"{kind}, {'the model itself' if full else 'first-order expansion'}: {len(done)} repetitions")
+    say(
+        f"all parameters {100 * inside.mean():.1f} % "
+        f"({100 * inside.mean(axis=0).min():.1f}-{100 * inside.mean(axis=0).max():.1f})"
+    )
+    for p, path_, held, w in zip(
+        range(inside.shape[1]), case.problem.paths, inside.mean(axis=0), width.mean(axis=0), strict=True
+    ):
+        say(f"| {p + 1} | {path_} | {100 * held:.1f} % | {100 * w:.2f} % of its range |")
+
+
+def linear(case: Seven) -> CalibrationProblem:
+    """The same with the model's first-order expansion about the truth."""
+    problem = case.measured()
+    z = problem.positions(case.truth)
+    _, slope = derivative(problem, z, 1e-3)
+
+    def model(x: Floats) -> Floats:
+        moved = np.array([problem.positions(row) - z for row in x])
+        return np.asarray(case.clean + np.einsum("tsp,mp->mts", slope, moved))
+
+    return replace(problem, model=model)
+
+
+def one(case: Seven, problem: CalibrationProblem, kind: str, seed: int) -> dict[str, list[float]]:
+    """Whether each interval holds the truth, and its width in ranges."""
+    noise = errors(np.random.default_rng([seed, 7]), case.clean.shape, KINDS[kind])
+    drawn = case.measured(noise)
+    starts = tuple(
+        replace(p, start=float(value)) for p, value in zip(problem.parameters, case.truth, strict=True)
+    )
+    fit = solve(
+        replace(problem, sensors=drawn.sensors, parameters=starts, model=problem.model), rules=Rules(starts=1)
+    )
+    span = np.array([p.upper - p.lower for p in problem.parameters])
+    return {
+        "inside": [float(v) for v in (fit.low <= case.truth) & (case.truth <= fit.high)],
+        "width": [float(v) for v in (fit.high - fit.low) / span],
+    }
+
+
+def errors(rng: np.random.Generator, shape: tuple[int, ...], hours: float) -> Floats:
+    """Errors (T, S) with a correlation time. [K]"""
+    lead = 400
+    drawn = rng.normal(size=(shape[0] + lead, shape[1]))
+    phi = math.exp(-_STEP / hours) if hours else 0.0
+    return np.asarray(
+        SENSOR_SD * lfilter([math.sqrt(1.0 - phi**2)], [1.0, -phi], drawn, axis=0)[lead:], dtype=np.float64
+    )
+
+
+def say(line: str) -> None:
+    """One line, at once."""
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
+
+
+def main() -> None:
+    """Do what the command line asks for."""
+    if sys.argv[1:2] == ["recover"]:
+        recover()
+    elif sys.argv[1:2] == ["cover"] and sys.argv[2:3] and sys.argv[2] in KINDS:
+        cover(sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 1000, "full" in sys.argv)
+    else:
+        say(__doc__ or "")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+"""The seven parameters of the paper on the LGI cell, as a calibration problem with a known truth.
+
+The data are our own model's: whatever a search finds can be held against what they were made of. Period,
+sensors, ranges and step are those of the shipped study, with constant films as in the paper.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration import CalibrationProblem
+from mascarin.examples import FOLDER
+from mascarin.study.pipeline import Study
+
+Floats = NDArray[np.float64]
+
+VARIANT = "the paper's seven, 25 outside"
+SENSOR_SD = 0.3  # K
+#: Where the truth stands between the low and the high end of each range: off the start and off the middle.
+TRUTH = np.array([0.62, 0.35, 0.41, 0.55, 0.33, 0.47, 0.58])
+
+
+@dataclass(frozen=True, eq=False)
+class Seven:
+    """The problem without its data, and the truth."""
+
+    problem: CalibrationProblem
+    truth: Floats
+    clean: Floats
+
+    def measured(self, errors: Floats | None = None) -> CalibrationProblem:
+        """The problem with data (T, S) made of the truth, with errors on top. [K]"""
+        data = self.clean if errors is None else self.clean + errors
+        sensors = tuple(
+            replace(s, measured=np.where(s.mask, data[:, k], np.nan), uncertainty=SENSOR_SD, weight=1.0)
+            for k, s in enumerate(self.problem.sensors)
+        )
+        return replace(self.problem, sensors=sensors, identity=f"{self.problem.identity} own data")
+
+
+def seven() -> Seven:
+    """Open the shipped study and make the data."""
+    problem = Study(FOLDER / "lgi" / "study.yaml").problem(VARIANT)
+    truth = problem.values(TRUTH[None])[0]
+    return Seven(problem, truth, np.asarray(problem.model(truth[None]))[0])
