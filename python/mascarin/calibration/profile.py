@@ -83,7 +83,7 @@ class Profile:
             return f"{self.path}: the data bound it on neither side"
         if self.open_low or self.open_high:
             side, end = ("below", self.low) if self.open_low else ("above", self.high)
-            where = f"{end:g} {self.unit}".rstrip()
+            where = f"{end:g} {self.unit}".rstrip(" -")
             return (
                 f"{self.path}: the data do not bound it {side}; the interval ends with the range at {where}"
             )
