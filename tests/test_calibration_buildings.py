@@ -150,3 +150,35 @@ def test_what_cannot_be_used_is_refused(
     given: dict[str, Any] = {"parameters": ["materials.brick.conductivity"], "sensors": SENSORS, **SPAN}
     with pytest.raises(InputError, match=says):
         calibrate(building, climate, measured, **(given | change))
+
+
+def test_a_sensor_that_repeats_itself_is_refused_before_anything_is_run(
+    building: Building, climate: Climate, table: pd.DataFrame
+) -> None:
+    dead = table.copy()
+    dead.loc["2023-03-02 06:00":"2023-03-05 18:00", "core"] = 17.3
+    measured = Measurements.from_table(dead, timezone="UTC+1")
+    with pytest.raises(InputError, match=r"sensor 'core', column core: stuck from 2023-03-02 06:") as found:
+        calibrate(
+            building, climate, measured, parameters=["materials.brick.conductivity"], sensors=SENSORS, **SPAN
+        )
+    assert "leave it out, mask the stretch, or choose another period" in str(found.value)
+
+
+def test_start_scale_and_a_relative_uncertainty_reach_the_problem(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
+    free = fit_parameter(building, "materials.brick.conductivity", (0.2, 2.0), start=1.5, scale="log")
+    fit = calibrate(
+        building, climate, measured,
+        parameters=[free],
+        sensors={"core": Sensor("core.temperature", "core", 0.06, relative=0.05)},
+        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+    )  # fmt: skip
+    assert fit.minima[0].start[0] == pytest.approx(1.5)
+    assert fit.problem.parameters[0].scale == "log"
+    core = fit.problem.sensors[0]
+    want = np.hypot(0.06 / 1.96, 0.05 / 1.96 * np.abs(core.measured))
+    np.testing.assert_allclose(core.sigma, want)
+    with pytest.raises(InputError, match=r"range \[0.2, 2\] W/\(m K\) does not hold the start 3"):
+        fit_parameter(building, "materials.brick.conductivity", (0.2, 2.0), start=3.0)

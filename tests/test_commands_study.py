@@ -151,3 +151,28 @@ def test_a_step_refuses_what_a_study_refuses(
     code, _, said = run(capsys, command, str(bench.study), "-o", str(tmp_path / "file"))
     assert code == 2
     assert "is a file; expected a folder" in said
+
+
+def test_a_posterior_sample_with_profiles(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = bench.study.read_text(encoding="utf-8")
+    chosen = text.replace("  starts: 1", "  starts: 1\n  method: emcee\n  moves: 60\n  profiles: true")
+    study = bench.study.with_name("posterior.yaml")
+    study.write_text(chosen, encoding="utf-8")
+    code, printed, _ = run(capsys, "calibrate", str(study), "-o", str(tmp_path), "--json")
+    assert code == 0
+    content = json.loads(printed)
+    assert ["method", "emcee"] in content["identification"]
+    assert set(content["profiles"]) == set(TRUTH)
+    for path, profile in content["profiles"].items():
+        found = content["parameters"][path]
+        assert min(profile["rise"]) < 0.05 * profile["limit"]
+        assert profile["low"] <= found["fitted"] <= profile["high"]
+        assert found["low"] < found["fitted"] < found["high"]
+    assert {path.name for path in (tmp_path / "figures").iterdir()} >= {
+        "identification-course.svg",
+        "identification-profiles.svg",
+    }
+    assert (tmp_path / "tables" / "evaluations.csv").exists()
+    assert set(content["band"]) == {"joint", "core"}

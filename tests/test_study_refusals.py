@@ -33,6 +33,33 @@ class Refused(NamedTuple):
 
 
 CASES = {
+    "start outside the bounds": Refused(
+        "    materials.brick.conductivity:",
+        "    materials.brick.conductivity: {low: 0.4, high: 1.0, start: 1.4}",
+        "start: 1.4",
+        (
+            "identification.parameters.materials.brick.conductivity",
+            "range [0.4, 1] W/(m K) does not hold the start 1.4: move the start",
+        ),
+    ),
+    "unknown method of fitting": Refused(
+        "  starts: 2",
+        "  method: particle-swarn",
+        "particle-swarn",
+        ("identification.method", "hybrid, cma-es, emcee", "mean 'particle-swarm'"),
+    ),
+    "a sample of what is no likelihood": Refused(
+        "  starts: 2",
+        "  method: emcee\n  cost: sd",
+        "cost: sd",
+        ("identification.cost", "nll, the only cost that emcee knows"),
+    ),
+    "profiles of what is no likelihood": Refused(
+        "  starts: 2",
+        "  method: hooke-jeeves\n  cost: sd\n  profiles: true",
+        "profiles: true",
+        ("identification.profiles", "nll, the likelihood of which profiles are made"),
+    ),
     "unknown key": Refused(
         "step: 30min", "stepp: 30min", "stepp", (": stepp", "found: the key", "mean 'step'")
     ),
