@@ -340,8 +340,13 @@ def filled(page: str, numbers: Numbers) -> str:
         The page has no place for one of them.
     """
     for name, table in tables(numbers).items():
-        pattern = rf"(<!-- table: {name} -->\n).*?(\n<!-- end -->)"
-        page, count = re.subn(pattern, lambda found, t=table: found[1] + t + found[2], page, flags=re.DOTALL)  # type: ignore[misc]
+        pattern = rf"(<!-- table: {name} -->\n).*?(<!-- end -->)"
+        page, count = re.subn(
+            pattern,
+            lambda found, t=table: f"{found[1]}{t}\n{found[2]}",
+            page,
+            flags=re.DOTALL,  # type: ignore[misc]
+        )
         if count != 1:
             raise ValueError(f"{PAGE.name}: no place for the table '{name}'")
     return page
