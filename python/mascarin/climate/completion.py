@@ -104,7 +104,7 @@ def _fill_radiation(
                 f"{where}: diffuse irradiance estimated from global (Erbs et al. 1982, made for hours)."
             )
     if "direct_normal" in names:
-        return "direct+diffuse"
+        return "all" if len(names) == len(RADIATION) else "direct+diffuse"
     columns["direct_normal"] = direct_by_closure(total, columns["diffuse_horizontal"], up, clear)
     if total.any():
         notes.append(

@@ -274,7 +274,7 @@ def _fill_radiation(
     weights: tuple[float, ...],
 ) -> None:
     basis = climate.radiation_basis()
-    kept = {"direct+diffuse": RADIATION[:2], "global+diffuse": RADIATION[1:]}[basis]
+    kept = {"direct+diffuse": RADIATION[:2], "global+diffuse": RADIATION[1:], "all": RADIATION}[basis]
     courses: dict[str, Array] = {}
     start, kind = 0.0, "mean"
     for name in kept:

@@ -19,12 +19,15 @@ from .arrays import Array
 from .profile import Profile, index_nodes, node_times, pieces_for, trapezoid_weights
 from .sun import SunPath
 
-Basis = Literal["direct+diffuse", "global+diffuse"]
+Basis = Literal["direct+diffuse", "global+diffuse", "all"]
+"""Irradiances whose means are kept; of all three, the global one as far as the beam's course allows."""
 
 BEAM_CEILING: Final = 2.0
 """A beam above this multiple of the clear one is not believed to be a beam (low sun, noise) [-]."""
 BEAM_CLEAR: Final = 1.2
 """Multiple of the clear beam that a reconstruction does not exceed of itself [-]."""
+COURSE_MATTERS: Final = 0.002
+"""Share of the horizontal beam's mean that its course must make for the mean to tell the course [-]."""
 DIFFUSE_CEILING: Final = 2.0
 """Diffuse as a multiple of the extraterrestrial horizontal irradiance: what is above is spread evenly [-]."""
 DIFFUSE_USUAL: Final = 0.6
@@ -83,7 +86,9 @@ def from_means(
         Means of direct normal, diffuse horizontal and global horizontal irradiance; the one that the basis
         does not name is not read [W/m2].
     basis : str
-        The two whose means are kept; the third follows.
+        The two whose means are kept; the third follows. With `all` the direct and the diffuse mean are kept,
+        and inside the interval the beam takes the course, between an even one and that of a clear sky, with
+        which the mean of the global irradiance comes nearest to the given one.
     """
     pieces = pieces_for(interval)
     times = node_times(start, interval, len(diffuse), pieces)
@@ -92,8 +97,10 @@ def from_means(
     weights = trapezoid_weights(pieces)
     clear = extra * clear_beam(up)
     moved = np.zeros(len(diffuse))
-    if basis == "direct+diffuse":
+    if basis != "global+diffuse":
         beam = _normal_beam(direct, clear, up, weights)
+        if basis == "all":
+            beam = _towards(total - diffuse, beam, _even(direct, up, weights), up, weights)
     else:
         horizontal = np.maximum(total - diffuse, 0.0)
         # The ceiling also holds where the beam's horizontal part is negligible: such a beam is sky.
@@ -146,11 +153,26 @@ def _normal_beam(means: Array, clear: Array, up: Array, weights: Array) -> Array
         # Night offsets of a sensor: kept as they are, evenly.
         return _normal_beam(np.maximum(means, 0.0), clear, up, weights) + np.minimum(means, 0.0)[:, None]
     kept = np.minimum(means, BEAM_CEILING * (clear @ weights))
-    beam = clear * index_nodes(kept, clear, BEAM_CLEAR)
+    return np.asarray(clear * index_nodes(kept, clear, BEAM_CLEAR) + _even(means - kept, up, weights))
+
+
+def _even(means: Array, up: Array, weights: Array) -> Array:
+    """Means at the nodes, evenly while the sun is up; evenly all the time where it is not."""
     lit = (up > 0.0).astype(np.float64)
     share = lit @ weights
     lit = np.where(share[:, None] > 0.0, lit, 1.0)
-    return np.asarray(beam + ((means - kept) / (lit @ weights))[:, None] * lit)
+    return np.asarray((means / (lit @ weights))[:, None] * lit)
+
+
+def _towards(horizontal: Array, clear: Array, even: Array, up: Array, weights: Array) -> Array:
+    """The course between two beams of the same means whose mean on the horizontal is nearest to the given."""
+    high, low = (clear * up) @ weights, (even * up) @ weights
+    apart = high - low
+    # High in the sky both are nearly the same, and a mean says nothing about the course.
+    usable = np.abs(apart) > COURSE_MATTERS * np.maximum(high, 1e-6)
+    share = np.where(usable, (horizontal - low) / np.where(usable, apart, 1.0), 1.0)
+    share = np.clip(share, 0.0, 1.0)[:, None]
+    return np.asarray(share * clear + (1.0 - share) * even)
 
 
 def _diffuse(means: Array, horizontal: Array, weights: Array) -> Array:

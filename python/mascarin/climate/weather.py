@@ -12,7 +12,7 @@ import numpy as np
 from mascarin.errors import InputError
 
 from .arrays import Array, Lines
-from .channels import BY_NAME, SOURCE_CHANNELS, Kind
+from .channels import BY_NAME, RADIATION, SOURCE_CHANNELS, Kind
 from .grid import Grid
 from .radiation import Basis
 from .table import Column, Stamps, read_table
@@ -348,7 +348,9 @@ class Climate:
         return self._ready[key]
 
     def radiation_basis(self) -> Basis:
-        """The two irradiances whose means are kept; the third follows from them and the sun."""
+        """The irradiances whose means are kept; a third that is not given follows from two and the sun."""
+        if all(name in self.data.columns for name in RADIATION):
+            return "all"
         return "direct+diffuse" if "direct_normal" in self.data.columns else "global+diffuse"
 
     def forcing(
