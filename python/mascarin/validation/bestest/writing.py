@@ -77,7 +77,7 @@ site:
   timezone: UTC-7
   ground_reflectance: 0.2
   wind: {terrain: open}
-  sky: measured                     # horizontal infrared of the weather file
+  sky: brunt                        # coefficients of Li et al. 2017 for dew point and clouds
   diffuse: perez
 """
 
