@@ -93,9 +93,51 @@ schedules:
   cool: {kind: temperature, days: {weekdays: [{at: "00:00", value: 27}], weekends: [{at: "00:00", value: 29},
          {at: "12:00", value: 29, ramp_to: 28}], holidays: [{at: "00:00", value: 30}]}, holidays: ["12-25"]}
   warm: {kind: temperature, value: 15}
+glazings:
+  clear:
+    kind: panes
+    panes:
+      - thickness: 0.004
+        emissivity: 0.84
+        transmittance: 0.83
+        reflectance: 0.08
+        density: 2500
+        specific_heat: 750
+      - {thickness: 0.004, emissivity: 0.84, transmittance: 0.83, reflectance: 0.08}
+      - {thickness: 0.004, emissivity: [0.1, 0.84], transmittance: 0.6, reflectance: [0.2, 0.25]}
+    gaps: [{thickness: 0.06, gas: argon}, {conductance: 5}]
+  listed:
+    kind: panes
+    panes: [{thickness: 0.006, emissivity: 0.84}]
+    angular:
+      angles: [0, 60, 90]
+      transmittance: [0.8, 0.7, 0]
+      reflectance: [0.1, 0.2, 1]
+      absorptance: [[0.1, 0.1, 0]]
+      diffuse: {transmittance: 0.7, reflectance: 0.2, absorptance: [0.1]}
+  plain: {kind: simple, u_value: 2.1, solar_heat_gain: 0.7}
+windows:
+  pane:
+    surface: west
+    glazing: clear
+    area: 1
+    cavity_height: 0.3
+    frame: {fraction: 0.2, u_value: 2}
+    outside: {convection: 15, sky_view: 0.4, height: 1.5, longwave: {kind: linearised, reference: 20}}
+    inside: {convection: 3}
+  light:
+    surface: roof
+    glazing: listed
+    vertices: [[1, 1, 3.166666667], [2, 1, 3.166666667], [2, 2, 3.333333333], [1, 2, 3.333333333]]
+    outside: {convection: {kind: mowitt}}
+    inside: {convection: tarp}
+  hatch: {surface: roof, glazing: plain, area: 1, outside: {convection: 15}, inside: {convection: 3}}
+shades:
+  hood: {vertices: [[0, 0, 4], [3, 0, 4], [3, -1, 4], [0, -1, 4]]}
 zones:
   room:
     volume: 27
+    sun: area
     capacity_factor: 2
     infiltration: {constant: 0.2, temperature: 0.01, wind: 0.02}
     longwave: radiosity
@@ -111,7 +153,12 @@ zones:
     volume: 9
     infiltration: {value: 0.3, range: [0, 1]}
     longwave: {kind: linearised, reference: 25}
-    view_factors: {roof: {ceiling: 1.0}, ceiling: {roof: 1.0}}
+    sun: {kind: shares, shares: {ceiling: 0.95}, lost: 0.05}
+    view_factors:
+      roof: {ceiling: 1.0}
+      ceiling: {roof: 0.8, light: 0.1, hatch: 0.1}
+      light: {ceiling: 1.0}
+      hatch: {ceiling: 1.0}
   shaft: {volume: 4, longwave: none, heating: {setpoint: {schedule: warm}}}
 air_paths:
   hatch: {between: [room, attic], flow: 0.01, schedule: always}
@@ -132,6 +179,7 @@ surfaces:
     inside:
       zone: room
       emissivity: 0.9
+      absorptance: 0.5
       convection:
         kind: power
         upward: {a: 0.1, b: 1.5, n: 0.33}
@@ -141,7 +189,11 @@ surfaces:
     area: 9
     tilt: 180
     outside: {ground: {mean: 22, amplitude: 2, coldest_day: 200}}
-    inside: {zone: room, convection: {kind: linear_wind, constant: 3, wind: 0}, emissivity: 0.9}
+    inside:
+      zone: room
+      convection: {kind: linear_wind, constant: 3, wind: 0}
+      emissivity: 0.9
+      absorptance: 0.6
   west:
     construction: wall
     area: 9
@@ -155,7 +207,7 @@ surfaces:
       sky_view: 0.4
       height: 1.5
       longwave: {kind: linearised, reference: 24}
-    inside: {zone: room, convection: 2.5, emissivity: 0.9}
+    inside: {zone: room, convection: 2.5, emissivity: 0.9, absorptance: 0.5}
   east:
     construction: wall
     area: 9
@@ -167,7 +219,7 @@ surfaces:
       emissivity: 0.9
       absorptance: 0.4
       longwave: none
-    inside: {zone: room, convection: 2.5, emissivity: 0.9}
+    inside: {zone: room, convection: 2.5, emissivity: 0.9, absorptance: 0.5}
   north:
     construction: wall
     area: 9
@@ -181,8 +233,8 @@ surfaces:
     tilt: 90
     azimuth: 0
     internal_mass: true
-    outside: {zone: room, convection: 2, emissivity: 0.9}
-    inside: {zone: room, convection: 2, emissivity: 0.9}
+    outside: {zone: room, convection: 2, emissivity: 0.9, absorptance: 0.5}
+    inside: {zone: room, convection: 2, emissivity: 0.9, absorptance: 0.5}
   south:
     construction: wall
     area: 9

@@ -103,7 +103,7 @@ def test_every_number_of_the_schema_is_a_parameter_and_back() -> None:
 def test_the_border_speaks_the_engine_s_words(repository: Path) -> None:
     """Every field of the engine's description that holds parameters is filled by one of the samples."""
     source = (repository / "crates" / "engine" / "src" / "description.rs").read_text(encoding="utf-8")
-    fields = set(re.findall(r"(?:pub |\b)(\w+): (?:Option<)?\[?ParamId", source))
+    fields = set(re.findall(r"(?:pub |\b)(\w+): (?:Option<|Vec<)*\[?ParamId", source))
     assert {key for building in everything() for key, _ in ids(described(building))} == fields
 
 
@@ -115,8 +115,9 @@ def test_the_kinds_are_the_engine_s() -> None:
         "pcm",
         "pcm",
         "pcm",
+        "rated",
     ]
-    laws = [[m["law"] for m in described(b)["materials"][2:]] for b in everything()]
+    laws = [[m["law"] for m in described(b)["materials"][2:5]] for b in everything()]
     kinds = {tuple(law["kind"] for law in three) for three in laws}
     assert kinds == {
         ("melting", "melting", "tabulated"),
@@ -129,6 +130,11 @@ def test_the_kinds_are_the_engine_s() -> None:
     assert {curve["kind"] for curve in curves} == {
         "tanh_gamma", "tanh_width", "smooth_step", "gaussian", "gumbel", "linear", "triangle", "fractions",
     }  # fmt: skip
+    assert [one["glazing"]["kind"] for one in building["constructions"] if "glazing" in one] == [
+        "panes",
+        "panes",
+        "simple",
+    ]
     assert [zone["longwave"]["kind"] for zone in building["zones"]] == ["radiosity", "linearised", "none"]
     facings = {side["facing"]["kind"] for s in building["surfaces"] for side in (s["outside"], s["inside"])}
     assert facings == {"outdoors", "zone", "ground", "measured", "adiabatic"}
@@ -158,9 +164,11 @@ def test_one_number_for_both_phases_is_one_parameter() -> None:
 def test_view_weights_from_given_factors_are_reciprocal() -> None:
     building = parse(EVERYTHING, "x")
     attic = described(building)["zones"][1]["view_weights"]
-    roof, ceiling = float(building.surfaces["roof"].area or 0), 9.0
+    light = float(building.windows["light"].area or 0)
+    roof, ceiling = float(building.surfaces["roof"].area or 0) - light - 1.0, 9.0
     assert attic[0][0] == attic[1][1] == 0.0
-    assert attic[0][1] == attic[1][0] == pytest.approx(0.5 * (roof + ceiling))
+    assert attic[0][1] == attic[1][0] == pytest.approx(0.5 * (roof + 0.8 * ceiling))
+    assert attic[1][2] == attic[2][1] == pytest.approx(0.5 * (light + 0.1 * ceiling))
     assert described(building)["zones"][0]["view_weights"] == []
 
 

@@ -44,6 +44,11 @@ def test_in_everything() -> None:
         "surfaces.mass.tilt",
         "surfaces.north.azimuth",
         "surfaces.north.tilt",
+        "glazings.clear.panes.2.emissivity.outside",
+        "windows.hatch.cavity_height",
+        "windows.hatch.outside.height",
+        "windows.light.cavity_height",
+        "windows.pane.outside.height",
     }
 
 

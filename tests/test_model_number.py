@@ -88,7 +88,7 @@ def test_every_quantity_says_what_it_is() -> None:
             assert note.unit, name
             assert note.description[:1].isupper(), name
             assert note.spread.reason, name
-            value = max(note.limits.lower, 0.0) + 0.5
+            value = max(note.limits.lower, 0.0) + min(0.5, 0.5 * note.limits.upper)
             low, high = note.default_range(value)
             assert note.limits.hold(low), name
             assert note.limits.hold(high), name

@@ -20,11 +20,13 @@ def test_the_results_of_a_room() -> None:
         ("south.outside_flux", "W/m2"),
         ("south.inside_flux", "W/m2"),
         ("south.concrete_flux", "W/m2"),
+        ("south.incident_solar", "W/m2"),
         ("rest.outside_temperature", "degC"),
         ("rest.inside_temperature", "degC"),
         ("rest.outside_flux", "W/m2"),
         ("rest.inside_flux", "W/m2"),
         ("rest.concrete_flux", "W/m2"),
+        ("sky_temperature", "degC"),
         ("core.temperature", "degC"),
     ]
 

@@ -106,7 +106,10 @@ def test_what_was_derived_follows_structure_and_not_parameters() -> None:
     building = parse(EVERYTHING, "x")
     perimeter, length = "surfaces.roof.outside.convection.perimeter", "surfaces.ceiling.inside.convection"
     assert building.replace({"surfaces.roof.area": 5}).parameter(perimeter) == building.parameter(perimeter)
-    flat = building.replace({"surfaces.roof.vertices.2.2": 3.0, "surfaces.roof.vertices.3.2": 3.0})
+    flat = building.replace(
+        {"surfaces.roof.vertices.2.2": 3.0, "surfaces.roof.vertices.3.2": 3.0}
+        | {f"windows.light.vertices.{corner}.2": 3.0 for corner in range(4)}
+    )
     assert flat.parameter("surfaces.roof.area").value == pytest.approx(9.0)
     assert flat.parameter("surfaces.roof.tilt").value == pytest.approx(0.0)
     assert flat.parameter(perimeter).value == pytest.approx(12.0)

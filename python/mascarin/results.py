@@ -31,6 +31,8 @@ FLOWS: Final = (
     "gains",
     "heating",
     "cooling",
+    "transmitted",
+    "glass",
 )
 """Ways in which heat enters a building; cooling takes it out, as a negative number."""
 

@@ -2,19 +2,23 @@
 
 use crate::convection::{Exposure, Film};
 use crate::description::{
-    Exposure as Reach, Facing, Infiltration, Material, OutdoorLongwave, ParamId, Side, ZoneLongwave,
+    Exposure as Reach, Facing, Infiltration, Material, OutdoorLongwave, ParamId, Side, Surface, ZoneLongwave,
 };
 use crate::forcing::CLIMATE_CHANNELS;
+use crate::glazing::{Glass, GlassWall, rated_resistance};
+use crate::interior::{Inside, Landing};
 use crate::parameters::Values;
 use crate::pcm::PcmCoefficients;
 use crate::plan::{FaceId, Plan, WallPlan};
-use crate::radiation::{Emission, exchange_areas, self_weight};
+use crate::radiation::{Emission, balanced, exchange_areas, self_weight};
 use crate::real::Real;
 use crate::solar::Plane;
 use crate::zone::{AirFlow, Gain, Opening, Path, Thermostat};
 
 /// Specific heat of dry air at room temperature [J/(kg K)] (ASHRAE Handbook of Fundamentals, ch. 1).
 pub const AIR_SPECIFIC_HEAT: f64 = 1006.0;
+/// Resistance of both films of a rated U value [m2 K/W] (ISO 6946:2017, table 7: 0.13 inside, 0.04 outside).
+const RATED_FILMS: f64 = 0.17;
 /// Gas constant of dry air [J/(kg K)].
 const AIR_GAS_CONSTANT: f64 = 287.055;
 
@@ -75,6 +79,8 @@ pub struct Wall<S> {
     pub pcm: Vec<PcmCoefficients<S>>,
     /// Resistance of each massless layer, zero for the others [m2 K/W].
     pub layer_resistance: Vec<S>,
+    /// A window's optics and gaps.
+    pub glass: Option<Glass<S>>,
 }
 
 /// What drives a face that is not in a zone.
@@ -169,6 +175,8 @@ pub struct Zone<S> {
     pub heating: Option<Thermostat<S>>,
     /// Ideal cooling.
     pub cooling: Option<Thermostat<S>>,
+    /// Where the sun that enters lands; none without windows.
+    pub landing: Option<Landing<S>>,
 }
 
 impl<S: Real> Coefficients<S> {
@@ -213,6 +221,13 @@ impl<S: Real> Wall<S> {
         let surface = &description.surfaces[index];
         let construction = &description.constructions[surface.construction];
         let wall: &WallPlan = &plan.walls[index];
+        let area = own_area(surface, values);
+        if let (Some(glazing), Some(glass)) = (&construction.glazing, &wall.glass) {
+            let GlassWall { cells, extra, glass } = GlassWall::new(values, glazing, glass, surface);
+            let massless = vec![true; extra.len()];
+            let (pcm, layer_resistance) = (Vec::new(), Vec::new());
+            return Self { area, cells, extra, massless, pcm, layer_resistance, glass: Some(glass) };
+        }
         let mut pcm = Vec::new();
         let mut cells = Vec::with_capacity(wall.len());
         let layer_resistance: Vec<S> =
@@ -220,7 +235,7 @@ impl<S: Real> Wall<S> {
         for (layer, &(start, end)) in construction.layers.iter().zip(&wall.layer_cells) {
             let thickness = values.get_or(layer.thickness, 0.0);
             let matter = match &description.materials[layer.material] {
-                Material::Resistance { .. } => continue,
+                Material::Resistance { .. } | Material::Rated { .. } => continue,
                 Material::Solid { conductivity, density, specific_heat } => Matter::Solid {
                     conductivity: values.get(*conductivity),
                     capacity: values.get(*density) * values.get(*specific_heat),
@@ -242,14 +257,25 @@ impl<S: Real> Wall<S> {
             .map(|layers| layers.iter().fold(S::zero(), |sum, &layer| sum + layer_resistance[layer]));
         let extra = extra.collect();
         let massless = wall.link_layers.iter().map(|layers| !layers.is_empty()).collect();
-        Self { area: values.get(surface.area), extra, massless, cells, pcm, layer_resistance }
+        Self { area, extra, massless, cells, pcm, layer_resistance, glass: None }
     }
+}
+
+/// What openings and frame leave of a surface's area [m2].
+fn own_area<S: Real>(surface: &Surface, values: &Values<'_, S>) -> S {
+    let whole = values.get(surface.area);
+    if let Some(frame) = &surface.frame {
+        let fraction = values.get(frame.fraction);
+        return whole * if frame.is_frame { fraction } else { S::one() - fraction };
+    }
+    surface.openings.iter().fold(whole, |rest, opening| rest - values.get(*opening))
 }
 
 /// Resistance of a massless material, zero for others [m2 K/W].
 fn resistance<S: Real>(plan: &Plan, material: usize, values: &Values<'_, S>) -> S {
     match &plan.description.materials[material] {
         Material::Resistance { resistance } => values.get(*resistance),
+        Material::Rated { u_value } => rated_resistance(values.get(*u_value), S::constant(RATED_FILMS)),
         Material::Solid { .. } | Material::Pcm { .. } => S::zero(),
     }
 }
@@ -261,7 +287,7 @@ impl<S: Real> Face<S> {
         let tilt = radians(values.get(surface.tilt));
         let outward = if index.is_multiple_of(2) { S::one() } else { -S::one() };
         let exposure = Exposure {
-            area: values.get(surface.area),
+            area: own_area(surface, values),
             upward: outward * tilt.cos(),
             wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
         };
@@ -381,6 +407,12 @@ impl<S: Real> Zone<S> {
             exchange,
             exchange_sums,
             emission,
+            landing: Landing::new(
+                &definition.sun,
+                &Inside { zone_faces, areas: &areas, walls, faces },
+                values,
+                || balanced(&areas, &view_weights(plan, index, &areas)),
+            ),
             areas,
         }
     }

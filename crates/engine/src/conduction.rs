@@ -383,13 +383,24 @@ impl<S: Real> Chain<S> {
     /// The part of the face fluxes that comes from what the cells held: `held` is the right-hand enthalpy [J/m3].
     #[inline(always)]
     pub fn sources(&mut self, held: &[S]) -> [S; 2] {
+        self.sweep(held, |right, _| right)
+    }
+
+    /// The same with heat released in the cells [W/m2].
+    #[inline(always)]
+    pub fn sources_with(&mut self, held: &[S], gains: &[S]) -> [S; 2] {
+        self.sweep(held, |right, i| right + gains[i])
+    }
+
+    #[inline(always)]
+    fn sweep(&mut self, held: &[S], add: impl Fn(S, usize) -> S) -> [S; 2] {
         let n = self.storage.len();
         if n == 0 {
             return [-self.links[0].offset, self.links[0].offset];
         }
         let mut first = S::zero();
         for (i, &held) in held.iter().enumerate() {
-            let mut right = (held - self.storage[i].offset) * self.rate[i];
+            let mut right = add((held - self.storage[i].offset) * self.rate[i], i);
             right = right + self.links[i].offset - self.links[i + 1].offset;
             if i > 0 {
                 right += self.links[i].left * self.known[i - 1];

@@ -48,6 +48,9 @@ pub struct Description {
     /// Sensors inside walls.
     #[serde(default)]
     pub sensors: Vec<Sensor>,
+    /// Opaque thin polygons outdoors that keep the sun off.
+    #[serde(default)]
+    pub shades: Vec<Vec<[f64; 3]>>,
     /// Names of the forcing channels that follow the climate channels (measured temperatures, irradiances, schedules).
     #[serde(default)]
     pub channels: Vec<String>,
@@ -159,6 +162,11 @@ pub enum Material {
     Resistance {
         /// [m2 K/W].
         resistance: ParamId,
+    },
+    /// A frame by its rated U value: what the rated films leave of its resistance.
+    Rated {
+        /// Air to air [W/(m2 K)].
+        u_value: ParamId,
     },
     /// Phase-change material; pairs are [solid, liquid].
     Pcm {
@@ -320,15 +328,136 @@ pub enum HysteresisModel {
     CurveScale,
 }
 
-/// Layers from outside to inside.
+/// Layers from outside to inside, or a glazing.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Construction {
     /// Name in messages and outputs.
     pub name: String,
 
-    /// Outside to inside.
+    /// Outside to inside; none in a glazing.
+    #[serde(default)]
     pub layers: Vec<Layer>,
+
+    /// Panes instead of layers.
+    #[serde(default)]
+    pub glazing: Option<Glazing>,
+}
+
+/// What a window is made of; equations and sources in `optics.rs` and `glazing.rs`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Glazing {
+    /// Panes and the gaps between them, outside to inside.
+    Panes {
+        /// Outside to inside.
+        panes: Vec<Pane>,
+        /// One less than panes.
+        gaps: Vec<Gap>,
+        /// Optics of the whole unit; none: calculated from those of the panes.
+        #[serde(default)]
+        angular: Option<Angular>,
+    },
+    /// Rated U value and solar heat gain only.
+    Simple {
+        /// Air to air at the rated films [W/(m2 K)].
+        u_value: ParamId,
+        /// Total solar heat gain at normal incidence [-].
+        solar_heat_gain: ParamId,
+        /// Number of panes, for the angular law [-].
+        panes: ParamId,
+        /// Category of coating, for the angular law [-].
+        category: ParamId,
+        /// Rated resistances of the outside and inside film [m2 K/W].
+        films: [ParamId; 2],
+    },
+}
+
+/// A pane.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pane {
+    /// [m].
+    pub thickness: ParamId,
+    /// [W/(m K)].
+    pub conductivity: ParamId,
+    /// Density [kg/m3] and specific heat [J/(kg K)]; none: it holds no heat.
+    #[serde(default)]
+    pub storage: Option<[ParamId; 2]>,
+    /// Long-wave emissivity of its outer and inner face [-].
+    pub emissivity: [ParamId; 2],
+    /// Solar optics at normal incidence; needed without the unit's angular table.
+    #[serde(default)]
+    pub optics: Option<PaneOptics>,
+}
+
+/// Solar optics of one pane at normal incidence.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaneOptics {
+    /// [-].
+    pub transmittance: ParamId,
+    /// From outside and from inside [-].
+    pub reflectance: [ParamId; 2],
+    /// Whether a coating makes the angular behaviour, and no homogeneous pane.
+    #[serde(default)]
+    pub coated: bool,
+}
+
+/// A gap between two panes.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Gap {
+    /// Convection and radiation together [W/(m2 K)].
+    Given {
+        /// [W/(m2 K)].
+        conductance: ParamId,
+    },
+    /// A gas: convection by correlation, radiation exactly.
+    Filled {
+        /// [m].
+        thickness: ParamId,
+        /// [Pa].
+        pressure: ParamId,
+        /// Which gas.
+        gas: Gas,
+    },
+}
+
+/// Gases between panes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gas {
+    /// Dry air.
+    Air,
+    /// Argon.
+    Argon,
+    /// Krypton.
+    Krypton,
+    /// Xenon.
+    Xenon,
+}
+
+/// Optics of a whole unit over the angle of incidence, for sun from outside.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Angular {
+    /// Rising from 0 to 90 [deg].
+    pub angles: Vec<f64>,
+    /// At each angle [-].
+    pub transmittance: Vec<f64>,
+    /// Of each pane, at each angle [-].
+    pub absorptance: Vec<Vec<f64>>,
+    /// Hemispherical transmittance [-]; none: integrated.
+    #[serde(default)]
+    pub diffuse_transmittance: Option<f64>,
+    /// Hemispherical absorptance of each pane [-]; none: integrated.
+    #[serde(default)]
+    pub diffuse_absorptance: Option<Vec<f64>>,
+    /// Multiplies the transmittances [-].
+    pub transmittance_scale: ParamId,
+    /// Multiplies the absorptances [-].
+    pub absorptance_scale: ParamId,
 }
 
 /// One layer of a construction.
@@ -366,6 +495,9 @@ pub struct Zone {
     /// except those of the same tilt and azimuth.
     #[serde(default)]
     pub view_weights: Vec<Vec<f64>>,
+    /// Where the sun that enters through its windows lands.
+    #[serde(default)]
+    pub sun: ZoneSun,
     /// Heat from people, light and machines.
     #[serde(default)]
     pub gains: Vec<Gain>,
@@ -478,6 +610,25 @@ pub struct Opening {
     pub schedule: Option<usize>,
 }
 
+/// Where the sun that enters a zone lands; equations in `interior.rs`.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum ZoneSun {
+    /// Evenly over all faces, each absorbing by its absorptance; glass lets part of it out.
+    #[default]
+    Area,
+    /// Given shares, scaled to a sum of one.
+    Shares {
+        /// Absorbed by each of the zone's faces, in their order [-]; none: nothing.
+        faces: Vec<Option<ParamId>>,
+        /// Leaves through the windows [-]; none: nothing.
+        #[serde(default)]
+        lost: Option<ParamId>,
+    },
+    /// The beam where its rays end, all else by view factors; what is reflected again by view factors.
+    Geometry,
+}
+
 /// Outdoor air entering a zone unasked [1/h, 1/(h K), 1/(h m/s)].
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -507,7 +658,7 @@ pub enum ZoneLongwave {
     None,
 }
 
-/// A plane wall between two sides.
+/// A plane wall or window between two sides.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surface {
@@ -515,8 +666,20 @@ pub struct Surface {
     pub name: String,
     /// Index into [`Description::constructions`].
     pub construction: usize,
-    /// Area [m2].
+    /// Area [m2]; of it, `openings` and `frame` leave the wall's own.
     pub area: ParamId,
+    /// Areas of the windows in this wall [m2].
+    #[serde(default)]
+    pub openings: Vec<ParamId>,
+    /// Which part of a window this is; none: all of it, or a wall.
+    #[serde(default)]
+    pub frame: Option<FrameShare>,
+    /// Height of the gaps of a window, for their convection [m].
+    #[serde(default)]
+    pub cavity_height: Option<ParamId>,
+    /// Corners seen from outside, counter-clockwise [m]; needed where shades or traced sun are.
+    #[serde(default)]
+    pub vertices: Vec<[f64; 3]>,
     /// Tilt of the outside normal [deg]: 0 up, 90 vertical, 180 down.
     pub tilt: ParamId,
     /// Azimuth of the outside normal [deg], clockwise from north.
@@ -527,6 +690,16 @@ pub struct Surface {
 
     /// The side that the construction's last layer touches.
     pub inside: Side,
+}
+
+/// The part of a window that is frame, or the part that is not.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrameShare {
+    /// Share of the frame in the window's area [-].
+    pub fraction: ParamId,
+    /// Whether this surface is the frame; else it is the glass.
+    pub is_frame: bool,
 }
 
 /// One face of a surface and what it sees.

@@ -3,11 +3,13 @@
 use crate::coefficients::{Boundary, Coefficients, Face, Imposed, Outdoors};
 use crate::convection::{Film, Forced, Wind};
 use crate::forcing::{Forcing, channel};
+use crate::glazing::{Node, Site};
+use crate::interior::Traced;
 use crate::parameters::Values;
-use crate::plan::Plan;
+use crate::plan::{FaceId, FaceRole, Plan};
 use crate::radiation::{Heaven, sky_emission};
 use crate::real::Real;
-use crate::solar::Sunlight;
+use crate::solar::{Open, Sunlight};
 use crate::zone::ZoneDrive;
 
 /// A face is leeward when the wind comes from behind its plane (Walton 1983 draws the line at 100 deg off the normal,
@@ -17,7 +19,7 @@ const LEEWARD_COSINE: f64 = 0.0;
 const FLAT: f64 = 0.98;
 
 /// The weather at one stage, worked out as far as it is the same for all members.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Instant<'a> {
     /// All channels.
     pub row: &'a [f64],
@@ -26,6 +28,8 @@ pub struct Instant<'a> {
     wind: Wind,
     /// North and east components of the direction the wind comes from.
     wind_from: [f64; 2],
+    /// Sun and shade, see [`Daylight`](crate::daylight::Daylight).
+    geometry: Box<[f64]>,
 }
 
 impl<'a> Instant<'a> {
@@ -33,13 +37,22 @@ impl<'a> Instant<'a> {
     #[must_use]
     pub fn new(plan: &Plan, row: &'a [f64]) -> Self {
         let from = row[channel::WIND_DIRECTION].to_radians();
+        let sunlight = Sunlight::new(row, plan.description.site.diffuse);
         Self {
             row,
-            sunlight: Sunlight::new(row, plan.description.site.diffuse),
+            geometry: plan.daylight.at(&sunlight),
+            sunlight,
             heaven: Heaven::new(&plan.description.site.sky, row),
             wind: Wind::new(row[channel::WIND_SPEED]),
             wind_from: [from.cos(), from.sin()],
         }
+    }
+}
+
+impl Instant<'_> {
+    /// What shades leave a face of sun and sky: they stand outside.
+    fn open(&self, plan: &Plan, face: FaceId) -> Open {
+        if face.is_multiple_of(2) { plan.daylight.open(face / 2, &self.geometry) } else { Open::ALL }
     }
 }
 
@@ -85,6 +98,32 @@ pub struct FaceDrive<S: Real> {
     pub temperature: S,
     /// What the wind makes of the film.
     pub forced: Forced<S>,
+    /// Short-wave radiation on a face outdoors [W/m2].
+    pub incident: S,
+}
+
+/// The sun at a window.
+#[derive(Debug, Clone)]
+pub struct WindowDrive<S> {
+    /// Let into its zone [W].
+    pub transmitted: S,
+    /// The part of it that comes from the sun's direction [W].
+    pub directed: S,
+    /// Absorbed in each pane, from both sides [W/m2].
+    pub panes: Vec<S>,
+    /// What of it acts in each cell [W/m2].
+    pub cells: Vec<S>,
+}
+
+/// The sun in a zone [W].
+#[derive(Debug, Clone, Copy)]
+pub struct ZoneLight<S> {
+    /// Let in by its windows.
+    pub transmitted: S,
+    /// Leaves by them again.
+    pub lost: S,
+    /// Absorbed by their glass on the way.
+    pub in_glass: S,
 }
 
 /// Numbers at all faces and outdoors.
@@ -100,16 +139,30 @@ pub struct Drive<S: Real> {
     pub outdoor_air: S,
     /// Wind at the mast [m/s].
     pub wind: S,
+    /// Emission of the sky on a horizontal plane [W/m2].
+    pub sky: S,
+    /// Per window, in the order of [`Plan::windows`](crate::plan::Plan::windows).
+    pub windows: Vec<WindowDrive<S>>,
+    /// The sun in each zone.
+    pub light: Vec<ZoneLight<S>>,
+    /// Power that lands first on each face of each zone [W].
+    first: Vec<Vec<S>>,
 }
 
 impl<S: Real> Drive<S> {
     /// A place for the numbers of a building, in still air.
     #[must_use]
-    pub fn new(coefficients: &Coefficients<S>) -> Self {
+    pub fn new(plan: &Plan, coefficients: &Coefficients<S>) -> Self {
         let zero = S::zero();
         let faces = coefficients.faces.iter().map(|face| {
             let forced = face.film.as_ref().map_or([zero; 2], Film::still);
-            FaceDrive { solar: zero, longwave: zero, temperature: zero, forced }
+            FaceDrive { solar: zero, longwave: zero, temperature: zero, forced, incident: zero }
+        });
+        let windows = plan.windows.iter().map(|&w| WindowDrive {
+            transmitted: zero,
+            directed: zero,
+            panes: vec![zero; plan.walls[w].glass.as_ref().map_or(0, |glass| glass.sites.len())],
+            cells: vec![zero; plan.walls[w].len()],
         });
         Self {
             faces: faces.collect(),
@@ -117,6 +170,10 @@ impl<S: Real> Drive<S> {
             paths: vec![zero; coefficients.paths.len()],
             outdoor_air: zero,
             wind: zero,
+            sky: zero,
+            windows: windows.collect(),
+            light: vec![ZoneLight { transmitted: zero, lost: zero, in_glass: zero }; plan.zones.len()],
+            first: plan.zones.iter().map(|zone| vec![zero; zone.faces.len()]).collect(),
         }
     }
 
@@ -130,6 +187,7 @@ impl<S: Real> Drive<S> {
             at.solar = line(a.solar, b.solar);
             at.longwave = line(a.longwave, b.longwave);
             at.temperature = line(a.temperature, b.temperature);
+            at.incident = line(a.incident, b.incident);
             at.forced = [rate(a.forced[0], b.forced[0]), rate(a.forced[1], b.forced[1])];
         }
         for (at, (a, b)) in self.zones.iter_mut().zip(first.zones.iter().zip(&second.zones)) {
@@ -138,6 +196,22 @@ impl<S: Real> Drive<S> {
         for (at, (&a, &b)) in self.paths.iter_mut().zip(first.paths.iter().zip(&second.paths)) {
             *at = rate(a, b);
         }
+        for (at, (a, b)) in self.windows.iter_mut().zip(first.windows.iter().zip(&second.windows)) {
+            at.transmitted = line(a.transmitted, b.transmitted);
+            at.directed = line(a.directed, b.directed);
+            let sets = [(&mut at.panes, &a.panes, &b.panes), (&mut at.cells, &a.cells, &b.cells)];
+            for (set, one, other) in sets {
+                for (heat, (&a, &b)) in set.iter_mut().zip(one.iter().zip(other)) {
+                    *heat = line(a, b);
+                }
+            }
+        }
+        for (at, (a, b)) in self.light.iter_mut().zip(first.light.iter().zip(&second.light)) {
+            at.transmitted = line(a.transmitted, b.transmitted);
+            at.lost = line(a.lost, b.lost);
+            at.in_glass = line(a.in_glass, b.in_glass);
+        }
+        self.sky = line(first.sky, second.sky);
         self.outdoor_air = line(first.outdoor_air, second.outdoor_air);
         self.wind = rate(first.wind, second.wind);
     }
@@ -147,20 +221,24 @@ impl<S: Real> Drive<S> {
     pub fn update(&mut self, plan: &Plan, coefficients: &Coefficients<S>, numbers: &[S], now: &Instant<'_>) {
         let site = &plan.description.site;
         let sky = sky_emission(&Values::new(numbers), &site.sky, coefficients.cloud, &now.heaven);
+        self.sky = sky;
         self.outdoor_air = S::constant(now.row[channel::AIR_TEMPERATURE]);
         self.wind = S::constant(now.wind.speed);
-        for (at, face) in self.faces.iter_mut().zip(&coefficients.faces) {
+        for (index, (at, face)) in self.faces.iter_mut().zip(&coefficients.faces).enumerate() {
             let measured = face.irradiance.map(
                 #[inline(always)]
                 |channel| S::constant(now.row[channel]),
             );
             if let Boundary::Outdoors(outdoors) = &face.boundary {
-                let irradiance = match measured {
+                at.incident = match measured {
                     Some(irradiance) => irradiance,
                     None if !face.exposure.sun => S::zero(),
-                    None => now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance),
+                    None => {
+                        let open = now.open(plan, index);
+                        now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open).total()
+                    }
                 };
-                at.solar = face.absorptance * irradiance;
+                at.solar = face.absorptance * at.incident;
                 at.longwave = face.emissivity * incoming_longwave(outdoors, sky, self.outdoor_air);
                 at.temperature = self.outdoor_air;
                 if face.exposure.wind {
@@ -178,6 +256,186 @@ impl<S: Real> Drive<S> {
         }
         for (at, path) in self.paths.iter_mut().zip(&coefficients.paths) {
             *at = path.conductance(now.row);
+        }
+        if !self.windows.is_empty() {
+            self.let_in(plan, coefficients, now);
+            self.land(plan, coefficients, now);
+            self.settle_panes(plan);
+        }
+    }
+
+    /// What windows transmit and their panes absorb on the way in.
+    #[inline(always)]
+    fn let_in(&mut self, plan: &Plan, coefficients: &Coefficients<S>, now: &Instant<'_>) {
+        for zone in &mut self.light {
+            zone.transmitted = S::zero();
+        }
+        for (at, &w) in self.windows.iter_mut().zip(&plan.windows) {
+            let wall = &coefficients.walls[w];
+            at.transmitted = S::zero();
+            at.directed = S::zero();
+            at.panes.fill(S::zero());
+            let (Some(glass), Boundary::Outdoors(outdoors)) =
+                (&wall.glass, &coefficients.faces[2 * w].boundary)
+            else {
+                continue;
+            };
+            if now.sunlight.dark() {
+                continue;
+            }
+            let open = now.open(plan, 2 * w);
+            let light = now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open);
+            let (directed, scattered) = (light.directed(), light.scattered());
+            let (front, level) = (&glass.optics.front, &glass.horizon);
+            let through = glass.optics.beam.split(light.cosine, &mut at.panes);
+            let diffuse = front.absorptance.iter().zip(&level.absorptance);
+            for (pane, (&everywhere, &level)) in at.panes.iter_mut().zip(diffuse) {
+                *pane = *pane * directed + everywhere * scattered + level * light.horizon;
+            }
+            at.directed = wall.area * through * directed;
+            let spread = front.transmittance * scattered + level.transmittance * light.horizon;
+            at.transmitted = at.directed + wall.area * spread;
+            if let FaceRole::Zone { zone, .. } = plan.faces[2 * w + 1].role {
+                self.light[zone].transmitted += at.transmitted;
+            }
+        }
+    }
+
+    /// Brings what has been let in onto the faces of the zones.
+    #[inline(always)]
+    fn land(&mut self, plan: &Plan, coefficients: &Coefficients<S>, now: &Instant<'_>) {
+        for (z, (zone, numbers)) in plan.zones.iter().zip(&coefficients.zones).enumerate() {
+            let Some(landing) = &numbers.landing else { continue };
+            let entered = self.light[z].transmitted;
+            if let Some(traced) = &landing.traced {
+                self.follow(plan, z, traced, now);
+                let (mut lost, mut in_glass) = (S::zero(), S::zero());
+                for (i, &face) in zone.faces.iter().enumerate() {
+                    let on = traced.irradiance(i, &self.first[z]);
+                    self.faces[face].solar = coefficients.faces[face].absorptance * on;
+                    if let Some(glass) = &coefficients.walls[face / 2].glass {
+                        let (power, back) = (numbers.areas[i] * on, &glass.optics.back);
+                        lost += power * back.transmittance;
+                        in_glass += power * (back.admitted() - back.transmittance);
+                    }
+                }
+                (self.light[z].lost, self.light[z].in_glass) = (lost, in_glass);
+            } else {
+                self.light[z].lost = landing.lost * entered;
+                self.light[z].in_glass = landing.in_glass * entered;
+                for (i, &face) in zone.faces.iter().enumerate() {
+                    self.faces[face].solar = landing.absorbed[i] * entered;
+                }
+            }
+            for &(window, i) in &zone.windows {
+                let Some(glass) = &coefficients.walls[plan.windows[window]].glass else { continue };
+                let on = match &landing.traced {
+                    Some(traced) => traced.irradiance(i, &self.first[z]),
+                    None => landing.on_glass[i] * entered,
+                };
+                let panes = &mut self.windows[window].panes;
+                for (pane, &absorptance) in panes.iter_mut().zip(&glass.optics.back.absorptance) {
+                    *pane += absorptance * on;
+                }
+            }
+        }
+    }
+
+    /// Where the sun that enters a zone lands first.
+    #[inline(always)]
+    fn follow(&mut self, plan: &Plan, z: usize, traced: &Traced<S>, now: &Instant<'_>) {
+        let first = &mut self.first[z];
+        let n = first.len();
+        first.fill(S::zero());
+        for &(window, i) in &plan.zones[z].windows {
+            let at = &self.windows[window];
+            let patches = plan.daylight.patches(window, &now.geometry);
+            // A window in full shade has no beam to follow.
+            let patches = patches.filter(|shares| shares.iter().sum::<f64>() > 0.0);
+            let beam = if patches.is_some() { at.directed } else { S::zero() };
+            let rest = at.transmitted - beam;
+            for (j, power) in first.iter_mut().enumerate() {
+                *power += rest * traced.views[i * n + j];
+                if let Some(shares) = patches {
+                    *power += beam.scale(shares[j]);
+                }
+            }
+        }
+    }
+
+    /// Hands the heat of the panes to the cells and faces where it acts.
+    #[inline(always)]
+    fn settle_panes(&mut self, plan: &Plan) {
+        for (at, &w) in self.windows.iter_mut().zip(&plan.windows) {
+            let Some(glass) = &plan.walls[w].glass else { continue };
+            let mut faces = [S::zero(); 2];
+            at.cells.fill(S::zero());
+            for (site, &heat) in glass.sites.iter().zip(&at.panes) {
+                match site {
+                    Site::Middle(cell) => at.cells[*cell] += heat,
+                    Site::Faces(nodes) => {
+                        for node in nodes {
+                            match node {
+                                Node::Outside => faces[0] += heat.scale(0.5),
+                                Node::Cell(cell) => at.cells[*cell] += heat.scale(0.5),
+                                Node::Inside => faces[1] += heat.scale(0.5),
+                            }
+                        }
+                    }
+                }
+            }
+            self.faces[2 * w].solar = faces[0];
+            self.faces[2 * w + 1].solar += faces[1];
+        }
+    }
+}
+
+/// The sun over a step: means of its stages.
+#[derive(Debug, Clone)]
+pub struct SunMeans<S> {
+    /// On each face outdoors [W/m2].
+    pub incident: Vec<S>,
+    /// Let in by each window [W].
+    pub windows: Vec<S>,
+    /// Let into each zone [W].
+    pub zones: Vec<S>,
+    /// Lost by each zone [W].
+    pub lost: Vec<S>,
+}
+
+impl<S: Real> SunMeans<S> {
+    /// A place for the means of a building.
+    #[must_use]
+    pub fn new(drive: &Drive<S>) -> Self {
+        let zeros = |count: usize| vec![S::zero(); count];
+        Self {
+            incident: zeros(drive.faces.len()),
+            windows: zeros(drive.windows.len()),
+            zones: zeros(drive.light.len()),
+            lost: zeros(drive.light.len()),
+        }
+    }
+
+    /// Forgets the step before.
+    #[inline(always)]
+    pub fn restart(&mut self) {
+        for means in [&mut self.incident, &mut self.windows, &mut self.zones, &mut self.lost] {
+            means.fill(S::zero());
+        }
+    }
+
+    /// Adds a stage by its weight.
+    #[inline(always)]
+    pub fn add(&mut self, drive: &Drive<S>, weight: f64) {
+        for (mean, face) in self.incident.iter_mut().zip(&drive.faces) {
+            *mean += face.incident.scale(weight);
+        }
+        for (mean, window) in self.windows.iter_mut().zip(&drive.windows) {
+            *mean += window.transmitted.scale(weight);
+        }
+        for ((mean, lost), zone) in self.zones.iter_mut().zip(&mut self.lost).zip(&drive.light) {
+            *mean += zone.transmitted.scale(weight);
+            *lost += zone.lost.scale(weight);
         }
     }
 }

@@ -25,11 +25,15 @@ pub enum Flow {
     Heating,
     /// Heat that plants take, as a negative number.
     Cooling,
+    /// Sun through windows that the zones keep, without what the glass takes up.
+    Transmitted,
+    /// Sun absorbed in glass, from both sides.
+    Glass,
 }
 
 impl Flow {
     /// All flows, in the order of the ledger's arrays.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Solar,
         Self::Convection,
         Self::Longwave,
@@ -40,6 +44,8 @@ impl Flow {
         Self::Gains,
         Self::Heating,
         Self::Cooling,
+        Self::Transmitted,
+        Self::Glass,
     ];
 
     /// Name in results.
@@ -56,6 +62,8 @@ impl Flow {
             Self::Gains => "gains",
             Self::Heating => "heating",
             Self::Cooling => "cooling",
+            Self::Transmitted => "transmitted",
+            Self::Glass => "glass",
         }
     }
 }

@@ -3,11 +3,13 @@
 use core::ops::Range;
 use std::collections::BTreeSet;
 
+use crate::daylight::Daylight;
 use crate::description::{
-    Construction, Convection, Description, Facing, Material, SetPoint, Side, ZoneLongwave,
+    Construction, Convection, Description, Facing, Glazing, Material, SetPoint, Side, ZoneLongwave, ZoneSun,
 };
 use crate::error::EngineError;
 use crate::forcing::CLIMATE_CHANNELS;
+use crate::glazing::GlassPlan;
 
 /// A face is addressed by `2 * surface + side`, side 0 outside, 1 inside.
 pub type FaceId = usize;
@@ -25,6 +27,10 @@ pub struct Plan {
     pub zones: Vec<ZonePlan>,
     /// Zones with ideal heating or cooling.
     pub plants: Vec<usize>,
+    /// Walls that are windows.
+    pub windows: Vec<usize>,
+    /// Geometry of sun and shade.
+    pub daylight: Daylight,
     /// Number of finite volumes in all walls.
     pub n_cells: usize,
     /// The room block: for each zone face and zone air, in the order of elimination, the later ones that it meets, as
@@ -37,7 +43,7 @@ pub struct Plan {
 pub struct WallPlan {
     /// Index of its first cell in the flat cell arrays.
     pub first_cell: usize,
-    /// Layer of each cell.
+    /// Layer (or pane) of each cell.
     pub cell_layers: Vec<usize>,
     /// Massless layers in front of each link (`cells + 1` lists).
     pub link_layers: Vec<Vec<usize>>,
@@ -45,6 +51,8 @@ pub struct WallPlan {
     pub layer_cells: Vec<(usize, usize)>,
     /// True when a layer's properties depend on temperature.
     pub nonlinear: bool,
+    /// A window's panes.
+    pub glass: Option<GlassPlan>,
 }
 
 /// How a face takes part in the solution.
@@ -81,6 +89,8 @@ pub struct ZonePlan {
     pub face_rows: Vec<usize>,
     /// Row of its air in the room block.
     pub air_row: usize,
+    /// Its windows: position in [`Plan::windows`] and among its faces.
+    pub windows: Vec<(usize, usize)>,
 }
 
 impl Plan {
@@ -102,7 +112,14 @@ impl Plan {
         let reach = order_unknowns(&description, &mut faces, &mut zones);
         let conditioned = |zone: &crate::description::Zone| zone.heating.is_some() || zone.cooling.is_some();
         let plants = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();
-        Ok(Self { description, walls, faces, zones, plants, n_cells: first_cell, reach })
+        let windows: Vec<usize> = (0..walls.len()).filter(|&w| walls[w].glass.is_some()).collect();
+        for zone in &mut zones {
+            let place = |w: usize| zone.faces.iter().position(|&face| face == 2 * w + 1);
+            zone.windows =
+                windows.iter().enumerate().filter_map(|(k, &w)| place(w).map(|at| (k, at))).collect();
+        }
+        let daylight = Daylight::new(&description, &windows, &zones);
+        Ok(Self { description, walls, faces, zones, plants, windows, daylight, n_cells: first_cell, reach })
     }
 
     /// The side that a face stands for.
@@ -142,6 +159,9 @@ impl Plan {
 
 impl WallPlan {
     fn new(description: &Description, construction: &Construction, first_cell: usize) -> Self {
+        if let Some(glazing) = &construction.glazing {
+            return Self::of_glass(glazing, first_cell);
+        }
         let mut cell_layers = Vec::new();
         let mut link_layers = vec![Vec::new()];
         let mut layer_cells = Vec::new();
@@ -149,7 +169,7 @@ impl WallPlan {
         for (index, layer) in construction.layers.iter().enumerate() {
             let start = cell_layers.len();
             match description.materials[layer.material] {
-                Material::Resistance { .. } => {
+                Material::Resistance { .. } | Material::Rated { .. } => {
                     if let Some(link) = link_layers.last_mut() {
                         link.push(index);
                     }
@@ -164,7 +184,19 @@ impl WallPlan {
             }
             layer_cells.push((start, cell_layers.len()));
         }
-        Self { first_cell, cell_layers, link_layers, layer_cells, nonlinear }
+        Self { first_cell, cell_layers, link_layers, layer_cells, nonlinear, glass: None }
+    }
+
+    fn of_glass(glazing: &Glazing, first_cell: usize) -> Self {
+        let glass = GlassPlan::new(glazing);
+        Self {
+            first_cell,
+            cell_layers: glass.cell_panes.clone(),
+            link_layers: vec![Vec::new(); glass.cell_panes.len() + 1],
+            layer_cells: Vec::new(),
+            nonlinear: glass.nonlinear,
+            glass: Some(glass),
+        }
     }
 
     /// Number of cells.
@@ -186,7 +218,7 @@ fn name_unknowns(description: &Description) -> (Vec<FacePlan>, Vec<ZonePlan>) {
     let mut zones: Vec<ZonePlan> = description
         .zones
         .iter()
-        .map(|_| ZonePlan { faces: Vec::new(), face_rows: Vec::new(), air_row: 0 })
+        .map(|_| ZonePlan { faces: Vec::new(), face_rows: Vec::new(), air_row: 0, windows: Vec::new() })
         .collect();
     let mut faces = Vec::with_capacity(2 * description.surfaces.len());
     let mut row = 0;
@@ -293,14 +325,17 @@ fn neighbours(description: &Description, faces: &[FacePlan], zones: &[ZonePlan])
 fn check(description: &Description) -> Result<(), EngineError> {
     let fail = |text: String| Err(EngineError::Description(text));
     for construction in &description.constructions {
-        if construction.layers.is_empty() {
-            return fail(format!("construction {} has no layers", construction.name));
+        if construction.layers.is_empty() == construction.glazing.is_none() {
+            return fail(format!("construction {} needs either layers or a glazing", construction.name));
+        }
+        if let Some(glazing) = &construction.glazing {
+            check_glazing(&construction.name, glazing)?;
         }
         for layer in &construction.layers {
             let Some(material) = description.materials.get(layer.material) else {
                 return fail(format!("layer {} of {} has no material", layer.name, construction.name));
             };
-            let massless = matches!(material, Material::Resistance { .. });
+            let massless = matches!(material, Material::Resistance { .. } | Material::Rated { .. });
             if massless != (layer.nodes == 0) || massless == layer.thickness.is_some() {
                 return fail(format!(
                     "layer {} of {}: a resistance has no thickness and no nodes, every other layer both",
@@ -313,8 +348,17 @@ fn check(description: &Description) -> Result<(), EngineError> {
         if surface.construction >= description.constructions.len() {
             return fail(format!("surface {} has no construction", surface.name));
         }
+        let glazed = description.constructions[surface.construction].glazing.is_some();
         for side in [&surface.outside, &surface.inside] {
-            check_side(description, &surface.name, side)?;
+            check_side(description, &surface.name, side, glazed)?;
+        }
+        if glazed
+            && !matches!(
+                (&surface.outside.facing, &surface.inside.facing),
+                (Facing::Outdoors, Facing::Zone { .. })
+            )
+        {
+            return fail(format!("window {} does not lie between outdoors and a zone", surface.name));
         }
     }
     for zone in &description.zones {
@@ -337,6 +381,25 @@ fn check(description: &Description) -> Result<(), EngineError> {
             return fail(format!("opening {} is in no zone", opening.name));
         }
         check_schedule(description, &opening.name, opening.schedule)?;
+    }
+    for (index, zone) in description.zones.iter().enumerate() {
+        let sides = description.surfaces.iter().flat_map(|surface| [&surface.outside, &surface.inside]);
+        let faces = sides.filter(|side| side.facing == Facing::Zone { zone: index }).count();
+        let drawn = |zone: usize| {
+            description.surfaces.iter().all(|surface| {
+                let faces = [&surface.outside, &surface.inside];
+                let inside = faces.iter().any(|side| side.facing == Facing::Zone { zone });
+                !inside || surface.vertices.len() > 2 || surface.frame.as_ref().is_some_and(|f| f.is_frame)
+            })
+        };
+        if zone.sun == ZoneSun::Geometry && !drawn(index) {
+            return fail(format!("zone {}: the sun is followed between faces with vertices only", zone.name));
+        }
+        if let ZoneSun::Shares { faces: given, .. } = &zone.sun
+            && given.len() != faces
+        {
+            return fail(format!("zone {}: {} shares of the sun for {faces} faces", zone.name, given.len()));
+        }
     }
     if description.sensors.iter().any(|sensor| sensor.surface >= description.surfaces.len()) {
         return fail("a sensor is in no surface".to_owned());
@@ -366,6 +429,35 @@ fn check_zone(description: &Description, zone: &crate::description::Zone) -> Res
     Ok(())
 }
 
+fn check_glazing(name: &str, glazing: &Glazing) -> Result<(), EngineError> {
+    let fail = |text: &str| Err(EngineError::Description(format!("glazing {name}: {text}")));
+    let Glazing::Panes { panes, gaps, angular } = glazing else { return Ok(()) };
+    if panes.is_empty() || gaps.len() + 1 != panes.len() {
+        return fail("needs panes, and one gap less than panes");
+    }
+    let Some(table) = angular else {
+        return if panes.iter().all(|pane| pane.optics.is_some()) {
+            Ok(())
+        } else {
+            fail("needs the optics of every pane, or those of the unit")
+        };
+    };
+    let rising = table.angles.windows(2).all(|pair| pair[0] < pair[1]);
+    let whole = table.angles.first() == Some(&0.0) && table.angles.last() == Some(&90.0);
+    let count = table.angles.len();
+    if !rising || !whole || table.transmittance.len() != count {
+        return fail("the angles must rise from 0 to 90 deg, with a transmittance each");
+    }
+    let per_pane = |count: usize| count == panes.len();
+    if !per_pane(table.absorptance.len())
+        || table.absorptance.iter().any(|pane| pane.len() != count)
+        || table.diffuse_absorptance.as_ref().is_some_and(|pane| !per_pane(pane.len()))
+    {
+        return fail("needs an absorptance for each pane at each angle");
+    }
+    Ok(())
+}
+
 fn check_schedule(description: &Description, name: &str, schedule: Option<usize>) -> Result<(), EngineError> {
     if schedule.is_some_and(|channel| channel >= description.channels.len()) {
         return Err(EngineError::Description(format!("{name}: unknown schedule")));
@@ -373,7 +465,7 @@ fn check_schedule(description: &Description, name: &str, schedule: Option<usize>
     Ok(())
 }
 
-fn check_side(description: &Description, name: &str, side: &Side) -> Result<(), EngineError> {
+fn check_side(description: &Description, name: &str, side: &Side, glazed: bool) -> Result<(), EngineError> {
     let fail = |text: &str| Err(EngineError::Description(format!("surface {name}: {text}")));
     let n_channels = description.channels.len();
     match side.facing {
@@ -387,7 +479,7 @@ fn check_side(description: &Description, name: &str, side: &Side) -> Result<(), 
         Facing::Outdoors if side.convection.is_none() || side.emissivity.is_none() => {
             return fail("an outdoor side needs convection and emissivity");
         }
-        Facing::Outdoors if side.absorptance.is_none() && side.exposure.sun => {
+        Facing::Outdoors if side.absorptance.is_none() && side.exposure.sun && !glazed => {
             return fail("an outdoor side needs absorptance");
         }
         Facing::Measured { channel } if channel >= n_channels => return fail("unknown channel"),
@@ -395,6 +487,9 @@ fn check_side(description: &Description, name: &str, side: &Side) -> Result<(), 
     }
     if side.irradiance.is_some_and(|channel| channel >= n_channels) {
         return fail("unknown irradiance channel");
+    }
+    if glazed && side.absorptance.is_some() {
+        return fail("the absorptance of glass is that of its panes");
     }
     if side.irradiance.is_some() && side.absorptance.is_none() {
         return fail("a measured irradiance needs absorptance");

@@ -87,6 +87,28 @@ pub enum Probe {
         /// Index of the zone.
         zone: usize,
     },
+    /// Short-wave radiation on the outside face, after shading, mean over the step [W/m2].
+    IncidentSolar {
+        /// Index of the surface.
+        surface: usize,
+    },
+    /// Sun that a window lets in, mean over the step [W].
+    TransmittedSolar {
+        /// Index of the surface.
+        surface: usize,
+    },
+    /// Sun that the windows of a zone let in, mean over the step [W].
+    ZoneTransmittedSolar {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Sun that leaves a zone through its windows again, mean over the step [W].
+    ZoneLostSolar {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Temperature of the sky as a black body [degC].
+    SkyTemperature,
     /// Temperature at a sensor [degC].
     Sensor {
         /// Index of the sensor.
@@ -110,7 +132,12 @@ impl Probe {
             | Self::MeanRadiantTemperature { zone }
             | Self::HeatingLoad { zone }
             | Self::CoolingLoad { zone }
-            | Self::AirChanges { zone } => zone < plan.zones.len(),
+            | Self::AirChanges { zone }
+            | Self::ZoneTransmittedSolar { zone }
+            | Self::ZoneLostSolar { zone } => zone < plan.zones.len(),
+            Self::IncidentSolar { surface } => surface < plan.walls.len(),
+            Self::TransmittedSolar { surface } => plan.windows.contains(&surface),
+            Self::SkyTemperature => true,
             Self::FaceTemperature { surface, side } | Self::FaceFlux { surface, side } => {
                 surface < plan.walls.len() && side < 2
             }
@@ -150,6 +177,14 @@ impl Probe {
                 layer_mean(plan, surface, layer, |k| state.memory[k].liquid_fraction)
             }
             Self::LayerEnthalpy { surface, layer } => layer_mean(plan, surface, layer, |k| state.enthalpy[k]),
+            Self::IncidentSolar { surface } => stepper.sun.incident[2 * surface],
+            Self::TransmittedSolar { surface } => {
+                let window = plan.windows.iter().position(|&w| w == surface);
+                window.map_or_else(S::zero, |window| stepper.sun.windows[window])
+            }
+            Self::ZoneTransmittedSolar { zone } => stepper.sun.zones[zone],
+            Self::ZoneLostSolar { zone } => stepper.sun.lost[zone],
+            Self::SkyTemperature => stepper.sky_temperature(),
             Self::Sensor { sensor } => {
                 let surface = plan.description.sensors[sensor].surface;
                 let depth = stepper.coefficients.sensor_depths[sensor];

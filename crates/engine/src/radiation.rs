@@ -105,7 +105,7 @@ fn symmetric<S: Real>(matrix: &[S], n: usize) -> Vec<S> {
 
 /// Symmetric diagonal scaling of the weights to row sums `areas` (Sinkhorn & Knopp's iteration, damped by a square
 /// root to keep symmetry).
-fn balanced<S: Real>(areas: &[S], weights: &[S]) -> Vec<S> {
+pub(crate) fn balanced<S: Real>(areas: &[S], weights: &[S]) -> Vec<S> {
     let n = areas.len();
     let mut scale = vec![S::one(); n];
     for _ in 0..SCALING_SWEEPS {
@@ -131,7 +131,7 @@ fn balanced<S: Real>(areas: &[S], weights: &[S]) -> Vec<S> {
 }
 
 /// Solves `matrix X = right` in place for `n` right-hand sides; the matrix is diagonally dominant.
-fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], n: usize) {
+pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], n: usize) {
     for k in 0..n {
         let inverse = S::one() / matrix[k * n + k];
         for i in k + 1..n {
@@ -202,6 +202,12 @@ pub fn sky_emission<S: Real>(values: &Values<'_, S>, sky: &Sky, cloud: [S; 3], h
     let n = heaven.cloud;
     let clouds = S::one() + (cloud[0] + (cloud[1] + cloud[2].scale(n)).scale(n)).scale(n);
     (emissivity * clouds).min(S::one()).scale(heaven.black)
+}
+
+/// Temperature [degC] of a black body of an emission [W/m2].
+pub fn black_temperature<S: Real>(emission: S) -> S {
+    // An emission of nothing is absolute zero.
+    emission.scale(1.0 / SIGMA).max(S::constant(1e-300)).sqrt().sqrt() - S::constant(KELVIN)
 }
 
 /// Vapour pressure [hPa] at a dew point [degC]: Magnus form, Alduchov & Eskridge (1996),

@@ -67,20 +67,83 @@ impl Sunlight {
         }
     }
 
-    /// Irradiance on a plane [W/m2]: beam, diffuse and reflected from the ground.
+    /// Whether no light comes from anywhere.
+    #[must_use]
+    pub fn dark(&self) -> bool {
+        let parts =
+            [self.direct_normal, self.global_horizontal, self.isotropic, self.circumsolar, self.horizon];
+        parts.iter().all(|part| *part == 0.0)
+    }
+
+    /// Irradiance on a plane [W/m2] of which shades leave some of the sky.
     #[must_use]
     #[inline(always)]
-    pub fn on<S: Real>(&self, plane: &Plane<S>, ground_reflectance: S) -> S {
+    pub fn on<S: Real>(&self, plane: &Plane<S>, ground_reflectance: S, open: &Open) -> Irradiance<S> {
         let n = &plane.normal;
         let cosine =
             n[0].scale(self.direction[0]) + n[1].scale(self.direction[1]) + n[2].scale(self.direction[2]);
         let facing = cosine.max(S::zero());
-        let beam = facing.scale(self.direct_normal);
-        let diffuse = facing.scale(self.circumsolar)
-            + plane.sky_view.scale(self.isotropic)
-            + plane.sin_tilt.scale(self.horizon);
+        let bright = facing.scale(self.circumsolar * open.sun);
+        let sky = bright + plane.sky_view.scale(self.isotropic * open.sky);
         let ground = (ground_reflectance * plane.ground_view).scale(self.global_horizontal);
-        beam + diffuse.max(S::zero()) + ground
+        // What Perez takes off the horizon may be more than the rest of the sky gives.
+        let diffuse = (sky + plane.sin_tilt.scale(self.horizon * open.horizon)).max(S::zero());
+        let circumsolar = bright.min(diffuse);
+        let beam = facing.scale(self.direct_normal * open.sun);
+        Irradiance { cosine: facing, beam, circumsolar, horizon: diffuse - sky, diffuse, ground }
+    }
+}
+
+/// Shares of the sky that shades leave, 1 each in the open [-].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Open {
+    /// Share of a face that the sun's disc reaches.
+    pub sun: f64,
+    /// Of the isotropic sky.
+    pub sky: f64,
+    /// Of the horizon.
+    pub horizon: f64,
+}
+
+impl Open {
+    /// No shades.
+    pub const ALL: Self = Self { sun: 1.0, sky: 1.0, horizon: 1.0 };
+}
+
+/// Short-wave radiation on a plane by where it comes from [W/m2].
+#[derive(Debug, Clone, Copy)]
+pub struct Irradiance<S> {
+    /// Cosine of the angle of incidence of the sun's disc, 0 behind the plane [-].
+    pub cosine: S,
+    /// From the sun's disc.
+    pub beam: S,
+    /// From the bright sky around it: a part of `diffuse`.
+    pub circumsolar: S,
+    /// From the horizon, less than nothing where it is darker than the rest of the sky: a part of `diffuse`.
+    pub horizon: S,
+    /// From the sky, the parts around the sun and at the horizon included.
+    pub diffuse: S,
+    /// From the ground.
+    pub ground: S,
+}
+
+impl<S: Real> Irradiance<S> {
+    /// All of it.
+    #[inline(always)]
+    pub fn total(&self) -> S {
+        self.beam + self.diffuse + self.ground
+    }
+
+    /// What comes from the sun's direction.
+    #[inline(always)]
+    pub fn directed(&self) -> S {
+        self.beam + self.circumsolar
+    }
+
+    /// What comes from everywhere alike.
+    #[inline(always)]
+    pub fn scattered(&self) -> S {
+        self.diffuse - self.circumsolar - self.horizon + self.ground
     }
 }
 

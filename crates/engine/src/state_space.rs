@@ -69,6 +69,10 @@ fn require_linear(plan: &Plan, numbers: &[f64], coefficients: &Coefficients<f64>
             return refuse(format!("materials.{name} (phase change)"), "replace it by a solid");
         }
     }
+    if let Some(&window) = plan.windows.first() {
+        let name = &plan.description.surfaces[window].name;
+        return refuse(format!("window {name}"), "replace it by a wall of a resistance");
+    }
     for (index, face) in coefficients.faces.iter().enumerate() {
         let name = plan.face_name(index);
         if face.film.as_ref().is_some_and(|film| film.constant().is_none()) {

@@ -8,12 +8,14 @@
 use crate::balance::{FaceLaws, Line, LocalBalance, LocalFaces, solve_pair};
 use crate::coefficients::{Boundary, Coefficients, Face, Matter};
 use crate::conduction::{Chain, Iterate, Start, StorageRule};
-use crate::drive::{Drive, FaceDrive, Instant, Weather};
+use crate::drive::{Drive, FaceDrive, Instant, SunMeans, Weather};
 use crate::error::EngineError;
+use crate::glazing::Glass;
 use crate::ledger::{Flow, Ledger, Power};
 use crate::pcm::{PcmMemory, reversed};
 use crate::plan::{FaceId, FaceRole, Plan};
 use crate::plant::{Plants, Response};
+use crate::radiation::black_temperature;
 use crate::real::{Mask, Real};
 use crate::room_block::RoomBlock;
 use crate::state::{State, Unknowns, blend, line, squared_distance};
@@ -97,6 +99,12 @@ pub struct Stepper<'a, S: Real> {
     /// Heat from the plant of each zone [W].
     load: Vec<S>,
     plants: Plants<S>,
+    /// The sun over the last step.
+    pub sun: SunMeans<S>,
+    /// Convective conductance of the gaps of each wall that is a window, expected in each stage [W/(m2 K)].
+    gap_convection: Vec<Vec<Vec<S>>>,
+    /// Stage in hand.
+    stage: usize,
     /// Heat of the walls into their faces at faces of 0 degC [W/m2].
     sources: Vec<[S; 2]>,
     /// Faces outside the zones, as functions of those inside.
@@ -170,7 +178,10 @@ impl<'a, S: Real> Stepper<'a, S> {
             faces: zeros(plan.faces.len()),
             air: zeros(plan.zones.len()),
         };
-        let drive = Drive::new(&coefficients);
+        let drive = Drive::new(plan, &coefficients);
+        let means = SunMeans::new(&drive);
+        let gaps = coefficients.walls.iter().map(|wall| wall.glass.as_ref().map_or(0, Glass::filled_gaps));
+        let gap_convection = vec![gaps.map(zeros).collect(); scheme.weights().len()];
         Self {
             plan,
             coefficients,
@@ -186,6 +197,9 @@ impl<'a, S: Real> Stepper<'a, S> {
             drive,
             load: zeros(plan.zones.len()),
             plants: Plants::new(&plan.plants, &unknowns, plan.reach.len(), scheme.weights().len()),
+            sun: means,
+            gap_convection,
+            stage: 0,
             sources: vec![[S::zero(); 2]; plan.walls.len()],
             locals: vec![LocalFaces::None; plan.walls.len()],
             block: RoomBlock::new(&plan.reach),
@@ -247,8 +261,11 @@ impl<'a, S: Real> Stepper<'a, S> {
             || {
                 self.drive.update(self.plan, &self.coefficients, self.numbers, now);
                 self.start(state, 0.0);
+                self.expect_gaps(0);
                 self.solve_stage(state, INSTANT, (0, 0), S::Mask::splat(true))?;
                 state.faces.copy_from_slice(&self.solved.faces);
+                self.sun.restart();
+                self.sun.add(&self.drive, 1.0);
                 Ok(())
             },
         )
@@ -344,6 +361,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.hold_over(state, diagonal);
             }
             self.drive_at(weather, part, stage);
+            self.expect_gaps(stage);
             self.solve_stage(state, diagonal * length, (part.step, stage + 1), S::Mask::splat(true))?;
             self.accumulate(weight * length, &mut energy);
         }
@@ -416,6 +434,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.plants.guess(stage, active, &mut self.iterate);
             } else {
                 self.drive_at(weather, part, stage);
+                self.expect_gaps(stage);
             }
             self.solve_stage(state, diagonal * length, (part.step, stage + 1), active)?;
             if answer {
@@ -524,10 +543,21 @@ impl<'a, S: Real> Stepper<'a, S> {
             drive.update(self.plan, &self.coefficients, self.numbers, weather.at(part.step, stage));
         };
         read(&mut self.drive, stage);
-        if part.halvings > 0 && self.scheme.weights().len() > 1 {
+        let weights = self.scheme.weights();
+        if stage == 0 {
+            self.sun.restart();
+        }
+        if part.halvings == 0 || weights.len() == 1 {
+            self.sun.add(&self.drive, weights[stage]);
+        } else {
             let (mut first, mut second) = (self.drive.clone(), self.drive.clone());
             read(&mut first, 0);
             read(&mut second, 1);
+            if stage == 0 {
+                // The mean is that of the whole step.
+                self.sun.add(&first, weights[0]);
+                self.sun.add(&second, weights[1]);
+            }
             let diagonal = self.scheme.diagonal();
             let place = part.from + part.share * if stage == 0 { diagonal } else { 1.0 };
             self.drive.between(&first, &second, (place - diagonal) / (1.0 - diagonal));
@@ -644,6 +674,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         place: (usize, usize),
         mut active: S::Mask,
     ) -> Result<(), EngineError> {
+        self.stage = place.1.saturating_sub(1);
         self.prepare_linear_walls(length);
         active = active & !self.failed;
         let mut polish = S::DERIVATIVES;
@@ -739,14 +770,37 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn prepare_linear_walls(&mut self, length: f64) {
         let factor = self.factored.to_bits() != length.to_bits();
-        for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear) {
+        for (w, _) in self.plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear) {
             if factor {
                 self.responses[w] = self.chains[w].factor(&self.coefficients.walls[w], length);
             }
-            let cells = wall.first_cell..wall.first_cell + wall.len();
-            self.sources[w] = self.chains[w].sources(&self.held[cells]);
+            self.sources[w] = self.heat_to_faces(w);
         }
         self.factored = length;
+    }
+
+    /// What a wall's cells held, and the sun in its panes, send into its faces.
+    #[inline(always)]
+    fn heat_to_faces(&mut self, w: usize) -> [S; 2] {
+        let wall = &self.plan.walls[w];
+        let held = &self.held[wall.first_cell..wall.first_cell + wall.len()];
+        if wall.glass.is_none() {
+            return self.chains[w].sources(held);
+        }
+        let gains = self.plan.windows.iter().zip(&self.drive.windows).find(|(window, _)| **window == w);
+        gains.map_or([S::zero(); 2], |(_, at)| self.chains[w].sources_with(held, &at.cells))
+    }
+
+    /// Takes the convection in gaps at the temperatures that are expected at the end of the stage.
+    #[inline(always)]
+    fn expect_gaps(&mut self, stage: usize) {
+        for &w in &self.plan.windows {
+            let wall = &self.plan.walls[w];
+            if let Some(glass) = &self.coefficients.walls[w].glass {
+                let cells = &self.iterate.cells[wall.first_cell..wall.first_cell + wall.len()];
+                glass.expect(cells, &mut self.gap_convection[stage][w]);
+            }
+        }
     }
 
     #[inline(always)]
@@ -767,9 +821,13 @@ impl<'a, S: Real> Stepper<'a, S> {
                 enthalpy: &state.enthalpy[cells.clone()],
                 memory: &state.memory[cells.clone()],
             };
-            self.chains[w].linearise(numbers, &at, &start, self.scheme.storage_rule());
+            if let Some(glass) = &numbers.glass {
+                glass.linearise(at.cells, &self.gap_convection[self.stage][w], &mut self.chains[w].links);
+            } else {
+                self.chains[w].linearise(numbers, &at, &start, self.scheme.storage_rule());
+            }
             self.responses[w] = self.chains[w].factor(numbers, length);
-            self.sources[w] = self.chains[w].sources(&self.held[cells]);
+            self.sources[w] = self.heat_to_faces(w);
         }
     }
 
@@ -1023,7 +1081,8 @@ impl<'a, S: Real> Stepper<'a, S> {
             let area = self.coefficients.walls[index / 2].area;
             let (at, laws) = (&self.drive.faces[index], &self.laws[index]);
             let temperature = self.solved.faces[index];
-            if face.irradiance.is_some() || matches!(face.boundary, Boundary::Outdoors(_)) {
+            let opaque = self.plan.walls[index / 2].glass.is_none();
+            if opaque && (face.irradiance.is_some() || matches!(face.boundary, Boundary::Outdoors(_))) {
                 energy.book(Flow::Solar, (area * at.solar).scale(duration));
             }
             match &face.boundary {
@@ -1040,6 +1099,17 @@ impl<'a, S: Real> Stepper<'a, S> {
                     energy.book(Flow::Boundary, power.scale(duration));
                 }
                 Boundary::Zone | Boundary::Adiabatic => {}
+            }
+        }
+        for (&w, window) in self.plan.windows.iter().zip(&self.drive.windows) {
+            let absorbed = window.panes.iter().fold(S::zero(), |sum, heat| sum + *heat);
+            energy.book(Flow::Glass, (self.coefficients.walls[w].area * absorbed).scale(duration));
+        }
+        if !self.plan.windows.is_empty() {
+            for zone in &self.drive.light {
+                // What the faces absorb, seen from what came in: the two agree or the books do not close.
+                let kept = zone.transmitted - zone.lost - zone.in_glass;
+                energy.book(Flow::Transmitted, kept.scale(duration));
             }
         }
         for (zone, inflow) in self.inflow.iter().enumerate() {
@@ -1087,6 +1157,12 @@ impl<'a, S: Real> Stepper<'a, S> {
         if index.is_multiple_of(2) { flux } else { -flux }
     }
 
+    /// Temperature of the sky at the end of the last stage [degC].
+    #[must_use]
+    pub fn sky_temperature(&self) -> S {
+        black_temperature(self.drive.sky)
+    }
+
     /// Conduction through a face at the end of the last stage [W/m2], positive towards the inside.
     #[must_use]
     #[inline(always)]
@@ -1126,7 +1202,10 @@ impl<'a, S: Real> Stepper<'a, S> {
                 look(self.solved.cells[k], self.iterate.cells[k], &|| {
                     let surface = &self.plan.description.surfaces[w];
                     let layers = &self.plan.description.constructions[surface.construction].layers;
-                    format!("surface {} (layer {})", surface.name, layers[wall.cell_layers[i]].name)
+                    match layers.get(wall.cell_layers[i]) {
+                        Some(layer) => format!("surface {} (layer {})", surface.name, layer.name),
+                        None => format!("window {} (pane {})", surface.name, wall.cell_layers[i] + 1),
+                    }
                 });
             }
         }

@@ -15,15 +15,25 @@ from typing import TYPE_CHECKING, Any
 from mascarin.errors import InputError
 from mascarin.model.convection import Convection, Power
 from mascarin.model.envelope import Side, Surface
+from mascarin.model.faces import closed, zone_faces
+from mascarin.model.glazing import (
+    Angular,
+    FilledGap,
+    GivenGap,
+    Glazing,
+    Pane,
+    SimpleGlazing,
+    TwoFaces,
+)
 from mascarin.model.material import Material, PhaseChangeMaterial, Phases
 from mascarin.model.melting import CapacityLaw, FractionsLaw, GumbelLaw, SmoothStepLaw, TableLaw, TanhLaw
 from mascarin.model.mesh import choose
 from mascarin.model.number import Interval, Number
 from mascarin.model.part import Part
 from mascarin.model.rules import face_names, references
-from mascarin.model.settling import enclosure, faces_of
 from mascarin.model.site import Site
-from mascarin.model.zone import AirPath, Opening, Plant, Zone
+from mascarin.model.window import Vertices, Window, windows_of
+from mascarin.model.zone import AirPath, GivenSun, Opening, Plant, Zone
 
 if TYPE_CHECKING:
     import numpy as np
@@ -81,15 +91,33 @@ def describe(building: Building, step_seconds: float, ranges: Mapping[str, Inter
     description = {
         "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
         "site": _site(building.site, _below(ids, "site")),
-        "materials": _each(building.materials, "materials", ids, _material),
-        "constructions": _each(
-            building.constructions, "constructions", ids, partial(_construction, building, mesh.nodes)
-        ),
+        "materials": [
+            *_each(building.materials, "materials", ids, _material),
+            *(
+                {"kind": "rated", "u_value": ids[f"windows.{name}.frame.u_value"]}
+                for name in framed(building)
+            ),
+        ],
+        "constructions": [
+            *_each(
+                building.constructions, "constructions", ids, partial(_construction, building, mesh.nodes)
+            ),
+            *_each(building.glazings, "glazings", ids, _glazing),
+            *(
+                _frame_construction(name, len(building.materials) + index)
+                for index, name in enumerate(framed(building))
+            ),
+        ],
         "zones": _each(building.zones, "zones", ids, partial(_zone, building, places)),
         "air_paths": _each(building.air_paths, "air_paths", ids, partial(_air_path, building, places)),
         "openings": _each(building.openings, "openings", ids, partial(_opening, building, places)),
-        "surfaces": _each(building.surfaces, "surfaces", ids, partial(_surface, building, columns)),
+        "surfaces": [
+            *_each(building.surfaces, "surfaces", ids, partial(_surface, building, columns, ids)),
+            *_each(building.windows, "windows", ids, partial(_window, building, ids)),
+            *(_frame(building, name, ids) for name in framed(building)),
+        ],
         "sensors": _each(building.sensors, "sensors", ids, partial(_sensor, building)),
+        "shades": [_corners(shade.vertices) for shade in building.shades.values()],
         "channels": columns,
     }
     return EngineDescription(
@@ -124,6 +152,11 @@ def used_schedules(building: Building) -> list[str]:
 def _below(ids: Mapping[str, int], path: str) -> Ids:
     """Ids of the leaves below a path."""
     return lambda key: ids[f"{path}.{key}"]
+
+
+def _deeper(ids: Ids, path: str) -> Ids:
+    """Ids below a path of the part that ``ids`` speaks of."""
+    return lambda key: ids(f"{path}.{key}")
 
 
 def _each(
@@ -246,6 +279,7 @@ def _zone(building: Building, places: Places, name: str, zone: Zone, ids: Ids) -
         "infiltration": _fields(zone.infiltration, ids, "infiltration."),
         "longwave": _fields(zone.longwave, ids, "longwave."),
         "view_weights": view_weights(building, name),
+        "sun": _sun(building, name, zone, ids),
     }
 
 
@@ -273,6 +307,17 @@ def _opening(building: Building, places: Places, name: str, opening: Opening, id
     return {"name": name, "zone": zone, **_fields(opening, ids), **_schedule(opening, places)}
 
 
+def _sun(building: Building, name: str, zone: Any, ids: Ids) -> Json:
+    if not isinstance(zone.sun, GivenSun):
+        return {"kind": "area" if zone.sun is None else zone.sun.kind}
+    given = zone.sun.shares
+    shares = [
+        ids(f"sun.shares.{face.name}") if face.name in given and face.surface is not None else None
+        for face in zone_faces(name, building.surfaces, building.windows)
+    ]
+    return {"kind": "shares", "faces": shares, "lost": ids("sun.lost")}
+
+
 def view_weights(building: Building, zone: str) -> list[list[float]]:
     """Exchange areas A_i F_ij between the faces of a zone [m2]; empty where nothing tells them.
 
@@ -281,39 +326,186 @@ def view_weights(building: Building, zone: str) -> list[list[float]]:
     InputError
         If the vertices enclose no convex zone.
     """
-    faces = faces_of(zone, building.surfaces)
+    faces = zone_faces(zone, building.surfaces, building.windows)
     given = building.zones[zone].view_factors
     if given is not None:
         names = face_names(faces)
-        areas = [float(building.surfaces[surface].area or 0.0) for surface, _ in faces]
+        areas = [face.area for face in faces]
         one_way = [
             [a * given[row].get(column, 0.0) for column in names] for a, row in zip(areas, names, strict=True)
         ]
         both_ways = zip(one_way, zip(*one_way, strict=True), strict=True)
         # Reciprocity: A_i F_ij = A_j F_ji, as far as the rounding of the given factors allows.
         return [[0.5 * (there + back) for there, back in zip(*pair, strict=True)] for pair in both_ways]
-    polygons = enclosure(zone, building.surfaces)
-    if polygons is None:
+    if not closed(faces):
         return []
+    # Glass and frame of a window share its polygon, and do not see each other.
+    outlines = {face.name: face.polygon for face in faces if face.polygon is not None}
+    polygons = list(outlines.values())
     from mascarin.model.geometry import net_areas, view_factors
 
     try:
-        weights: list[list[float]] = (net_areas(polygons)[:, None] * view_factors(polygons)).tolist()
+        weights = net_areas(polygons)[:, None] * view_factors(polygons)
     except InputError as error:
         raise InputError(f"zones.{zone}: {error}") from None
-    return weights
+    places = [list(outlines).index(face.name) for face in faces]
+    shares = [face.share for face in faces]
+    return [
+        [a * b * float(weights[i, j]) for j, b in zip(places, shares, strict=True)]
+        for i, a in zip(places, shares, strict=True)
+    ]
 
 
-def _surface(building: Building, columns: list[str], name: str, surface: Surface, ids: Ids) -> Json:
+def _corners(vertices: Vertices | None) -> list[list[float]]:
+    return [[float(coordinate) for coordinate in vertex] for vertex in vertices or ()]
+
+
+def framed(building: Building) -> list[str]:
+    """Windows with a frame, in the order of the description."""
+    return [name for name, window in building.windows.items() if window.frame is not None]
+
+
+def _glazing(name: str, glazing: Glazing, ids: Ids) -> Json:
+    if isinstance(glazing, SimpleGlazing):
+        keys = ("u_value", "solar_heat_gain", "panes", "category")
+        films = [ids("outside_film"), ids("inside_film")]
+        return {
+            "name": name,
+            "glazing": {"kind": "simple", **{key: ids(key) for key in keys}, "films": films},
+        }
+    panes = [_pane(pane, _deeper(ids, f"panes.{k}")) for k, pane in enumerate(glazing.panes)]
+    gaps = [_gap(gap, _deeper(ids, f"gaps.{k}")) for k, gap in enumerate(glazing.gaps)]
+    written: Json = {"kind": "panes", "panes": panes, "gaps": gaps}
+    if glazing.angular is not None:
+        written["angular"] = _angular(glazing.angular, ids)
+    return {"name": name, "glazing": written}
+
+
+def _both(value: Any, ids: Ids, key: str) -> list[int]:
+    if isinstance(value, TwoFaces):
+        return [ids(f"{key}.outside"), ids(f"{key}.inside")]
+    return [ids(key)] * 2
+
+
+def _pane(pane: Pane, ids: Ids) -> Json:
+    written: Json = {
+        "thickness": ids("thickness"),
+        "conductivity": ids("conductivity"),
+        "emissivity": _both(pane.emissivity, ids, "emissivity"),
+    }
+    if pane.density is not None:
+        written["storage"] = [ids("density"), ids("specific_heat")]
+    if pane.transmittance is not None:
+        written["optics"] = {
+            "transmittance": ids("transmittance"),
+            "reflectance": _both(pane.reflectance, ids, "reflectance"),
+            "coated": isinstance(pane.reflectance, TwoFaces),
+        }
+    return written
+
+
+def _gap(gap: FilledGap | GivenGap, ids: Ids) -> Json:
+    if isinstance(gap, GivenGap):
+        return {"kind": "given", "conductance": ids("conductance")}
+    return {
+        "kind": "filled",
+        "thickness": ids("thickness"),
+        "pressure": ids("pressure"),
+        "gas": gap.gas,
+    }
+
+
+def _angular(table: Angular, ids: Ids) -> Json:
+    written: Json = {
+        "angles": list(map(float, table.angles)),
+        "transmittance": list(map(float, table.transmittance)),
+        "absorptance": [list(map(float, pane)) for pane in table.absorptance],
+        "transmittance_scale": ids("angular.transmittance_scale"),
+        "absorptance_scale": ids("angular.absorptance_scale"),
+    }
+    if table.diffuse is not None:
+        written["diffuse_transmittance"] = float(table.diffuse.transmittance)
+        written["diffuse_absorptance"] = list(map(float, table.diffuse.absorptance))
+    return written
+
+
+def _window(building: Building, every: Mapping[str, int], name: str, window: Window, ids: Ids) -> Json:
+    """Write the glass of a window as a surface of its own."""
+    glass = building.glazings[window.glazing]
+    path = f"glazings.{window.glazing}."
+    if isinstance(glass, SimpleGlazing):
+        emissivity = [every[f"{path}emissivity"]] * 2
+    else:
+        last = len(glass.panes) - 1
+        outer = _both(glass.panes[0].emissivity, lambda key: every[f"{path}panes.0.{key}"], "emissivity")
+        inner = _both(
+            glass.panes[last].emissivity, lambda key: every[f"{path}panes.{last}.{key}"], "emissivity"
+        )
+        emissivity = [outer[0], inner[1]]
+    written = _glazed(building, every, window, ids, emissivity) | {
+        "name": name,
+        "construction": len(building.constructions) + list(building.glazings).index(window.glazing),
+        "cavity_height": ids("cavity_height"),
+    }
+    if window.frame is not None:
+        written["frame"] = {"fraction": ids("frame.fraction"), "is_frame": False}
+    return written
+
+
+def _frame(building: Building, name: str, every: Mapping[str, int]) -> Json:
+    """Write the frame of a window as a surface of its own."""
+    ids = _below(every, f"windows.{name}")
+    window = building.windows[name]
+    written = _glazed(building, every, window, ids, [ids("frame.emissivity")] * 2)
+    written["outside"]["absorptance"] = written["inside"]["absorptance"] = ids("frame.absorptance")
+    return written | {
+        "name": f"{name}.frame",
+        "construction": len(building.constructions) + len(building.glazings) + framed(building).index(name),
+        "frame": {"fraction": ids("frame.fraction"), "is_frame": True},
+    }
+
+
+def _frame_construction(name: str, material: int) -> Json:
+    layer = {"name": "frame", "material": material, "thickness": None, "nodes": 0}
+    return {"name": f"{name}.frame", "layers": [layer]}
+
+
+def _glazed(
+    building: Building, every: Mapping[str, int], window: Window, ids: Ids, emissivity: list[int]
+) -> Json:
+    """Write what glass and frame of a window have in common."""
+    wall = building.surfaces[window.surface]
+    direction = {key: every[f"surfaces.{window.surface}.{key}"] for key in ("tilt", "azimuth")}
+    outside = _fields(window.outside, _deeper(ids, "outside")) | {
+        "facing": {"kind": "outdoors"},
+        "emissivity": emissivity[0],
+        "convection": _convection(window.outside.convection, _deeper(ids, "outside")),
+    }
+    if window.outside.longwave is not None:
+        outside["longwave"] = _fields(window.outside.longwave, _deeper(ids, "outside"), "longwave.")
+    inside = {
+        "facing": {"kind": "zone", "zone": list(building.zones).index(str(wall.inside.zone))},
+        "emissivity": emissivity[1],
+        "convection": _convection(window.inside.convection, _deeper(ids, "inside")),
+    }
+    shape = {"area": ids("area"), "vertices": _corners(window.vertices), **direction}
+    return shape | {"outside": outside, "inside": inside}
+
+
+def _surface(
+    building: Building, columns: list[str], every: Mapping[str, int], name: str, surface: Surface, ids: Ids
+) -> Json:
     zones = list(building.zones)
     return {
         "name": name,
         "construction": list(building.constructions).index(surface.construction),
         "area": ids("area"),
+        "openings": [every[f"windows.{window}.area"] for window, _ in windows_of(name, building.windows)],
+        "vertices": _corners(surface.vertices),
         "tilt": ids("tilt"),
         "azimuth": ids("azimuth"),
-        "outside": _side(surface.outside, zones, columns, lambda key: ids(f"outside.{key}")),
-        "inside": _side(surface.inside, zones, columns, lambda key: ids(f"inside.{key}")),
+        "outside": _side(surface.outside, zones, columns, _deeper(ids, "outside")),
+        "inside": _side(surface.inside, zones, columns, _deeper(ids, "inside")),
     }
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 from pydantic import Field, ValidationError, model_validator
 
 from mascarin.model.envelope import Construction, Sensor, Surface
+from mascarin.model.glazing import Glazing
 from mascarin.model.leaves import steps
 from mascarin.model.material import Material
 from mascarin.model.names import Name, known_names
@@ -17,8 +18,9 @@ from mascarin.model.parameters import Parameter, lookup, parameters, resolve
 from mascarin.model.part import Part, insist, is_number
 from mascarin.model.rules import faults
 from mascarin.model.schedule import Schedule
-from mascarin.model.settling import settle_surfaces, settle_zones
+from mascarin.model.settling import settle_surfaces, settle_windows, settle_zones
 from mascarin.model.site import Site
+from mascarin.model.window import Shade, Window
 from mascarin.model.zone import AirPath, Opening, Zone
 
 if TYPE_CHECKING:
@@ -48,6 +50,11 @@ class Building(Part):
     surfaces: dict[Name, Surface] = Field(
         default_factory=dict, description="Walls, roofs, floors, doors by name"
     )
+    glazings: dict[Name, Glazing] = Field(default_factory=dict, description="Glazings by name")
+    windows: dict[Name, Window] = Field(default_factory=dict, description="Windows in the surfaces by name")
+    shades: dict[Name, Shade] = Field(
+        default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
+    )
     sensors: dict[Name, Sensor] = Field(default_factory=dict, description="Thermometers inside walls by name")
 
     @model_validator(mode="wrap")
@@ -58,6 +65,7 @@ class Building(Part):
             building = handler(data)
         insist(*faults(building))
         building._settle(surfaces=settle_surfaces(building.surfaces))
+        building._settle(windows=settle_windows(building.windows, building.surfaces))
         building._settle(zones=settle_zones(building.zones, building.surfaces))
         return building
 

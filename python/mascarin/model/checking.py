@@ -9,17 +9,22 @@ from typing import TYPE_CHECKING
 from mascarin.errors import InputError
 from mascarin.model.air import SPECIFIC_HEAT, density
 from mascarin.model.convection import Constant
+from mascarin.model.faces import closed, zone_faces
+from mascarin.model.glazing import face_resistance
+from mascarin.model.idle import faces as exposed
 from mascarin.model.leaves import leaves
 from mascarin.model.material import PhaseChangeMaterial, Resistance, phase
 from mascarin.model.melting import CUT, ClosedLaw, FractionLaw, FractionsLaw, TanhLaw
 from mascarin.model.melting_rules import unordered_slopes
 from mascarin.model.mesh import Mesh, choose
+from mascarin.model.rules import shaded
 from mascarin.model.settling import enclosure, faces_of
 
 if TYPE_CHECKING:
     from mascarin.model.building import Building
     from mascarin.model.envelope import Side, Surface
     from mascarin.model.material import Material
+    from mascarin.model.window import Window
 
 #: SDIRK2 keeps the maximum principle only for steps below so many times the smallest time constant.
 SDIRK2_BOUND = 2.4
@@ -52,6 +57,7 @@ def check(building: Building, step_seconds: float = 900.0) -> list[str]:
         *_zones(building),
         *_in_zones(building),
         *_surfaces(building),
+        *_windows(building),
         *_constructions(building, mesh),
         *_melting(building),
         *(f"warning: {text}" for text in warnings(building, mesh, step_seconds)),
@@ -71,7 +77,10 @@ def _zones(building: Building) -> Iterator[str]:
         surfaces = [building.surfaces[surface] for surface, _ in faces_of(name, building.surfaces)]
         area = sum(surface.area or 0.0 for surface in surfaces)
         shell = [surface for surface in surfaces if not surface.internal_mass]
-        total = sum((surface.area or 0.0) * u_value(building, surface) for surface in shell)
+        names = {surface for surface, side in faces_of(name, building.surfaces) if side == "inside"}
+        total = sum(_own_area(building, surface) * u_value(building, surface) for surface in shell)
+        glazed = [window for window in building.windows.values() if window.surface in names]
+        total += sum(float(window.area or 0.0) * window_u_value(building, window) for window in glazed)
         heavy = density(building.site)
         air = zone.infiltration.constant * (zone.volume or 0.0) * heavy * SPECIFIC_HEAT / 3600.0
         yield (
@@ -107,13 +116,19 @@ def _scheduled(schedule: str | None) -> str:
     return "" if schedule is None else f", by schedule {schedule}"
 
 
+def _own_area(building: Building, surface: Surface) -> float:
+    """What the windows leave of a surface [m2]."""
+    inside = (window for window in building.windows.values() if building.surfaces[window.surface] is surface)
+    return float(surface.area or 0.0) - sum(float(window.area or 0.0) for window in inside)
+
+
 def _exchange(building: Building, zone: str) -> str:
     longwave = building.zones[zone].longwave.kind
     if longwave == "none":
         return "no long-wave exchange"
     if building.zones[zone].view_factors is not None:
         return f"long-wave {longwave} with the given view factors"
-    if enclosure(zone, building.surfaces) is not None:
+    if closed(zone_faces(zone, building.surfaces, building.windows)):
         return f"long-wave {longwave} with exact view factors"
     return f"long-wave {longwave} with view factors approximated by areas"
 
@@ -125,6 +140,42 @@ def _surfaces(building: Building) -> Iterator[str]:
             f"azimuth {surface.azimuth:g}, {_facing(surface.outside)} -> {_facing(surface.inside)}, "
             f"U {u_value(building, surface):.3f} W/(m2 K), {_film_words(building, surface)}"
         )
+
+
+def _windows(building: Building) -> Iterator[str]:
+    for name, window in building.windows.items():
+        u = window_u_value(building, window)
+        frame = f", frame {100.0 * window.frame.fraction:g} %" if window.frame is not None else ""
+        yield (
+            f"window {name}: {window.glazing} in {window.surface}, {window.area:.2f} m2{frame}, "
+            f"U {u:.3f} W/(m2 K), ISO 6946 films"
+        )
+
+
+def window_u_value(building: Building, window: Window) -> float:
+    """Thermal transmittance of a window with its frame, with the films of ISO 6946.
+
+    Gaps that are no given conductances are taken at 0 degC outside and 20 degC inside: conduction of the gas
+    and radiation, without convection.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    window : Window
+        One of its windows.
+
+    Returns
+    -------
+    float
+        U value. [W/(m2 K)]
+    """
+    resistance = face_resistance(building.glazings[window.glazing])
+    glass = 1.0 / (_ISO_OUTDOORS + resistance + _ISO_LEVEL)
+    if window.frame is None:
+        return glass
+    share = float(window.frame.fraction)
+    return (1.0 - share) * glass + share * float(window.frame.u_value)
 
 
 def _facing(side: Side) -> str:
@@ -317,6 +368,7 @@ def warnings(building: Building, mesh: Mesh, step_seconds: float) -> Iterator[st
     yield from _odd_volumes(building)
     yield from _odd_faces(building)
     yield from _odd_areas(building)
+    yield from _unshaded(building)
 
 
 def _odd_materials(building: Building) -> Iterator[str]:
@@ -407,6 +459,12 @@ def _odd_volumes(building: Building) -> Iterator[str]:
                 yield f"zones.{name}: {volume:g} m3 are given, the vertices enclose {drawn:.2f} m3"
 
 
+def _unshaded(building: Building) -> Iterator[str]:
+    bare = shaded(building)[1] if building.shades else []
+    if bare:
+        yield f"shades: without vertices, {', '.join(bare)} lie in full sun"
+
+
 def _odd_areas(building: Building) -> Iterator[str]:
     from mascarin.model.settling import drawn_areas
 
@@ -425,11 +483,14 @@ def assumptions(building: Building) -> Iterator[str]:
         if number.assumed:
             unit = number.quantity.unit if number.quantity else ""
             yield f"{path} = {number:g} {unit} ({source or 'no source'})"
-    outdoors = [side for surface in building.surfaces.values() for side in surface.sides if side.outdoors]
+    outdoors = [face.side for face in exposed(building) if face.side.outdoors]
     if outdoors and "sky" not in building.site.model_fields_set:
         yield "site.sky: martin_berdahl, because none is written"
     if any(not side.irradiance for side in outdoors) and "diffuse" not in building.site.model_fields_set:
         yield "site.diffuse: perez, because none is written"
     for name in building.zones:
+        faces = zone_faces(name, building.surfaces, building.windows)
+        if any(face.window is not None for face in faces) and building.zones[name].sun is None:
+            yield f"zones.{name}.sun: area (sun spread over all faces, some of it lost through the glass)"
         if "approximated" in _exchange(building, name):
             yield f"zones.{name}: every face sees every other one by its area, except those in one plane"

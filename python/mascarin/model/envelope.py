@@ -201,7 +201,7 @@ class Side(Part):
             "convection": self.adiabatic is None,
             "area_factor": air,
             "emissivity": bool(self.outdoors or self.zone is not None),
-            "absorptance": self.sunlit or self.irradiance is not None,
+            "absorptance": self.sunlit or self.zone is not None or self.irradiance is not None,
             "sky_view": self.sunlit or self.exposed.sky,
             "height": self.exposed.wind,
             "longwave": bool(self.outdoors),

@@ -11,8 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from mascarin.model.convection import AlamdariHammond, Doe2, LinearWind, Mowitt, PaperEq5, Power, Tarp
 from mascarin.model.envelope import NoLongwave, Side, Surface
+from mascarin.model.faces import closed, zone_faces
+from mascarin.model.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.model.leaves import leaves
 from mascarin.model.settling import faces_of
+from mascarin.model.window import WindowInside, WindowOutside, windows_of
+from mascarin.model.zone import GivenSun
 
 if TYPE_CHECKING:
     from mascarin.model.building import Building
@@ -25,7 +29,7 @@ class Face:
     """One side of a surface and the tilt of its own normal [deg]."""
 
     path: str
-    side: Side
+    side: Side | WindowOutside | WindowInside
     tilt: float
 
     @property
@@ -46,8 +50,15 @@ class Face:
     @property
     def sees_sky(self) -> bool:
         """Whether it exchanges long-wave with the sky."""
+        if isinstance(self.side, WindowInside) or not self.side.outdoors:
+            return False
         view = (1.0 if self.tilt < 180.0 else 0.0) if self.side.sky_view is None else self.side.sky_view
         return self.side.exposed.sky and not isinstance(self.side.longwave, NoLongwave) and view > 0.0
+
+
+def has_height(side: Side | WindowOutside | WindowInside) -> bool:
+    """Tell whether a side says how high it lies above ground."""
+    return not isinstance(side, WindowInside) and side.height is not None
 
 
 def without_effect(building: Building) -> dict[str, str]:
@@ -57,6 +68,7 @@ def without_effect(building: Building) -> dict[str, str]:
     found.update(_in_site(building, every))
     for face in every:
         found.update(_on_side(face))
+    found.update(_behind_walls(building))
     for name, surface in building.surfaces.items():
         found.update(_in_direction(building, name, surface))
     found.update(_between_faces(building))
@@ -66,7 +78,45 @@ def without_effect(building: Building) -> dict[str, str]:
 
 def faces(building: Building) -> list[Face]:
     """Both sides of every surface, in the order of the description."""
-    return [face for name, surface in building.surfaces.items() for face in _faces(name, surface)]
+    walls = [face for name, surface in building.surfaces.items() for face in _faces(name, surface)]
+    return [*walls, *(face for name in building.windows for face in _window_faces(building, name))]
+
+
+def _window_faces(building: Building, name: str) -> Iterator[Face]:
+    window = building.windows[name]
+    tilt = float(building.surfaces[window.surface].tilt or 0.0)
+    yield Face(f"windows.{name}.outside", window.outside, tilt)
+    yield Face(f"windows.{name}.inside", window.inside, 180.0 - tilt)
+
+
+def _behind_walls(building: Building) -> Reasons:
+    """Find absorptances that no sun reaches, and heights of gaps that there are none of."""
+    for zone in building.zones:
+        faces = zone_faces(zone, building.surfaces, building.windows)
+        lit = any(face.window is not None for face in faces)
+        given = isinstance(building.zones[zone].sun, GivenSun)
+        for face in faces:
+            path = f"surfaces.{face.name}.{face.side}.absorptance"
+            if face.surface is not None and (not lit or given):
+                yield path, "no sun enters the zone" if not lit else "the zone's shares are given"
+    for name, glazing in building.glazings.items():
+        zones = [
+            building.zones[str(building.surfaces[window.surface].inside.zone)]
+            for window in building.windows.values()
+            if window.glazing == name
+        ]
+        reason = "the shares of the sun are given where this glazing is"
+        if (
+            zones
+            and all(isinstance(zone.sun, GivenSun) for zone in zones)
+            and isinstance(glazing, PaneGlazing)
+        ):
+            yield f"glazings.{name}.panes.{len(glazing.panes) - 1}.reflectance.inside", reason
+    for name, window in building.windows.items():
+        glass = building.glazings[window.glazing]
+        gaps = glass.gaps if isinstance(glass, PaneGlazing) else ()
+        if not any(isinstance(gap, FilledGap) for gap in gaps):
+            yield f"windows.{name}.cavity_height", "no gap of this window is filled with gas"
 
 
 def _faces(name: str, surface: Surface) -> Iterator[Face]:
@@ -81,9 +131,28 @@ def _unused(building: Building) -> Reasons:
     for name, construction in building.constructions.items():
         if name not in built:
             yield from _all_of(f"constructions.{name}", construction, "no surface is built this way")
+    glazed = {window.glazing for window in building.windows.values()}
+    for name, glazing in building.glazings.items():
+        if name not in glazed:
+            yield from _all_of(f"glazings.{name}", glazing, "no window has this glazing")
+        elif isinstance(glazing, PaneGlazing):
+            yield from _in_glazing(f"glazings.{name}", glazing)
     for name, material in building.materials.items():
         if name not in contained:
             yield from _all_of(f"materials.{name}", material, "no surface contains this material")
+
+
+def _in_glazing(path: str, glazing: PaneGlazing) -> Reasons:
+    """Find emissivities that face nothing but gaps of a given conductance."""
+    given = [isinstance(gap, GivenGap) for gap in glazing.gaps]
+    for index, pane in enumerate(glazing.panes):
+        faces = {"outside": index > 0 and given[index - 1], "inside": index < len(given) and given[index]}
+        if isinstance(pane.emissivity, PaneEmissivities):
+            idle = [f".{face}" for face, still in faces.items() if still]
+        else:
+            idle = [""] if all(faces.values()) else []
+        for which in idle:
+            yield f"{path}.panes.{index}.emissivity{which}", "the conductance of the gap is given"
 
 
 def _in_site(building: Building, every: list[Face]) -> Reasons:
@@ -95,7 +164,7 @@ def _in_site(building: Building, every: list[Face]) -> Reasons:
         yield from _all_of("site.sky", site.sky, "no face exchanges long-wave with the sky")
     if not seeing or site.sky.kind in ("measured", "offset"):
         yield from _all_of("site.cloud", site.cloud, "no emissivity of the sky is used")
-    if not any(face.windy and face.side.height is not None for face in every):
+    if not any(face.windy and has_height(face.side) for face in every):
         reason = "no film depends on wind at the height of its face: mast wind is used as it is"
         yield from _all_of("site.wind", site.wind, reason)
     if not building.zones:
@@ -111,7 +180,7 @@ def _on_side(face: Face) -> Reasons:
         yield f"{path}.ground.coldest_day", "the amplitude is 0"
     if not face.windy:
         yield f"{path}.height", "the film does not depend on wind"
-    if side.outdoors and isinstance(side.longwave, NoLongwave):
+    if not isinstance(side, WindowInside) and side.outdoors and isinstance(side.longwave, NoLongwave):
         yield f"{path}.emissivity", "longwave is none"
         if side.irradiance is not None:
             yield f"{path}.sky_view", "longwave is none and the irradiance is measured"
@@ -147,8 +216,10 @@ def _in_power(face: Face, film: Power) -> Reasons:
 def _in_direction(building: Building, name: str, surface: Surface) -> Reasons:
     """Tilt and azimuth act through sun, sky and wind; through buoyancy and view they only choose a case."""
     faces = list(_faces(name, surface))
+    for window, _ in windows_of(name, building.windows):
+        faces += _window_faces(building, window)
     sunlit = any(face.sunlit for face in faces)
-    seen = any(face.side.zone is not None and _by_direction(building, face.side.zone) for face in faces)
+    seen = any(side.zone is not None and _by_direction(building, side.zone) for side in surface.sides)
     buoyant = any(isinstance(face.side.convection, AlamdariHammond | PaperEq5 | Power) for face in faces)
     reasons = ["which faces of a zone lie in one plane"] if seen else []
     if surface.tilt in (0.0, 180.0):
@@ -157,12 +228,16 @@ def _in_direction(building: Building, name: str, surface: Surface) -> Reasons:
         sunlit or any(face.windy and isinstance(face.side.convection, Tarp | Mowitt | Doe2) for face in faces)
     ):
         yield f"surfaces.{name}.azimuth", _only(reasons)
-    skyward = any(face.side.outdoors and face.side.sky_view is None and face.sees_sky for face in faces)
+    skyward = any(face.sees_sky and _sky_by_tilt(face) for face in faces)
     if not (sunlit or skyward or any(isinstance(face.side.convection, Tarp | Doe2) for face in faces)):
         yield (
             f"surfaces.{name}.tilt",
             _only([*reasons, *(["vertical or horizontal film"] if buoyant else [])]),
         )
+
+
+def _sky_by_tilt(face: Face) -> bool:
+    return not isinstance(face.side, WindowInside) and face.side.sky_view is None
 
 
 def _only(choices: list[str]) -> str:
@@ -173,14 +248,15 @@ def _by_direction(building: Building, zone: str) -> bool:
     """Tell whether the view factors of a zone are approximated from areas, tilts and azimuths."""
     if isinstance(building.zones[zone].longwave, NoLongwave) or building.zones[zone].view_factors is not None:
         return False
-    return not all(building.surfaces[name].vertices for name, _ in faces_of(zone, building.surfaces))
+    return not closed(zone_faces(zone, building.surfaces, building.windows))
 
 
 def _between_faces(building: Building) -> Reasons:
     for name, zone in building.zones.items():
         faces = faces_of(name, building.surfaces)
+        lone = len(zone_faces(name, building.surfaces, building.windows)) == 1
         reason = "the zone has no long-wave exchange" if isinstance(zone.longwave, NoLongwave) else ""
-        reason = reason or ("no other face exchanges with it" if len(faces) == 1 else "")
+        reason = reason or ("no other face exchanges with it" if lone else "")
         if reason:
             yield from ((f"surfaces.{surface}.{side}.emissivity", reason) for surface, side in faces)
             yield f"zones.{name}.longwave.reference", reason

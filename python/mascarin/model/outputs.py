@@ -29,6 +29,11 @@ Kind = Literal[
     "heating_load",
     "cooling_load",
     "air_changes",
+    "incident_solar",
+    "transmitted_solar",
+    "zone_transmitted_solar",
+    "zone_lost_solar",
+    "sky_temperature",
 ]
 
 _ZONE_KINDS: tuple[Kind, ...] = (
@@ -52,6 +57,10 @@ class Output:
 
     Heating and cooling loads are what ideal plants give and take, neither below 0, as means over the step
     that ends at the record. Air changes count all outdoor air: infiltration, ventilation and openings.
+
+    Sun is given as means over the step that ends at the time: on the outside of a surface or window after
+    shading [W/m2], let in by a window or by all windows of a zone, and lost by a zone through its windows
+    again [W].
 
     Attributes
     ----------
@@ -110,9 +119,27 @@ def outputs(building: Building) -> list[Output]:
         found.append(Output(f"{name}.air_changes", "1/h", "air_changes", zone=index))
     for index, name in enumerate(building.surfaces):
         found += _of_surface(building, index, name)
+        if building.surfaces[name].outside.outdoors:
+            found.append(Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index))
+    found += _of_windows(building)
+    found.append(Output("sky_temperature", "degC", "sky_temperature"))
     for index, name in enumerate(building.sensors):
         found.append(Output(f"{name}.temperature", "degC", "sensor", sensor=index))
     return found
+
+
+def _of_windows(building: Building) -> Iterator[Output]:
+    first = len(building.surfaces)
+    for index, name in enumerate(building.windows, start=first):
+        for side, word in enumerate(_SIDES):
+            yield Output(f"{name}.{word}_temperature", "degC", "face_temperature", surface=index, side=side)
+        yield Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index)
+        yield Output(f"{name}.transmitted_solar", "W", "transmitted_solar", surface=index)
+    lit = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
+    for index, name in enumerate(building.zones):
+        if name in lit:
+            yield Output(f"{name}.transmitted_solar", "W", "zone_transmitted_solar", zone=index)
+            yield Output(f"{name}.lost_solar", "W", "zone_lost_solar", zone=index)
 
 
 def find(building: Building, name: str) -> Output:

@@ -132,8 +132,10 @@ def _sentences(fault: dict[str, Any]) -> str:
 def _place(location: Place, plain: Any) -> Place:
     """Drop from pydantic's location what does not stand in the file, such as the kinds of a union."""
     place: list[str | int] = []
-    for step in location:
-        if _holds(plain, step):
+    for step, following in zip(location, (*location[1:], None), strict=True):
+        # The kind of a union may be called like one of its lists (panes).
+        kind = isinstance(plain, Mapping) and plain.get("kind") == step and isinstance(following, str)
+        if not kind and _holds(plain, step):
             place.append(step)
             plain = plain[step]
     last = location[-1] if location else None

@@ -9,21 +9,28 @@ from typing import TYPE_CHECKING
 from mascarin.errors import did_you_mean
 from mascarin.model.convection import Doe2, Mowitt, Tarp
 from mascarin.model.envelope import NoLongwave, Side
+from mascarin.model.faces import ZoneFace, zone_faces
 from mascarin.model.material import Resistance
 from mascarin.model.part import fault
 from mascarin.model.schedule import DAYS, Piece
-from mascarin.model.settling import faces_of
+from mascarin.model.settling import drawn_areas, faces_of, outlines, shade_outlines, window_outlines
+from mascarin.model.window import windows_of
+from mascarin.model.zone import GivenSun, TracedSun
 
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
     from mascarin.model.building import Building
+    from mascarin.model.geometry import Polygon
+    from mascarin.model.window import Window
     from mascarin.model.zone import Plant
 
 Faults = Iterator["InitErrorDetails"]
 
 #: Row sums of given view factors may miss one by this much; the engine closes the rest [-].
 VIEW_CLOSURE = 0.05
+#: Given shares of the sun may miss one by their rounding; the engine scales them [-].
+SHARE_CLOSURE = 0.02
 
 
 def faults(building: Building) -> Faults:
@@ -39,6 +46,9 @@ def faults(building: Building) -> Faults:
     yield from _view_factors_close(building)
     yield from _schedules_suit_their_use(building)
     yield from _set_points_apart(building)
+    yield from _windows_lie_in_walls(building)
+    yield from _sun_finds_faces(building)
+    yield from _shades_find_faces(building)
 
 
 def _something_to_simulate(building: Building) -> Faults:
@@ -52,6 +62,7 @@ def _one_namespace(building: Building) -> Faults:
     sections: dict[str, Mapping[str, object]] = {
         "zones": building.zones,
         "surfaces": building.surfaces,
+        "windows": building.windows,
         "sensors": building.sensors,
     }
     owner: dict[str, str] = {}
@@ -61,7 +72,7 @@ def _one_namespace(building: Building) -> Faults:
                 yield fault(
                     (section, name),
                     f"'{name}' also under '{owner[name]}:'",
-                    "a name that no zone, surface or sensor shares",
+                    "a name that no zone, surface, window or sensor shares",
                     "Rename one: results are called by this name.",
                 )
             owner.setdefault(name, section)
@@ -174,7 +185,7 @@ def _view_factors_close(building: Building) -> Faults:
         given = building.zones[zone].view_factors
         if given is None:
             continue
-        names = face_names(faces_of(zone, building.surfaces))
+        names = face_names(zone_faces(zone, building.surfaces, building.windows))
         for row, factors in given.items():
             at = ("zones", zone, "view_factors", row)
             if row not in names:
@@ -202,10 +213,155 @@ def _view_factors_close(building: Building) -> Faults:
                 )
 
 
-def face_names(faces: list[tuple[str, str]]) -> list[str]:
-    """Names of the faces of a zone: the surface's, with the side where both sides face the zone."""
-    count: Mapping[str, int] = Counter(surface for surface, _ in faces)
-    return [surface if count[surface] == 1 else f"{surface}.{side}" for surface, side in faces]
+def face_names(faces: list[ZoneFace]) -> list[str]:
+    """Names of the faces of a zone; with the side, or ``frame``, where a part has two."""
+    count: Mapping[str, int] = Counter(face.name for face in faces)
+    names: list[str] = []
+    for face in faces:
+        if count[face.name] == 1 or (face.name not in names and face.window is not None):
+            names.append(face.name)
+        else:
+            names.append(f"{face.name}.{'frame' if face.window is not None else face.side}")
+    return names
+
+
+def _windows_lie_in_walls(building: Building) -> Faults:
+    drawn = outlines(building.surfaces)
+    for name, window in building.windows.items():
+        wall, at = building.surfaces[window.surface], ("windows", name)
+        if not wall.outside.outdoors or wall.inside.zone is None:
+            yield fault(
+                (*at, "surface"),
+                f"'{window.surface}', from {wall.outside.faces} to {wall.inside.faces}",
+                "a wall from outdoors (outside) to a zone (inside)",
+                "Put the window into such a wall; sun is followed from outdoors into a zone only.",
+            )
+        if window.vertices is None:
+            continue
+        outline = drawn.get(window.surface)
+        if outline is None:
+            yield fault(
+                (*at, "vertices"),
+                f"vertices in '{window.surface}', which has none",
+                "a wall with vertices",
+                "Give the wall vertices, or the window an area.",
+            )
+            continue
+        polygon = window_outlines({name: window})[name]
+        if not outline.contains(polygon):
+            yield fault((*at, "vertices"), *_outside_its_wall(polygon, outline))
+    for name, surface in building.surfaces.items():
+        inside = dict(windows_of(name, building.windows))
+        gross = float(surface.area or drawn_areas(building.surfaces).get(name, 0.0))
+        areas = {one: _window_area(one, window) for one, window in inside.items()}
+        if areas and sum(areas.values()) >= gross:
+            listed = ", ".join(f"{one} {area:.2f}" for one, area in areas.items())
+            yield fault(
+                ("windows", max(areas, key=lambda one: areas[one]), "area"),
+                f"{sum(areas.values()):.2f} m2 of windows ({listed})",
+                f"less than the {gross:.2f} m2 of their wall '{name}'",
+                "The area of a wall is gross: its windows lie in it.",
+            )
+
+
+def _window_area(name: str, window: Window) -> float:
+    if window.area is not None:
+        return float(window.area)
+    return window_outlines({name: window})[name].area
+
+
+def _outside_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]:
+    off = float(max(abs(wall.height_of(window.points))))
+    if float(window.normal @ wall.normal) < 0.0:
+        return (
+            "corners in the wrong order",
+            f"corners counter-clockwise seen from outside, as those of '{wall.name}'",
+            "Reverse them.",
+        )
+    if off > 1e-3:
+        return f"a corner {off:.3f} m off the plane of '{wall.name}'", "corners in that plane", "Move it."
+    return (
+        f"corners outside the outline of '{wall.name}'",
+        "a window that lies in its wall",
+        "Compare the coordinates of both.",
+    )
+
+
+def _sun_finds_faces(building: Building) -> Faults:
+    for zone, definition in building.zones.items():
+        faces = zone_faces(zone, building.surfaces, building.windows)
+        lit = any(face.window is not None for face in faces)
+        sun = definition.sun
+        if isinstance(sun, GivenSun):
+            yield from _shares_are_whole(zone, sun, [face.name for face in faces if face.surface is not None])
+        if sun is not None and not lit:
+            yield fault(
+                ("zones", zone, "sun"),
+                "a zone without windows",
+                "a window through which the sun enters",
+                "Remove 'sun:'.",
+            )
+        if isinstance(sun, TracedSun):
+            yield from _rays_end_on_faces(zone, faces)
+        if not lit or isinstance(sun, GivenSun):
+            continue
+        for face in faces:
+            if face.surface is not None and getattr(face.surface, face.side).absorptance is None:
+                yield fault(
+                    ("surfaces", face.name, face.side, "absorptance"),
+                    "nothing",
+                    f"solar absorptance, from 0 to 1 [-]: the sun enters zone '{zone}'",
+                    "Add 'absorptance:', or give shares under 'sun:' in the zone.",
+                )
+
+
+def _rays_end_on_faces(zone: str, faces: list[ZoneFace]) -> Faults:
+    bare = ", ".join(f"'{face.name}'" for face in faces if face.polygon is None)
+    if bare:
+        yield fault(
+            ("zones", zone, "sun"),
+            f"geometry, where {bare} {'have' if ',' in bare else 'has'} no vertices",
+            "vertices on every surface and window of the zone: rays end on them",
+            "Add 'vertices:', or write 'sun: area'.",
+        )
+
+
+def shaded(building: Building) -> tuple[list[str], list[str]]:
+    """Faces outdoors in the sun on which shades act, and those without vertices, on which they cannot."""
+    found: tuple[list[str], list[str]] = ([], [])
+    for name, surface in building.surfaces.items():
+        if surface.outside.sunlit:
+            found[surface.vertices is None].append(name)
+    for name, window in building.windows.items():
+        found[window.vertices is None].append(name)
+    return found
+
+
+def _shades_find_faces(building: Building) -> Faults:
+    if not building.shades:
+        return
+    shade_outlines(building.shades)
+    if not shaded(building)[0]:
+        yield fault(
+            ("shades", next(iter(building.shades))),
+            "a shade where no face in the sun has vertices",
+            "vertices on the walls and windows that it shades",
+            "Add 'vertices:' to them, in the same coordinates.",
+        )
+
+
+def _shares_are_whole(zone: str, sun: GivenSun, names: list[str]) -> Faults:
+    at = ("zones", zone, "sun")
+    for name in sun.shares:
+        if name not in names:
+            yield fault(
+                (*at, "shares", name), f"'{name}'", "a surface of this zone", did_you_mean(name, names)
+            )
+    total = float(sum(sun.shares.values()) + sun.lost)
+    if abs(total - 1.0) > SHARE_CLOSURE:
+        yield fault(
+            at, f"shares that sum to {total:.3f}", "shares that, with lost, sum to 1", "Complete them."
+        )
 
 
 def references(building: Building) -> Iterator[tuple[str, tuple[str, ...], str]]:

@@ -11,10 +11,12 @@ from mascarin.model.convection import AlamdariHammond, Convection, Doe2, PaperEq
 from mascarin.model.envelope import Side, Surface
 from mascarin.model.number import Number, Remark
 from mascarin.model.part import Location, fault, insist, refuse, settled
+from mascarin.model.window import Window, WindowOutside
 from mascarin.model.zone import Zone
 
 if TYPE_CHECKING:
     from mascarin.model.geometry import Polygon
+    from mascarin.model.window import Shade, Vertices
 
 _FROM_VERTICES = Remark("from the vertices")
 #: Roughness of plaster, concrete and brick in Walton 1983.
@@ -23,7 +25,11 @@ _USUAL_ROUGHNESS = 1.52
 
 def outlines(surfaces: Mapping[str, Surface]) -> dict[str, Polygon]:
     """Polygons of the surfaces that have vertices, as seen from outside."""
-    drawn = {name: surface.vertices for name, surface in surfaces.items() if surface.vertices is not None}
+    return _outlines("surfaces", {name: surface.vertices for name, surface in surfaces.items()})
+
+
+def _outlines(section: str, given: Mapping[str, Vertices | None]) -> dict[str, Polygon]:
+    drawn = {name: vertices for name, vertices in given.items() if vertices is not None}
     if not drawn:
         return {}
     from mascarin.model.geometry import Polygon
@@ -33,7 +39,7 @@ def outlines(surfaces: Mapping[str, Surface]) -> dict[str, Polygon]:
         try:
             found[name] = Polygon.of(name, vertices)
         except InputError as error:
-            faults.append(fault(("surfaces", name, "vertices"), *_sentence(error)))
+            faults.append(fault((section, name, "vertices"), *_sentence(error)))
     insist(*faults)
     return found
 
@@ -99,7 +105,8 @@ def _settled_surface(surface: Surface, polygon: Polygon | None, area: float | No
 def _settled_side(side: Side, surface: Surface, polygon: Polygon | None) -> Side:
     update: dict[str, object] = {}
     if side.convection is not None:
-        update["convection"] = _settled_convection(side.convection, side, surface, polygon)
+        area, tilt = float(surface.area or 0.0), float(surface.tilt or 0.0)
+        update["convection"] = _settled_convection(side.convection, bool(side.outdoors), area, tilt, polygon)
     if polygon is not None and side.outdoors and side.height is None and polygon.centroid[2] > 0.0:
         update["height"] = settled(
             Side, "height", float(polygon.centroid[2]), Remark("centroid of the vertices")
@@ -108,37 +115,36 @@ def _settled_side(side: Side, surface: Surface, polygon: Polygon | None) -> Side
 
 
 def _settled_convection(
-    convection: Convection, side: Side, surface: Surface, polygon: Polygon | None
+    convection: Convection, outdoors: bool, area: float, tilt: float, polygon: Polygon | None
 ) -> Convection:
     match convection:
         case AlamdariHammond(length=None) | PaperEq5(length=None):
-            length, source = _length(surface, polygon)
+            length, source = _length(area, tilt, polygon)
             kind = type(convection)
             return convection.model_copy(update={"length": settled(kind, "length", length, source)})
-        case Tarp() if side.outdoors:
-            return convection.model_copy(update=_wind_facts(convection, surface, polygon))
-        case Doe2(roughness=None) if side.outdoors:
+        case Tarp() if outdoors:
+            return convection.model_copy(update=_wind_facts(convection, area, polygon))
+        case Doe2(roughness=None) if outdoors:
             return convection.model_copy(update=_usual_roughness(Doe2))
     return convection
 
 
-def _length(surface: Surface, polygon: Polygon | None) -> tuple[float, str]:
+def _length(area: float, tilt: float, polygon: Polygon | None) -> tuple[float, str]:
     """Height of a vertical face, 4 A/P of a horizontal one [m]; both are the edge of a square."""
-    area = float(surface.area or 0.0)
     if polygon is None:
         return math.sqrt(area), Remark("edge of a square of this area")
-    if surface.tilt is not None and 45.0 < surface.tilt < 135.0:
+    if 45.0 < tilt < 135.0:
         heights = polygon.points[:, 2]
         return float(heights.max() - heights.min()), Remark("height of the vertices")
     return 4.0 * polygon.area / polygon.perimeter, Remark("4 area/perimeter of the vertices")
 
 
-def _wind_facts(tarp: Tarp, surface: Surface, polygon: Polygon | None) -> dict[str, Number]:
+def _wind_facts(tarp: Tarp, area: float, polygon: Polygon | None) -> dict[str, Number]:
     facts: dict[str, Number] = {}
     if tarp.roughness is None:
         facts |= _usual_roughness(Tarp)
     if tarp.perimeter is None:
-        edge = 4.0 * math.sqrt(surface.area or 0.0)
+        edge = 4.0 * math.sqrt(area)
         facts["perimeter"] = (
             settled(Tarp, "perimeter", edge, Remark("perimeter of a square of this area"))
             if polygon is None
@@ -150,6 +156,49 @@ def _wind_facts(tarp: Tarp, surface: Surface, polygon: Polygon | None) -> dict[s
 def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:
     source = "Walton 1983: medium rough, as plaster, concrete and brick"
     return {"roughness": settled(film, "roughness", _USUAL_ROUGHNESS, source, assumed=True)}
+
+
+def settle_windows(windows: Mapping[str, Window], surfaces: Mapping[str, Surface]) -> dict[str, Window]:
+    """Give every window its area, and its faces and gaps their lengths and heights."""
+    drawn = window_outlines(windows)
+    return {
+        name: _settled_window(window, surfaces[window.surface], drawn.get(name))
+        for name, window in windows.items()
+    }
+
+
+def window_outlines(windows: Mapping[str, Window]) -> dict[str, Polygon]:
+    """Polygons of the windows that have vertices, as seen from outside."""
+    return _outlines("windows", {name: window.vertices for name, window in windows.items()})
+
+
+def shade_outlines(shades: Mapping[str, Shade]) -> dict[str, Polygon]:
+    """Polygons of the shades."""
+    return _outlines("shades", {name: shade.vertices for name, shade in shades.items()})
+
+
+def _settled_window(window: Window, wall: Surface, polygon: Polygon | None) -> Window:
+    update: dict[str, object] = {}
+    area = float(window.area or (polygon.area if polygon is not None else 0.0))
+    if window.area is None:
+        update["area"] = settled(Window, "area", area, _FROM_VERTICES)
+    if window.cavity_height is None:
+        high, source = _length(area, 90.0, polygon)
+        update["cavity_height"] = settled(Window, "cavity_height", high, source)
+    outside, inside = window.outside, window.inside
+    films = {
+        side: _settled_convection(film, side == "outside", area, float(wall.tilt or 0.0), polygon)
+        for side, film in (("outside", outside.convection), ("inside", inside.convection))
+    }
+    height = outside.height
+    if height is None and polygon is not None and polygon.centroid[2] > 0.0:
+        source = Remark("centroid of the vertices")
+        height = settled(WindowOutside, "height", float(polygon.centroid[2]), source)
+    elif height is None and wall.outside.height is not None:
+        height = settled(WindowOutside, "height", wall.outside.height, Remark("that of the wall"))
+    update["outside"] = outside.model_copy(update={"convection": films["outside"], "height": height})
+    update["inside"] = inside.model_copy(update={"convection": films["inside"]})
+    return window.model_copy(update=update)
 
 
 def settle_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> dict[str, Zone]:

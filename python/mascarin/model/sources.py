@@ -7,14 +7,16 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mascarin.model.convection import SOURCES
-from mascarin.model.idle import faces, without_effect
+from mascarin.model.faces import closed, zone_faces
+from mascarin.model.glazing import SOURCES as GLASS
+from mascarin.model.glazing import FilledGap, SimpleGlazing, TwoFaces
+from mascarin.model.idle import faces, has_height, without_effect
 from mascarin.model.leaves import leaves
 from mascarin.model.material import PhaseChangeMaterial
 from mascarin.model.melting import FractionsLaw, TableLaw
 from mascarin.model.number import Number, Remark
-from mascarin.model.settling import enclosure, faces_of
 from mascarin.model.site import ASHRAE_WIND, CLARK, MARTIN
-from mascarin.model.zone import ASHRAE_OPENING
+from mascarin.model.zone import ASHRAE_OPENING, TracedSun
 
 if TYPE_CHECKING:
     from mascarin.model.building import Building
@@ -47,6 +49,7 @@ _AREA_VIEW = (
 )
 _ATMOSPHERE = "ICAO Doc 7488, Manual of the ICAO Standard Atmosphere (density of the air)"
 _PLANT = "Hintermueller, Ito & Kunisch 2002, doi:10.1137/S1052623401383558 (loads of ideal plants)"
+_SHADOWS = "Sutherland & Hodgman 1974, doi:10.1145/360767.360802 (shadows and sun patches as polygons)"
 _CURVE = "Fritsch & Butland 1984, doi:10.1137/0905021 (monotone interpolation of enthalpy tables)"
 
 #: What marks the text beside an assumed number as the name of a work.
@@ -97,15 +100,18 @@ def _of_methods(building: Building) -> Iterator[str]:
     yield from _of_sun(building)
     yield from _of_sky(building)
     yield from _of_zones(building)
-    films = (side.convection for surface in building.surfaces.values() for side in surface.sides)
+    films = (face.side.convection for face in faces(building))
     kinds = dict.fromkeys(film.kind for film in films if film is not None)
     yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
-    if any(face.windy and face.side.height is not None for face in faces(building)):
+    if any(face.windy and has_height(face.side) for face in faces(building)):
         yield ASHRAE_WIND
     if building.openings:
         yield ASHRAE_OPENING
     if any(zone.plants for zone in building.zones.values()):
         yield _PLANT
+    yield from _of_glazings(building)
+    if building.shades or any(isinstance(zone.sun, TracedSun) for zone in building.zones.values()):
+        yield _SHADOWS
     if _tabulated(building):
         yield _CURVE
     yield _TIME_STEPS
@@ -140,11 +146,26 @@ def _of_zones(building: Building) -> Iterator[str]:
     if building.zones and building.site.air_density is None:
         yield _ATMOSPHERE
     for name, zone in building.zones.items():
-        if zone.longwave.kind == "none" or len(faces_of(name, building.surfaces)) < 2:
+        faces = zone_faces(name, building.surfaces, building.windows)
+        if zone.longwave.kind == "none" or len(faces) < 2:
             continue
         yield _ENCLOSURE
         if zone.view_factors is None:
-            yield _AREA_VIEW if enclosure(name, building.surfaces) is None else _EXACT_VIEW
+            yield _EXACT_VIEW if closed(faces) else _AREA_VIEW
+
+
+def _of_glazings(building: Building) -> Iterator[str]:
+    for name in dict.fromkeys(window.glazing for window in building.windows.values()):
+        glass = building.glazings[name]
+        if isinstance(glass, SimpleGlazing):
+            yield from (GLASS[key] for key in ("simple", "angle"))
+            continue
+        coated = [isinstance(pane.reflectance, TwoFaces) for pane in glass.panes]
+        if glass.angular is None:
+            laws = {"panes": not all(coated), "coated": any(coated)}
+            yield from (GLASS[key] for key, acts in laws.items() if acts)
+        if any(isinstance(gap, FilledGap) for gap in glass.gaps):
+            yield GLASS["filled"]
 
 
 def _tabulated(building: Building) -> bool:

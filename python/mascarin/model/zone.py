@@ -95,6 +95,31 @@ class Plant(Part):
     )
 
 
+class EvenSun(Part):
+    """Sun spread over all faces, each absorbing by its absorptance; glass lets part of it out again."""
+
+    kind: Literal["area"]
+
+
+class GivenSun(Part):
+    """Sun by given shares, scaled to a sum of one."""
+
+    kind: Literal["shares"]
+    shares: dict[Name, q.SunShare] = Field(
+        default_factory=dict, description="Share of each surface of the zone, by its name"
+    )
+    lost: q.SunShare = Number(0.0, source=Remark("not written: nothing leaves again"))
+
+
+class TracedSun(Part):
+    """Beam followed to where its rays end, all else by view factors; needs vertices all round the zone."""
+
+    kind: Literal["geometry"]
+
+
+ZoneSun = Annotated[EvenSun | GivenSun | TracedSun, Field(discriminator="kind"), Shorthand(word="kind")]
+
+
 class Zone(Part):
     """A volume of well-mixed air."""
 
@@ -107,6 +132,9 @@ class Zone(Part):
     longwave: ZoneLongwave = Field(
         default_factory=lambda: Radiosity(kind="radiosity"),
         description="Long-wave exchange between the faces of the zone",
+    )
+    sun: ZoneSun | None = Field(
+        None, description="Where the sun that enters through windows lands; none: area"
     )
     view_factors: dict[str, dict[str, q.ViewFactor]] | None = Field(
         None,

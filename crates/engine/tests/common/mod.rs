@@ -5,7 +5,7 @@
 use mascarin_engine::description::{
     Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer, Material,
     MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky, Surface,
-    WindProfile, Zone, ZoneLongwave,
+    WindProfile, Zone, ZoneLongwave, ZoneSun,
 };
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
@@ -66,6 +66,7 @@ impl Builder {
             openings: Vec::new(),
             surfaces: Vec::new(),
             sensors: Vec::new(),
+            shades: Vec::new(),
             channels: Vec::new(),
         };
         Self { description }
@@ -147,7 +148,7 @@ impl Builder {
             nodes,
         });
         let layers = layers.collect();
-        self.description.constructions.push(Construction { name: name.to_owned(), layers });
+        self.description.constructions.push(Construction { name: name.to_owned(), layers, glazing: None });
         self.description.constructions.len() - 1
     }
 
@@ -164,6 +165,7 @@ impl Builder {
             },
             longwave,
             view_weights: Vec::new(),
+            sun: ZoneSun::Area,
             gains: Vec::new(),
             ventilation: Vec::new(),
             heating: None,
@@ -186,6 +188,10 @@ impl Builder {
             name: name.to_owned(),
             construction,
             area: self.number(&format!("surfaces.{name}.area"), place[0]),
+            openings: Vec::new(),
+            frame: None,
+            cavity_height: None,
+            vertices: Vec::new(),
             tilt: self.number(&format!("surfaces.{name}.tilt"), place[1]),
             azimuth: self.number(&format!("surfaces.{name}.azimuth"), place[2]),
             outside,
