@@ -215,6 +215,9 @@ def _tell(opened: Study, findings: Findings, out: Path) -> None:
                 f"{sensor:<16}{period:<16}{run.label:<10}{m.rmse:8.3f}{m.sd:8.3f}{m.bias:8.3f}{m.max_error:8.3f}"
                 for period, m in periods.items()
             ]
+    if findings.aims:
+        reached = sum(aim.passed for aim in findings.aims)
+        lines.append(f"aims reached: {reached} of {len(findings.aims)}; the report says what the rest lacks")
     lines.append(f"energy closure {findings.fitted.results.energy.closure:.1e}; {findings.seconds:.0f} s")
     lines.append(f"report: {out / 'report.html'}")
     print("\n".join(lines), file=sys.stderr)
