@@ -84,6 +84,20 @@ def test_what_the_data_do_not_bound_is_said() -> None:
     assert "the range at 15 W/(m2 K)" in profile.words
 
 
+def test_values_that_cannot_be_run_are_outside() -> None:
+    def model(p: Floats) -> Floats:
+        out = np.asarray((p @ WAVES[:, :2].T)[:, :, None])
+        out[p[:, 0] > 2.02] = np.nan
+        return out
+
+    measured = WAVES[:, :2] @ TRUTH[:2] + 0.3 * np.random.default_rng(5).normal(size=HOUR.size)
+    pair = tuple(FitParameter(name, -20.0, 20.0, start=1.9) for name in "ab")
+    fit = solve(CalibrationProblem(pair, (FitSensor("s", measured, 0.3),), model), rules=Rules(starts=1))
+    (profile,) = profiles(fit, ["a"])
+    assert np.isinf(profile.rise[profile.values > 2.02]).all()
+    assert fit.x[0] < profile.high <= 2.02 + 1e-9
+
+
 def test_refusals() -> None:
     fit = solve(linear(), rules=Rules(starts=1))
     with pytest.raises(InputError, match="'d' was not fitted"):

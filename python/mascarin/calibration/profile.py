@@ -234,7 +234,8 @@ class _Search:
                     damping[k] = max(10.0 * damping[k], 1e-3)
                 active[k] = gain > _SETTLED * self._limit[held[k]] or (gain <= 0.0 and 0.0 < damping[k] < 1.0)
         risen = (np.einsum("ni,ni->n", r, r) - self._lowest) * self._weight[held]
-        return z, np.maximum(risen, 0.0)
+        # Where the model cannot be run, nothing speaks for the value.
+        return z, np.where(np.isnan(risen), np.inf, np.maximum(risen, 0.0))
 
     def _step(self, z: Floats, r: Floats, jacobian: Floats, held: int, damping: float) -> Floats:
         """A damped Gauss-Newton step within the range; what is at a bound and pulled outward stays."""

@@ -94,19 +94,27 @@ def band(study: Study, run: ModelRun, fit: Fit, slope: Array) -> Band:
     """
     from scipy import stats
 
-    found = fit.uncertainty
-    variance = np.einsum("pts,pq,qts->ts", slope, found.covariance, slope, optimize=True)
-    observation = study.observation
-    # A sensor that took no part in the fit has its error on the same days all the same.
-    simulated = observation.simulated(run.results.index, run.results.records)
-    misses = simulated - observation.measured
-    own = _root_mean_square(misses[study.during["identification"]])
-    swallowed = dict(zip((s.name for s in fit.problem.sensors), found.error, strict=True))
-    error = np.array([swallowed.get(name, own[s]) for s, name in enumerate(observation.names)])
-    quantile = float(stats.t.ppf(0.5 + 0.5 * fit.confidence, found.freedom))
-    half = quantile * np.sqrt(np.maximum(variance, 0.0) + error**2)
+    from mascarin.calibration.series import effective_samples
+
+    found, observation, seen = fit.uncertainty, study.observation, study.during["identification"]
+    variance = np.maximum(np.einsum("pts,pq,qts->ts", slope, found.covariance, slope, optimize=True), 0.0)
+    misses = observation.simulated(run.results.index, run.results.records) - observation.measured
+    known = {sensor.name: k for k, sensor in enumerate(fit.problem.sensors)}
+    error, count = np.empty(len(observation.names)), np.empty(len(observation.names))
+    for s, name in enumerate(observation.names):
+        if name in known:
+            error[s], count[s] = found.error[known[name]], found.effective_samples[known[name]]
+        else:  # It took no part in the fit, and has its error on the same days all the same.
+            error[s] = _root_mean_square(misses[seen, s])
+            count[s] = effective_samples(misses[seen, s]) if np.isfinite(error[s]) else 1.0
+    tail = 0.5 + 0.5 * fit.confidence
+    estimates = float(stats.t.ppf(tail, found.freedom)) * np.sqrt(variance)
+    # The error of a few independent samples: their scatter is known as little as their mean.
+    count = np.maximum(count, 2.0)
+    errors = stats.t.ppf(tail, count - 1.0) * error * np.sqrt(1.0 + 1.0 / count)
+    half = np.hypot(estimates, errors)
     held = {period: _held(misses, half, use) for period, use in study.during.items()}
-    return Band(fit.confidence, half, np.sqrt(np.maximum(variance, 0.0)), error, held)
+    return Band(fit.confidence, half, np.sqrt(variance), error, held)
 
 
 def band_table(study: Study, found: Band) -> dict[str, Any]:
@@ -129,8 +137,8 @@ def band_table(study: Study, found: Band) -> dict[str, Any]:
         "caption": (
             f"A band of {100.0 * found.confidence:g} % about the fitted model: the uncertainty of the "
             "estimates, carried to each instant, and the size of the model's errors on the identification "
-            "days. The shares of the measured values inside it show whether the errors stay as they were "
-            "there. [%]"
+            "days, as far as so few independent ones tell it. The shares of the measured values inside show "
+            "whether the errors stay as they were there. [%]"
         ),
         "columns": ["sensor", "unit", "mean half-width", *study.during],
         "rows": rows,
@@ -162,12 +170,10 @@ def band_words(study: Study, found: Band) -> list[str]:
     ]
 
 
-def _root_mean_square(misses: Array) -> Array:
-    """By column; NaN where nothing was measured."""
-    there = np.isfinite(misses)
-    count = there.sum(axis=0)
-    square = np.sum(np.where(there, misses, 0.0) ** 2, axis=0) / np.maximum(count, 1)
-    return np.asarray(np.where(count > 0, np.sqrt(square), np.nan))
+def _root_mean_square(misses: Array) -> float:
+    """NaN where nothing was measured."""
+    there = misses[np.isfinite(misses)]
+    return float(np.sqrt(np.mean(there**2))) if there.size > 1 else float("nan")
 
 
 def _series(study: Study, run: ModelRun, vectors: Array) -> Array:
