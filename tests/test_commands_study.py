@@ -137,6 +137,27 @@ def test_validate_ends_with_0_when_every_criterion_is_kept(
     assert "criteria kept: 6 of 6" in said
 
 
+def test_a_run_may_start_from_a_temperature_that_is_given(
+    bench: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The state at the start is said, and a wrong one is seen after a warm-up of a day."""
+    study = bench.folder / "cold.yaml"
+    starts, errors = [], []
+    for initial in ("repeat", "12.5", "-20"):
+        study.write_text(f"initial: {initial}\n" + bench.study.read_text("utf-8"), "utf-8")
+        _, printed, _ = run(capsys, "validate", str(study), "--json")
+        content = json.loads(printed)
+        starts.append(content["start"])
+        errors.append(content["sensors"]["core"]["identification"]["nominal"]["rmse"])
+    assert starts[0].startswith("first 24 h repeated")
+    assert starts[1:] == ["12.5 degC everywhere", "-20 degC everywhere"]
+    assert len(set(errors)) == 3
+    study.write_text("initial: cold\n" + bench.study.read_text("utf-8"), "utf-8")
+    code, _, said = run(capsys, "validate", str(study))
+    assert code == 2
+    assert "cold.yaml:1: initial" in said
+
+
 @pytest.mark.parametrize("command", ["sensitivity", "calibrate", "validate"])
 def test_a_step_refuses_what_a_study_refuses(
     command: str, bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -249,6 +249,33 @@ def test_without_a_sensitivity_the_other_steps_are_made(
     assert found.printed == ""
 
 
+def test_what_keeps_from_an_aim_is_the_parameter_left_out(
+    quick: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The sun that the wall takes up is wrong in the description, and nobody identifies it."""
+    text = quick.study.read_text("utf-8")
+    for path in ("surfaces.wall.outside.absorptance", "materials.brick.conductivity"):
+        assert f"    {path}:\n" in text
+        text = text.replace(f"    {path}:\n", "")
+    aims = "aims:\n  - {metric: sd, limit: 0.06}\n  - {metric: bias, limit: 0.0001, sensors: core}\ncriteria:"
+    quick.study.write_text(text.replace("criteria:", aims), "utf-8")
+    done = carried_out(quick.study, quick.folder / "out", capsys)
+    missed = {(a["sensor"], a["metric"]) for a in done.content["aims"] if not a["passed"]}
+    assert {("core", "sd"), ("core", "bias")} <= missed
+    found = done.content["shortfall"]
+    # More sun taken up, or less of it given to the air: the wall cannot tell the two apart.
+    first = found["steps"][0]
+    more = {"surfaces.wall.outside.absorptance": 1.0, "surfaces.wall.outside.convection.coefficient": -1.0}
+    assert more[first["path"]] * first["changes"][first["path"]] > 0.0
+    blind = done.content["sensors"]["core"]["blind"]["fitted"]["sd"]
+    assert found["sd"]["core"] == pytest.approx(blind, rel=1e-4)
+    assert found["every"]["sd"]["core"] < 0.5 * blind
+    assert any(n["title"] == "Where an aim is missed" and "the equations can do it" in n["text"]
+               for n in done.content["notes"])  # fmt: skip
+    reached = sum(a["passed"] for a in done.content["aims"])
+    assert f"aims reached: {reached} of {len(done.content['aims'])}" in done.said
+
+
 @pytest.mark.filterwarnings("always::UserWarning")
 def test_work_on_other_inputs_is_not_continued(quick: Bench, capsys: pytest.CaptureFixture[str]) -> None:
     out = quick.folder / "out"

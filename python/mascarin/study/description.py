@@ -365,6 +365,11 @@ class StudyFile(Part):
     sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
     step: Duration = Field("15min", description="Time step")
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field("sdirk2", description="Scheme")
+    initial: Literal["repeat"] | Annotated[float, Field(gt=-100.0, lt=200.0)] = Field(
+        "repeat",
+        description="State that a run starts from: its first day repeated until it settles (repeat), or one "
+        "temperature everywhere [degC]",
+    )
     periods: Periods = Field(description="Which part of the record is for what")
     quality: Quality = Field(default_factory=lambda: Quality(mask=()), description="Suspicious stretches")
     criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit 1 when one is missed")

@@ -313,6 +313,7 @@ class Study:
             end=end,
             outputs=[*(sensor.output for sensor in self.file.sensors.values()), *further],
             scheme=self.file.scheme,
+            initial=self.file.initial,
             measurements=self.measurements,
             ranges=self._ranges(building),
         )
