@@ -132,7 +132,8 @@ def _sentences(fault: dict[str, Any]) -> str:
 def _place(location: Place, plain: Any) -> Place:
     """Drop from pydantic's location what does not stand in the file, such as the kinds of a union."""
     place: list[str | int] = []
-    for step, following in zip(location, (*location[1:], None), strict=True):
+    # The place of a fault in the whole is empty.
+    for step, following in zip(location, (*location, None)[1:], strict=True):
         # The kind of a union may be called like one of its lists (panes).
         kind = isinstance(plain, Mapping) and plain.get("kind") == step and isinstance(following, str)
         if not kind and _holds(plain, step):
