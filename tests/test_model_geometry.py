@@ -228,6 +228,27 @@ def test_a_neighbour_in_the_plane_is_no_child() -> None:
     assert g.parents([el, bridge]) == [None, None]
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "meet"),
+    [
+        ((0.5, 0.0), (1.5, 1.0), True),  # shifted along shared edges
+        ((0.25, -1.0), (0.75, 2.0), True),  # a cross
+        ((0.0, 0.0), (1.0, 1.0), True),  # itself
+        ((0.2, 0.2), (0.8, 0.8), True),  # within
+        ((1.0, 0.0), (2.0, 1.0), False),  # an edge in common
+        ((1.0, 1.0), (2.0, 2.0), False),  # a corner in common
+        ((1.5, 0.0), (2.0, 1.0), False),
+    ],
+)
+def test_what_overlaps(low: tuple[float, float], high: tuple[float, float], meet: bool) -> None:
+    def drawn(a: tuple[float, float], b: tuple[float, float]) -> g.Polygon:
+        return g.Polygon.of("box", [(a[0], 0, a[1]), (b[0], 0, a[1]), (b[0], 0, b[1]), (a[0], 0, b[1])])
+
+    unit, other = drawn((0.0, 0.0), (1.0, 1.0)), drawn(low, high)
+    assert unit.overlaps(other) is other.overlaps(unit) is meet
+    assert not unit.overlaps(g.Polygon.of("off", [(x, 1.0, z) for x, _, z in other.vertices]))
+
+
 def test_open_edges_are_named() -> None:
     faces = box(3, 4, 2.5)
     gaps = g.open_edges(faces[1:])

@@ -178,6 +178,21 @@ _FACES = {
 }
 
 
+_DOOR = [[0.2, 0, 0.0], [1.2, 0, 0], [1.2, 0, 2.0], [0.2, 0, 2.0]]
+
+
+def _walls(faces: dict[str, Any], absorptance: float = 1.0) -> dict[str, Any]:
+    return {
+        name: {
+            "construction": "wall",
+            "vertices": vertices,
+            "outside": {"outdoors": True, "convection": 12, "emissivity": 0.9, "absorptance": 0.6},
+            "inside": {"zone": "room", "convection": 2, "emissivity": 0.9, "absorptance": absorptance},
+        }
+        for name, vertices in faces.items()
+    }
+
+
 def _pane(west: float) -> dict[str, Any]:
     corners = [[west, 0, 0.2], [west + 3, 0, 0.2], [west + 3, 0, 2.2], [west, 0, 2.2]]
     return {
@@ -198,15 +213,7 @@ def drawn(absorptance: float = 1.0, sun: str = "geometry", **sections: Any) -> B
         "glazings": {"clear": {"kind": "panes", "panes": [pane, pane], "gaps": [{"conductance": 5.208}]}},
         "zones": {"room": {"sun": sun}},
         "windows": {"one": _pane(0.5), "two": _pane(4.5)},
-        "surfaces": {
-            name: {
-                "construction": "wall",
-                "vertices": vertices,
-                "outside": {"outdoors": True, "convection": 12, "emissivity": 0.9, "absorptance": 0.6},
-                "inside": {"zone": "room", "convection": 2, "emissivity": 0.9, "absorptance": absorptance},
-            }
-            for name, vertices in _FACES.items()
-        },
+        "surfaces": _walls(_FACES, absorptance),
     } | sections
     return parse(json.dumps(plain), "drawn.yaml")
 
@@ -258,6 +265,9 @@ def test_an_overhang_spares_the_low_sun(climate: Climate) -> None:
     [
         ({"shades": {"s": {"vertices": [[0, 0, 0], [1, 0, 0]]}}}, r"shades\.s\.vertices[\s\S]*at least 3"),
         ({"shades": {"s": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]]}}}, r"not plane"),
+        ({"windows": {"one": _pane(0.5), "two": _pane(2.0)}}, r"windows\.two[\s\S]*overlaps 'one'"),
+        ({"windows": {"one": _pane(0.5), "two": _pane(0.5)}}, r"overlaps 'one'"),
+        ({"surfaces": _walls(_FACES | {"door": _DOOR})}, r"windows\.one[\s\S]*overlaps 'door'"),
         ({"windows": {"one": _pane(5.5)}}, r"corners outside the outline of 'south'"),
     ],
 )

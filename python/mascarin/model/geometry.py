@@ -225,6 +225,19 @@ class Polygon:
         )
         return not crossing and other.area < self.area + TOLERANCE * self.perimeter
 
+    def overlaps(self, other: Polygon) -> bool:
+        """Whether two polygons of one plane share more than edges and corners."""
+        if not _coplanar(self, other):
+            return False
+        if self.contains(other) or other.contains(self):
+            return True
+        here, there = self.in_plane(self.points), self.in_plane(other.points)
+        return any(
+            _inside(outline, middle) and not _on_outline(outline, middle)
+            for outline, cut in ((here, there), (there, here))
+            for middle in _pieces(cut, outline)
+        )
+
 
 @dataclass(frozen=True)
 class OpenEdge:
@@ -620,14 +633,35 @@ def _cross_properly(a: Array, b: Array, c: Array, d: Array) -> bool:
     return _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0
 
 
-def _inside(outline: Array, point: Array) -> bool:
-    """Whether a point lies in a polygon of the plane or within the tolerance of its outline."""
-    crossings = 0
+def _pieces(outline: Array, other: Array) -> list[Array]:
+    """Middles of the pieces into which the lines of one polygon's edges cut the edges of another."""
+    middles = []
+    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        cuts = [0.0, 1.0]
+        for c, d in zip(other, np.roll(other, -1, axis=0), strict=True):
+            before, after = _turn(c, d, a), _turn(c, d, b)
+            if before * after < 0.0:
+                cuts.append(before / (before - after))
+        middles += [a + 0.5 * (one + two) * (b - a) for one, two in pairwise(sorted(cuts))]
+    return middles
+
+
+def _on_outline(outline: Array, point: Array) -> bool:
     for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         along = b - a
         position = min(max(float((point - a) @ along) / float(along @ along), 0.0), 1.0)
         if float(np.linalg.norm(point - a - position * along)) < TOLERANCE:
             return True
+    return False
+
+
+def _inside(outline: Array, point: Array) -> bool:
+    """Whether a point lies in a polygon of the plane or within the tolerance of its outline."""
+    if _on_outline(outline, point):
+        return True
+    crossings = 0
+    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        along = b - a
         if (a[1] > point[1]) != (b[1] > point[1]):
             x = a[0] + (point[1] - a[1]) / along[1] * along[0]
             crossings += int(x > point[0])

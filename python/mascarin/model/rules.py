@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from mascarin.errors import did_you_mean
@@ -250,6 +251,7 @@ def _windows_lie_in_walls(building: Building) -> Faults:
         polygon = window_outlines({name: window})[name]
         if not outline.contains(polygon):
             yield fault((*at, "vertices"), *_outside_its_wall(polygon, outline))
+        yield from _beside_the_others(building, name, polygon, drawn)
     for name, surface in building.surfaces.items():
         inside = dict(windows_of(name, building.windows))
         gross = float(surface.area or drawn_areas(building.surfaces).get(name, 0.0))
@@ -261,6 +263,22 @@ def _windows_lie_in_walls(building: Building) -> Faults:
                 f"{sum(areas.values()):.2f} m2 of windows ({listed})",
                 f"less than the {gross:.2f} m2 of their wall '{name}'",
                 "The area of a wall is gross: its windows lie in it.",
+            )
+
+
+def _beside_the_others(building: Building, name: str, polygon: Polygon, walls: dict[str, Polygon]) -> Faults:
+    """A window overlaps no window before it, and no wall but its own and what that lies in."""
+    own = walls[building.windows[name].surface]
+    before = takewhile(lambda one: one != name, building.windows)
+    others = window_outlines({one: building.windows[one] for one in before})
+    others |= {wall: outline for wall, outline in walls.items() if not outline.contains(own)}
+    for other, outline in others.items():
+        if polygon.overlaps(outline):
+            yield fault(
+                ("windows", name, "vertices"),
+                f"a window that overlaps '{other}'",
+                "windows, doors and walls side by side",
+                "Move its corners.",
             )
 
 
