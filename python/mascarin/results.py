@@ -161,6 +161,8 @@ class Results:
         The energy ledger.
     provenance : Provenance
         Version, inputs and options.
+    warnings : tuple of str
+        Phase-change layers that neither melted nor froze.
     """
 
     outputs: Sequence[Output]
@@ -168,6 +170,7 @@ class Results:
     records: Array
     energy: EnergyLedger
     provenance: Provenance
+    warnings: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> xr.DataArray:
         """One series, labelled with UTC times.

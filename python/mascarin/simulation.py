@@ -16,6 +16,7 @@ from mascarin import _engine
 from mascarin.climate.table import seconds_of
 from mascarin.climate.timezones import moment
 from mascarin.errors import InputError, SolverError, did_you_mean
+from mascarin.model import unmelted
 from mascarin.results import EnergyLedger, Provenance, Results
 
 if TYPE_CHECKING:
@@ -285,19 +286,25 @@ class Simulation:
         SolverError
             A step did not converge, or the first period did not settle.
         """
-        probes, recipes = _probes(self.outputs)
+        probes, recipes = _probes([*self.outputs, *self._watched])
         vector: Array = np.array(self.values if values is None else values, dtype=np.float64)
         self._require_possible(vector[None, :])
         with _told_apart(self._in_time):
             raw = self._plan.simulate(vector, self._forcing, self._options(probes, 0, 1))
-        records = _derive(raw["records"], recipes)
+        records, seen = np.split(_derive(raw["records"], recipes), [len(self.outputs)], axis=1)
         return Results(
             outputs=self.outputs,
             index=self.index,
-            records=records,
+            records=np.ascontiguousarray(records),
             energy=EnergyLedger.read(raw),
             provenance=self._provenance(raw, vector),
+            warnings=tuple(unmelted.warnings(self.building, seen)),
         )
+
+    @cached_property
+    def _watched(self) -> list[Output]:
+        """What is recorded beside the outputs, to see whether what could melt did."""
+        return unmelted.watched(self.building)
 
     def ensemble(
         self,

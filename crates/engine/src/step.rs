@@ -687,6 +687,10 @@ impl<'a, S: Real> Stepper<'a, S> {
             self.solve_linear(length);
             let change = self.distance(&self.iterate);
             active = active & !self.settled(change, before);
+            if active.any() && iteration + 1 == MAX_ITERATIONS {
+                // The last change stays to be seen: it is what an error tells.
+                break;
+            }
             if active.any() {
                 let limited = self.advance(active, iteration, &state.memory);
                 before = S::select(limited, S::zero(), change);

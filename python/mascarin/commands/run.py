@@ -78,6 +78,8 @@ def run(
     )
     _tell(described, simulation)
     results = simulation.run()
+    for line in results.warnings:
+        print(f"warning: {line}", file=sys.stderr)
     if interval is not None:
         results = results.every(interval)
     if out is not None:
@@ -186,6 +188,7 @@ def _summary(results: Results) -> dict[str, Any]:
         },
         "energy": results.energy.to_dict(),
         **results.provenance.to_dict(),
+        "warnings": list(results.warnings),
     }
 
 
@@ -196,3 +199,8 @@ def _print(results: Results) -> None:
     ]
     print_table(("output", "unit", "min", "mean", "max"), rows)
     print(f"\n{results.energy}")
+    notes = results.provenance
+    if notes.reversals:
+        print(f"{notes.reversals} times a cell with hysteresis melted and froze within one step")
+    if notes.halved_steps:
+        print(f"{notes.halved_steps} steps were halved to converge")

@@ -214,9 +214,10 @@ impl<S: Real> Curve<S> {
         [self.centre + self.width.scale(low), self.centre + self.width.scale(high)]
     }
 
-    /// Temperature at which the compact curve has a fraction, to a millionth of its support [degC].
+    /// Temperatures between which the compact curve passes a fraction, a millionth of its support apart: at the second
+    /// it is not below it [degC].
     #[inline(never)]
-    pub(super) fn temperature_of(&self, fraction: S) -> S {
+    pub(super) fn temperatures_of(&self, fraction: S) -> [S; 2] {
         let [mut low, mut high] = self.support();
         for _ in 0..BISECTIONS {
             let middle = (low + high).scale(0.5);
@@ -224,7 +225,7 @@ impl<S: Real> Curve<S> {
             low = S::select(beneath, middle, low);
             high = S::select(beneath, high, middle);
         }
-        (low + high).scale(0.5)
+        [low, high]
     }
 }
 

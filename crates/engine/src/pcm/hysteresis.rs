@@ -160,10 +160,15 @@ impl<S: Real> Hysteresis<S> {
     fn marked(&self, fraction: S, marks: [S; 2], asked: S::Mask) -> [S; 2] {
         let far = S::constant(0.5 * FAR);
         let missing = [asked & far.lt(marks[0]), asked & marks[1].lt(-far)];
-        let find = |mask: S::Mask, curve: &Curve<S>, mark| {
-            if mask.any() { S::select(mask, curve.temperature_of(fraction), mark) } else { mark }
+        let find = |mask: S::Mask, curve: &Curve<S>, side: usize| {
+            if mask.any() {
+                S::select(mask, curve.temperatures_of(fraction)[side], marks[side])
+            } else {
+                marks[side]
+            }
         };
-        [find(missing[0], &self.cooling, marks[0]), find(missing[1], &self.heating, marks[1])]
+        // Each on the side where its curve is followed: a step that lands there finds the slope that goes on.
+        [find(missing[0], &self.cooling, 0), find(missing[1], &self.heating, 1)]
     }
 
     /// The same memory with nothing left unknown.

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from mascarin.errors import MascarinError
-from mascarin.validation.cases import conduction, phase, radiation, sun, zones
+from mascarin.validation.cases import conduction, melting, phase, radiation, sun, zones
 from mascarin.validation.cases.check import Case, Check, Topic
 
 
@@ -18,7 +18,7 @@ def cases(topic: Topic | None = None) -> list[Case]:
     topic : str, optional
         ``building`` or ``pcm``.
     """
-    every = (*conduction.CASES, *phase.CASES, *zones.CASES, *radiation.CASES, *sun.CASES)
+    every = (*conduction.CASES, *phase.CASES, *melting.CASES, *zones.CASES, *radiation.CASES, *sun.CASES)
     return [case for case in every if topic is None or topic in case.topics]
 
 

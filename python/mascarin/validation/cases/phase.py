@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -13,13 +13,16 @@ from mascarin.errors import SolverError
 from mascarin.validation.cases import bench
 from mascarin.validation.cases.check import Case, Check
 
+if TYPE_CHECKING:
+    from mascarin.results import Results
+
 #: Half-width of the melting range in the front cases [K]: its sensible heat is 0.01 % of the latent heat.
 SHARP: Final = 0.002
 #: Allowed relative error of a front: the project's demand at 1 mm and 300 s.
 FRONT: Final = 0.003
 
 
-def _slab(
+def slab(
     wax: str, thickness: float, nodes: int, outside: str = "measured: face", depths: Sequence[float] = ()
 ) -> str:
     """A slab of one material before a face or air, its far side adiabatic, with sensors `at0`, `at1`, ..."""
@@ -95,7 +98,7 @@ class Front:
             f"melting_temperature: {self.melting}, "
             f"law: {{kind: tanh, width: {SHARP}}}"
         )
-        text = _slab(wax, thickness, round(thickness / cell))
+        text = slab(wax, thickness, round(thickness / cell))
         end = math.ceil(max(times) / step) * step
         liquid_part = bench.run(
             text, end, {"face": bench.steady(self.face)}, step=step, outputs=["slab.wax_liquid_fraction"],
@@ -162,7 +165,7 @@ def _robin(name: str) -> Iterator[Check]:
         f"density: {density}, conductivity: {conductivity}, specific_heat: {heat}, latent_heat: {latent}, "
         f"melting_temperature: 26, law: {{kind: tanh, width: {SHARP}}}"
     )
-    text = _slab(wax, 0.05, 50, f"measured: air, convection: {film}")
+    text = slab(wax, 0.05, 50, f"measured: air, convection: {film}")
     step, gap = 3000.0, conductivity / film
     # When the front is at the centre of a volume the mesh sees it where it is.
     fronts = [0.0155, 0.0405]
@@ -193,7 +196,7 @@ def _mushy(name: str) -> Iterator[Check]:
         f"density: {density}, conductivity: {conductivity}, specific_heat: 2000, "
         "law: {kind: table, temperatures: [10, 30], enthalpies: [0, 150000]}"
     )
-    text = _slab(wax, cell * count, count, depths=[x])
+    text = slab(wax, cell * count, count, depths=[x])
     t = bench.times(30 * bench.DAY, 60.0)
     columns = {"face": 20.0 + amplitude * np.sin(omega * t)}
     series = bench.run(text, 60.0, columns, step=step, outputs=["at0.temperature"]).records[:, 0]
@@ -250,7 +253,7 @@ def _boltzmann(name: str) -> Iterator[Check]:
         f"density: {density}, conductivity: [{solid}, {liquid}], specific_heat: {heat}, "
         f"latent_heat: {latent}, melting_temperature: {melting}, law: {{kind: tanh, width: {width}}}"
     )
-    text = _slab(wax, thickness, round(thickness / cell), depths=depths)
+    text = slab(wax, thickness, round(thickness / cell), depths=depths)
     outputs = [f"at{k}.temperature" for k in range(len(depths))] + ["slab.outside_flux"]
     found = bench.run(
         text, time, {"face": bench.steady(face)}, step=step, outputs=outputs, initial=start
@@ -326,6 +329,29 @@ def _robust(name: str) -> Iterator[Check]:
                 except SolverError:
                     failures += 1
     yield Check.most(name, f"runs that failed, of {runs}", "-", float(failures), high=0.0)
+
+
+def stefan(cell: float, step: float, steps: int) -> Results:
+    """Run the one-phase front in a slab of 0.1 m over some steps.
+
+    Parameters
+    ----------
+    cell : float
+        Thickness of a volume. [m]
+    step : float
+        Time step. [s]
+    steps : int
+        Number of steps.
+    """
+    wax = (
+        "density: 870, conductivity: 1.5, specific_heat: 2500, latent_heat: 179000, "
+        f"melting_temperature: 26, law: {{kind: tanh, width: {SHARP}}}"
+    )
+    text = slab(wax, _SLAB, round(_SLAB / cell))
+    return bench.run(
+        text, step * steps, {"face": bench.steady(36.0)}, step=step, initial=_ONE_PHASE.start,
+        outputs=["slab.wax_liquid_fraction"],
+    )  # fmt: skip
 
 
 _NEUMANN: Final = "Carslaw & Jaeger 1959, Conduction of Heat in Solids, 2nd ed., 11.2"
