@@ -184,7 +184,7 @@ def test_wrong_units(columns: tuple[str, str, float, float], message: str, tmp_p
     file = write(tmp_path / "a.csv", {first: t + shift, second: factor * heat(t)})
     with pytest.raises(InputError, match=message) as caught:
         from_dsc(file)
-    assert str(caught.value).startswith(f"{file}: ")
+    assert str(caught.value).startswith(f"{file}:1: ")
 
 
 def test_a_unit_can_be_given(tmp_path: Path) -> None:

@@ -230,7 +230,7 @@ def from_dsc(
         if value is not None and not value > 0.0:
             raise InputError(f"{name}: found {value:g}; expected a positive number")
     scans = read(file, Settings(unit, rate, mass))
-    found = [_melting(scan, specific_heat, melting_range, str(file)) for scan in scans]
+    found = [_melting(scan, specific_heat, melting_range, scan.place) for scan in scans]
     runs = tuple(sorted((run for run, _ in found), key=lambda run: run.direction != "heating"))
     remarks = [remark for scan in scans for remark in scan.remarks]
     remarks += [remark for _, one in found for remark in one]

@@ -43,6 +43,8 @@ class Scan:
         From the file's unit to SI.
     remarks : tuple of str
         What was decided on the way.
+    place : str
+        File, and line of the names of its columns.
     """
 
     direction: str
@@ -52,6 +54,7 @@ class Scan:
     column: Column
     factor: float
     remarks: tuple[str, ...]
+    place: str
 
 
 @dataclass(frozen=True)
@@ -81,30 +84,34 @@ def read(path: Path, settings: Settings) -> list[Scan]:
     InputError
         The file, a column, a unit or the order of the rows cannot be used.
     """
-    names, table = _table(path)
+    names, table, line = _table(path)
+    # The line of the names, which say what the columns are.
+    place = f"{path}:{line}"
     columns = [column for k, name in enumerate(names) if (column := column_of(k, name)) is not None]
     if settings.unit is not None:
         columns = [_with_unit(column, settings.unit) for column in columns]
     for column in columns:
-        check_unit(column, str(path))
-    temperature = _one(columns, "temperature", names, path)
+        check_unit(column, place)
+    temperature = _one(columns, "temperature", names, place)
     signals = [column for column in columns if column.quantity in SIGNALS]
     if not signals:
         raise InputError(
-            f"{path}: found the columns {', '.join(names)}; expected a signal such as 'cp [J/(g K)]', "
+            f"{place}: found the columns {', '.join(names)}; expected a signal such as 'cp [J/(g K)]', "
             "'DSC/(mW/mg)' or 'enthalpy [J/g]'"
         )
     quantities = dict.fromkeys(column.quantity for column in signals)
     if len(quantities) > 1:
-        raise InputError(f"{path}: found {' and '.join(quantities)}; expected one of them. Remove the others")
+        raise InputError(
+            f"{place}: found {' and '.join(quantities)}; expected one of them. Remove the others"
+        )
     scans = []
     for signal in signals:
-        scans += _runs(path, table, columns, temperature, signal, settings)
+        scans += _runs(place, table, columns, temperature, signal, settings)
     directions = [scan.direction for scan in scans]
     for direction in ("heating", "cooling"):
         if directions.count(direction) > 1:
             raise InputError(
-                f"{path}: found {directions.count(direction)} runs of {direction}; expected one. Keep the "
+                f"{place}: found {directions.count(direction)} runs of {direction}; expected one. Keep the "
                 "run that is meant (often the second heating)"
             )
     return scans
@@ -121,8 +128,8 @@ def _with_unit(column: Column, unit: str) -> Column:
     return Column(column.index, column.name, quantity, meant, column.direction)
 
 
-def _table(path: Path) -> tuple[list[str], list[list[str]]]:
-    """Names of the columns, and the rows beneath."""
+def _table(path: Path) -> tuple[list[str], list[list[str]], int]:
+    """Names of the columns, the rows beneath, and the line of the names."""
     try:
         raw = path.read_bytes()
     except OSError as error:
@@ -131,7 +138,8 @@ def _table(path: Path) -> tuple[list[str], list[list[str]]]:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
-    lines = [line for line in text.splitlines() if line.strip()]
+    numbered = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    lines = [line for _, line in numbered]
     head = next((k for k, line in enumerate(lines) if _is_head(line, lines[k + 1 : k + 2])), None)
     if head is None:
         raise InputError(
@@ -140,7 +148,7 @@ def _table(path: Path) -> tuple[list[str], list[list[str]]]:
         )
     separator = _separator(lines[head + 1])
     rows = list(csv.reader(io.StringIO("\n".join(lines[head:])), delimiter=separator))
-    return [name.strip().lstrip("#").strip() for name in rows[0]], rows[1:]
+    return [name.strip().lstrip("#").strip() for name in rows[0]], rows[1:], numbered[head][0]
 
 
 def _is_head(line: str, following: list[str]) -> bool:
@@ -155,18 +163,18 @@ def _separator(line: str) -> str:
     return next((one for one in (";", "\t", ",") if one in line), ",")
 
 
-def _one(columns: list[Column], quantity: str, names: list[str], path: Path) -> Column:
+def _one(columns: list[Column], quantity: str, names: list[str], place: str) -> Column:
     found = [column for column in columns if column.quantity == quantity]
     if len(found) != 1:
         raise InputError(
-            f"{path}: found {len(found)} columns of {quantity} among {', '.join(names)}; expected one, "
+            f"{place}: found {len(found)} columns of {quantity} among {', '.join(names)}; expected one, "
             f"such as '{quantity} [{'degC' if quantity == 'temperature' else '...'}]'"
         )
     return found[0]
 
 
 def _runs(
-    path: Path, table: list[list[str]], columns: list[Column], temperature: Column, signal: Column,
+    place: str, table: list[list[str]], columns: list[Column], temperature: Column, signal: Column,
     settings: Settings,
 ) -> list[Scan]:  # fmt: skip
     """The runs that one column of signal holds."""
@@ -177,40 +185,40 @@ def _runs(
     for number, row in enumerate(table, start=2):
         if signal.index >= len(row) or not row[signal.index].strip():
             continue  # a column for heating and one for cooling need not be of one length
-        rows.append([_number(row, column, number, path) for column in wanted])
+        rows.append([_number(row, column, number, place) for column in wanted])
         labels.append(row[label.index].strip().casefold() if label else "")
     if len(rows) < LEAST_ROWS:
         raise InputError(
-            f"{path}: column '{signal.name}': found {len(rows)} rows; expected at least {LEAST_ROWS}"
+            f"{place}: column '{signal.name}': found {len(rows)} rows; expected at least {LEAST_ROWS}"
         )
     values = np.array(rows, dtype=np.float64)
-    values[:, 0] = to_celsius(values[:, 0].tolist(), temperature, str(path))
+    values[:, 0] = to_celsius(values[:, 0].tolist(), temperature, place)
     return [
-        _scan(path, values[first:last], direction, signal, time, settings)
-        for first, last, direction in _segments(values[:, 0], labels, signal, path)
+        _scan(place, values[first:last], direction, signal, time, settings)
+        for first, last, direction in _segments(values[:, 0], labels, signal, place)
     ]
 
 
-def _number(row: list[str], column: Column, number: int, path: Path) -> float:
+def _number(row: list[str], column: Column, number: int, place: str) -> float:
     text = row[column.index].strip() if column.index < len(row) else ""
     try:
         value = float(text.replace(",", "."))
     except ValueError:
         value = float("nan")
     if not np.isfinite(value):
-        raise InputError(f"{path}: row {number}, column '{column.name}': found '{text}'; expected a number")
+        raise InputError(f"{place}: row {number}, column '{column.name}': found '{text}'; expected a number")
     return value
 
 
 def _segments(
-    temperature: Array, labels: list[str], signal: Column, path: Path
+    temperature: Array, labels: list[str], signal: Column, place: str
 ) -> list[tuple[int, int, str]]:
     """Where each run begins and ends, and its direction."""
     if signal.direction is not None:
         return [(0, len(temperature), signal.direction)]
     if any(labels):
-        return _labelled(labels, path)
-    turn = _turning_point(temperature, path)
+        return _labelled(labels, place)
+    turn = _turning_point(temperature, place)
     if turn in (0, len(temperature) - 1):
         direction = "heating" if temperature[-1] > temperature[0] else "cooling"
         return [(0, len(temperature), direction)]
@@ -219,20 +227,20 @@ def _segments(
     return [(0, turn + 1, first), (turn, len(temperature), second)]
 
 
-def _labelled(labels: list[str], path: Path) -> list[tuple[int, int, str]]:
+def _labelled(labels: list[str], place: str) -> list[tuple[int, int, str]]:
     segments, first = [], 0
     for k in range(1, len(labels) + 1):
         if k < len(labels) and labels[k] == labels[first]:
             continue
         direction = next((one for one in ("heating", "cooling") if labels[first].startswith(one[:4])), None)
         if direction is None:
-            raise InputError(f"{path}: found the direction '{labels[first]}'; expected heating or cooling")
+            raise InputError(f"{place}: found the direction '{labels[first]}'; expected heating or cooling")
         segments.append((first, k, direction))
         first = k
     return segments
 
 
-def _turning_point(temperature: Array, path: Path) -> int:
+def _turning_point(temperature: Array, place: str) -> int:
     """Row at which heating turns to cooling or the other way; the first or last where it does not."""
     total = abs(temperature[-1] - temperature[0])
     top, bottom = int(np.argmax(temperature)), int(np.argmin(temperature))
@@ -248,7 +256,7 @@ def _turning_point(temperature: Array, path: Path) -> int:
     if way > 1.2 * expected:
         jump = int(np.argmax(np.abs(np.diff(temperature))))
         raise InputError(
-            f"{path}: row {jump + 3}: found {temperature[jump + 1]:.2f} degC after "
+            f"{place}: row {jump + 3}: found {temperature[jump + 1]:.2f} degC after "
             f"{temperature[jump]:.2f} degC; expected temperatures in the order of the run: rising, "
             "falling, or one after the other. Restore the order, or give heating and cooling columns of "
             "their own"
@@ -257,7 +265,7 @@ def _turning_point(temperature: Array, path: Path) -> int:
 
 
 def _scan(
-    path: Path, values: Array, direction: str, signal: Column, time: Column | None, settings: Settings
+    place: str, values: Array, direction: str, signal: Column, time: Column | None, settings: Settings
 ) -> Scan:
     rate = _rate(values, time) or settings.rate
     remarks = []
@@ -265,14 +273,14 @@ def _scan(
     t, raw = values[order, 0], values[order, 1]
     t, raw = _merged(t, raw)
     if len(t) < LEAST_ROWS:
-        raise InputError(f"{path}: {direction}: found {len(t)} temperatures; expected at least {LEAST_ROWS}")
-    factor, remark = _factor(signal, raw, t, settings, rate, path)
+        raise InputError(f"{place}: {direction}: found {len(t)} temperatures; expected at least {LEAST_ROWS}")
+    factor, remark = _factor(signal, raw, t, settings, rate, place)
     remarks += [remark] if remark else []
     if signal.quantity == "enthalpy":
         heat = np.gradient(raw * factor, t)
         if heat.mean() < 0.0:
             raise InputError(
-                f"{path}: column '{signal.name}': found an enthalpy that falls with temperature; expected "
+                f"{place}: column '{signal.name}': found an enthalpy that falls with temperature; expected "
                 "it to rise: heat must raise it. Turn its sign"
             )
     else:
@@ -280,7 +288,7 @@ def _scan(
     if signal.quantity == "heat flow" and _upside_down(heat):
         heat = -heat
         remarks.append(f"{direction}: the peak points down: sign turned so that heat taken up is positive")
-    return Scan(direction, t, heat, rate, signal, factor, tuple(remarks))
+    return Scan(direction, t, heat, rate, signal, factor, tuple(remarks), place)
 
 
 def _upside_down(heat: Array) -> bool:
@@ -304,14 +312,14 @@ def _rate(values: Array, time: Column | None) -> float | None:
 
 
 def _factor(
-    signal: Column, raw: Array, t: Array, settings: Settings, rate: float | None, path: Path
+    signal: Column, raw: Array, t: Array, settings: Settings, rate: float | None, place: str
 ) -> tuple[float, str]:
     """From the file's numbers to J/(kg K) or J/kg, and what was taken where the file does not say."""
     unit, remark = signal.unit, ""
     if unit is None:
         if signal.quantity == "heat flow":
             raise InputError(
-                f"{path}: column '{signal.name}': found no unit; expected one in its name, such as "
+                f"{place}: column '{signal.name}': found no unit; expected one in its name, such as "
                 f"'{signal.name} [mW/mg]', or unit="
             )
         slope = np.gradient(raw, t) if signal.quantity == "enthalpy" else raw
@@ -323,13 +331,13 @@ def _factor(
         return factor, remark
     if rate is None:
         raise InputError(
-            f"{path}: column '{signal.name}': found a heat flow and no heating rate; expected a column of "
+            f"{place}: column '{signal.name}': found a heat flow and no heating rate; expected a column of "
             "time, or rate= in K/min"
         )
     if unit in OF_SAMPLE:
         if settings.mass is None:
             raise InputError(
-                f"{path}: column '{signal.name}': found a heat flow of the whole sample; expected its mass, "
+                f"{place}: column '{signal.name}': found a heat flow of the whole sample; expected its mass, "
                 "mass= in mg"
             )
         factor /= settings.mass * 1e-6
