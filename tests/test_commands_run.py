@@ -128,3 +128,41 @@ def test_a_failure_while_writing_leaves_the_older_file(
     assert "No space left" in capsys.readouterr().err
     assert Path("box.nc").read_text(encoding="utf-8") == "older"
     assert sorted(path.name for path in Path().iterdir()) == ["box.nc", "box.yaml"]
+
+
+WAX = (
+    "{kind: pcm, density: 855, conductivity: 0.2, specific_heat: 2000, latent_heat: 71000, "
+    "melting_temperature: TM, law: {kind: tanh, width: 4}, "
+    "hysteresis: {model: curve_switch, freezing_temperature: TF}}"
+)
+
+
+def melting_box(melts: float, freezes: float) -> None:
+    """Put a sheet of wax on the inside of the box's wall."""
+    wax = WAX.replace("TM", str(melts)).replace("TF", str(freezes))
+    text = BOX.replace("880}}", f"880}}, wax: {wax}}}")
+    text = text.replace("thickness: 0.2}", "thickness: 0.2}, {material: wax, thickness: 0.005}")
+    Path("box.yaml").write_text(text, encoding="utf-8")
+
+
+def test_a_layer_that_never_melts_is_warned_of(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    melting_box(60.0, 58.0)
+    assert cli.main([*call, "--json"]) == 0
+    out, err = capsys.readouterr()
+    (line,) = json.loads(out)["warnings"]
+    assert line.startswith("surfaces.facade, layer wax: stayed solid")
+    assert f"warning: {line}" in err
+
+
+def test_a_run_says_how_often_a_state_switched_within_a_step(
+    call: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    # About the temperature that the box has.
+    melting_box(-2.0, -4.0)
+    assert cli.main([*call, "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["warnings"] == []
+    assert result["reversals"] > 0
+    assert cli.main(call) == 0
+    said = f"{result['reversals']} times a cell with hysteresis melted and froze within one step"
+    assert said in capsys.readouterr().out
