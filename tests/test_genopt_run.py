@@ -79,14 +79,11 @@ def test_workers_shorten_a_sequential_search(tmp_path: Path) -> None:
             busy[0] -= 1
         return Result((two_wells(point),), 0.01)
 
-    seconds = []
     for workers in (1, 8):
+        most[0] = 0
         ini = write_project(tmp_path / str(workers), vary=WIDE, algorithm=SEVERAL)
-        began = time.perf_counter()
         optimise(ini, Options(workers=workers), run=slow)
-        seconds.append(time.perf_counter() - began)
-    assert most[0] == 8
-    assert seconds[1] < 0.5 * seconds[0]
+        assert most[0] == workers
 
 
 def test_without_looking_ahead_nothing_runs_in_vain(tmp_path: Path) -> None:
