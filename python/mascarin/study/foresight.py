@@ -122,7 +122,7 @@ def band_table(study: Study, found: Band) -> dict[str, Any]:
     rows = []
     for s, name in enumerate(study.observation.names):
         sensor = study.file.sensors[name]
-        unit = study.building.output(sensor.output).unit
+        unit = study.building.output(sensor.output).unit.replace("degC", "K")
         shares = [found.held[period][s] for period in study.during]
         rows.append(
             [
