@@ -71,14 +71,14 @@ pub struct Chain<S> {
     /// Storage law of each cell.
     pub storage: Vec<Storage<S>>,
     /// Thickness over stage length [m/s].
-    rate: Vec<S>,
-    inverse: Vec<S>,
+    pub(crate) rate: Vec<S>,
+    pub(crate) inverse: Vec<S>,
     /// `T_i` = known + `to_outside` `T_outside` + next T_(i+1).
     known: Vec<S>,
-    to_outside: Vec<S>,
-    next: Vec<S>,
+    pub(crate) to_outside: Vec<S>,
+    pub(crate) next: Vec<S>,
     /// `T_1` = sum of `path_i known_i` + ...: product of `next` up to the cell.
-    path: Vec<S>,
+    pub(crate) path: Vec<S>,
     /// Response of the first cell to the two faces.
     first: [S; 2],
     /// Properties of the phase-change cells at the iterate.

@@ -185,6 +185,11 @@ impl<S: Real> Film<S> {
         if let Law::Constant(coefficient) = self.law { Some(coefficient) } else { None }
     }
 
+    /// Whether the coefficient is the same at all temperatures.
+    pub fn straight(&self) -> bool {
+        matches!(self.law, Law::Constant(_) | Law::LinearWind { .. })
+    }
+
     /// What a wind makes of the film coefficient; `windward`: where it blows onto the face.
     #[inline(always)]
     pub fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {

@@ -217,8 +217,17 @@ impl<S: Real> Drive<S> {
     }
 
     /// Turns the weather into numbers at each face.
-    #[inline(always)]
+    // Not inlined, for the compiler's sake: it is large and asked for in several places.
+    #[inline(never)]
     pub fn update(&mut self, plan: &Plan, coefficients: &Coefficients<S>, numbers: &[S], now: &Instant<'_>) {
+        S::vectorised(
+            #[inline(always)]
+            || self.read(plan, coefficients, numbers, now),
+        );
+    }
+
+    #[inline(always)]
+    fn read(&mut self, plan: &Plan, coefficients: &Coefficients<S>, numbers: &[S], now: &Instant<'_>) {
         let site = &plan.description.site;
         let sky = sky_emission(&Values::new(numbers), &site.sky, coefficients.cloud, &now.heaven);
         self.sky = sky;

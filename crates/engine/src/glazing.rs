@@ -60,24 +60,17 @@ pub struct GlassPlan {
     pub sites: Vec<Site>,
     /// Link that stands for each gap.
     pub gap_links: Vec<usize>,
-    /// True when a gap's conductance depends on temperature.
-    pub nonlinear: bool,
 }
 
 impl GlassPlan {
     /// Lays out a glazing.
     #[must_use]
     pub fn new(glazing: &Glazing) -> Self {
-        let (panes, gaps): (&[Pane], &[Gap]) = match glazing {
-            Glazing::Panes { panes, gaps, .. } => (panes, gaps),
-            Glazing::Simple { .. } => (&[], &[]),
+        let panes: &[Pane] = match glazing {
+            Glazing::Panes { panes, .. } => panes,
+            Glazing::Simple { .. } => &[],
         };
-        let mut plan = Self {
-            cell_panes: Vec::new(),
-            sites: Vec::new(),
-            gap_links: Vec::new(),
-            nonlinear: gaps.iter().any(|gap| matches!(gap, Gap::Filled { .. })),
-        };
+        let mut plan = Self { cell_panes: Vec::new(), sites: Vec::new(), gap_links: Vec::new() };
         for (k, pane) in panes.iter().enumerate() {
             let add = |plan: &mut Self| {
                 plan.cell_panes.push(k);

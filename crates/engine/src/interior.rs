@@ -139,6 +139,10 @@ impl<S: Real> Traced<S> {
     #[inline(always)]
     pub fn irradiance(&self, face: usize, first: &[S]) -> S {
         let row = &self.spread[face * first.len()..(face + 1) * first.len()];
-        row.iter().zip(first).fold(S::zero(), |sum, (&spread, &power)| sum + spread * power)
+        let mut sum = S::zero();
+        for (&spread, &power) in row.iter().zip(first) {
+            sum += spread * power;
+        }
+        sum
     }
 }

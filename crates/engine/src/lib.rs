@@ -30,6 +30,7 @@ pub mod probe;
 pub mod radiation;
 pub mod real;
 pub(crate) mod room_block;
+mod slabs;
 pub mod solar;
 pub mod state;
 pub mod state_space;

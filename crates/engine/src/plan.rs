@@ -36,6 +36,8 @@ pub struct Plan {
     /// The room block: for each zone face and zone air, in the order of elimination, the later ones that it meets, as
     /// runs of neighbouring rows.
     pub reach: Vec<Vec<Range<usize>>>,
+    /// Number of its first unknowns: the faces of walls of constant properties.
+    pub constant_rows: usize,
 }
 
 /// A wall as a chain of cells between two faces.
@@ -49,7 +51,7 @@ pub struct WallPlan {
     pub link_layers: Vec<Vec<usize>>,
     /// First and one past the last cell of each layer.
     pub layer_cells: Vec<(usize, usize)>,
-    /// True when a layer's properties depend on temperature.
+    /// True when its properties depend on temperature, or its panes take up sun.
     pub nonlinear: bool,
     /// A window's panes.
     pub glass: Option<GlassPlan>,
@@ -109,7 +111,7 @@ impl Plan {
             walls.push(wall);
         }
         let (mut faces, mut zones) = name_unknowns(&description);
-        let reach = order_unknowns(&description, &mut faces, &mut zones);
+        let (reach, constant_rows) = order_unknowns(&description, &walls, &mut faces, &mut zones);
         let conditioned = |zone: &crate::description::Zone| zone.heating.is_some() || zone.cooling.is_some();
         let plants = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();
         let windows: Vec<usize> = (0..walls.len()).filter(|&w| walls[w].glass.is_some()).collect();
@@ -119,7 +121,18 @@ impl Plan {
                 windows.iter().enumerate().filter_map(|(k, &w)| place(w).map(|at| (k, at))).collect();
         }
         let daylight = Daylight::new(&description, &windows, &zones);
-        Ok(Self { description, walls, faces, zones, plants, windows, daylight, n_cells: first_cell, reach })
+        Ok(Self {
+            description,
+            walls,
+            faces,
+            zones,
+            plants,
+            windows,
+            daylight,
+            n_cells: first_cell,
+            reach,
+            constant_rows,
+        })
     }
 
     /// The side that a face stands for.
@@ -194,7 +207,7 @@ impl WallPlan {
             cell_layers: glass.cell_panes.clone(),
             link_layers: vec![Vec::new(); glass.cell_panes.len() + 1],
             layer_cells: Vec::new(),
-            nonlinear: glass.nonlinear,
+            nonlinear: true,
             glass: Some(glass),
         }
     }
@@ -243,19 +256,28 @@ fn name_unknowns(description: &Description) -> (Vec<FacePlan>, Vec<ZonePlan>) {
 }
 
 /// Renumbers the unknowns of the room block in an order of elimination that keeps it sparse, always the one with the
-/// fewest neighbours next (minimum degree). Faces of different zones meet only through the walls between them.
+/// fewest neighbours next (minimum degree), but faces of walls of constant properties first: they need not be eliminated
+/// again where only the others change. Faces of different zones meet only through the walls between them. Returns the
+/// later ones that each meets, and the number of the former.
 fn order_unknowns(
     description: &Description,
+    walls: &[WallPlan],
     faces: &mut [FacePlan],
     zones: &mut [ZonePlan],
-) -> Vec<Vec<Range<usize>>> {
+) -> (Vec<Vec<Range<usize>>>, usize) {
     let mut meets = neighbours(description, faces, zones);
     let n = meets.len();
+    let mut changing = vec![true; n];
+    for face in faces.iter() {
+        if let FaceRole::Zone { row, .. } = face.role {
+            changing[row] = walls[face.surface].nonlinear;
+        }
+    }
     let mut position = vec![usize::MAX; n];
     let mut reach = Vec::with_capacity(n);
     for next in 0..n {
         let waiting = (0..n).filter(|&k| position[k] == usize::MAX);
-        let Some(chosen) = waiting.min_by_key(|&k| meets[k].len()) else { break };
+        let Some(chosen) = waiting.min_by_key(|&k| (changing[k], meets[k].len())) else { break };
         position[chosen] = next;
         let met = core::mem::take(&mut meets[chosen]);
         // Elimination makes all that it meets meet each other.
@@ -274,7 +296,8 @@ fn order_unknowns(
         zone.air_row = position[zone.air_row];
         zone.face_rows = zone.face_rows.iter().map(|&row| position[row]).collect();
     }
-    reach.into_iter().map(|met| runs(met.into_iter().map(|k| position[k]).collect())).collect()
+    let reach = reach.into_iter().map(|met| runs(met.into_iter().map(|k| position[k]).collect())).collect();
+    (reach, changing.iter().filter(|&&changing| !changing).count())
 }
 
 /// Numbers gathered into runs of neighbours.

@@ -32,11 +32,11 @@ impl<S: Real> Limits<S> {
     /// Reads the set points at the end of a step.
     #[inline(always)]
     fn at(zone: &Zone<S>, row: &[f64]) -> Self {
-        let nothing = |set_point| (S::constant(set_point), S::zero());
+        let nothing = [(S::constant(-NEVER), S::zero()), (S::constant(NEVER), S::zero())];
         let (heating, most_heating) =
-            zone.heating.as_ref().map_or_else(|| nothing(-NEVER), |plant| plant.at(row));
+            if let Some(plant) = &zone.heating { plant.at(row) } else { nothing[0] };
         let (cooling, most_cooling) =
-            zone.cooling.as_ref().map_or_else(|| nothing(NEVER), |plant| plant.at(row));
+            if let Some(plant) = &zone.cooling { plant.at(row) } else { nothing[1] };
         Self { set_points: [heating, cooling], most: [most_heating, most_cooling] }
     }
 

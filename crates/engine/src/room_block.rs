@@ -5,23 +5,36 @@ use core::ops::Range;
 use crate::real::Real;
 
 /// The system of zone faces and airs. Its matrix is an M-matrix: no pivoting.
+///
+/// The first unknowns are the faces of walls of constant properties. As long as nothing that enters their rows changes
+/// they stay eliminated, and only the rest is entered and solved again.
 #[derive(Debug)]
 pub(crate) struct RoomBlock<'a, S> {
     /// For each row the later ones that it meets, see [`Plan::reach`](crate::plan::Plan::reach).
-    pub(crate) reach: &'a [Vec<Range<usize>>],
-    pub(crate) matrix: Vec<S>,
+    reach: &'a [Vec<Range<usize>>],
+    /// Number of the first unknowns, see [`Plan::constant_rows`](crate::plan::Plan::constant_rows).
+    first: usize,
+    matrix: Vec<S>,
     pub(crate) right: Vec<S>,
+    /// What eliminating the first unknowns leaves of the others' matrix, and all right-hand sides.
+    kept: Vec<S>,
+    kept_right: Vec<S>,
 }
 
 impl<'a, S: Real> RoomBlock<'a, S> {
-    pub(crate) fn new(reach: &'a [Vec<Range<usize>>]) -> Self {
+    pub(crate) fn new(reach: &'a [Vec<Range<usize>>], first: usize) -> Self {
         let size = reach.len();
-        Self { reach, matrix: vec![S::zero(); size * size], right: vec![S::zero(); size] }
+        let (all, line) = (vec![S::zero(); size * size], vec![S::zero(); size]);
+        Self { reach, first, kept: all.clone(), matrix: all, kept_right: line.clone(), right: line }
     }
 
     #[inline(always)]
-    pub(crate) fn clear(&mut self) {
+    pub(crate) fn clear_matrix(&mut self) {
         self.matrix.fill(S::zero());
+    }
+
+    #[inline(always)]
+    pub(crate) fn clear_right(&mut self) {
         self.right.fill(S::zero());
     }
 
@@ -45,59 +58,151 @@ impl<'a, S: Real> RoomBlock<'a, S> {
         self.add(b, a, -conductance);
     }
 
-    /// Gaussian elimination of what is not zero; the solution replaces the right-hand side.
+    /// Eliminates the first unknowns from the matrix, once it holds all that enters their rows.
     #[inline(always)]
-    pub(crate) fn solve(&mut self) {
+    pub(crate) fn keep_matrix(&mut self) {
+        self.eliminate(0..self.first);
+        let start = self.first * self.reach.len();
+        self.kept[start..].copy_from_slice(&self.matrix[start..]);
+    }
+
+    /// Eliminates them from the right-hand side.
+    #[inline(always)]
+    pub(crate) fn keep_right(&mut self) {
+        forward(self.reach, &self.matrix, &mut self.right, 0..self.first);
+        self.kept_right.copy_from_slice(&self.right);
+    }
+
+    /// Goes back to where the first unknowns have been eliminated and nothing else has been entered.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self) {
+        let start = self.first * self.reach.len();
+        self.matrix[start..].copy_from_slice(&self.kept[start..]);
+        self.right.copy_from_slice(&self.kept_right);
+    }
+
+    /// Solves for the other unknowns; they replace their right-hand sides.
+    #[inline(always)]
+    pub(crate) fn solve_rest(&mut self) {
+        let rest = self.first..self.reach.len();
+        self.eliminate(rest.clone());
+        forward(self.reach, &self.matrix, &mut self.right, rest.clone());
+        back(self.reach, &self.matrix, &mut self.right, rest);
+    }
+
+    /// Solves for the first unknowns, once the others are known.
+    #[inline(always)]
+    pub(crate) fn solve_first(&mut self) {
+        back(self.reach, &self.matrix, &mut self.right, 0..self.first);
+    }
+
+    /// The solution for another right-hand side, with the factors in hand.
+    #[inline(always)]
+    pub(crate) fn solve_again(&self, right: &mut [S]) {
+        let all = 0..self.reach.len();
+        forward(self.reach, &self.matrix, right, all.clone());
+        back(self.reach, &self.matrix, right, all);
+    }
+
+    /// Gaussian elimination of what is not zero. Pivots are left inverted; what is below them stays.
+    #[inline(always)]
+    fn eliminate(&mut self, rows: Range<usize>) {
         let n = self.reach.len();
-        for (k, reach) in self.reach.iter().enumerate() {
+        for k in rows {
+            let reach = &self.reach[k];
             let (upper, lower) = self.matrix.split_at_mut((k + 1) * n);
             let pivot = &mut upper[k * n..];
             let inverse = S::one() / pivot[k];
             pivot[k] = inverse;
-            let known = self.right[k];
-            for rows in reach {
-                let later = &mut lower[(rows.start - k - 1) * n..(rows.end - k - 1) * n];
-                let right = &mut self.right[rows.clone()];
-                for (row, right) in later.chunks_exact_mut(n).zip(right) {
+            for later in reach {
+                let later = &mut lower[(later.start - k - 1) * n..(later.end - k - 1) * n];
+                for row in later.chunks_exact_mut(n) {
                     let factor = row[k] * inverse;
                     for run in reach {
                         for (a, &p) in row[run.clone()].iter_mut().zip(&pivot[run.clone()]) {
                             *a = *a - factor * p;
                         }
                     }
-                    *right = *right - factor * known;
                 }
             }
         }
-        back_substitute(self.reach, &self.matrix, &mut self.right);
-    }
-
-    /// The solution for another right-hand side, with the factors of [`Self::solve`].
-    #[inline(always)]
-    pub(crate) fn solve_again(&self, right: &mut [S]) {
-        let n = self.reach.len();
-        for (k, reach) in self.reach.iter().enumerate() {
-            let known = right[k] * self.matrix[k * n + k];
-            for row in reach.iter().cloned().flatten() {
-                right[row] = right[row] - self.matrix[row * n + k] * known;
-            }
-        }
-        back_substitute(self.reach, &self.matrix, right);
     }
 }
 
-/// From the last unknown to the first; the pivots stand inverted on the diagonal.
+/// The right-hand side through the elimination of some unknowns.
 #[inline(always)]
-fn back_substitute<S: Real>(reach: &[Vec<Range<usize>>], matrix: &[S], right: &mut [S]) {
+fn forward<S: Real>(reach: &[Vec<Range<usize>>], matrix: &[S], right: &mut [S], rows: Range<usize>) {
     let n = reach.len();
-    for (k, reach) in reach.iter().enumerate().rev() {
+    for k in rows {
+        let known = right[k] * matrix[k * n + k];
+        for run in &reach[k] {
+            for row in run.clone() {
+                right[row] = right[row] - matrix[row * n + k] * known;
+            }
+        }
+    }
+}
+
+/// From the last unknown to the first.
+#[inline(always)]
+fn back<S: Real>(reach: &[Vec<Range<usize>>], matrix: &[S], right: &mut [S], rows: Range<usize>) {
+    let n = reach.len();
+    for k in rows.rev() {
         let row = &matrix[k * n..(k + 1) * n];
         let mut sum = right[k];
-        for run in reach {
+        for run in &reach[k] {
             for (&a, &x) in row[run.clone()].iter().zip(&right[run.clone()]) {
                 sum = sum - a * x;
             }
         }
         right[k] = sum * row[k];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Five unknowns, three of them first; the last couples of the others change and are solved again.
+    #[test]
+    fn the_rest_is_solved_again() {
+        let reach = vec![vec![1..2, 3..4], vec![2..5], vec![3..5], vec![4..5], vec![]];
+        let mut block: RoomBlock<'_, f64> = RoomBlock::new(&reach, 3);
+        let couples = [(0, 1, 2.0), (0, 3, 1.0), (1, 2, 0.5), (1, 4, 3.0), (2, 4, 1.5)];
+        let held = [1.0, 0.5, 2.0, 0.0, 0.1];
+        let enter = |block: &mut RoomBlock<'_, f64>| {
+            for (a, b, conductance) in couples {
+                block.couple(a, b, conductance);
+            }
+            for (row, held) in held.into_iter().enumerate() {
+                block.add(row, row, held);
+                block.right[row] = held * 20.0 + 5.0;
+            }
+        };
+        block.clear_matrix();
+        block.clear_right();
+        enter(&mut block);
+        block.keep_matrix();
+        block.keep_right();
+        for last in [0.2, 4.0, 1.0] {
+            block.begin();
+            block.couple(3, 4, last);
+            block.right[4] += 7.0;
+            block.solve_rest();
+            block.solve_first();
+            let found = block.right.clone();
+            // Residual of the whole system, entered anew.
+            let mut whole: RoomBlock<'_, f64> = RoomBlock::new(&reach, 3);
+            enter(&mut whole);
+            whole.couple(3, 4, last);
+            whole.right[4] += 7.0;
+            for row in 0..5 {
+                let sum: f64 = whole.row(row).iter().zip(&found).map(|(a, x)| a * x).sum();
+                assert!((sum - whole.right[row]).abs() < 1e-12, "row {row} at {last}");
+            }
+            let mut again = whole.right.clone();
+            block.solve_again(&mut again);
+            assert!(again.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-12), "solved again at {last}");
+        }
     }
 }

@@ -15,9 +15,10 @@ use crate::ledger::{Flow, Ledger, Power};
 use crate::pcm::{PcmMemory, reversed};
 use crate::plan::{FaceId, FaceRole, Plan};
 use crate::plant::{Plants, Response};
-use crate::radiation::black_temperature;
+use crate::radiation::{Emission, black_temperature};
 use crate::real::{Mask, Real};
 use crate::room_block::RoomBlock;
+use crate::slabs::Slabs;
 use crate::state::{State, Unknowns, blend, line, squared_distance};
 use crate::zone;
 
@@ -85,6 +86,9 @@ pub struct Stepper<'a, S: Real> {
     scheme: Scheme,
     /// Linearised walls.
     pub chains: Vec<Chain<S>>,
+    /// Those of constant properties.
+    slabs: Slabs<S>,
+    changing: Changing,
     responses: Vec<[[S; 2]; 2]>,
     /// Effective stage length of the factors in hand [s]; NaN: none.
     factored: f64,
@@ -109,6 +113,8 @@ pub struct Stepper<'a, S: Real> {
     sources: Vec<[S; 2]>,
     /// Faces outside the zones, as functions of those inside.
     locals: Vec<LocalFaces<S>>,
+    /// How much they give way to heat [m2 K/W].
+    inverses: Vec<S>,
     block: RoomBlock<'a, S>,
     iterate: Unknowns<S>,
     solved: Unknowns<S>,
@@ -165,7 +171,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[must_use]
     pub fn new(plan: &'a Plan, numbers: &'a [S], scheme: Scheme) -> Self {
         let coefficients = Coefficients::new(plan, numbers);
-        let chains = coefficients.walls.iter().map(Chain::new).collect();
+        let chains: Vec<_> = coefficients.walls.iter().map(Chain::new).collect();
+        let (changing, laws) = Changing::sort(plan, &coefficients);
         let foresight = coefficients
             .walls
             .iter()
@@ -184,13 +191,15 @@ impl<'a, S: Real> Stepper<'a, S> {
         let gap_convection = vec![gaps.map(zeros).collect(); scheme.weights().len()];
         Self {
             plan,
+            slabs: Slabs::new(plan, &coefficients, &chains),
             coefficients,
             numbers,
             scheme,
+            changing,
             chains,
             responses: vec![[[S::zero(); 2]; 2]; plan.walls.len()],
             factored: f64::NAN,
-            laws: vec![FaceLaws { film: Line::zero(), emission: Line::zero() }; plan.faces.len()],
+            laws,
             inflow: vec![Line::zero(); plan.zones.len()],
             airing: vec![Line::zero(); plan.zones.len()],
             other_drive: drive.clone(),
@@ -202,7 +211,8 @@ impl<'a, S: Real> Stepper<'a, S> {
             stage: 0,
             sources: vec![[S::zero(); 2]; plan.walls.len()],
             locals: vec![LocalFaces::None; plan.walls.len()],
-            block: RoomBlock::new(&plan.reach),
+            inverses: zeros(plan.walls.len()),
+            block: RoomBlock::new(&plan.reach, plan.constant_rows),
             iterate: unknowns.clone(),
             solved: unknowns,
             previous: None,
@@ -280,6 +290,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`EngineError::NotConverged`].
+    // Once, not at every place that takes steps: the compiler has enough to do.
+    #[inline(never)]
     pub fn step(
         &mut self,
         state: &mut State<S>,
@@ -602,11 +614,12 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn hold_over(&mut self, state: &State<S>, diagonal: f64) {
         let ratio = (1.0 - diagonal) / diagonal;
-        for (wall, chain) in self.plan.walls.iter().zip(&self.chains) {
+        self.slabs.hold_over(&self.solved.cells, &state.enthalpy, ratio, &mut self.held);
+        for &w in &self.changing.walls {
+            let (wall, chain) = (&self.plan.walls[w], &self.chains[w]);
             for i in 0..wall.len() {
                 let k = wall.first_cell + i;
-                let reached = chain.storage[i].reached();
-                self.held[k] = state.enthalpy[k] + (reached - state.enthalpy[k]).scale(ratio);
+                self.held[k] = line(state.enthalpy[k], chain.storage[i].reached(), ratio);
                 self.midway[k] = chain.liquid_fraction(i);
             }
         }
@@ -626,9 +639,9 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Takes the last stage as the new state and books the step.
     #[inline(always)]
     fn accept(&mut self, state: &mut State<S>, energy: &Power<S>, ledger: &mut Ledger<S>) {
-        let mut stored = S::zero();
-        for ((wall, chain), numbers) in self.plan.walls.iter().zip(&self.chains).zip(&self.coefficients.walls)
-        {
+        let mut stored = self.slabs.accept(&self.solved.cells, &mut state.enthalpy);
+        for &w in &self.changing.walls {
+            let (wall, chain, numbers) = (&self.plan.walls[w], &self.chains[w], &self.coefficients.walls[w]);
             for (i, cell) in numbers.cells.iter().enumerate() {
                 let k = wall.first_cell + i;
                 let temperature = self.solved.cells[k];
@@ -666,8 +679,23 @@ impl<'a, S: Real> Stepper<'a, S> {
     ///
     /// A lane that has converged, or was not active from the start, keeps its iterate: later solves repeat its last one
     /// bit for bit.
-    #[inline(always)]
+    // Not inlined, for the compiler's sake: it is by far the largest part of a step.
+    #[inline(never)]
     fn solve_stage(
+        &mut self,
+        state: &State<S>,
+        length: f64,
+        place: (usize, usize),
+        active: S::Mask,
+    ) -> Result<(), EngineError> {
+        S::vectorised(
+            #[inline(always)]
+            || self.iterate_stage(state, length, place, active),
+        )
+    }
+
+    #[inline(always)]
+    fn iterate_stage(
         &mut self,
         state: &State<S>,
         length: f64,
@@ -675,7 +703,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         mut active: S::Mask,
     ) -> Result<(), EngineError> {
         self.stage = place.1.saturating_sub(1);
-        self.prepare_linear_walls(length);
+        self.begin_stage(length);
         active = active & !self.failed;
         let mut polish = S::DERIVATIVES;
         // Square of the change before this one; zero where it says nothing of the next.
@@ -698,18 +726,29 @@ impl<'a, S: Real> Stepper<'a, S> {
                 polish = false;
                 self.advance(S::Mask::splat(true), 0, &state.memory);
             } else {
-                self.finish_linear_walls();
-                return Ok(());
+                let lost = !(self.finish_stage() | self.failed);
+                return if lost.any() { self.lose(lost, place) } else { Ok(()) };
             }
         }
+        self.finish_stage();
         if S::LANES > 1 {
-            // The lane is run again alone, with all that follows here; the others go on.
-            self.failed = self.failed | active;
-            self.finish_linear_walls();
-            return if (!self.failed).any() { Ok(()) } else { Err(self.not_converged(active, place)) };
+            return self.lose(active, place);
         }
         let error = self.not_converged(active, place);
         if self.solve_nested(state, length) { Ok(()) } else { Err(error) }
+    }
+
+    /// Gives up lanes: each is run again alone, with all that is done for one there; the others go on.
+    #[cold]
+    #[inline(never)]
+    fn lose(&mut self, lanes: S::Mask, place: (usize, usize)) -> Result<(), EngineError> {
+        if S::LANES > 1 {
+            self.failed = self.failed | lanes;
+            if (!self.failed).any() {
+                return Ok(());
+            }
+        }
+        Err(self.not_converged(lanes, place))
     }
 
     /// The nested iteration of Casulli & Zanolli (2010), doi:10.1137/100786320: the enthalpy is the difference of two
@@ -740,8 +779,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             }
             if self.distance(&outer).lt(enough).any() {
                 self.effort.nested += 1;
-                self.finish_linear_walls();
-                return true;
+                return self.finish_stage().any();
             }
             outer.copy_from(&self.solved);
         }
@@ -770,17 +808,24 @@ impl<'a, S: Real> Stepper<'a, S> {
         small | (foreseen & change.lt(self.foresight))
     }
 
-    /// Factors the walls of constant properties, once per stage length, and gathers what they hold.
+    /// Everything that stays during a stage: what constant walls send into their faces, what the wind makes of films; and
+    /// the faces of constant walls, eliminated, where they answer to temperatures in straight lines.
     #[inline(always)]
-    fn prepare_linear_walls(&mut self, length: f64) {
-        let factor = self.factored.to_bits() != length.to_bits();
-        for (w, _) in self.plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear) {
-            if factor {
-                self.responses[w] = self.chains[w].factor(&self.coefficients.walls[w], length);
-            }
-            self.sources[w] = self.heat_to_faces(w);
+    fn begin_stage(&mut self, length: f64) {
+        let mut new = self.changing.by_wind;
+        if self.factored.to_bits() != length.to_bits() {
+            self.slabs.factor(&self.coefficients, &mut self.chains, &mut self.responses, length);
+            self.factored = length;
+            new = true;
         }
-        self.factored = length;
+        self.slabs.sources(&self.held, &mut self.sources);
+        for &face in &self.changing.windy {
+            let numbers = &self.coefficients.faces[face];
+            self.laws[face].film.slope = self.drive.faces[face].forced[0] * numbers.area_factor;
+        }
+        if !self.changing.curved {
+            self.enter_constant(new);
+        }
     }
 
     /// What a wall's cells held, and the sun in its panes, send into its faces.
@@ -792,7 +837,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             return self.chains[w].sources(held);
         }
         let gains = self.plan.windows.iter().zip(&self.drive.windows).find(|(window, _)| **window == w);
-        gains.map_or([S::zero(); 2], |(_, at)| self.chains[w].sources_with(held, &at.cells))
+        if let Some((_, at)) = gains { self.chains[w].sources_with(held, &at.cells) } else { [S::zero(); 2] }
     }
 
     /// Takes the convection in gaps at the temperatures that are expected at the end of the stage.
@@ -809,7 +854,9 @@ impl<'a, S: Real> Stepper<'a, S> {
 
     #[inline(always)]
     fn linearise_walls(&mut self, state: &State<S>, length: f64, outer: Option<&[S]>) {
-        for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| wall.nonlinear) {
+        for i in 0..self.changing.walls.len() {
+            let w = self.changing.walls[i];
+            let wall = &self.plan.walls[w];
             let cells = wall.first_cell..wall.first_cell + wall.len();
             let numbers = &self.coefficients.walls[w];
             let at = Iterate {
@@ -835,27 +882,26 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
+    /// Linearises what depends on the temperatures of faces and airs.
     #[inline(always)]
     fn linearise_faces(&mut self) {
-        for (index, face) in self.coefficients.faces.iter().enumerate() {
-            let temperature = self.iterate.faces[index];
-            let (air, emission) = match self.plan.faces[index].role {
-                FaceRole::Zone { zone, .. } => {
-                    (self.iterate.air[zone], Some(self.coefficients.zones[zone].emission))
-                }
-                FaceRole::Local => (self.drive.faces[index].temperature, outdoor_emission(face)),
+        for &index in &self.changing.bent {
+            let (face, at) = (&self.coefficients.faces[index], &self.drive.faces[index]);
+            let air = match self.plan.faces[index].role {
+                FaceRole::Zone { zone, .. } => self.iterate.air[zone],
+                FaceRole::Local => at.temperature,
             };
-            let laws = &mut self.laws[index];
             if let Some(film) = &face.film {
-                let difference = temperature - air;
-                let flux = film.flux(difference, &self.drive.faces[index].forced);
+                let difference = self.iterate.faces[index] - air;
+                let flux = film.flux(difference, &at.forced);
                 let (flux, slope) = (flux.flux * face.area_factor, flux.slope * face.area_factor);
-                laws.film = Line::tangent(flux, slope, difference);
+                self.laws[index].film = Line::tangent(flux, slope, difference);
             }
-            if let Some(law) = emission {
-                let (value, slope) = law.at(temperature);
-                laws.emission = Line::tangent(value, slope, temperature);
-            }
+        }
+        for &index in &self.changing.radiant {
+            let temperature = self.iterate.faces[index];
+            let (value, slope) = Emission::Exact.at(temperature);
+            self.laws[index].emission = Line::tangent(value, slope, temperature);
         }
         for (zone, numbers) in self.coefficients.zones.iter().enumerate() {
             let (wind, outdoor, air) = (self.drive.wind, self.drive.outdoor_air, self.iterate.air[zone]);
@@ -864,38 +910,75 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Solves the linearised building into `solved` (cells of nonlinear walls included).
+    /// Solves the linearised building into `solved`: airs, walls that change and their faces; the other faces, too, where
+    /// the next iteration depends on them.
     #[inline(always)]
     fn solve_linear(&mut self, length: f64) {
-        self.block.clear();
-        for w in 0..self.plan.walls.len() {
-            self.locals[w] = self.eliminate_wall(w);
+        if self.changing.curved {
+            self.enter_constant(true);
+        }
+        self.block.begin();
+        for i in 0..self.changing.walls.len() {
+            let w = self.changing.walls[i];
+            self.locals[w] = self.eliminate_wall(w, true);
         }
         for zone in 0..self.plan.zones.len() {
-            self.assemble_zone(zone, length);
+            self.enter_air(zone, length);
         }
         for (path, &conductance) in self.coefficients.paths.iter().zip(&self.drive.paths) {
             let [a, b] = path.between.map(|zone| self.plan.zones[zone].air_row);
             self.block.couple(a, b, conductance);
         }
-        self.block.solve();
+        self.block.solve_rest();
         for (zone, plan) in self.plan.zones.iter().enumerate() {
             self.solved.air[zone] = self.block.right[plan.air_row];
         }
-        for (w, wall) in self.plan.walls.iter().enumerate() {
+        for &w in &self.changing.walls {
+            let wall = &self.plan.walls[w];
             let faces = self.resolve_faces(w, self.locals[w]);
-            self.solved.faces[2 * w] = faces[0];
-            self.solved.faces[2 * w + 1] = faces[1];
-            if wall.nonlinear {
-                let cells = wall.first_cell..wall.first_cell + wall.len();
-                self.chains[w].temperatures(faces, &mut self.solved.cells[cells]);
-            }
+            self.solved.faces[2 * w..2 * w + 2].copy_from_slice(&faces);
+            let cells = wall.first_cell..wall.first_cell + wall.len();
+            self.chains[w].temperatures(faces, &mut self.solved.cells[cells]);
+        }
+        if self.changing.curved {
+            self.resolve_constant();
+        }
+    }
+
+    /// Enters the walls of constant properties, and films and radiation in zones, and eliminates the faces of the former;
+    /// without `matrix` only the right-hand sides.
+    #[inline(always)]
+    fn enter_constant(&mut self, matrix: bool) {
+        self.block.clear_right();
+        if matrix {
+            self.block.clear_matrix();
+        }
+        for i in 0..self.changing.constant.len() {
+            let w = self.changing.constant[i];
+            self.locals[w] = self.eliminate_wall(w, matrix);
+        }
+        for zone in 0..self.plan.zones.len() {
+            self.enter_faces(zone, matrix);
+        }
+        if matrix {
+            self.block.keep_matrix();
+        }
+        self.block.keep_right();
+    }
+
+    /// Faces of the walls of constant properties.
+    #[inline(always)]
+    fn resolve_constant(&mut self) {
+        self.block.solve_first();
+        for &w in &self.changing.constant {
+            let faces = self.resolve_faces(w, self.locals[w]);
+            self.solved.faces[2 * w..2 * w + 2].copy_from_slice(&faces);
         }
     }
 
     /// Enters a wall into the room block, its local faces eliminated.
     #[inline(always)]
-    fn eliminate_wall(&mut self, w: usize) -> LocalFaces<S> {
+    fn eliminate_wall(&mut self, w: usize, matrix: bool) -> LocalFaces<S> {
         let (source, response) = (self.sources[w], self.responses[w]);
         let area = self.coefficients.walls[w].area;
         let roles = [self.plan.faces[2 * w].role, self.plan.faces[2 * w + 1].role];
@@ -906,32 +989,42 @@ impl<'a, S: Real> Stepper<'a, S> {
             }
             [FaceRole::Zone { row: outer, .. }, FaceRole::Zone { row: inner, .. }] => {
                 for (e, (mine, other)) in [(outer, inner), (inner, outer)].into_iter().enumerate() {
-                    self.block.add(mine, mine, -(area * response[e][e]));
-                    self.block.add(mine, other, -(area * response[e][1 - e]));
+                    if matrix {
+                        self.block.add(mine, mine, -(area * response[e][e]));
+                        self.block.add(mine, other, -(area * response[e][1 - e]));
+                    }
                     self.block.right[mine] += area * source[e];
                 }
                 LocalFaces::None
             }
-            [FaceRole::Zone { row, .. }, FaceRole::Local] => self.eliminate_one(w, 0, row),
-            [FaceRole::Local, FaceRole::Zone { row, .. }] => self.eliminate_one(w, 1, row),
+            [FaceRole::Zone { row, .. }, FaceRole::Local] => self.eliminate_one(w, 0, row, matrix),
+            [FaceRole::Local, FaceRole::Zone { row, .. }] => self.eliminate_one(w, 1, row, matrix),
         }
     }
 
     /// A wall whose face `e` is in a zone and whose other face is local.
     #[inline(always)]
-    fn eliminate_one(&mut self, w: usize, e: usize, row: usize) -> LocalFaces<S> {
+    fn eliminate_one(&mut self, w: usize, e: usize, row: usize, matrix: bool) -> LocalFaces<S> {
         let source = self.sources[w];
         let (response, area, o) = (self.responses[w], self.coefficients.walls[w].area, 1 - e);
-        let line = match self.local_balance(2 * w + o) {
-            LocalBalance::Fixed(value) => Line { offset: value, slope: S::zero() },
-            LocalBalance::Gain(gain) => {
-                let inverse = S::one() / (gain.slope - response[o][o]);
-                Line { offset: (source[o] + gain.offset) * inverse, slope: response[o][e] * inverse }
+        let balance = self.local_balance(2 * w + o);
+        let slope = match (balance, self.locals[w]) {
+            (LocalBalance::Fixed(_), _) => S::zero(),
+            (LocalBalance::Gain(_), LocalFaces::One { line, .. }) if !matrix => line.slope,
+            (LocalBalance::Gain(gain), _) => {
+                self.inverses[w] = S::one() / (gain.slope - response[o][o]);
+                response[o][e] * self.inverses[w]
             }
         };
-        self.block.add(row, row, -(area * (response[e][e] + response[e][o] * line.slope)));
-        self.block.right[row] += area * (source[e] + response[e][o] * line.offset);
-        LocalFaces::One { side: o, line }
+        let offset = match balance {
+            LocalBalance::Fixed(value) => value,
+            LocalBalance::Gain(gain) => (source[o] + gain.offset) * self.inverses[w],
+        };
+        if matrix {
+            self.block.add(row, row, -(area * (response[e][e] + response[e][o] * slope)));
+        }
+        self.block.right[row] += area * (source[e] + response[e][o] * offset);
+        LocalFaces::One { side: o, line: Line { offset, slope } }
     }
 
     /// Heat from outside into a local face, `offset - slope T`, or the temperature it is held at.
@@ -951,35 +1044,52 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Convection, exchange between faces, infiltration and storage of a zone.
+    /// Convection and exchange between the faces of a zone; without `matrix` only right-hand sides.
     #[inline(always)]
-    fn assemble_zone(&mut self, zone: usize, length: f64) {
+    fn enter_faces(&mut self, zone: usize, matrix: bool) {
         let plan = &self.plan.zones[zone];
         let numbers = &self.coefficients.zones[zone];
         let (air, n) = (plan.air_row, plan.faces.len());
         for (i, (&index, &row)) in plan.faces.iter().zip(&plan.face_rows).enumerate() {
             let (laws, area) = (self.laws[index], numbers.areas[i]);
             let offset = area * laws.film.offset;
-            self.block.couple(row, air, area * laws.film.slope);
             self.block.right[air] += offset;
             let mut arriving = area * self.drive.faces[index].solar - offset;
+            if matrix {
+                self.block.couple(row, air, area * laws.film.slope);
+            }
             if !numbers.exchange.is_empty() {
-                let sum = numbers.exchange_sums[i];
-                let line = self.block.row(row);
-                line[row] += sum * laws.emission.slope;
-                arriving = arriving - sum * laws.emission.offset;
                 let exchange = &numbers.exchange[i * n..(i + 1) * n];
-                for (j, (&other, &column)) in plan.faces.iter().zip(&plan.face_rows).enumerate() {
-                    if j != i {
-                        let theirs = &self.laws[other].emission;
-                        line[column] = line[column] - exchange[j] * theirs.slope;
-                        arriving += exchange[j] * theirs.offset;
+                let sum = numbers.exchange_sums[i];
+                // The row of a face exchanges nothing with itself.
+                let others = plan.faces.iter().zip(&plan.face_rows).zip(exchange).filter(
+                    #[inline(always)]
+                    |((other, _), _)| **other != index,
+                );
+                if matrix {
+                    let line = self.block.row(row);
+                    line[row] += sum * laws.emission.slope;
+                    for ((&other, &column), &exchange) in others.clone() {
+                        line[column] = line[column] - exchange * self.laws[other].emission.slope;
+                    }
+                }
+                // In straight lines all faces emit alike: offsets cancel.
+                if matches!(numbers.emission, Emission::Exact) {
+                    arriving = arriving - sum * laws.emission.offset;
+                    for ((&other, _), &exchange) in others {
+                        arriving += exchange * self.laws[other].emission.offset;
                     }
                 }
             }
             arriving += self.drive.zones[zone].radiant * numbers.radiant_shares[i];
             self.block.right[row] += arriving;
         }
+    }
+
+    /// Storage of the air of a zone, what enters it, and the heat released into it.
+    #[inline(always)]
+    fn enter_air(&mut self, zone: usize, length: f64) {
+        let (air, numbers) = (self.plan.zones[zone].air_row, &self.coefficients.zones[zone]);
         let (inflow, airing) = (self.inflow[zone], self.airing[zone]);
         let entering = Line { offset: inflow.offset + airing.offset, slope: inflow.slope + airing.slope };
         let storage = numbers.capacity.scale(1.0 / length);
@@ -1015,9 +1125,16 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// not one.
     #[inline(always)]
     fn distance(&self, iterate: &Unknowns<S>) -> S {
-        let mut sum = squared_distance(&self.solved.faces, &iterate.faces)
-            + squared_distance(&self.solved.air, &iterate.air);
-        for wall in self.plan.walls.iter().filter(|wall| wall.nonlinear) {
+        let mut sum = squared_distance(&self.solved.air, &iterate.air);
+        if self.changing.curved {
+            sum += squared_distance(&self.solved.faces, &iterate.faces);
+        }
+        for &w in &self.changing.walls {
+            if !self.changing.curved {
+                let faces = 2 * w..2 * w + 2;
+                sum += squared_distance(&self.solved.faces[faces.clone()], &iterate.faces[faces]);
+            }
+            let wall = &self.plan.walls[w];
             let cells = wall.first_cell..wall.first_cell + wall.len();
             sum += squared_distance(&self.solved.cells[cells.clone()], &iterate.cells[cells]);
         }
@@ -1068,14 +1185,23 @@ impl<'a, S: Real> Stepper<'a, S> {
         halve(&mut self.solved.cells, &self.iterate.cells);
     }
 
-    /// Cell temperatures of the walls whose cells Newton did not need.
+    /// Solves for all that Newton did not need. False in the lanes where a wall that touches no zone is at no number; of
+    /// all other walls Newton has noticed.
     #[inline(always)]
-    fn finish_linear_walls(&mut self) {
-        for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear) {
-            let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
-            let cells = wall.first_cell..wall.first_cell + wall.len();
-            self.chains[w].temperatures(faces, &mut self.solved.cells[cells]);
+    fn finish_stage(&mut self) -> S::Mask {
+        if !self.changing.curved {
+            self.resolve_constant();
+            for &w in &self.changing.constant {
+                let faces = 2 * w..2 * w + 2;
+                self.iterate.faces[faces.clone()].copy_from_slice(&self.solved.faces[faces]);
+            }
         }
+        self.slabs.temperatures(&self.solved.faces, &mut self.solved.cells);
+        let mut sum = S::zero();
+        for &w in &self.changing.loose {
+            sum += self.solved.faces[2 * w] + self.solved.faces[2 * w + 1];
+        }
+        sum.abs().lt(S::constant(f64::MAX))
     }
 
     /// Adds the stage's heat to the step's, at the values of the last linear solve.
@@ -1179,8 +1305,15 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[must_use]
     #[inline(always)]
     pub fn link_flux(&self, w: usize, link: usize) -> S {
+        let wall = &self.plan.walls[w];
         let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
-        self.chains[w].link_flux(link, faces)
+        if wall.nonlinear {
+            return self.chains[w].link_flux(link, faces);
+        }
+        let cells = &self.solved.cells[wall.first_cell..wall.first_cell + wall.len()];
+        let left = if link == 0 { faces[0] } else { cells[link - 1] };
+        let right = if link == cells.len() { faces[1] } else { cells[link] };
+        self.chains[w].links[link].flux(left, right)
     }
 
     /// Names the part that moves most in the first lane that failed.
@@ -1223,9 +1356,77 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 }
 
+/// What changes when, and what stays: found from the plan, never from a number.
+#[derive(Debug)]
+struct Changing {
+    /// Walls of constant properties, and the others.
+    constant: Vec<usize>,
+    walls: Vec<usize>,
+    /// Those of the former that touch no zone.
+    loose: Vec<usize>,
+    /// Faces whose films depend on the wind alone, faces whose films depend on temperature, and faces that radiate with
+    /// the fourth power of it.
+    windy: Vec<FaceId>,
+    bent: Vec<FaceId>,
+    radiant: Vec<FaceId>,
+    /// Whether the balance of a face of a constant wall is more than a straight line of its temperature.
+    curved: bool,
+    /// Whether the wind changes its slope.
+    by_wind: bool,
+}
+
+impl Changing {
+    /// Sorts walls and faces; also the laws that never change.
+    fn sort<S: Real>(plan: &Plan, numbers: &Coefficients<S>) -> (Self, Vec<FaceLaws<S>>) {
+        let (walls, constant): (Vec<_>, Vec<_>) =
+            (0..plan.walls.len()).partition(|&wall| plan.walls[wall].nonlinear);
+        let local = |face: FaceId| plan.faces[face].role == FaceRole::Local;
+        let loose = constant.iter().copied().filter(|&wall| local(2 * wall) && local(2 * wall + 1)).collect();
+        let (windy, bent, radiant) = (Vec::new(), Vec::new(), Vec::new());
+        let mut all = Self { constant, walls, loose, windy, bent, radiant, curved: false, by_wind: false };
+        let laws = (0..plan.faces.len()).map(|face| all.enter(plan, numbers, face)).collect();
+        (all, laws)
+    }
+
+    fn enter<S: Real>(&mut self, plan: &Plan, numbers: &Coefficients<S>, index: FaceId) -> FaceLaws<S> {
+        let (face, role) = (&numbers.faces[index], plan.faces[index].role);
+        let mut laws = FaceLaws { film: Line::zero(), emission: Line::zero() };
+        // What happens at the free face of a wall that changes is entered with the wall.
+        let entered = matches!(role, FaceRole::Zone { .. }) || !plan.walls[index / 2].nonlinear;
+        if let Some(film) = &face.film {
+            if let Some(coefficient) = film.constant() {
+                laws.film.slope = coefficient * face.area_factor;
+            } else if film.straight() {
+                self.windy.push(index);
+                self.by_wind |= entered;
+            } else {
+                self.bent.push(index);
+                self.curved |= entered;
+            }
+        }
+        let emission = match role {
+            FaceRole::Zone { zone, .. } if numbers.zones[zone].exchange.is_empty() => None,
+            FaceRole::Zone { zone, .. } => Some(numbers.zones[zone].emission),
+            FaceRole::Local => outdoor_emission(face),
+        };
+        match emission {
+            Some(Emission::Exact) => {
+                self.radiant.push(index);
+                self.curved |= entered;
+            }
+            Some(Emission::Linearised(_)) => {
+                let (offset, slope) = emission.map_or((S::zero(), S::zero()), |law| law.at(S::zero()));
+                laws.emission = Line { offset, slope };
+            }
+            None => {}
+        }
+        laws
+    }
+}
+
 /// The emission law of a face that looks outdoors.
 #[inline(always)]
-fn outdoor_emission<S: Real>(face: &Face<S>) -> Option<crate::radiation::Emission<S>> {
+fn outdoor_emission<S: Real>(face: &Face<S>) -> Option<Emission<S>> {
     match &face.boundary {
         Boundary::Outdoors(outdoors) => outdoors.emission,
         Boundary::Imposed(_) | Boundary::Adiabatic | Boundary::Zone => None,

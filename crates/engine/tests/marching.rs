@@ -6,6 +6,9 @@ use common::{
     SCHEMES, cell, cell_probes, cell_weather, forcing, options, position, run, try_run, values, warmup,
 };
 use mascarin_engine::batch::ensemble;
+use mascarin_engine::description::{
+    Convection, Description, Facing, OutdoorLongwave, ParamId, Parameter, PowerLaw, ZoneLongwave,
+};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
@@ -205,7 +208,7 @@ fn order_of_surfaces_does_not_matter() {
 }
 
 /// A phase-change ceiling between a hot gap and a room, everything else imposed.
-fn ceiling(gamma: f64) -> mascarin_engine::description::Description {
+fn ceiling(gamma: f64) -> Description {
     use common::{Builder, facing};
     use mascarin_engine::description::{Facing, ZoneLongwave};
     let mut b = Builder::new();
@@ -279,4 +282,79 @@ fn solver_counters() {
     options.warmup = Some(warmup(STEP));
     let result = run(&plan, &rows, &options);
     assert_eq!((result.cycles, result.effort.iterations), (3, 5372));
+}
+
+/// The cell with constant films inside, films linear in the wind outside and linearised radiation: nothing but the
+/// ceiling is more than a straight line. `bent`: one constant film is written as a power of the temperature difference
+/// with no gain.
+fn straight_cell(bent: bool) -> Description {
+    let mut description = cell(0.04);
+    let mut number = |value: f64| {
+        let path = format!("straight.{}", description.parameters.len());
+        description.parameters.push(Parameter { path, value });
+        ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
+    };
+    for (index, surface) in description.surfaces.iter_mut().enumerate() {
+        for side in [&mut surface.outside, &mut surface.inside] {
+            side.longwave = OutdoorLongwave::Linearised { reference: number(25.0) };
+            side.convection = match side.facing {
+                Facing::Zone { .. } if bent && index == 1 => {
+                    let [a, b, n, c, m] = [3.0, 0.0, 0.5, 0.0, 1.0].map(&mut number);
+                    let law = PowerLaw { a, b, n, c, m };
+                    Some(Convection::Power { upward: law.clone(), downward: law })
+                }
+                Facing::Zone { .. } => Some(Convection::Constant { coefficient: number(3.0) }),
+                Facing::Outdoors => {
+                    Some(Convection::LinearWind { constant: number(11.4), wind: number(5.7) })
+                }
+                _ => side.convection.take(),
+            };
+        }
+    }
+    for zone in &mut description.zones {
+        zone.longwave = ZoneLongwave::Linearised { reference: number(27.0) };
+    }
+    description
+}
+
+/// What is eliminated once, because nothing in it changes, is what would be found if it were eliminated every time.
+#[test]
+fn straight_lines_are_eliminated_once() {
+    for scheme in SCHEMES {
+        let runs = [false, true].map(|bent| {
+            let plan = Plan::new(straight_cell(bent)).unwrap();
+            let rows = forcing(&plan, scheme, 5 * 96, STEP, cell_weather);
+            run(&plan, &rows, &options(scheme, STEP, cell_probes()))
+        });
+        let [straight, bent] = &runs;
+        for (a, b) in straight.records.iter().zip(&bent.records) {
+            assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "{a} is not {b} with {scheme:?}");
+        }
+        if scheme != Scheme::ApparentCapacity {
+            assert!(straight.ledger.closure() < 1e-10, "{:?}", straight.ledger);
+        }
+    }
+}
+
+/// Members of such a cell, too, have the same bits alone and in a pack, and one at no number fails by itself.
+#[test]
+fn straight_lanes_are_scalars() {
+    let plan = Plan::new(straight_cell(false)).unwrap();
+    let width = plan.description.parameters.len();
+    let rows = forcing(&plan, Scheme::Sdirk2, 3 * 96, STEP, cell_weather);
+    let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
+    let options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let mut numbers = members(&plan, 11);
+    numbers[4 * width + position(&plan, "materials.foam.density")] = f64::NAN;
+    let watch = Watch::default();
+    let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
+    let row = together.records.len() / 11;
+    assert_eq!(together.failures.iter().map(|(member, _)| *member).collect::<Vec<_>>(), [4]);
+    for (member, numbers) in numbers.chunks(width).enumerate().filter(|(member, _)| *member != 4) {
+        let alone = march(&plan, numbers, &drive, &options, &watch).unwrap();
+        for (a, b) in alone.records.iter().zip(&together.records[member * row..]) {
+            assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: member {member}");
+        }
+        assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
+    }
 }
