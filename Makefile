@@ -1,9 +1,10 @@
-# Mascarin. Two commands set up and go, each making its own environment in .venv:
+# Mascarin. These commands set up and go, each making its own environment in .venv:
 #
 #   make demo   build, run the study of the LGI cell on shipped data, print where the report is
 #   make test   build, run formatting, lints, types and every test
+#   make bench  build, measure the engine and write the table of docs/speed.md
 #
-# Both need Python 3.11 or later, cargo and make, and nothing else.
+# They need Python 3.11 or later, cargo and make, and nothing else.
 
 PYTHON ?= python3
 PYTEST_FLAGS ?= --numprocesses=auto --dist=loadfile
@@ -25,17 +26,21 @@ export PIP_NO_INPUT := 1
 # The same interpreter for every cargo call, so that the binding is not rebuilt between them.
 export PYO3_PYTHON := $(CURDIR)/$(PY)
 
-.PHONY: help demo test build check-tools check-rust check-python pytest
+.PHONY: help demo test bench build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make demo   build, run the study of the LGI cell on shipped data, print where the report is"
 	@echo "make test   build, run formatting, lints, types and every test"
+	@echo "make bench  build, measure the engine and write the table of docs/speed.md"
 
 demo: $(BUILT)
 	$(BIN)/mascarin study lgi -o demo
 
 test: check-rust check-python pytest
+
+bench: $(BUILT)
+	$(PY) bench/engine_speed.py --write docs/speed.md
 
 build: $(BUILT)
 

@@ -196,6 +196,23 @@ def test_members_are_the_same_bits_alone_and_together(everything: Building, isla
         assert alone.energy.closure == closure[member]
 
 
+def test_lanes_of_every_kind_give_the_same_bits(
+    everything: Building, island: Climate, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = Simulation(everything, island, step="15min", end="2001-01-02", initial=23.0)
+    samples = np.tile(run.values, (9, 1))
+    samples[:, run.position("materials.energain.latent_heat")] *= np.linspace(0.5, 1.5, 9)
+    widest, closure, _ = run.ensemble(samples)
+    for lanes in ("array", "avx2", "avx512"):
+        monkeypatch.setenv("MASCARIN_LANES", lanes)
+        records, same, _ = run.ensemble(samples)
+        assert records.tobytes() == widest.tobytes(), lanes
+        assert same.tobytes() == closure.tobytes(), lanes
+    monkeypatch.setenv("MASCARIN_LANES", "wide")
+    with pytest.raises(InputError, match="MASCARIN_LANES: found 'wide', expected avx512, avx2 or array"):
+        run.ensemble(samples)
+
+
 def test_only_some_rows_are_recorded(everything: Building, island: Climate) -> None:
     run = Simulation(everything, island, step="1h", end="2001-01-03", initial=23.0)
     every, _, _ = run.ensemble(run.vector({})[None])

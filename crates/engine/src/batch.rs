@@ -6,7 +6,7 @@ use core::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use crate::dispatch::{Packed, WIDTH, run};
+use crate::dispatch::{Level, Packed, WIDTH, run};
 use crate::drive::Weather;
 use crate::error::EngineError;
 use crate::forcing::Forcing;
@@ -41,6 +41,7 @@ pub fn ensemble(
         return Err(EngineError::Input(format!("member rows must hold {width} parameters")));
     }
     check(plan, width, forcing, options)?;
+    let level = Level::widest()?;
     let weather = Weather::new(plan, forcing);
     let members = numbers.len() / width;
     let row = options.rows(forcing.steps()) * options.probes.len();
@@ -56,7 +57,7 @@ pub fn ensemble(
             let first = pack * WIDTH;
             let members = &numbers[first * width..(first + closure.len()) * width];
             let mut target = Target { records, closure, row };
-            let failed = run_pack(plan, members, &weather, options, watch, &mut target)?;
+            let failed = run_pack(level, plan, members, &weather, options, watch, &mut target)?;
             Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
         })
         .collect();
@@ -100,6 +101,7 @@ impl Packed for Pack<'_> {
 
 /// Runs a pack in lanes, and alone those of its members whose iteration failed there.
 fn run_pack(
+    level: Level,
     plan: &Plan,
     numbers: &[f64],
     weather: &Weather<'_>,
@@ -110,7 +112,7 @@ fn run_pack(
     let width = plan.description.parameters.len();
     let members = target.closure.len();
     let mut failures = Vec::new();
-    let results = match run(Pack { plan, numbers, members, weather, options, watch }) {
+    let results = match run(level, Pack { plan, numbers, members, weather, options, watch }) {
         Err(EngineError::NotConverged { .. } | EngineError::NotSettled { .. }) => vec![None; members],
         other => other?,
     };

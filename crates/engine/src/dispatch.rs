@@ -6,6 +6,7 @@
 
 #![allow(unsafe_code, reason = "vector instructions are unsafe to call where the machine may not have them")]
 
+use crate::error::EngineError;
 use crate::real::Lanes;
 
 /// Members in one pack.
@@ -19,18 +20,65 @@ pub trait Packed {
     fn run<S: crate::real::Real>(self, pack: fn([f64; WIDTH]) -> S) -> Self::Output;
 }
 
-/// Does the work with the best lanes that this machine has.
-pub fn run<W: Packed>(work: W) -> W::Output {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if avx512::available() {
-            return work.run(avx512::Eight::new);
-        }
-        if avx2::available() {
-            return work.run(avx2::Eight::new);
-        }
+/// What lanes are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Arrays, on every machine.
+    Array,
+    /// Two registers.
+    Avx2,
+    /// One register.
+    Avx512,
+}
+
+impl Level {
+    /// Environment variable that asks for narrower lanes than the machine has: to measure them, or to check that they give
+    /// the same bits.
+    pub const VARIABLE: &str = "MASCARIN_LANES";
+
+    /// The widest lanes that this machine has and the environment allows.
+    ///
+    /// # Errors
+    /// [`EngineError::Input`] when the environment names no level.
+    pub fn widest() -> Result<Self, EngineError> {
+        let asked = std::env::var(Self::VARIABLE).unwrap_or_default();
+        let allowed = match asked.as_str() {
+            "" | "avx512" => Self::Avx512,
+            "avx2" => Self::Avx2,
+            "array" => Self::Array,
+            other => {
+                return Err(EngineError::Input(format!(
+                    "environment variable {}: found '{other}', expected avx512, avx2 or array",
+                    Self::VARIABLE
+                )));
+            }
+        };
+        Ok(allowed.min(Self::available()))
     }
-    run_plain(work)
+
+    fn available() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if avx512::available() {
+                return Self::Avx512;
+            }
+            if avx2::available() {
+                return Self::Avx2;
+            }
+        }
+        Self::Array
+    }
+}
+
+/// Does the work with lanes of a level that [`Level::widest`] has found.
+pub fn run<W: Packed>(level: Level, work: W) -> W::Output {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => work.run(avx512::Eight::new),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => work.run(avx2::Eight::new),
+        _ => run_plain(work),
+    }
 }
 
 /// Does the work with the lanes that every machine has.
@@ -370,7 +418,7 @@ mod avx2 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Packed, WIDTH, run, run_plain};
+    use super::{Level, Packed, WIDTH, run, run_plain};
     use crate::real::{Mask, Real};
 
     /// Every operation and elementary function on numbers of many sizes.
@@ -422,7 +470,8 @@ mod tests {
         for start in [1e-200, 1e-9, 0.07, 1.0, 23.4, 3e8] {
             let numbers: [f64; WIDTH] = core::array::from_fn(|lane| start * (1.0 + 0.61 * lane as f64));
             let scalars: Vec<_> = numbers.iter().map(|&x| everything(x, 17.0 / x - 0.3)).collect();
-            let mut levels = vec![run(Everything(numbers)), run_plain(Everything(numbers))];
+            let mut levels =
+                vec![run(Level::available(), Everything(numbers)), run_plain(Everything(numbers))];
             #[cfg(target_arch = "x86_64")]
             if super::avx2::available() {
                 levels.push(Everything(numbers).run(super::avx2::Eight::new));
