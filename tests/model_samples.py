@@ -130,7 +130,7 @@ windows:
     glazing: listed
     vertices: [[1, 1, 3.166666667], [2, 1, 3.166666667], [2, 2, 3.333333333], [1, 2, 3.333333333]]
     outside: {convection: {kind: mowitt}}
-    inside: {convection: tarp}
+    inside: {convection: iso15099}
   hatch: {surface: roof, glazing: plain, area: 1, outside: {convection: 15}, inside: {convection: 3}}
 shades:
   hood: {vertices: [[0, 0, 4], [3, 0, 4], [3, -1, 4], [0, -1, 4]]}

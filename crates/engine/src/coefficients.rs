@@ -188,8 +188,7 @@ impl<S: Real> Coefficients<S> {
         let walls: Vec<_> = (0..plan.walls.len()).map(|i| Wall::new(plan, i, &values)).collect();
         let faces: Vec<_> = (0..plan.faces.len()).map(|i| Face::new(plan, i, &values)).collect();
         let site = &description.site;
-        let density =
-            site.air_density.map_or_else(|| density_at(values.get(site.altitude)), |id| values.get(id));
+        let density = air_density(plan, &values);
         let zones =
             (0..plan.zones.len()).map(|i| Zone::new(plan, i, &values, &walls, &faces, density)).collect();
         let paths = description.air_paths.iter().map(|path| Path::new(path, &values, density)).collect();
@@ -203,6 +202,12 @@ impl<S: Real> Coefficients<S> {
             sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),
         }
     }
+}
+
+/// Density of the air that fills the zones [kg/m3].
+fn air_density<S: Real>(plan: &Plan, values: &Values<'_, S>) -> S {
+    let site = &plan.description.site;
+    site.air_density.map_or_else(|| density_at(values.get(site.altitude)), |id| values.get(id))
 }
 
 /// Density of dry air [kg/m3] at an altitude [m]: pressure of the standard atmosphere (ICAO Doc 7488) at 15 degC.
@@ -284,12 +289,15 @@ impl<S: Real> Face<S> {
     fn new(plan: &Plan, index: FaceId, values: &Values<'_, S>) -> Self {
         let surface = &plan.description.surfaces[index / 2];
         let side = plan.side(index);
-        let tilt = radians(values.get(surface.tilt));
+        let degrees = values.get(surface.tilt);
+        let tilt = radians(degrees);
         let outward = if index.is_multiple_of(2) { S::one() } else { -S::one() };
         let exposure = Exposure {
             area: own_area(surface, values),
             upward: outward * tilt.cos(),
             wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
+            inclination: degrees.min(S::constant(180.0) - degrees),
+            density: air_density(plan, values),
         };
         Self {
             film: side.convection.as_ref().map(|law| Film::new(values, law, &exposure)),

@@ -11,8 +11,10 @@
 //! - Walton (1983), Thermal Analysis Research Program (TARP), NBSSIR 83-2655.
 //! - Yazdanian & Klems (1994), `MoWiTT`, ASHRAE Trans. 100(1), 1087-1096.
 //! - LBL (1994), DOE2.1E-053 source code, as described in the `EnergyPlus` Engineering Reference: `MoWiTT` on rough faces.
+//! - ISO 15099:2003, 8.3.2.2: free convection at the room's face of a glazing.
 //! - Guichard et al., the paper's eq. 5 as printed (a misprint of Alamdari & Hammond's; kept under its own name).
 
+use crate::coefficients::AIR_SPECIFIC_HEAT;
 use crate::description::{Convection, PowerLaw};
 use crate::parameters::Values;
 use crate::real::{Mask, Real};
@@ -62,6 +64,10 @@ pub struct Exposure<S> {
     pub upward: S,
     /// Wind at the face over wind at the mast [-].
     pub wind_factor: S,
+    /// Angle between the face and the horizontal, at most 90 [deg].
+    pub inclination: S,
+    /// Density of the air [kg/m3].
+    pub density: S,
 }
 
 /// The part of a film coefficient that the wind makes, where heat flows up and where it flows down [W/(m2 K)].
@@ -115,8 +121,21 @@ enum Law<S> {
         roughness: S,
         wind: [S; 2],
     },
+    /// Where buoyancy drives the air off the face and where it does not.
+    Glass([Glass<S>; 2]),
     /// Where heat flows up (or the face is vertical) and where it flows down.
     Power([Power<S>; 2]),
+}
+
+/// `laminar |d|^exponent`, above a difference `turbulent |d|^1/3 + offset`.
+#[derive(Debug, Clone, Copy)]
+struct Glass<S> {
+    laminar: S,
+    exponent: S,
+    turbulent: S,
+    offset: S,
+    /// Square of the difference where the flow turns turbulent [K2].
+    limit: S,
 }
 
 /// `constant + gain |d|^exponent + wind V^wind_exponent`, V at the mast.
@@ -173,6 +192,9 @@ impl<S: Real> Film<S> {
                     wind: wind.map(|part| factor * part),
                 }
             }
+            Convection::Iso15099 { length, factor } => {
+                Law::Glass(Glass::at_face(get(*length), get(*factor), face))
+            }
             Convection::Power { upward, downward } => {
                 Law::Power([upward, downward].map(|law| Power::new(values, law, face.wind_factor)))
             }
@@ -194,7 +216,7 @@ impl<S: Real> Film<S> {
     #[inline(always)]
     pub fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
         match &self.law {
-            Law::Constant(_) | Law::Blend { .. } => [S::zero(); 2],
+            Law::Constant(_) | Law::Blend { .. } | Law::Glass(_) => [S::zero(); 2],
             Law::LinearWind { constant, wind: slope } => [*constant + slope.scale(wind.speed); 2],
             Law::Tarp { forced, .. } => {
                 let forced = forced.scale(wind.root);
@@ -212,6 +234,7 @@ impl<S: Real> Film<S> {
         match &self.law {
             Law::Constant(_)
             | Law::Blend { .. }
+            | Law::Glass(_)
             | Law::Tarp { .. }
             | Law::Mowitt { .. }
             | Law::Doe2 { .. } => [S::zero(); 2],
@@ -245,6 +268,18 @@ impl<S: Real> Film<S> {
                     natural = self.on_plate(natural, *gain, d, rounded);
                 }
                 Natural { coefficient: *factor * natural.coefficient, rise: *factor * natural.rise }
+            }
+            Law::Glass([open, still]) => {
+                let unstable = self.unstable(d);
+                let choose = |of: fn(&Glass<S>) -> S| S::select(unstable, of(open), of(still));
+                let slow = power_law(choose(|g| g.laminar), choose(|g| g.exponent), square, rounded);
+                let fast = cube_root_law(choose(|g| g.turbulent), square, rounded);
+                let turbulent = choose(|g| g.limit).lt(square);
+                let lifted = fast.coefficient + choose(|g| g.offset);
+                Natural {
+                    coefficient: S::select(turbulent, lifted, slow.coefficient),
+                    rise: S::select(turbulent, fast.rise, slow.rise),
+                }
             }
             Law::Power([up, down]) => {
                 let upward = self.unstable(d) | self.upward.abs().lt(S::constant(1e-6));
@@ -310,6 +345,54 @@ fn tarp_natural<S: Real>(factor: S, upward: S) -> [S; 2] {
 fn mowitt_wind<S: Real>(wind_factor: S) -> [S; 2] {
     let [windward, leeward] = MOWITT_EXPONENTS.map(|exponent| wind_factor.powf(S::constant(exponent)));
     [windward.scale(3.26), leeward.scale(3.55)]
+}
+
+/// Thermal conductivity [W/(m K)] and viscosity [Pa s] of air at 20 degC (ISO 15099:2003, annex B).
+const ROOM_AIR: [f64; 2] = [0.025_621, 1.820_5e-5];
+/// 20 degC [K].
+const ROOM: f64 = 293.15;
+/// [m/s2].
+const GRAVITY: f64 = 9.806_65;
+
+impl<S: Real> Glass<S> {
+    /// ISO 15099, 8.3.2.2, by the angle g from the horizontal, counted from where heat flows up: Nusselt number
+    /// `0.13 Ra^1/3` below 15 deg; to 90 deg `0.56 (Ra sin g)^1/4`, and above a critical Ra
+    /// `0.13 (Ra^1/3 - Rac^1/3) + 0.56 (Rac sin g)^1/4`; then `0.56 (Ra sin g)^1/4`, under a level plate
+    /// `0.58 Ra^1/5`. The properties are those of air at 20 degC and the site's density.
+    fn at_face(length: S, factor: S, face: &Exposure<S>) -> [Self; 2] {
+        let [conductivity, viscosity] = ROOM_AIR;
+        let degrees = face.inclination;
+        let sine = degrees.scale(core::f64::consts::PI / 180.0).sin();
+        let (level, flat) = (degrees.lt(S::constant(1.0)), degrees.lt(S::constant(15.0)));
+        let heat = GRAVITY * AIR_SPECIFIC_HEAT / (ROOM * viscosity * conductivity);
+        // Ra over |d|, and h over the Nusselt number.
+        let rayleigh = face.density * face.density * length * length * length.scale(heat);
+        let per_nusselt = factor.scale(conductivity) / length;
+        let quarter = |x: S| x.powf(S::constant(0.25));
+        let third = |x: S| x.powf(S::constant(1.0 / 3.0));
+        // A level plate has no such flow; it is not asked for there.
+        let along = S::select(level, S::one(), sine);
+        let laminar = per_nusselt.scale(0.56) * quarter(rayleigh * along);
+        let turbulent = per_nusselt.scale(0.13) * third(rayleigh);
+        let critical = degrees.scale(0.72 / 5.0).exp().scale(2.5e5) / along.powf(S::constant(0.2));
+        let limit = critical / rayleigh;
+        let offset = laminar * quarter(limit) - turbulent * third(limit);
+        let open = Self {
+            laminar,
+            exponent: S::constant(0.25),
+            turbulent,
+            offset: S::select(flat, S::zero(), offset),
+            limit: S::select(flat, -S::one(), limit * limit),
+        };
+        let plate = per_nusselt.scale(0.58) * rayleigh.powf(S::constant(0.2));
+        let still = Self {
+            laminar: S::select(level, plate, laminar),
+            exponent: S::select(level, S::constant(0.2), S::constant(0.25)),
+            limit: S::constant(f64::MAX),
+            ..open
+        };
+        [open, still]
+    }
 }
 
 impl<S: Real> Power<S> {
@@ -396,7 +479,9 @@ mod tests {
 
     /// A face of 1 m2.
     fn film(law: &Convection, numbers: &[f64], upward: f64) -> Film<f64> {
-        Film::new(&Values::new(numbers), law, &Exposure { area: 1.0, upward, wind_factor: 1.0 })
+        let inclination = upward.abs().acos().to_degrees();
+        let face = Exposure { area: 1.0, upward, wind_factor: 1.0, inclination, density: 1.2 };
+        Film::new(&Values::new(numbers), law, &face)
     }
 
     fn coefficient(film: &Film<f64>, difference: f64, wind: f64, windward: bool) -> f64 {
@@ -411,6 +496,24 @@ mod tests {
 
     fn assert_close(value: f64, expected: f64) {
         assert!((value / expected - 1.0).abs() < 2e-4, "{value} is not {expected}");
+    }
+
+    /// ISO 15099 in air of 1.2 kg/m3: Ra/(H^3 d) = 1.2^2 9.80665 1006 / (293.15 1.8205e-5 0.025621) = 1.03897e8 a K.
+    #[test]
+    fn glass_by_hand() {
+        let law = Convection::Iso15099 { length: ParamId(0), factor: ParamId(1) };
+        // Upright, 2 m, 10 K: Nu = 0.56 (8.3117e9)^1/4.
+        let upright = film(&law, &[2.0, 1.0], 0.0);
+        assert_close(coefficient(&upright, -10.0, 3.0, true), 2.166_10);
+        assert_close(coefficient(&upright, 10.0, 0.0, false), 2.166_10);
+        // 1 m at 30 deg from the horizontal, cold above the room: Rac = 2.5e5 (e^21.6/0.5)^1/5 is passed at 0.208 K.
+        let sloped = film(&law, &[1.0, 1.0], -(30f64.to_radians().cos()));
+        assert_close(coefficient(&sloped, -10.0, 0.0, false), 3.268_40);
+        assert_close(coefficient(&sloped, 10.0, 0.0, false), 2.166_10);
+        // Level: 0.13 Ra^1/3 where the air rises, 0.58 Ra^1/5 where it does not.
+        let level = film(&law, &[1.0, 1.0], -1.0);
+        assert_close(coefficient(&level, -10.0, 0.0, false), 3.373_45);
+        assert_close(coefficient(&level, 10.0, 0.0, false), 0.944_811);
     }
 
     /// Values worked out by hand from the printed correlations.

@@ -863,6 +863,14 @@ pub enum Convection {
         /// Roughness multiplier Rf [-].
         roughness: ParamId,
     },
+    /// ISO 15099 at the room's face of a glazing; `length`: its height [m].
+    Iso15099 {
+        /// [m].
+        length: ParamId,
+
+        /// Multiplies the correlation [-].
+        factor: ParamId,
+    },
     /// `a + b |dT|^n + c V^m` by direction of heat flow.
     Power {
         /// Heat flows up, or the face is vertical.

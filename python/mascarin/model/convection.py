@@ -68,6 +68,14 @@ class Doe2(Part):
     roughness: q.Roughness | None = None
 
 
+class Iso15099(Part):
+    """Free convection at the room's face of a glazing, by its height and tilt (ISO 15099:2003)."""
+
+    kind: Literal["iso15099"]
+    length: q.ConvectionLength | None = None
+    factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
+
+
 class PowerLaw(Part):
     """``a + b |dT|^n + c V^m`` for one direction of heat flow."""
 
@@ -87,7 +95,7 @@ class Power(Part):
 
 
 Convection = Annotated[
-    Constant | LinearWind | AlamdariHammond | PaperEq5 | Tarp | Mowitt | Doe2 | Power,
+    Constant | LinearWind | AlamdariHammond | PaperEq5 | Tarp | Mowitt | Doe2 | Iso15099 | Power,
     Field(discriminator="kind"),
     Shorthand(word="kind", number="coefficient", kind="constant"),
 ]
@@ -99,4 +107,5 @@ SOURCES = {
     "tarp": "Walton 1983, Thermal Analysis Research Program Reference Manual, NBSIR 83-2655",
     "mowitt": "Yazdanian & Klems 1994, ASHRAE Transactions 100(1)",
     "doe2": "LBL 1994, DOE2.1E-053 source code; EnergyPlus Engineering Reference, outside convection",
+    "iso15099": "ISO 15099:2003, 8.3.2.2: convection indoors",
 }

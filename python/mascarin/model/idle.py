@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from mascarin.model.convection import AlamdariHammond, Doe2, LinearWind, Mowitt, PaperEq5, Power, Tarp
+from mascarin.model.convection import AlamdariHammond, Doe2, Iso15099, LinearWind, Mowitt, PaperEq5, Power, Tarp
 from mascarin.model.envelope import NoLongwave, Side, Surface
 from mascarin.model.faces import closed, zone_faces
 from mascarin.model.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
@@ -229,7 +229,8 @@ def _in_direction(building: Building, name: str, surface: Surface) -> Reasons:
     ):
         yield f"surfaces.{name}.azimuth", _only(reasons)
     skyward = any(face.sees_sky and _sky_by_tilt(face) for face in faces)
-    if not (sunlit or skyward or any(isinstance(face.side.convection, Tarp | Doe2) for face in faces)):
+    tilted = any(isinstance(face.side.convection, Tarp | Doe2 | Iso15099) for face in faces)
+    if not (sunlit or skyward or tilted):
         yield (
             f"surfaces.{name}.tilt",
             _only([*reasons, *(["vertical or horizontal film"] if buoyant else [])]),

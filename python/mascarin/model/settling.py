@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError
-from mascarin.model.convection import AlamdariHammond, Convection, Doe2, PaperEq5, Tarp
+from mascarin.model.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
 from mascarin.model.envelope import Side, Surface
 from mascarin.model.number import Number, Remark
 from mascarin.model.part import Location, fault, insist, refuse, settled
@@ -118,7 +118,7 @@ def _settled_convection(
     convection: Convection, outdoors: bool, area: float, tilt: float, polygon: Polygon | None
 ) -> Convection:
     match convection:
-        case AlamdariHammond(length=None) | PaperEq5(length=None):
+        case AlamdariHammond(length=None) | PaperEq5(length=None) | Iso15099(length=None):
             length, source = _length(area, tilt, polygon)
             kind = type(convection)
             return convection.model_copy(update={"length": settled(kind, "length", length, source)})

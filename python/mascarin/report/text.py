@@ -27,6 +27,7 @@ _CHOICES = {
     "tarp": "TARP",
     "mowitt": "MoWiTT",
     "doe2": "DOE-2",
+    "iso15099": "ISO 15099",
     "power": "power law by direction",
     "martin_berdahl": "Martin and Berdahl, with clouds",
     "clark_allen": "Clark and Allen, with clouds",
