@@ -23,6 +23,7 @@ from mascarin.validation.bestest.quantities import (
     when,
 )
 from mascarin.validation.bestest.reference import PROGRAMS, ranges
+from mascarin.validation.bestest.running import run
 from mascarin.validation.bestest.weather import FINGERPRINT, fingerprint, read
 
 # --- the table of cases ---
@@ -259,3 +260,27 @@ def test_without_weather_it_is_said_where_to_get_it(tmp_path: Path) -> None:
         read(None)
     with pytest.raises(InputError, match="found no file"):
         read(tmp_path / "nothing.epw")
+
+
+# --- cases run ---
+
+
+def test_sun_and_loads_of_a_shaded_case_and_its_base(data_dir: Path) -> None:
+    """Hours as steps: sums over the year are inside, and the books close."""
+    climate = read(data_dir / "bestest" / "725650TYCST.epw")
+    seen: list[tuple[float, float]] = []
+    found, own = run(
+        [CASES["610"]], climate, step="1h", progress=lambda done, total: seen.append((done, total))
+    )
+    assert own == {}
+    assert set(found) == {"600", "610"}
+    assert seen == [(0, 2), (1, 2), (2, 2)]
+    for year_ in found.values():
+        assert year_.closure < 1e-10
+    rows = {(r.case, r.quantity): r for name in found for r in quantities(found, CASES[name])}
+    level = rows.pop(("600", "incident_solar_horizontal"))
+    # What the weather file says of a level plane; the upper end of the range is the same, rounded.
+    assert level.value == pytest.approx(1e-3 * climate.data["global_horizontal"].sum(), rel=5e-4)
+    assert len(rows) == 2 * 4 + 6 + 2
+    outside = [key for key, row in rows.items() if not row.passed]
+    assert outside == []

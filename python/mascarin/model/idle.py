@@ -9,7 +9,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from mascarin.model.convection import AlamdariHammond, Doe2, Iso15099, LinearWind, Mowitt, PaperEq5, Power, Tarp
+from mascarin.model.convection import (
+    AlamdariHammond,
+    Doe2,
+    Iso15099,
+    LinearWind,
+    Mowitt,
+    PaperEq5,
+    Power,
+    Tarp,
+)
 from mascarin.model.envelope import NoLongwave, Side, Surface
 from mascarin.model.faces import closed, zone_faces
 from mascarin.model.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing

@@ -106,7 +106,7 @@ def render(rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[s
         programs=list(zip(PROGRAMS, _CLASSES, strict=True)),
         count=len(held),
         inside=len(held) - len(outside),
-        outside=[f"{row.case}: {_words(row.quantity)}" for row in outside],
+        outside=[_outside(row) for row in outside],
         cases=len({row.case for row in held}),
         closure=text.significant(max((year.closure for year in years.values()), default=0.0), 2),
     )
@@ -171,6 +171,11 @@ def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> d
         chart.bar(x, x + width, 0.0, row.value, "ours" if row.passed else "ours outside")
     said = "; ".join(f"{name}: {text.significant(row.value)} of {_span(row)}" for name, row in rows)
     return {"title": f"{title}, {text.unit(unit)}", "drawing": chart.markup(f"{title}. {said}")}
+
+
+def _outside(row: Quantity) -> str:
+    found = f"{_shown(row, row.value)} {text.unit(row.unit)}"
+    return f"{row.case}: {_words(row.quantity)}, {found} where the programs have {_span(row)}"
 
 
 def _span(row: Quantity) -> str:

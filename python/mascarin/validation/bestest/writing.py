@@ -322,7 +322,7 @@ def _windows(case: Case) -> str:
     lines = ["windows:\n"]
     faces = (
         "&pane_outside {convection: {kind: doe2, roughness: very_smooth}}",
-        "&pane_inside {convection: tarp}",
+        "&pane_inside {convection: iso15099}",
     )
     for name, (surface, outline) in zip(case.windows, _openings(case), strict=True):
         lines.append(f"  {name}:\n    surface: {surface}\n    glazing: clear_double\n")
