@@ -17,7 +17,7 @@ ORDER = [
     {"model"},
     {"climate"},
     {"simulation", "results", "state_space"},
-    {"sweep"},
+    {"sweep", "derivatives"},
     {"sensitivity", "optimise", "calibration", "validation"},
     {"genopt"},
     {"examples"},

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from mascarin.calibration import calibrate as calibrate
     from mascarin.climate import Climate as Climate
+    from mascarin.derivatives import gradient as gradient
+    from mascarin.derivatives import jacobian as jacobian
     from mascarin.materials.dsc import from_dsc as from_dsc
     from mascarin.model import load as load
     from mascarin.sensitivity import screen as screen
@@ -29,6 +31,8 @@ _HOME: Final = {
     "Study": "mascarin.study",
     "calibrate": "mascarin.calibration",
     "from_dsc": "mascarin.materials.dsc",
+    "gradient": "mascarin.derivatives",
+    "jacobian": "mascarin.derivatives",
     "load": "mascarin.model",
     "screen": "mascarin.sensitivity",
     "simulate": "mascarin.simulation",
@@ -42,6 +46,8 @@ __all__ = [
     "__version__",
     "calibrate",
     "from_dsc",
+    "gradient",
+    "jacobian",
     "load",
     "screen",
     "simulate",

@@ -6,7 +6,7 @@ from typing import Any, Final, final
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CLIMATE_CHANNELS", "EngineInputError", "EngineSolverError", "Plan"]
+__all__ = ["CLIMATE_CHANNELS", "EngineInputError", "EngineSolverError", "Plan", "Trajectory"]
 
 _Array = npt.NDArray[np.float64]
 
@@ -50,5 +50,30 @@ class Plan:
     ) -> tuple[_Array, _Array, list[tuple[int, str]]]:
         """Members (rows of values): records (members x rows x probes), closures, failures."""
 
+    def jacobian(
+        self,
+        values: _Array,
+        which: list[int],
+        forcing: _Array,
+        options: dict[str, Any],
+        report: Callable[[int], object] | None = None,
+    ) -> tuple[_Array, _Array]:
+        """Records (rows x probes) and their slopes (parameters x rows x probes) by some parameters."""
+
     def state_space(self, values: _Array) -> dict[str, Any]:
         """Matrices a, b, c, d and names of states, inputs and outputs of a linear building."""
+
+@final
+class Trajectory:
+    """A run, and what is needed to go back along it."""
+
+    def __new__(
+        cls, plan: Plan, values: _Array, forcing: _Array, options: dict[str, Any], memory: int
+    ) -> Trajectory:
+        """A run that keeps about `memory` bytes."""
+
+    def run(self) -> dict[str, Any]:
+        """What `Plan.simulate` gives."""
+
+    def pull(self, weights: _Array) -> _Array:
+        """Slopes by all parameters of the sum of weights (rows x probes) times records."""

@@ -16,7 +16,6 @@ from mascarin import _engine
 from mascarin.climate.table import seconds_of
 from mascarin.climate.timezones import moment
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.model import unmelted
 from mascarin.results import EnergyLedger, Provenance, Results
 
 if TYPE_CHECKING:
@@ -36,6 +35,8 @@ SETTLED: Final = 0.01
 #: Repetitions before the first period counts as unsettled.
 MAX_CYCLES: Final = 1000
 #: Readings that follow from two others.
+#: What a run that can be gone back along may keep before it makes stretches anew. [B]
+MEMORY: Final = 256 * 2**20
 _DERIVED: Final = ("operative_temperature", "globe_temperature")
 
 
@@ -286,6 +287,8 @@ class Simulation:
         SolverError
             A step did not converge, or the first period did not settle.
         """
+        from mascarin.model import unmelted
+
         probes, recipes = _probes([*self.outputs, *self._watched])
         vector: Array = np.array(self.values if values is None else values, dtype=np.float64)
         self._require_possible(vector[None, :])
@@ -304,6 +307,8 @@ class Simulation:
     @cached_property
     def _watched(self) -> list[Output]:
         """What is recorded beside the outputs, to see whether what could melt did."""
+        from mascarin.model import unmelted
+
         return unmelted.watched(self.building)
 
     def ensemble(
@@ -347,6 +352,96 @@ class Simulation:
             raw, closure, failed = self._plan.ensemble(members, self._forcing, options, report)
         failures = [Failure(member, self._in_time(reason)) for member, reason in failed]
         return _derive(raw, recipes), closure, failures
+
+    def jacobian(
+        self,
+        paths: Sequence[str],
+        values: Array | None = None,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        report: Callable[[int], object] | None = None,
+    ) -> tuple[Array, Array]:
+        """Run once with the derivatives of every output by some parameters.
+
+        The physics is run with numbers that carry their slopes: what comes back is the derivative of the
+        discrete solution, the repeated first period included, not a difference quotient. At a switch (the end
+        of a melting range, a wind that changes sides) it is the slope of the branch taken.
+
+        Parameters
+        ----------
+        paths : sequence of str
+            Parameters to derive by.
+        values : ndarray, shape (P,), optional
+            Parameter vector; default the nominal one. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        report : callable, optional
+            Called with the number of parameters done.
+
+        Returns
+        -------
+        records : ndarray, shape (rows, outputs)
+            As of `run`.
+        slopes : ndarray, shape (paths, rows, outputs)
+            Derivative of each record by each parameter. [unit of the output / unit of the parameter]
+
+        Raises
+        ------
+        InputError
+            A path that is unknown or structural, or no path.
+        SolverError
+            A step did not converge, or the first period did not settle.
+        """
+        if not paths:
+            raise InputError(
+                "derivatives: no parameters; give at least one path, as `mascarin parameters` lists"
+            )
+        which = [self.position(path) for path in paths]
+        probes, recipes = _probes(self.outputs)
+        vector: Array = np.array(self.values if values is None else values, dtype=np.float64)
+        self._require_possible(vector[None, :])
+        options = self._options(probes, record_from, record_every)
+        with _told_apart(self._in_time):
+            raw, slopes = self._plan.jacobian(vector, which, self._forcing, options, report)
+        return _derive(raw, recipes), _derive_slopes(raw, slopes, recipes)
+
+    def trajectory(
+        self,
+        values: Array | None = None,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        memory: int = MEMORY,
+    ) -> Trajectory:
+        """Run once, keeping what is needed to go back along the run.
+
+        Parameters
+        ----------
+        values : ndarray, shape (P,), optional
+            Parameter vector; default the nominal one. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        memory : int
+            About how much may be kept: beyond it stretches of the run are made once more on the way back. [B]
+
+        Returns
+        -------
+        Trajectory
+            Its records, and the derivatives of what is made of them by all parameters.
+
+        Raises
+        ------
+        SolverError
+            A step did not converge, or the first period did not settle.
+        """
+        probes, recipes = _probes(self.outputs)
+        vector: Array = np.array(self.values if values is None else values, dtype=np.float64)
+        self._require_possible(vector[None, :])
+        options = self._options(probes, record_from, record_every)
+        with _told_apart(self._in_time):
+            run = _engine.Trajectory(self._plan, vector, self._forcing, options, memory)
+        return Trajectory(run, run.run()["records"], recipes)
 
     def state_space(self) -> dict[str, Any]:
         """Matrices and names of a linear building; see `mascarin.state_space`."""
@@ -659,6 +754,64 @@ def _derive(records: Array, recipes: Sequence[tuple[str, tuple[int, ...]]]) -> A
         return records
     columns = [_reading(kind, [records[..., c] for c in places]) for kind, places in recipes]
     return np.stack(columns, axis=-1)
+
+
+class Trajectory:
+    """A run that can be gone back along; see `Simulation.trajectory`.
+
+    Attributes
+    ----------
+    records : ndarray, shape (rows, outputs)
+        Outputs of the run.
+    """
+
+    def __init__(
+        self, run: _engine.Trajectory, raw: Array, recipes: Sequence[tuple[str, tuple[int, ...]]]
+    ) -> None:
+        self._run = run
+        self._raw = raw
+        self._recipes = recipes
+        self.records = _derive(raw, recipes)
+
+    def pull(self, weights: Array) -> Array:
+        """Carry weights on the records back to the parameters.
+
+        Parameters
+        ----------
+        weights : ndarray, shape (rows, outputs)
+            Derivative of a quantity by each record.
+
+        Returns
+        -------
+        ndarray, shape (P,)
+            Derivative of the quantity by each parameter, in the order of `Simulation.paths`.
+        """
+        raw = np.zeros_like(self._raw)
+        for k, (kind, places) in enumerate(self._recipes):
+            parts = [self._raw[:, c] for c in places]
+            for i, c in enumerate(places):
+                raw[:, c] += weights[:, k] * _by_part(kind, parts, i)
+        return self._run.pull(np.ascontiguousarray(raw))
+
+
+def _derive_slopes(records: Array, slopes: Array, recipes: Sequence[tuple[str, tuple[int, ...]]]) -> Array:
+    """Slopes of outputs from slopes of records, along the last axis, by the chain rule."""
+    columns = []
+    for kind, places in recipes:
+        parts = [records[..., c] for c in places]
+        terms = (_by_part(kind, parts, k) * slopes[..., c] for k, c in enumerate(places))
+        columns.append(sum(terms, np.zeros(slopes.shape[:-1])))
+    return np.stack(columns, axis=-1)
+
+
+def _by_part(kind: str, parts: Sequence[Array], k: int) -> Array | float:
+    """Derivative of an output by one of the readings that it is made of. [-]"""
+    if kind not in _DERIVED:
+        return 1.0
+    # Small, for a globe's film bends sharply where globe and air are equally warm.
+    nudge = 1e-6
+    up, down = ([p + sign * nudge * (j == k) for j, p in enumerate(parts)] for sign in (1.0, -1.0))
+    return (_reading(kind, up) - _reading(kind, down)) / (2.0 * nudge)
 
 
 def _reading(kind: str, parts: Sequence[Array]) -> Array:

@@ -102,42 +102,88 @@ pub(crate) fn march_in<S: Real>(
     options: &Options,
     watch: &Watch,
 ) -> Result<Run<S>, EngineError> {
-    let mut stepper = Stepper::new(plan, numbers, options.scheme);
+    march_seen(Stepper::new(plan, numbers, options.scheme), weather, options, watch, |_, _, _| Ok(()))
+}
+
+/// One thing that a run does to its state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Move {
+    /// A step of the repeated first period.
+    Repeat(usize),
+    /// The faces brought into balance with the weather of the start.
+    Balance,
+    /// A step.
+    Step(usize),
+}
+
+impl Move {
+    /// Makes it.
+    #[inline(always)]
+    pub(crate) fn make<S: Real>(
+        self,
+        stepper: &mut Stepper<'_, S>,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        dt: f64,
+        ledger: &mut Ledger<S>,
+    ) -> Result<(), EngineError> {
+        match self {
+            Self::Repeat(step) | Self::Step(step) => stepper.step(state, weather, step, dt, ledger),
+            Self::Balance => {
+                stepper.forget();
+                // The weather of the first stage stands for that of the start.
+                stepper.balance_faces(state, weather.at(0, 0))
+            }
+        }
+    }
+
+    /// Row of the record that it leads to.
+    pub(crate) fn row(self, options: &Options) -> Option<usize> {
+        // Row k is the state at the start of step `record_from + k * record_every`.
+        let steps = match self {
+            Self::Repeat(_) => return None,
+            Self::Balance => 0,
+            Self::Step(step) => step + 1,
+        };
+        let since = steps.checked_sub(options.record_from)?;
+        since.is_multiple_of(options.record_every).then(|| since / options.record_every)
+    }
+}
+
+/// Lets a stepper run; `see` is shown each move and the state after it.
+pub(crate) fn march_seen<'a, S: Real>(
+    mut stepper: Stepper<'a, S>,
+    weather: &Weather<'_>,
+    options: &Options,
+    watch: &Watch,
+    mut see: impl FnMut(&Stepper<'a, S>, &State<S>, Move) -> Result<(), EngineError>,
+) -> Result<Run<S>, EngineError> {
+    let plan = stepper.plan;
     let mut state = stepper.uniform(S::constant(options.initial));
-    let (cycles, settled) = warm_up(&mut stepper, &mut state, weather, options, watch)?;
-    stepper.forget();
-    // The weather of the first stage stands for that of the start.
-    stepper.balance_faces(&mut state, weather.at(0, 0))?;
+    let (cycles, settled) = warm_up(&mut stepper, &mut state, weather, options, watch, &mut see)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
     let mut ledger = Ledger::new();
-    let mut record = |stepper: &Stepper<'_, S>, state: &State<S>| {
-        records.extend(options.probes.iter().map(|probe| probe.read(plan, stepper, state)));
-    };
-    for step in 0..=weather.steps() {
-        // Row k is the state at the start of step `record_from + k * record_every`.
-        let due =
-            step >= options.record_from && (step - options.record_from).is_multiple_of(options.record_every);
-        if due {
-            record(&stepper, &state);
-        }
-        if step == weather.steps() {
-            break;
-        }
+    for made in core::iter::once(Move::Balance).chain((0..weather.steps()).map(Move::Step)) {
         if watch.stop.load(Ordering::Relaxed) {
             return Err(EngineError::Interrupted);
         }
-        stepper.step(&mut state, weather, step, options.dt, &mut ledger)?;
+        made.make(&mut stepper, &mut state, weather, options.dt, &mut ledger)?;
+        if made.row(options).is_some() {
+            records.extend(options.probes.iter().map(|probe| probe.read(plan, &stepper, &state)));
+        }
+        see(&stepper, &state, made)?;
     }
     Ok(Run { records, ledger, state, cycles, settled, effort: stepper.effort, failed: stepper.failed })
 }
 
 /// Repeats the first period until every lane has settled; a settled lane keeps its state.
-fn warm_up<S: Real>(
-    stepper: &mut Stepper<'_, S>,
+fn warm_up<'a, S: Real>(
+    stepper: &mut Stepper<'a, S>,
     state: &mut State<S>,
     weather: &Weather<'_>,
     options: &Options,
     watch: &Watch,
+    see: &mut impl FnMut(&Stepper<'a, S>, &State<S>, Move) -> Result<(), EngineError>,
 ) -> Result<(usize, S), EngineError> {
     let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
     let mut active = S::Mask::splat(true);
@@ -145,11 +191,12 @@ fn warm_up<S: Real>(
     for cycle in 1..=warmup.max_cycles {
         let mut next = state.clone();
         let mut unused = Ledger::new();
-        for step in 0..warmup.steps {
+        for made in (0..warmup.steps).map(Move::Repeat) {
             if watch.stop.load(Ordering::Relaxed) {
                 return Err(EngineError::Interrupted);
             }
-            stepper.step(&mut next, weather, step, options.dt, &mut unused)?;
+            made.make(stepper, &mut next, weather, options.dt, &mut unused)?;
+            see(stepper, &next, made)?;
         }
         let change = next.distance(state);
         state.take(active, &next);

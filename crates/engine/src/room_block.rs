@@ -8,7 +8,7 @@ use crate::real::Real;
 ///
 /// The first unknowns are the faces of walls of constant properties. As long as nothing that enters their rows changes
 /// they stay eliminated, and only the rest is entered and solved again.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct RoomBlock<'a, S> {
     /// For each row the later ones that it meets, see [`Plan::reach`](crate::plan::Plan::reach).
     reach: &'a [Vec<Range<usize>>],

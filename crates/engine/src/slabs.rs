@@ -11,7 +11,7 @@ use crate::plan::Plan;
 use crate::real::Real;
 
 /// One wall.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Slab<S> {
     wall: usize,
     cells: Range<usize>,
@@ -20,7 +20,7 @@ struct Slab<S> {
 }
 
 /// All of them; arrays run over all cells of the building.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Slabs<S> {
     walls: Vec<Slab<S>>,
     /// Cells of slabs that follow each other.

@@ -28,6 +28,22 @@ impl<S: Real> State<S> {
         Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
     }
 
+    /// All its numbers, in the order of [`Self::map`].
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = S> + '_ {
+        let State { cells, enthalpy, memory, faces, air, load } = self;
+        let plain = [cells, enthalpy, faces, air, load].into_iter().flatten().copied();
+        plain.chain(memory.iter().flat_map(PcmMemory::numbers))
+    }
+
+    /// The same state in other numbers.
+    pub(crate) fn map<T: Real>(&self, mut change: impl FnMut(S) -> T) -> State<T> {
+        let mut all = |numbers: &[S]| numbers.iter().map(|&number| change(number)).collect();
+        let (cells, enthalpy) = (all(&self.cells), all(&self.enthalpy));
+        let (faces, air, load) = (all(&self.faces), all(&self.air), all(&self.load));
+        let memory = self.memory.iter().map(|memory| memory.map(&mut change)).collect();
+        State { cells, enthalpy, memory, faces, air, load }
+    }
+
     /// Takes over the lanes of `other` where the mask is true.
     #[inline(always)]
     pub fn take(&mut self, mask: S::Mask, other: &Self) {
@@ -92,6 +108,18 @@ impl<S: Real> Unknowns<S> {
     #[inline(always)]
     pub(crate) fn view(&self) -> Temperatures<'_, S> {
         Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
+    }
+
+    /// Takes over plain temperatures.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, plain: &Unknowns<f64>) {
+        let pairs =
+            [(&mut self.cells, &plain.cells), (&mut self.faces, &plain.faces), (&mut self.air, &plain.air)];
+        for (mine, plain) in pairs {
+            for (a, &b) in mine.iter_mut().zip(plain) {
+                *a = S::constant(b);
+            }
+        }
     }
 
     /// Takes over other temperatures.

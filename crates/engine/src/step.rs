@@ -11,6 +11,7 @@ use crate::conduction::{Chain, Iterate, Start, StorageRule};
 use crate::drive::{Drive, FaceDrive, Instant, SunMeans, Weather};
 use crate::error::EngineError;
 use crate::glazing::Glass;
+use crate::known::Known;
 use crate::ledger::{Flow, Ledger, Power};
 use crate::pcm::{PcmMemory, reversed};
 use crate::plan::{FaceId, FaceRole, Plan};
@@ -77,9 +78,9 @@ impl Scheme {
 }
 
 /// Marches a building by one step at a time.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Stepper<'a, S: Real> {
-    plan: &'a Plan,
+    pub(crate) plan: &'a Plan,
     /// Numbers of the run.
     pub coefficients: Coefficients<S>,
     numbers: &'a [S],
@@ -130,6 +131,7 @@ pub struct Stepper<'a, S: Real> {
     pub failed: S::Mask,
     /// What is left of the step, the next part last.
     parts: Vec<Part>,
+    pub(crate) known: Known<S>,
     /// What was spent since the start.
     pub effort: Effort<S>,
 }
@@ -222,6 +224,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             midway: zeros(plan.n_cells),
             failed: S::Mask::splat(false),
             parts: Vec::new(),
+            known: Known::nothing(),
             effort: Effort { iterations: 0, nested: 0, halvings: 0, reversals: S::zero() },
         }
     }
@@ -271,7 +274,6 @@ impl<'a, S: Real> Stepper<'a, S> {
             || {
                 self.drive.update(self.plan, &self.coefficients, self.numbers, now);
                 self.start(state, 0.0);
-                self.expect_gaps(0);
                 self.solve_stage(state, INSTANT, (0, 0), S::Mask::splat(true))?;
                 state.faces.copy_from_slice(&self.solved.faces);
                 self.sun.restart();
@@ -279,6 +281,16 @@ impl<'a, S: Real> Stepper<'a, S> {
                 Ok(())
             },
         )
+    }
+
+    /// Factors what stays as long as steps of this length are made [s].
+    pub(crate) fn prepare(&mut self, dt: f64) {
+        self.begin_stage(self.scheme.diagonal() * dt);
+    }
+
+    /// Stage length of the factors in hand [s].
+    pub(crate) fn factored(&self) -> f64 {
+        self.factored
     }
 
     /// Forgets the step before: what comes next does not follow it.
@@ -304,6 +316,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             #[inline(always)]
             || {
                 self.parts.push(Part { step, from: 0.0, share: 1.0, halvings: 0 });
+                self.known.halved = false;
                 while let Some(part) = self.parts.pop() {
                     match self.attempt(state, weather, part, dt, ledger) {
                         Ok(()) if part.halvings == 0 => {}
@@ -329,6 +342,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             return Err(error);
         }
         self.effort.halvings += 1;
+        self.known.halved = true;
         let [first, second] = part.halves();
         self.parts.extend([second, first]);
         self.forget();
@@ -373,7 +387,6 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.hold_over(state, diagonal);
             }
             self.drive_at(weather, part, stage);
-            self.expect_gaps(stage);
             self.solve_stage(state, diagonal * length, (part.step, stage + 1), S::Mask::splat(true))?;
             self.accumulate(weight * length, &mut energy);
         }
@@ -390,17 +403,22 @@ impl<'a, S: Real> Stepper<'a, S> {
         length: f64,
     ) -> Result<Power<S>, EngineError> {
         let last = self.scheme.weights().len() - 1;
+        self.known.load(&mut self.load);
         self.plants.begin(&self.coefficients.zones, weather.at(part.step, last).row, &mut self.load);
         let mut active = S::Mask::splat(true);
-        let mut polish = S::DERIVATIVES;
+        // Where no plant is asked, a known solution has no load whose slope is missing.
+        let asked = S::DERIVATIVES && (!self.known.guides() || self.plants.asking(active));
+        // Responses leave out what a load does to the convection expected in gaps: its slope is then found in two rounds.
+        let rounds = if self.plan.windows.is_empty() { 1 } else { 2 };
+        let mut polish = if asked { rounds } else { 0 };
         for sweep in 0..MAX_SWEEPS {
             let energy = self.sweep(state, weather, (part, length), sweep > 0, active)?;
-            let settled = self.plants.correct(&self.solved.air, &mut self.load, active, polish);
+            let settled = self.plants.correct(&self.solved.air, &mut self.load, active, polish > 0);
             let moving = active & !settled & !self.failed;
             if moving.any() {
                 active = moving;
-            } else if polish {
-                polish = false;
+            } else if polish > 0 {
+                polish -= 1;
                 active = S::Mask::splat(true);
             } else {
                 return Ok(energy);
@@ -434,6 +452,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         if again {
             self.held.copy_from_slice(&state.enthalpy);
             self.held_air.copy_from_slice(&state.air);
+            self.known.restart();
         }
         for (stage, &weight) in weights.iter().enumerate() {
             if stage > 0 {
@@ -446,7 +465,6 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.plants.guess(stage, active, &mut self.iterate);
             } else {
                 self.drive_at(weather, part, stage);
-                self.expect_gaps(stage);
             }
             self.solve_stage(state, diagonal * length, (part.step, stage + 1), active)?;
             if answer {
@@ -582,6 +600,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.held.copy_from_slice(&state.enthalpy);
         self.held_air.copy_from_slice(&state.air);
         self.load.copy_from_slice(&state.load);
+        self.known.restart();
         match &self.previous {
             Some(previous) if share > 0.0 => {
                 self.iterate.extrapolate(
@@ -599,6 +618,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.iterate.air.copy_from_slice(&state.air);
             }
         }
+        self.expect_gaps(0, state);
     }
 
     /// Keeps the start of this step for the guess of the next.
@@ -634,6 +654,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             1.0 / diagonal,
             &state.memory,
         );
+        self.expect_gaps(1, state);
     }
 
     /// Takes the last stage as the new state and books the step.
@@ -674,11 +695,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         ledger.book(energy, stored);
     }
 
-    /// Newton's iteration for one stage. Leaves the solution in `solved` and the linearisation that produced
-    /// it in the chains and laws, so that every flux can be booked at the value the last solve used.
-    ///
-    /// A lane that has converged, or was not active from the start, keeps its iterate: later solves repeat its last one
-    /// bit for bit.
+    /// Solves one stage: by one linear solve where its solution is known, else by iteration.
     // Not inlined, for the compiler's sake: it is by far the largest part of a step.
     #[inline(never)]
     fn solve_stage(
@@ -690,10 +707,34 @@ impl<'a, S: Real> Stepper<'a, S> {
     ) -> Result<(), EngineError> {
         S::vectorised(
             #[inline(always)]
-            || self.iterate_stage(state, length, place, active),
+            || {
+                self.stage = place.1.saturating_sub(1);
+                self.begin_stage(length);
+                if S::DERIVATIVES && self.known.guide(&mut self.iterate) {
+                    self.solve_known(state, length);
+                    return Ok(());
+                }
+                self.iterate_stage(state, length, place, active)?;
+                self.known.keep(&self.solved);
+                Ok(())
+            },
         )
     }
 
+    /// One linear solve at the iterate.
+    #[inline(always)]
+    fn solve_known(&mut self, state: &State<S>, length: f64) {
+        self.linearise_walls(state, length, None);
+        self.linearise_faces();
+        self.solve_linear(length);
+        self.finish_stage();
+    }
+
+    /// Newton's iteration for one stage. Leaves the solution in `solved` and the linearisation that produced
+    /// it in the chains and laws, so that every flux can be booked at the value the last solve used.
+    ///
+    /// A lane that has converged, or was not active from the start, keeps its iterate: later solves repeat its last one
+    /// bit for bit.
     #[inline(always)]
     fn iterate_stage(
         &mut self,
@@ -702,8 +743,6 @@ impl<'a, S: Real> Stepper<'a, S> {
         place: (usize, usize),
         mut active: S::Mask,
     ) -> Result<(), EngineError> {
-        self.stage = place.1.saturating_sub(1);
-        self.begin_stage(length);
         active = active & !self.failed;
         let mut polish = S::DERIVATIVES;
         // Square of the change before this one; zero where it says nothing of the next.
@@ -840,13 +879,15 @@ impl<'a, S: Real> Stepper<'a, S> {
         if let Some((_, at)) = gains { self.chains[w].sources_with(held, &at.cells) } else { [S::zero(); 2] }
     }
 
-    /// Takes the convection in gaps at the temperatures that are expected at the end of the stage.
+    /// Takes the convection in gaps at the temperatures that are expected in a stage: those of the step's start in the
+    /// first, so that a step follows from the state and the weather alone.
     #[inline(always)]
-    fn expect_gaps(&mut self, stage: usize) {
+    fn expect_gaps(&mut self, stage: usize, state: &State<S>) {
+        let expected = if stage == 0 { &state.cells } else { &self.iterate.cells };
         for &w in &self.plan.windows {
-            let wall = &self.plan.walls[w];
             if let Some(glass) = &self.coefficients.walls[w].glass {
-                let cells = &self.iterate.cells[wall.first_cell..wall.first_cell + wall.len()];
+                let wall = &self.plan.walls[w];
+                let cells = &expected[wall.first_cell..wall.first_cell + wall.len()];
                 glass.expect(cells, &mut self.gap_convection[stage][w]);
             }
         }
@@ -1207,6 +1248,9 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Adds the stage's heat to the step's, at the values of the last linear solve.
     #[inline(always)]
     fn accumulate(&self, duration: f64, energy: &mut Power<S>) {
+        if self.known.guides() {
+            return; // the run that found the solution has booked it
+        }
         for (index, face) in self.coefficients.faces.iter().enumerate() {
             let area = self.coefficients.walls[index / 2].area;
             let (at, laws) = (&self.drive.faces[index], &self.laws[index]);
@@ -1357,7 +1401,7 @@ impl<'a, S: Real> Stepper<'a, S> {
 }
 
 /// What changes when, and what stays: found from the plan, never from a number.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Changing {
     /// Walls of constant properties, and the others.
     constant: Vec<usize>,

@@ -6,6 +6,8 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
 use mascarin_engine::batch;
+use mascarin_engine::derivatives::jacobian::jacobian;
+use mascarin_engine::derivatives::trajectory;
 use mascarin_engine::description::Description;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing};
@@ -144,6 +146,68 @@ impl RunOptions {
 /// Records, closures and failures of an ensemble.
 type EnsembleArrays<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyList>);
 
+/// Records and their slopes.
+type JacobianArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>);
+
+/// A run, and what is needed to go back along it.
+#[pyclass(frozen, module = "mascarin._engine")]
+struct Trajectory {
+    plan: Py<Plan>,
+    values: Vec<f64>,
+    forcing: Vec<f64>,
+    stages: usize,
+    channels: usize,
+    options: Options,
+    way: trajectory::Trajectory,
+}
+
+#[pymethods]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands arrays over by value")]
+impl Trajectory {
+    /// A run that keeps about `memory` bytes.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        plan: Py<Plan>,
+        values: PyReadonlyArray1<'_, f64>,
+        forcing: PyReadonlyArray3<'_, f64>,
+        options: RunOptions,
+        memory: usize,
+    ) -> PyResult<Self> {
+        let options = options.read()?;
+        let (_, stages, channels) = forcing.as_array().dim();
+        let (values, forcing) =
+            (contiguous(values.as_slice())?.to_vec(), contiguous(forcing.as_slice())?.to_vec());
+        let drive = Forcing::new(&forcing, stages, channels).map_err(|e| to_python(&e))?;
+        let model = &plan.get().plan;
+        let way = attended(py, None, |watch| {
+            trajectory::Trajectory::new(model, &values, &drive, &options, watch, memory)
+        })?;
+        Ok(Self { plan, values, forcing, stages, channels, options, way })
+    }
+
+    /// What `Plan.simulate` gives.
+    fn run<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let steps = self.forcing.len() / (self.stages * self.channels);
+        describe_run(py, &self.way.run, [self.options.rows(steps), self.options.probes.len()])
+    }
+
+    /// Slopes by all parameters of the sum of weights (rows x probes) times records.
+    fn pull<'py>(
+        &self,
+        py: Python<'py>,
+        weights: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let weights = contiguous(weights.as_slice())?;
+        let drive = Forcing::new(&self.forcing, self.stages, self.channels).map_err(|e| to_python(&e))?;
+        let plan = &self.plan.get().plan;
+        let slopes = attended(py, None, |watch| {
+            self.way.pull(plan, &self.values, &drive, &self.options, watch, weights)
+        })?;
+        Ok(PyArray1::from_vec(py, slopes))
+    }
+}
+
 #[pymethods]
 #[allow(clippy::needless_pass_by_value, reason = "the binding hands arrays over by value")]
 impl Plan {
@@ -184,12 +248,7 @@ impl Plan {
             Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
         let plan = &self.plan;
         let run = attended(py, None, |watch| march(plan, values, &drive, &options, watch))?;
-        let rows = options.rows(drive.steps());
-        let result = PyDict::new(py);
-        let records = PyArray1::from_slice(py, &run.records).reshape([rows, options.probes.len()])?;
-        result.set_item("records", records)?;
-        report_run(&result, &run)?;
-        Ok(result)
+        describe_run(py, &run, [options.rows(drive.steps()), options.probes.len()])
     }
 
     /// Members (rows of `values`): records (members x rows x probes), closures, failures.
@@ -214,6 +273,28 @@ impl Plan {
             PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;
         let failures = result.failures.iter().map(|(member, error)| (*member, error.to_string()));
         Ok((records, PyArray1::from_vec(py, result.closure), PyList::new(py, failures)?))
+    }
+
+    /// Records (rows x probes) and their slopes (parameters x rows x probes) by some parameters.
+    #[pyo3(signature = (values, which, forcing, options, report=None))]
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+        which: Vec<usize>,
+        forcing: PyReadonlyArray3<'py, f64>,
+        options: RunOptions,
+        report: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<JacobianArrays<'py>> {
+        let options = options.read()?;
+        let (numbers, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
+        let drive =
+            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+        let plan = &self.plan;
+        let result = attended(py, report, |watch| jacobian(plan, numbers, &which, &drive, &options, watch))?;
+        let (rows, probes) = (options.rows(drive.steps()), options.probes.len());
+        let records = PyArray1::from_vec(py, result.records).reshape([rows, probes])?;
+        Ok((records, PyArray1::from_vec(py, result.slopes).reshape([which.len(), rows, probes])?))
     }
 
     /// A, B, C, D and the names of states, inputs and outputs of a linear building.
@@ -244,7 +325,10 @@ fn contiguous<T>(slice: Result<&[T], numpy::AsSliceError>) -> PyResult<&[T]> {
     slice.map_err(|_| EngineInputError::new_err("arrays must be C-contiguous float64"))
 }
 
-fn report_run(result: &Bound<'_, PyDict>, run: &Run<f64>) -> PyResult<()> {
+/// Records (rows x probes), ledger and counters of a run.
+fn describe_run<'py>(py: Python<'py>, run: &Run<f64>, records: [usize; 2]) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    result.set_item("records", PyArray1::from_slice(py, &run.records).reshape(records)?)?;
     for flow in Flow::ALL {
         result.set_item(flow.name(), run.ledger.into[flow as usize])?;
     }
@@ -256,13 +340,15 @@ fn report_run(result: &Bound<'_, PyDict>, run: &Run<f64>) -> PyResult<()> {
     result.set_item("iterations", run.effort.iterations)?;
     result.set_item("nested", run.effort.nested)?;
     result.set_item("halvings", run.effort.halvings)?;
-    result.set_item("reversals", run.effort.reversals)
+    result.set_item("reversals", run.effort.reversals)?;
+    Ok(result)
 }
 
 /// Compiled part of mascarin.
 #[pymodule]
 fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Plan>()?;
+    module.add_class::<Trajectory>()?;
     module.add("EngineInputError", module.py().get_type::<EngineInputError>())?;
     module.add("EngineSolverError", module.py().get_type::<EngineSolverError>())?;
     module.add("CLIMATE_CHANNELS", CLIMATE_CHANNELS)

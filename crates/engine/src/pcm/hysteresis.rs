@@ -35,6 +35,17 @@ impl<S: Real> PcmMemory<S> {
         Self { liquid_fraction, temperature, marks: [S::zero(); 2] }
     }
 
+    /// All its numbers, in the order of [`Self::map`].
+    pub(crate) fn numbers(&self) -> [S; 4] {
+        [self.liquid_fraction, self.temperature, self.marks[0], self.marks[1]]
+    }
+
+    /// The same memory in other numbers.
+    pub(crate) fn map<T: Real>(&self, change: &mut impl FnMut(S) -> T) -> PcmMemory<T> {
+        let [liquid_fraction, temperature, first, second] = self.numbers().map(change);
+        PcmMemory { liquid_fraction, temperature, marks: [first, second] }
+    }
+
     /// Takes over the lanes of another one where the mask is true.
     #[inline(always)]
     pub fn take(&mut self, mask: S::Mask, other: &Self) {
