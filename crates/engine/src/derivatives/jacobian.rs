@@ -4,13 +4,13 @@ use core::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use super::Tangent;
 use crate::drive::Weather;
 use crate::error::EngineError;
 use crate::forcing::Forcing;
 use crate::ledger::Ledger;
 use crate::march::{Options, Watch, check, march_seen};
 use crate::plan::Plan;
+use crate::real::Dual;
 use crate::step::Stepper;
 
 /// Records of a run and their slopes.
@@ -51,9 +51,12 @@ pub fn jacobian(
         })
         .collect::<Result<_, _>>()?;
     let records = parts[0].iter().map(|record| record.value).collect();
-    let slopes = parts.iter().flatten().map(|record| record.slope).collect();
+    let slopes = parts.iter().flatten().map(|record| record.slope[0]).collect();
     Ok(Jacobian { records, slopes })
 }
+
+/// A number with its slope by the parameter in hand.
+type Sloped = Dual<f64, 1>;
 
 /// Runs plain numbers, and beside them those with slopes, which take each step by one linear solve at its solution.
 fn along(
@@ -63,12 +66,11 @@ fn along(
     weather: &Weather<'_>,
     options: &Options,
     watch: &Watch,
-) -> Result<Vec<Tangent>, EngineError> {
-    let sloped = numbers.iter().enumerate();
-    let sloped: Vec<_> =
-        sloped.map(|(k, &value)| Tangent { value, slope: f64::from(u8::from(k == by)) }).collect();
+) -> Result<Vec<Sloped>, EngineError> {
+    let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::fixed(value)).collect();
+    sloped[by] = Sloped::variable(numbers[by], 0);
     let mut stepper = Stepper::new(plan, &sloped, options.scheme);
-    let mut state = stepper.uniform(Tangent::fixed(options.initial));
+    let mut state = stepper.uniform(Sloped::fixed(options.initial));
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
     let mut unused = Ledger::new();
     let mut plain = Stepper::new(plan, numbers, options.scheme);
@@ -78,7 +80,7 @@ fn along(
         made.make(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
         // Rounding and tolerances must not add up: the slopes are those along the plain run, as in reverse.
         let mut values = reached.numbers();
-        state = state.map(|number| Tangent { value: values.next().unwrap_or(number.value), ..number });
+        state = state.map(|number| Sloped { value: values.next().unwrap_or(number.value), ..number });
         if made.row(options).is_some() {
             records.extend(options.probes.iter().map(|probe| probe.read(plan, &stepper, &state)));
         }

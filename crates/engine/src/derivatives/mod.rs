@@ -10,8 +10,5 @@
 //! Source: Griewank & Walther (2008), Evaluating Derivatives, 2nd ed., doi:10.1137/1.9780898717761.
 
 pub mod jacobian;
-mod tangent;
 mod tape;
 pub mod trajectory;
-
-pub use tangent::Tangent;
