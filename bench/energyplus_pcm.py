@@ -23,6 +23,7 @@ import cell
 import energyplus
 import numpy as np
 import numpy.typing as npt
+import page
 import pandas as pd
 
 from mascarin.climate import Climate
@@ -275,7 +276,7 @@ def _tabulated(case: Numbers) -> str:
         ]
         for way, label in ways.items()
     ]
-    return _table(["rms of the difference", *cell.OUTPUTS, "flux into the PCM"], rows)
+    return page.table(["rms of the difference", *cell.OUTPUTS, "flux into the PCM"], rows)
 
 
 def _hysteresis(case: Numbers) -> str:
@@ -287,7 +288,7 @@ def _hysteresis(case: Numbers) -> str:
     }
     rows = [[label, f"{case['balance'][way]:+.3f} MJ/m2"] for way, label in ways.items()]
     most = ["at most stored between two states", f"{case['capacity']:.3f} MJ/m2"]
-    return _table(["", "heat that went in and did not come out"], [*rows, most])
+    return page.table(["", "heat that went in and did not come out"], [*rows, most])
 
 
 def _thin_sheet(case: Numbers) -> str:
@@ -302,7 +303,7 @@ def _thin_sheet(case: Numbers) -> str:
         ["air of the gap against Mascarin, rms", f"{case['apart']['gap air']:.2f} K"],
         ["air of the gap against Mascarin, largest hourly mean", f"{case['largest_gap']:.1f} K"],
     ]
-    return _table(["", "EnergyPlus, finite differences everywhere, 3 min"], rows)
+    return page.table(["", "EnergyPlus, finite differences everywhere, 3 min"], rows)
 
 
 def _grid(case: Numbers) -> str:
@@ -321,17 +322,12 @@ def _grid(case: Numbers) -> str:
         for way, label in ways.items()
     ]
     own = ["Mascarin", str(case["ours"]["nodes"]), "", f"{case['ours']['balance']:+.3f} MJ/m2"]
-    return _table(
+    return page.table(
         ["", "nodes in 5.26 mm of PCM", "PCM top, rms", "went in and did not come out"], [own, *rows]
     )
 
 
-def _table(head: list[str], rows: list[list[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def filled(page: str, numbers: Numbers) -> str:
+def filled(text: str, numbers: Numbers) -> str:
     """The page with its tables.
 
     Raises
@@ -340,16 +336,8 @@ def filled(page: str, numbers: Numbers) -> str:
         The page has no place for one of them.
     """
     for name, table in tables(numbers).items():
-        pattern = rf"(<!-- table: {name} -->\n).*?(<!-- end -->)"
-        page, count = re.subn(
-            pattern,
-            lambda found, t=table: f"{found[1]}{t}\n{found[2]}",
-            page,
-            flags=re.DOTALL,  # type: ignore[misc]
-        )
-        if count != 1:
-            raise ValueError(f"{PAGE.name}: no place for the table '{name}'")
-    return page
+        text = page.filled(text, name, table)
+    return text
 
 
 def main() -> None:

@@ -5,9 +5,9 @@ processor time, which a busy machine disturbs least; the ratio of two threads to
 clock, so leave the machine alone for it. Instructions of a stage are counted by valgrind where it is
 installed: the difference of runs over six and over two days.
 
-    python bench/engine_speed.py [--days 92] [--members 64] [--write docs/speed.md]
+    python bench/engine_speed.py [--days 92] [--members 16] [--write docs/speed.md]
 
-With `--write` the table replaces what stands between the two comments `table` and `end of table` of the page.
+With `--write` the table takes its place in the page.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import platform
 import subprocess
 import sys
 import time
@@ -25,6 +24,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import page
 import pandas as pd
 
 import mascarin as mc
@@ -165,8 +165,7 @@ def apart(name: str, given: argparse.Namespace, threads: int, lanes: str = "") -
 def table(given: argparse.Namespace) -> str:
     """Everything measured, as a table."""
     head = ("model", "one run", "members/s, one core", "asked", "two cores", "AVX2", "arrays")
-    head += ("iterations a stage",)
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    lines = []
     stages = given.days * 96 * 2
     for name, model in MODELS.items():
         one = apart(name, given, 1)
@@ -181,11 +180,10 @@ def table(given: argparse.Namespace) -> str:
             *(f"{1.0 / other['member']:.0f}" for other in (narrow, plain)),
             f"{one['iterations'] / stages:.2f}",
         ]
-        lines.append("| " + " | ".join(cells) + " |")
-        print(lines[-1], file=sys.stderr)
-    kind = f"{platform.machine()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the end"
-    note = f"{given.days} days, {given.members} members, shortest of {given.repeats}; {kind}."
-    return "\n".join([*lines, "", note])
+        lines.append(cells)
+        print(" | ".join(cells), file=sys.stderr)
+    note = f"{page.conditions(given.days)}; {given.members} members, shortest of {given.repeats}."
+    return f"{page.table([*head, 'iterations a stage'], lines)}\n\n{note}"
 
 
 def main() -> None:
@@ -194,21 +192,15 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     options.add_argument("--days", type=int, default=92)
-    options.add_argument("--members", type=int, default=64)
-    options.add_argument("--repeats", type=int, default=5)
+    options.add_argument("--members", type=int, default=16)
+    options.add_argument("--repeats", type=int, default=3)
     options.add_argument("--write", type=Path, help="page whose table is replaced")
     options.add_argument("--child", choices=list(MODELS), help=argparse.SUPPRESS)
     given = options.parse_args()
     if given.child:
         print(json.dumps(measure(given.child, given.days, given.members, given.repeats)))
         return
-    text = table(given)
-    print(text)
-    if given.write:
-        begin, end = "<!-- table -->\n", "<!-- end of table -->"
-        page = given.write.read_text(encoding="utf-8")
-        before, rest = page.split(begin, 1)
-        given.write.write_text(f"{before}{begin}{text}\n{end}{rest.split(end, 1)[1]}", encoding="utf-8")
+    page.publish("ensembles", table(given), given.write)
 
 
 if __name__ == "__main__":
