@@ -1,0 +1,142 @@
+"""The engine without Python: time by criterion, instructions and arithmetic by callgrind, the machine's peak.
+
+Time: `cargo bench` in bench/engine, a crate of its own; one run, and a pack of eight members on one thread.
+
+Arithmetic: counting.py. Reading the case is taken off. Valgrind knows no AVX-512, so packs are counted with
+AVX2; their numbers are the same bits by the same operations. The first day is not repeated here.
+
+Peak: the fastest of some products of matrices with numpy on one thread. It multiplies and adds in one
+instruction (FMA), which the engine does not: it would give other bits on other machines. Half of that peak is
+what code without FMA could reach at most.
+
+    python bench/engine_alone.py [--days 92] [--counted 10] [--write docs/speed.md]
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before numpy is loaded: the peak of one core
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+import counting
+import engine_cases
+import numpy as np
+import page
+from counting import Count
+from engine_speed import LANES, MODELS
+
+ROOT = Path(__file__).resolve().parent.parent
+TARGET = ROOT / "target" / "bench"
+ESTIMATES = TARGET / "criterion"
+PROGRAM = TARGET / "release" / "mascarin-bench"
+STAGES_A_DAY = 192  # two in every step of 900 s
+
+
+def bench(cases: Path) -> None:
+    """Run criterion on cases, which builds the program that is counted as well; what it says is passed on."""
+    cargo = shutil.which("cargo")
+    if cargo is None:
+        raise SystemExit("cargo: not found; expected Rust 1.89 or later, see rustup.rs")
+    command = [cargo, "bench", "--bench", "march", "--locked", "--target-dir", str(TARGET)]
+    command += ["--manifest-path", str(ROOT / "bench/engine/Cargo.toml")]
+    environment = {
+        **os.environ,
+        "MASCARIN_BENCH_CASES": str(cases),
+        "CRITERION_HOME": str(ESTIMATES),
+        "RAYON_NUM_THREADS": "1",
+    }
+    subprocess.run(command, env=environment, check=True, stdout=sys.stderr)  # noqa: S603
+
+
+def criterion(kind: str, name: str) -> tuple[float, float]:
+    """Mean time and half its interval of 95 %, as criterion found them [s]."""
+    file = ESTIMATES / kind / name / "new" / "estimates.json"
+    mean = json.loads(file.read_text(encoding="utf-8"))["mean"]
+    interval = mean["confidence_interval"]
+    return 1e-9 * mean["point_estimate"], 0.5e-9 * (interval["upper_bound"] - interval["lower_bound"])
+
+
+def counted(case: Path, days: int, worth: Mapping[int, int]) -> tuple[Count, Count]:
+    """What a stage takes, of one run and of one member of a pack, counted over some days."""
+    stages = STAGES_A_DAY * days
+
+    def taken(what: str) -> Count:
+        # Valgrind knows no AVX-512.
+        environment = {LANES: "avx2", "RAYON_NUM_THREADS": "1"}
+        return counting.count(PROGRAM, [str(case), what, str(stages // 2)], worth, environment)
+
+    idle = taken("nothing")
+    return taken("run").less(idle, stages), taken("pack").less(idle, stages * engine_cases.WIDTH)
+
+
+def peak(size: int = 1500, repeats: int = 7) -> float:
+    """Operations of double precision that a core does in a second, at best."""
+    rng = np.random.default_rng(1)
+    a, b = rng.normal(size=(2, size, size))
+    times = []
+    for _ in range(repeats):
+        before = time.perf_counter()
+        a @ b
+        times.append(time.perf_counter() - before)
+    return float(2.0 * size**3 / min(times))
+
+
+# --- The table ----------------------------------------------------------------------------------------------
+
+
+def row(
+    name: str, case: Path, given: argparse.Namespace, best: float, worth: Mapping[int, int] | None
+) -> list[str]:
+    """One model."""
+    (run, spread), (pack, _) = criterion("run", name), criterion("pack", name)
+    cells = [
+        MODELS[name].name,
+        f"{1e3 * run:.1f} ± {1e3 * spread:.1f} ms",
+        f"{engine_cases.WIDTH / pack:.0f}",
+    ]
+    if worth is None:
+        return [*cells, *[""] * 5]
+    single, member = counted(case, given.counted, worth)
+    stages = STAGES_A_DAY * given.days
+    cells += [f"{single.instructions:,.0f}", f"{single.flops:,.0f}", f"{member.flops:,.0f}"]
+    for each, seconds in ((single, run), (member, pack / engine_cases.WIDTH)):
+        rate = each.flops * stages / seconds
+        cells.append(f"{1e-9 * rate:.2f} GFLOP/s, {100 * rate / best:.1f} %")
+    return cells
+
+
+def main() -> None:
+    """Measure, count, print."""
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    options.add_argument("--days", type=int, default=92)
+    options.add_argument("--counted", type=int, default=10, help="days under callgrind")
+    options.add_argument("--write", type=Path, help="page whose table is replaced")
+    given = options.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        cases = engine_cases.write(Path(folder), given.days)
+        bench(Path(folder))
+        best = peak()
+        worth = counting.disassembled(PROGRAM) if counting.at_hand() else None
+        rows = [row(case.stem, case, given, best, worth) for case in cases]
+    head = ("model", "one run", "members/s", "instructions a stage", "FLOP a stage", "the same in a pack")
+    text = page.table([*head, "one run", "pack"], rows)
+    note = f"{page.conditions(given.days)}; one thread. Peak of a core, measured: {1e-9 * best:.1f} GFLOP/s."
+    if worth is None:
+        note += " Nothing is counted: valgrind and objdump are not both at hand."
+    page.publish("engine", f"{text}\n\n{note}", given.write)
+
+
+if __name__ == "__main__":
+    main()
