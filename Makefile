@@ -2,7 +2,7 @@
 #
 #   make demo   build, run the study of the LGI cell on shipped data, print where the report is
 #   make test   build, run formatting, lints, types and every test
-#   make bench  build, measure the engine and write the table of docs/speed.md
+#   make bench  build, measure, and write the tables of docs/speed.md; make bench ENERGYPLUS=path with its peer
 #
 # They need Python 3.11 or later, cargo and make, and nothing else.
 
@@ -18,6 +18,8 @@ endif
 PY := $(BIN)/python
 ENVIRONMENT := .venv/stamp-environment
 BUILT := .venv/stamp-built
+HYPERFINE_VERSION := 1.20.0
+HYPERFINE := target/bench/tools/bin/hyperfine
 RUST_SOURCES := Cargo.toml Cargo.lock $(wildcard rust-toolchain.toml) \
 	$(shell find crates -name '*.rs' -o -name Cargo.toml)
 
@@ -32,15 +34,24 @@ export PYO3_PYTHON := $(CURDIR)/$(PY)
 help:
 	@echo "make demo   build, run the study of the LGI cell on shipped data, print where the report is"
 	@echo "make test   build, run formatting, lints, types and every test"
-	@echo "make bench  build, measure the engine and write the table of docs/speed.md"
+	@echo "make bench  build, measure, and write the tables of docs/speed.md;" \
+		"make bench ENERGYPLUS=path with its peer"
 
 demo: $(BUILT)
 	$(BIN)/mascarin study lgi -o demo
 
 test: check-rust check-python pytest
 
-bench: $(BUILT)
+# ENERGYPLUS is the program of version 25.2 (bench/energyplus.py says where to get it). Leave the machine alone meanwhile.
+bench: $(BUILT) $(HYPERFINE)
 	$(PY) bench/engine_speed.py --write docs/speed.md
+	$(PY) bench/engine_alone.py --write docs/speed.md
+	$(PY) bench/through_python.py --hyperfine $(HYPERFINE) --write docs/speed.md
+	$(PY) bench/million.py --write docs/speed.md
+	$(PY) bench/energyplus_lgi.py $(if $(ENERGYPLUS),--energyplus "$(ENERGYPLUS)") --write docs/speed.md
+
+$(HYPERFINE): | check-tools
+	cargo install hyperfine --version $(HYPERFINE_VERSION) --locked --quiet --root target/bench/tools
 
 build: $(BUILT)
 

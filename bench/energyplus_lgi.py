@@ -10,7 +10,10 @@ results at every step. Its time is shown whole, and less that of a run of one da
 warm-up. In the finite differences everywhere the sheet's conductivity is 35 instead of 45 W/(m K): 45 is
 refused there, and a sheet of 1 mm resists nothing either way.
 
-    python bench/energyplus_lgi.py --energyplus PATH [--days 92] [--members 256] [--json FILE]
+    python bench/energyplus_lgi.py [--energyplus PATH] [--days 92] [--members 64] [--json FILE]
+                                   [--write docs/speed.md]
+
+Without a path EnergyPlus is left out, and the table says so.
 """
 
 from __future__ import annotations
@@ -33,6 +36,7 @@ import energyplus
 import naive
 import numpy as np
 import numpy.typing as npt
+import page
 import pandas as pd
 
 from mascarin.climate import Climate
@@ -42,6 +46,8 @@ from mascarin.simulation import Simulation
 
 Array = npt.NDArray[np.float64]
 QUARTER = 900.0
+COARSE, EVERYWHERE = "EnergyPlus, CondFD ceiling, 3 min", "EnergyPlus, CondFD everywhere, 3 min"
+ASKED = {COARSE: "150, 400", EVERYWHERE: "1000"}  # times our run, times a member of our ensemble
 SETTLING = 5  # days left out: the programs start from different states
 SEVEN = {  # what the ensemble varies: the paper's seven, half-width of the range relative to the value
     "surfaces.floor.inside.convection.coefficient": 0.4,
@@ -107,26 +113,29 @@ def main() -> None:
     )
     options.add_argument("--energyplus", help="the program")
     options.add_argument("--days", type=int, default=92)
-    options.add_argument("--members", type=int, default=256)
+    options.add_argument("--members", type=int, default=64)
     options.add_argument("--json", type=Path)
+    options.add_argument("--write", type=Path, help="page whose table is replaced")
     given = options.parse_args()
-    program = energyplus.program_of(given.energyplus)
+    program = energyplus.program_of(given.energyplus) if given.energyplus else None
     end = f"{pd.Timestamp(cell.START) + pd.Timedelta(days=given.days):%Y-%m-%d}"
     building, weather = cell.building(), cell.table()
     climate = cell.climate(weather)
 
     reference = ours(refined(building, 4), climate, end, 30.0).run().records[:: round(QUARTER / 30.0)]
     coarser = ours(refined(building, 2), climate, end, 60.0).run().records[:: round(QUARTER / 60.0)]
-    print(
-        "reference: 30 s; from 60 s and half the nodes it differs by (rms, K):",
-        _text(errors(coarser, reference)),
-    )
-    rows = [
-        *own_rows(building, climate, end, reference, given.members),
-        *peer_rows(program, building, climate, end, reference),
-        naive_row(building, weather, given.days, reference),
+    rows = [*own_rows(building, climate, end, reference, given.members)]
+    if program is not None:
+        rows += peer_rows(program, building, climate, end, reference)
+    rows.append(naive_row(building, weather, given.days, reference))
+    lines = [
+        table(rows),
+        f"\n{page.conditions(given.days)}; one thread.",
+        f"The reference against 60 s and half the nodes, rms [K]: {_text(errors(coarser, reference))}.",
     ]
-    show(rows)
+    if program is None:
+        lines.append("EnergyPlus was not at hand.")
+    page.publish("peers", "\n".join(lines), given.write)
     if given.json:
         given.json.write_text(json.dumps([asdict(row) for row in rows], indent=2) + "\n", encoding="utf-8")
 
@@ -153,10 +162,10 @@ def peer_rows(program: Path, building: Building, climate: Climate, end: str, ref
     """EnergyPlus, several ways."""
     ceiling = ("ceiling",)
     schemes = {
-        "EnergyPlus, CondFD ceiling, 3 min": energyplus.Scheme(20, ceiling),
+        COARSE: energyplus.Scheme(20, ceiling),
         "EnergyPlus, CondFD ceiling, 1 min": energyplus.Scheme(60, ceiling),
         "EnergyPlus, CondFD ceiling, 1 min, fine": energyplus.Scheme(60, ceiling, 0.3, 5e-5),
-        "EnergyPlus, CondFD everywhere, 3 min": energyplus.Scheme(20, None),
+        EVERYWHERE: energyplus.Scheme(20, None),
     }
     rows = []
     with tempfile.TemporaryDirectory() as name:
@@ -176,7 +185,7 @@ def peer(
     """One way of EnergyPlus."""
     outputs = [_there(name) for name in cell.OUTPUTS.values()]
     first = f"{pd.Timestamp(cell.START) + pd.Timedelta('1D'):%Y-%m-%d}"
-    repeats = 1 if scheme.finite is None else 3
+    repeats = 1 if scheme.finite is None else 2
 
     def taken(until: str, repeats: int) -> float:
         model = energyplus.write_model(building, scheme, cell.START, until, outputs)
@@ -216,19 +225,19 @@ def _text(rms: dict[str, float] | None) -> str:
     return ", ".join(f"{name} {value:.4f}" for name, value in (rms or {}).items())
 
 
-def show(rows: list[Row]) -> None:
-    """Print the table: time, ratios to our single run and ensemble, errors."""
+def table(rows: list[Row]) -> str:
+    """The table: time, ratios to our single run and ensemble, what was asked of them, errors."""
     single = next(row.seconds for row in rows if row.name == "Mascarin, 900 s")
     member = next(row.seconds for row in rows if "one of" in row.name)
-    head = ("", "CPU s", "less start", "x one run", "x member", *cell.OUTPUTS)
-    print("\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
+    head = ("", "CPU s", "less start", "/ one run", "/ member", "asked", *cell.OUTPUTS)
+    lines = []
     for row in rows:
         net = row.seconds if row.without_start is None else row.without_start
         shown = "" if row.without_start is None else f"{net:.2f}"
         rms = [f"{value:.3f}" for value in (row.rms or {}).values()]
-        cells = [row.name, f"{row.seconds:.4g}", shown, f"{net / single:.3g}", f"{net / member:.3g}", *rms]
-        print("| " + " | ".join(cells) + " |")
-    print("\nRatios are of the time less start-up. Errors: rms against the reference after 5 days [K].")
+        ratios = [f"{net / single:.3g}", f"{net / member:.3g}", ASKED.get(row.name, "")]
+        lines.append([row.name, f"{row.seconds:.3g}", shown, *ratios, *rms])
+    return page.table(head, lines)
 
 
 if __name__ == "__main__":

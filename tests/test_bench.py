@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -125,6 +126,84 @@ def test_the_page_beside_energyplus_holds_the_recorded_numbers(repository: Path)
     assert numbers["thin_sheet"]["severe"] == 0
     with pytest.raises(ValueError, match="no place for the table 'tabulated'"):
         energyplus_pcm.filled("", numbers)
+
+
+@pytest.mark.usefixtures("bench")
+def test_every_table_of_the_page_of_speed_has_its_place(repository: Path) -> None:
+    import page  # type: ignore[import-not-found]
+
+    text = (repository / "docs" / "speed.md").read_text(encoding="utf-8")
+    makefile = (repository / "Makefile").read_text(encoding="utf-8")
+    files = [repository / name for name in re.findall(r"bench/\w+\.py(?= .*--write docs/speed.md)", makefile)]
+    names = [re.findall(r'page\.publish\("(\w+)"', file.read_text(encoding="utf-8")) for file in files]
+    assert len(files) == 5
+    assert all(len(found) == 1 for found in names), names
+    for (name,) in names:
+        changed = page.filled(text, name, "| new |")
+        assert f"<!-- table: {name} -->\n| new |\n<!-- end -->" in changed
+        assert page.filled(changed, name, "| other |").count("| other |") == 1
+    assert set(re.findall("<!-- table: (.*) -->", text)) == {name for (name,) in names}
+
+
+@pytest.mark.usefixtures("bench")
+def test_the_engine_alone_is_handed_what_a_run_is(tmp_path: Path) -> None:
+    import engine_cases  # type: ignore[import-not-found]
+    import engine_speed  # type: ignore[import-not-found]
+
+    files = engine_cases.write(tmp_path, 2)
+    assert [file.stem for file in files] == list(engine_speed.MODELS)
+    of = engine_speed.simulation(engine_speed.MODELS["shipped"], 2)
+    case = json.loads((tmp_path / "shipped.json").read_text(encoding="utf-8"))
+    assert case["description"] == json.loads(of._description.json)
+    np.testing.assert_array_equal(case["values"], of.values)
+    np.testing.assert_array_equal(np.fromfile(tmp_path / "shipped.f64"), of._forcing.ravel())
+    assert np.shape(case["members"]) == (8 * len(of.values),)
+
+
+@pytest.mark.usefixtures("bench")
+def test_arithmetic_is_counted_by_what_is_executed() -> None:
+    """One operation a number: one, two, four or eight to a register; none for moves and comparisons."""
+    import counting  # type: ignore[import-not-found]
+
+    listing = """
+0000000000001000 <march>:
+    1000:\tmulsd  0x8(%rax),%xmm1
+    1004:\tvaddpd %ymm1,%ymm2,%ymm3
+    1008:\tvdivpd (%rdi),%zmm2,%zmm3
+    100e:\tsqrtpd %xmm1,%xmm2
+    1012:\tmovapd %xmm1,%xmm2
+    1016:\tucomisd %xmm1,%xmm2
+    101a:\tmulss  %xmm1,%xmm2
+    101e:\tadd    $0x8,%rax
+"""
+    worth = counting.operations(listing)
+    assert worth == {0x1000: 1, 0x1004: 4, 0x1008: 8, 0x100E: 2}
+    profile = "\n".join([
+        "positions: instr", "ob=/a/b/program", "fn=march", "0x1000 5", "0x1004 3",
+        "calls=2 0x1012", "0x1004 700", "0x1004 1", "0x101e 10",
+        "ob=/lib/libc.so.6", "fn=memcpy", "0x1000 900",
+    ])  # fmt: skip
+    counts = counting.executed(profile, "program")
+    assert counts == {0x1000: 5, 0x1004: 4, 0x101E: 10}
+    share = counting.Count(120.0, 30.0).less(counting.Count(20.0, 10.0), 5)
+    assert (share.instructions, share.flops) == (20.0, 4.0)
+
+
+@pytest.mark.usefixtures("bench")
+def test_the_shipped_weather_as_a_year(tmp_path: Path) -> None:
+    import cell
+    import through_python  # type: ignore[import-not-found]
+
+    from mascarin.climate import Climate
+
+    file = tmp_path / "year.epw"
+    through_python.year_of_weather(file)
+    lines = file.read_text(encoding="ascii").splitlines()[8:]
+    assert len(lines) == 8760
+    august = next(k for k, line in enumerate(lines) if line.startswith("2010,8,1,1,"))
+    weather = cell.table()
+    assert float(lines[august].split(",")[6]) == pytest.approx(weather["outdoor_air"].iloc[4], abs=1e-3)
+    assert len(Climate.from_epw(file).index) == 8760
 
 
 @pytest.mark.usefixtures("bench")

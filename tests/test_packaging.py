@@ -52,6 +52,16 @@ def test_every_dependency_is_pinned_within_its_bounds(
         assert requirement.specifier.contains(version), f"{text}: pinned at {version}"
 
 
+def test_the_engine_is_measured_with_the_crates_it_is_shipped_with(repository: Path) -> None:
+    shipped, measured = (
+        {one["name"]: one["version"] for one in tomllib.loads(file.read_text(encoding="utf-8"))["package"]}
+        for file in (repository / "Cargo.lock", repository / "bench" / "engine" / "Cargo.lock")
+    )
+    common = shipped.keys() & measured.keys()
+    assert {"mascarin-engine", "rayon", "serde_json"} <= common
+    assert {name: shipped[name] for name in common} == {name: measured[name] for name in common}
+
+
 def test_constraints_hold_versions_only(repository: Path) -> None:
     for line in (repository / "constraints.txt").read_text(encoding="utf-8").splitlines():
         assert re.fullmatch(r"[A-Za-z0-9._-]+==[A-Za-z0-9.]+", line), line
