@@ -44,11 +44,11 @@ test: check-rust check-python pytest
 
 # ENERGYPLUS is the program of version 25.2 (bench/energyplus.py says where to get it). Leave the machine alone meanwhile.
 bench: $(BUILT) $(HYPERFINE)
+	$(PY) bench/energyplus_lgi.py $(if $(ENERGYPLUS),--energyplus "$(ENERGYPLUS)") --write docs/speed.md
 	$(PY) bench/engine_speed.py --write docs/speed.md
 	$(PY) bench/engine_alone.py --write docs/speed.md
 	$(PY) bench/through_python.py --hyperfine $(HYPERFINE) --write docs/speed.md
 	$(PY) bench/million.py --write docs/speed.md
-	$(PY) bench/energyplus_lgi.py $(if $(ENERGYPLUS),--energyplus "$(ENERGYPLUS)") --write docs/speed.md
 
 $(HYPERFINE): | check-tools
 	cargo install hyperfine --version $(HYPERFINE_VERSION) --locked --quiet --root target/bench/tools

@@ -9,6 +9,7 @@ the system's libraries.
 from __future__ import annotations
 
 import os
+import platform
 import re
 import shutil
 import subprocess
@@ -36,8 +37,9 @@ class Count:
 
 
 def at_hand() -> bool:
-    """Whether the tools are installed."""
-    return all(shutil.which(tool) for tool in ("valgrind", "objdump"))
+    """Whether the tools are installed, and the instructions those that are known here."""
+    known = platform.machine() in ("x86_64", "AMD64")
+    return known and all(shutil.which(tool) for tool in ("valgrind", "objdump"))
 
 
 def disassembled(program: Path) -> dict[int, int]:

@@ -134,7 +134,7 @@ def main() -> None:
     text = page.table([*head, "one run", "pack"], rows)
     note = f"{page.conditions(given.days)}; one thread. Peak of a core, measured: {1e-9 * best:.1f} GFLOP/s."
     if worth is None:
-        note += " Nothing is counted: valgrind and objdump are not both at hand."
+        note += " Nothing is counted: that takes valgrind, objdump and an x86_64 processor."
     page.publish("engine", f"{text}\n\n{note}", given.write)
 
 
