@@ -32,6 +32,12 @@ impl<S: Real> Known<S> {
         self.kept = Some(Vec::new());
     }
 
+    /// Whether solutions are kept.
+    #[inline(always)]
+    pub(crate) fn keeps(&self) -> bool {
+        self.kept.is_some()
+    }
+
     /// The stages of a step begin, or begin again.
     #[inline(always)]
     pub(crate) fn restart(&mut self) {
@@ -46,6 +52,14 @@ impl<S: Real> Known<S> {
     pub(crate) fn keep(&mut self, solved: &Unknowns<S>) {
         if let Some(kept) = &mut self.kept {
             kept.push(solved.clone());
+        }
+    }
+
+    /// The last stage is corrected.
+    #[inline(always)]
+    pub(crate) fn amend(&mut self, solved: &Unknowns<S>) {
+        if let Some(last) = self.kept.as_mut().and_then(|kept| kept.last_mut()) {
+            last.copy_from(solved);
         }
     }
 

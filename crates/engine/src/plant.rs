@@ -4,17 +4,25 @@
 //! air overshoot.) It is the one that brings the air onto the set point at the end of the step, as far as the capacity
 //! goes, and nothing where the air stays between the set points without it.
 //!
-//! Step by step: the stages are solved with the loads of the step before; the response of the air at the end to each
-//! load follows from the factors in hand; new loads follow from both; and so on until they stay. In each of these
-//! sweeps a load is heating, cooling, off or at its capacity by what the air would do without it, so that the iteration is a
-//! Newton iteration on the complementarity of load and set point (an active set method: Hintermueller, Ito & Kunisch
-//! 2002, SIAM J. Optim. 13(3), doi:10.1137/S1052623401383558).
+//! Step by step: each stage is solved once, about a guess and with guessed loads; the response of the air at the end to
+//! each load follows from the factors in hand; new loads follow from both, and with them the temperatures about which
+//! the stages are solved next; and so on until all stay. This is one Newton iteration on the temperatures of all stages
+//! and the loads together. In each of these sweeps a load is heating, cooling, off or at its capacity by what the air
+//! would do without it: Newton's way with the complementarity of load and set point (an active set method:
+//! Hintermueller, Ito & Kunisch 2002, SIAM J. Optim. 13(3), doi:10.1137/S1052623401383558).
+//!
+//! The loads of the last sweep miss the set points by hundred-thousandths of a kelvin at most. What is missing the last
+//! stage makes up for, so that the air ends on its set point to round-off; the load told is the mean of both.
+
+use core::ops::Range;
 
 use crate::coefficients::Zone;
 use crate::real::{Mask, Real};
 use crate::state::Unknowns;
 
-/// A load is found when correcting it would move the air by less than this [K].
+/// A load is found when correcting it would move the air by less than this [K]: so little the last stage makes up for.
+const CLOSE: f64 = 1e-5;
+/// Airs off their set points by less than this are on them [K].
 const TOLERANCE: f64 = 1e-8;
 /// Set point that is never reached, where there is no heating or no cooling [degC].
 const NEVER: f64 = 1e6;
@@ -69,7 +77,7 @@ pub(crate) struct Response<S> {
     pub(crate) stages: Vec<Unknowns<S>>,
     /// In the enthalpies that the second stage starts from [J/(m3 W)].
     pub(crate) held: Vec<S>,
-    /// Forward sweeps of the walls.
+    /// Forward sweeps of the walls that change.
     pub(crate) known: Vec<S>,
     /// Right-hand side, then solution, of the room block.
     pub(crate) right: Vec<S>,
@@ -85,12 +93,25 @@ pub(crate) struct Plants<S: Real> {
     limits: Vec<Limits<S>>,
     /// Answers to each plant.
     pub(crate) responses: Vec<Response<S>>,
+    /// By wall of constant properties: heat into face e in the second stage per degree of face o in the first
+    /// [W/(m2 K)], and the stage length that it holds for [s].
+    pub(crate) carried: (Vec<[[S; 2]; 2]>, f64),
     /// Iterate about which each stage was last linearised, and its solution.
     pub(crate) iterates: Vec<Unknowns<S>>,
     pub(crate) solved: Vec<Unknowns<S>>,
+    /// The first stage of the step before, and whether this step follows it.
+    pub(crate) first: Unknowns<S>,
+    pub(crate) follows: bool,
+    /// Outdoor air at the ends of the last two steps [degC].
+    pub(crate) outdoor: [S; 2],
+    /// Loads that the step before set out from [W].
+    earlier: Vec<S>,
     /// Lanes that give a load, or have to.
     asking: S::Mask,
-    correction: Vec<S>,
+    /// Those of them whose responses are known.
+    answered: S::Mask,
+    /// Change of each load [W].
+    pub(crate) correction: Vec<S>,
     matrix: Vec<S>,
     right: Vec<S>,
 }
@@ -112,24 +133,44 @@ impl<S: Real> Plants<S> {
             zones: zones.to_vec(),
             limits: vec![nothing; count],
             responses: vec![response; count],
+            carried: (vec![[[S::zero(); 2]; 2]; unknowns.faces.len() / 2], f64::NAN),
             iterates: vec![unknowns.clone(); kept],
             solved: vec![unknowns.clone(); kept],
+            first: unknowns.clone(),
+            follows: false,
+            outdoor: [S::zero(); 2],
+            earlier: zeros(unknowns.air.len()),
             asking: S::Mask::splat(false),
+            answered: S::Mask::splat(false),
             correction: zeros(count),
             matrix: zeros(count * count),
             right: zeros(count),
         }
     }
 
-    /// Sets out on a step that ends with a forcing row, from the loads of the step before.
+    /// Sets out on a step that ends with a forcing row. Loads go on as in the step before, where it `follows` one.
     #[inline(always)]
-    pub(crate) fn begin(&mut self, zones: &[Zone<S>], row: &[f64], loads: &mut [S]) {
-        self.asking = S::Mask::splat(false);
+    pub(crate) fn begin(&mut self, zones: &[Zone<S>], row: &[f64], loads: &mut [S], follows: bool) {
+        self.follows = follows;
+        core::mem::swap(&mut self.first, &mut self.solved[0]);
         for (limits, &zone) in self.limits.iter_mut().zip(&self.zones) {
             *limits = Limits::at(&zones[zone], row);
-            let load = loads[zone].min(limits.most[0]).max(-limits.most[1]);
-            loads[zone] = load;
-            self.asking = self.asking | S::zero().lt(load.abs());
+            let (before, now) = (self.earlier[zone], loads[zone]);
+            self.earlier[zone] = now;
+            let next = if follows { now + now - before } else { now };
+            // What heats does not come to cool.
+            let next = S::select(S::zero().lt(next * now), next, S::zero());
+            loads[zone] = next.min(limits.most[0]).max(-limits.most[1]);
+        }
+    }
+
+    /// Asks the plants that set out with a load, or whose air is expected off its set points.
+    #[inline(always)]
+    pub(crate) fn ask(&mut self, loads: &[S], air: impl Fn(usize) -> S) {
+        self.answered = S::Mask::splat(false);
+        self.asking = !self.within_set_points(air);
+        for &zone in &self.zones {
+            self.asking = self.asking | S::zero().lt(loads[zone].abs());
         }
     }
 
@@ -139,10 +180,20 @@ impl<S: Real> Plants<S> {
         (self.asking & active).any()
     }
 
-    /// Keeps what a stage was linearised about, and its solution.
+    /// Whether the responses are to be found in a sweep: the second goes by those of the first, which are close enough.
     #[inline(always)]
-    pub(crate) fn keep(&mut self, stage: usize, iterate: &Unknowns<S>, solved: &Unknowns<S>) {
-        self.iterates[stage].copy_from(iterate);
+    pub(crate) fn answering(&mut self, sweep: usize, active: S::Mask) -> bool {
+        let answering = sweep != 1 && self.asking(active);
+        if answering {
+            self.answered = self.asking;
+        }
+        answering
+    }
+
+    /// Keeps what a stage was linearised about, in exchange for what is to be overwritten, and its solution.
+    #[inline(always)]
+    pub(crate) fn keep(&mut self, stage: usize, iterate: &mut Unknowns<S>, solved: &Unknowns<S>) {
+        core::mem::swap(&mut self.iterates[stage], iterate);
         self.solved[stage].copy_from(solved);
     }
 
@@ -150,8 +201,8 @@ impl<S: Real> Plants<S> {
     /// that know the responses, and in `all` of them on demand, the loads are corrected.
     #[inline(always)]
     pub(crate) fn correct(&mut self, air: &[S], loads: &mut [S], active: S::Mask, all: bool) -> S::Mask {
-        let quiet = self.within_set_points(air);
-        let known = self.asking;
+        let quiet = self.within_set_points(|zone| air[zone]);
+        let known = self.answered;
         self.asking = self.asking | !quiet;
         if !(known & active).any() {
             self.correction.fill(S::zero());
@@ -161,7 +212,7 @@ impl<S: Real> Plants<S> {
         let mut small = S::Mask::splat(true);
         for (p, &zone) in self.zones.iter().enumerate() {
             let change = self.correction[p] - loads[zone];
-            small = small & (change * self.gain(p, p)).abs().lt(S::constant(TOLERANCE));
+            small = small & (change * self.gain(p, p)).abs().lt(S::constant(CLOSE));
             self.correction[p] = change;
         }
         let settled = (known & small) | (!known & quiet);
@@ -173,33 +224,59 @@ impl<S: Real> Plants<S> {
         settled
     }
 
-    /// Guesses of the stages of the next sweep: those of lanes at rest stay where they were.
+    /// The iterate of a stage, and its solution with what the loads have changed since; of cells only those asked for.
     #[inline(always)]
-    pub(crate) fn guess(&self, stage: usize, moving: S::Mask, guess: &mut Unknowns<S>) {
-        let (old, new) = (&self.iterates[stage], &self.solved[stage]);
-        let shift = |guess: &mut [S], old: &[S], new: &[S], part: fn(&Unknowns<S>) -> &[S]| {
-            for (i, guess) in guess.iter_mut().enumerate() {
-                let mut value = new[i];
-                for (response, &change) in self.responses.iter().zip(&self.correction) {
-                    value += part(&response.stages[stage])[i] * change;
+    pub(crate) fn guess(
+        &mut self,
+        stage: usize,
+        cells: &[Range<usize>],
+        iterate: &mut Unknowns<S>,
+        solved: &mut Unknowns<S>,
+    ) {
+        core::mem::swap(iterate, &mut self.iterates[stage]);
+        let kept = &self.solved[stage];
+        solved.faces.copy_from_slice(&kept.faces);
+        solved.air.copy_from_slice(&kept.air);
+        for cells in cells {
+            solved.cells[cells.clone()].copy_from_slice(&kept.cells[cells.clone()]);
+        }
+        for (response, &change) in self.responses.iter().zip(&self.correction) {
+            let answer = &response.stages[stage];
+            let shift = |values: &mut [S], rises: &[S]| {
+                for (value, &rise) in values.iter_mut().zip(rises) {
+                    *value += rise * change;
                 }
-                *guess = S::select(moving, value, old[i]);
+            };
+            shift(&mut solved.faces, &answer.faces);
+            shift(&mut solved.air, &answer.air);
+            for cells in cells {
+                shift(&mut solved.cells[cells.clone()], &answer.cells[cells.clone()]);
             }
-        };
-        shift(&mut guess.faces, &old.faces, &new.faces, |unknowns| &unknowns.faces);
-        shift(&mut guess.air, &old.air, &new.air, |unknowns| &unknowns.air);
-        shift(&mut guess.cells, &old.cells, &new.cells, |unknowns| &unknowns.cells);
+        }
+    }
+
+    /// Corrects the solution of the room block of the last stage by what its loads have to make up for.
+    #[inline(always)]
+    pub(crate) fn complete(&mut self, air: &[S], loads: &[S], solution: &mut [S]) {
+        let asking = self.asking;
+        self.solve(air, loads);
+        for (p, &zone) in self.zones.iter().enumerate() {
+            self.correction[p] = S::select(asking, self.correction[p] - loads[zone], S::zero());
+            for (value, &rise) in solution.iter_mut().zip(&self.responses[p].right) {
+                *value = S::select(asking, *value + rise * self.correction[p], *value);
+            }
+        }
     }
 
     /// True where every air lies between its set points.
     #[inline(always)]
-    fn within_set_points(&self, air: &[S]) -> S::Mask {
+    fn within_set_points(&self, air: impl Fn(usize) -> S) -> S::Mask {
         let slack = S::constant(TOLERANCE);
         let mut within = S::Mask::splat(true);
         for (limits, &zone) in self.limits.iter().zip(&self.zones) {
             let [heat, cool] = limits.set_points;
-            let cold = air[zone].lt(heat - slack) & S::zero().lt(limits.most[0]);
-            let hot = (cool + slack).lt(air[zone]) & S::zero().lt(limits.most[1]);
+            let cold = air(zone).lt(heat - slack) & S::zero().lt(limits.most[0]);
+            let hot = (cool + slack).lt(air(zone)) & S::zero().lt(limits.most[1]);
             within = within & !(cold | hot);
         }
         within

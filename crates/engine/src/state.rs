@@ -2,7 +2,7 @@
 
 use crate::coefficients::{Coefficients, Matter};
 use crate::pcm::PcmMemory;
-use crate::plan::Plan;
+use crate::plan::{FaceId, Plan};
 use crate::real::Real;
 
 /// Everything that passes from step to step.
@@ -128,6 +128,23 @@ impl<S: Real> Unknowns<S> {
         self.cells.copy_from_slice(&other.cells);
         self.faces.copy_from_slice(&other.faces);
         self.air.copy_from_slice(&other.air);
+    }
+
+    /// Airs, and some faces, as far from others as two that are known from each other: a way once gone, gone again.
+    #[inline(always)]
+    pub(crate) fn go_on(
+        &mut self,
+        faces: &[FaceId],
+        from: &Temperatures<'_, S>,
+        way: &[Temperatures<'_, S>; 2],
+    ) {
+        let [start, end] = way;
+        for (zone, air) in self.air.iter_mut().enumerate() {
+            *air = from.air[zone] + (end.air[zone] - start.air[zone]);
+        }
+        for &face in faces {
+            self.faces[face] = from.faces[face] + (end.faces[face] - start.faces[face]);
+        }
     }
 
     /// `from + ratio (to - from)`, without leaping over a melting range.

@@ -5,6 +5,8 @@
 //!
 //! Sources: SDIRK2 of Alexander (1977), SIAM J. Numer. Anal. 14(6), doi:10.1137/0714068.
 
+use core::ops::Range;
+
 use crate::balance::{FaceLaws, Line, LocalBalance, LocalFaces, solve_pair};
 use crate::coefficients::{Boundary, Coefficients, Face, Matter};
 use crate::conduction::{Chain, Iterate, Start, StorageRule};
@@ -34,8 +36,9 @@ const FORESIGHT: f64 = 0.05;
 const PATIENCE: usize = 20;
 /// Iterations before a step is given to the nested iteration, and rounds of that one before it is halved.
 const MAX_ITERATIONS: usize = 60;
-/// Searches for the loads of the plants before a step counts as unsolvable.
+/// Sweeps over the stages of a step before it counts as unsolvable, and those of them that solve each stage only once.
 const MAX_SWEEPS: usize = 40;
+const SINGLE_SWEEPS: usize = 12;
 /// How often a step may be halved before it counts as unsolvable.
 const MAX_HALVINGS: u32 = 6;
 
@@ -148,6 +151,15 @@ pub struct Effort<S> {
     /// Steps of phase-change cells with hysteresis in which melting and freezing followed each other: the memory, which
     /// changes at the end of a step, saw only the sum.
     pub reversals: S,
+}
+
+/// How a stage is solved.
+#[derive(Debug, Clone, Copy)]
+enum Search<S: Real> {
+    /// One linear solve at the iterate.
+    Once,
+    /// To its end, in these lanes.
+    Whole(S::Mask),
 }
 
 /// A part of a step.
@@ -274,7 +286,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             || {
                 self.drive.update(self.plan, &self.coefficients, self.numbers, now);
                 self.start(state, 0.0);
-                self.solve_stage(state, INSTANT, (0, 0), S::Mask::splat(true))?;
+                self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.faces.copy_from_slice(&self.solved.faces);
                 self.sun.restart();
                 self.sun.add(&self.drive, 1.0);
@@ -361,11 +373,15 @@ impl<'a, S: Real> Stepper<'a, S> {
     ) -> Result<(), EngineError> {
         let length = part.share * dt;
         self.start(state, self.scheme.diagonal());
+        let regulated = !self.plan.plants.is_empty();
+        if regulated {
+            self.set_out(state, weather.at(part.step, self.scheme.weights().len() - 1).row);
+        }
         self.remember(state);
-        let energy = if self.plan.plants.is_empty() {
-            self.free_step(state, weather, part, length)?
-        } else {
+        let energy = if regulated {
             self.regulated_step(state, weather, part, length)?
+        } else {
+            self.free_step(state, weather, part, length)?
         };
         self.accept(state, &energy, ledger);
         Ok(())
@@ -387,13 +403,15 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.hold_over(state, diagonal);
             }
             self.drive_at(weather, part, stage);
-            self.solve_stage(state, diagonal * length, (part.step, stage + 1), S::Mask::splat(true))?;
+            let all = Search::Whole(S::Mask::splat(true));
+            self.solve_stage(state, diagonal * length, (part.step, stage + 1), all)?;
             self.accumulate(weight * length, &mut energy);
         }
         Ok(energy)
     }
 
-    /// The stages of a step, gone through again until the loads of the plants are right; see [`crate::plant`].
+    /// The stages of a step, gone through again until their temperatures and the loads of the plants are right; see
+    /// [`crate::plant`].
     #[inline(always)]
     fn regulated_step(
         &mut self,
@@ -402,25 +420,26 @@ impl<'a, S: Real> Stepper<'a, S> {
         part: Part,
         length: f64,
     ) -> Result<Power<S>, EngineError> {
-        let last = self.scheme.weights().len() - 1;
-        self.known.load(&mut self.load);
-        self.plants.begin(&self.coefficients.zones, weather.at(part.step, last).row, &mut self.load);
         let mut active = S::Mask::splat(true);
-        // Where no plant is asked, a known solution has no load whose slope is missing.
-        let asked = S::DERIVATIVES && (!self.known.guides() || self.plants.asking(active));
-        // Responses leave out what a load does to the convection expected in gaps: its slope is then found in two rounds.
-        let rounds = if self.plan.windows.is_empty() { 1 } else { 2 };
-        let mut polish = if asked { rounds } else { 0 };
+        let mut polish = self.further_sweeps();
+        let mut before = S::zero();
         for sweep in 0..MAX_SWEEPS {
-            let energy = self.sweep(state, weather, (part, length), sweep > 0, active)?;
+            let whole = sweep >= SINGLE_SWEEPS;
+            let (mut energy, change, limited) = self.sweep(state, weather, (part, length), sweep, active)?;
+            before = S::select(limited, S::zero(), before);
+            // The first sweep books nothing: it is never the last.
+            let still = self.settled(change, before) & S::Mask::splat(sweep > 0);
+            let still = still | S::Mask::splat(whole || self.known.guides());
+            before = change;
             let settled = self.plants.correct(&self.solved.air, &mut self.load, active, polish > 0);
-            let moving = active & !settled & !self.failed;
+            let moving = active & !(settled & still) & !self.failed;
             if moving.any() {
                 active = moving;
             } else if polish > 0 {
                 polish -= 1;
                 active = S::Mask::splat(true);
             } else {
+                self.close(&mut energy, length);
                 return Ok(energy);
             }
         }
@@ -429,30 +448,82 @@ impl<'a, S: Real> Stepper<'a, S> {
         let place = format!("zone {} (load of its plant)", self.plan.description.zones[zone].name);
         Err(EngineError::NotConverged {
             step: part.step,
-            stage: last + 1,
+            stage: self.scheme.weights().len(),
             place,
             residual,
             iterations: MAX_SWEEPS,
         })
     }
 
-    /// All stages of a step at the loads in hand. Lanes that are not active repeat the sweep before bit for bit.
+    /// Guesses the loads of a step that ends with a forcing row, and the first stage.
+    #[inline(always)]
+    fn set_out(&mut self, state: &State<S>, row: &[f64]) {
+        self.plants.begin(&self.coefficients.zones, row, &mut self.load, self.previous.is_some());
+        self.known.load(&mut self.load);
+        let (iterate, diagonal) = (&self.iterate, self.scheme.diagonal());
+        self.plants.ask(&self.load, |zone| line(state.air[zone], iterate.air[zone], 1.0 / diagonal));
+        if let Some(previous) = &self.previous {
+            let way = [previous.view(), self.plants.first.view()];
+            self.iterate.go_on(&self.changing.inner, &state.view(), &way);
+        }
+    }
+
+    /// Corrects the guess of a stage, once it is known what drives it.
+    #[inline(always)]
+    fn guess_anew(&mut self, state: &State<S>, stage: usize) {
+        if stage > 0 {
+            // A straight line on from the first stage would carry the error of its load.
+            let way = [self.plants.first.view(), state.view()];
+            self.iterate.go_on(&self.changing.inner, &self.solved.view(), &way);
+            return;
+        }
+        // Where the outdoor air turns, the faces outdoors turn with it.
+        let [before, now] = self.plants.outdoor;
+        let turn = self.drive.outdoor_air - line(before, now, 1.0 + self.scheme.diagonal());
+        for (guess, face) in self.iterate.faces.iter_mut().zip(&self.coefficients.faces) {
+            if matches!(face.boundary, Boundary::Outdoors(_)) {
+                *guess += turn;
+            }
+        }
+    }
+
+    /// Sweeps that are made once the numbers are found: for slopes, and where slopes will go along these numbers.
+    #[inline(always)]
+    fn further_sweeps(&self) -> usize {
+        if !S::DERIVATIVES {
+            // Numbers settle quadratically, but what a parameter does to them one sweep later: quotients would show it.
+            return if self.known.keeps() { 2 } else { 0 };
+        }
+        // Where no plant is asked, a known solution has no load whose slope is missing.
+        if self.known.guides() && !self.plants.asking(S::Mask::splat(true)) {
+            return 0;
+        }
+        // Responses leave out what a load does to the convection expected in gaps: its slope is then found in two rounds.
+        if self.plan.windows.is_empty() { 1 } else { 2 }
+    }
+
+    /// All stages of a step at the loads in hand: one linear solve of each, or after many sweeps as many as it takes.
+    /// Gives the heat of all but the last stage, the square of the change, and where it was limited. Lanes that are not
+    /// active repeat the sweep before bit for bit.
     #[inline(always)]
     fn sweep(
         &mut self,
         state: &State<S>,
         weather: &Weather<'_>,
         (part, length): (Part, f64),
-        again: bool,
+        sweep: usize,
         active: S::Mask,
-    ) -> Result<Power<S>, EngineError> {
+    ) -> Result<(Power<S>, S, S::Mask), EngineError> {
         let (diagonal, weights) = (self.scheme.diagonal(), self.scheme.weights());
-        let mut energy = Power::none();
-        let answer = self.plants.asking(active);
+        let (mut energy, mut change, mut limited) = (Power::none(), S::zero(), S::Mask::splat(false));
+        let (again, answer) = (sweep > 0, self.plants.answering(sweep, active));
         if again {
             self.held.copy_from_slice(&state.enthalpy);
             self.held_air.copy_from_slice(&state.air);
-            self.known.restart();
+            if !self.known.guides() {
+                // What is known of a stage leads once; from there the sweeps go on by themselves.
+                self.known.restart();
+            }
         }
         for (stage, &weight) in weights.iter().enumerate() {
             if stage > 0 {
@@ -462,24 +533,83 @@ impl<'a, S: Real> Stepper<'a, S> {
                 core::mem::swap(&mut self.drive, &mut self.other_drive);
             }
             if again {
-                self.plants.guess(stage, active, &mut self.iterate);
+                self.plants.guess(stage, &self.changing.cells, &mut self.iterate, &mut self.solved);
+                limited = limited | self.advance(active, 0, &state.memory);
             } else {
                 self.drive_at(weather, part, stage);
+                if self.plants.follows {
+                    self.guess_anew(state, stage);
+                }
             }
-            self.solve_stage(state, diagonal * length, (part.step, stage + 1), active)?;
+            let search = if sweep < SINGLE_SWEEPS { Search::Once } else { Search::Whole(active) };
+            let sound = self.solve_stage(state, diagonal * length, (part.step, stage + 1), search)?;
+            change += S::select(sound, self.distance(&self.iterate), S::constant(f64::INFINITY));
             if answer {
                 self.respond(stage, diagonal * length);
             }
-            self.plants.keep(stage, &self.iterate, &self.solved);
-            self.accumulate(weight * length, &mut energy);
+            self.plants.keep(stage, &mut self.iterate, &self.solved);
+            if again && stage + 1 < weights.len() {
+                self.accumulate(weight * length, &mut energy);
+            }
         }
-        Ok(energy)
+        Ok((energy, change, limited))
+    }
+
+    /// Brings the airs onto their set points by the loads of the last stage, and books it.
+    #[inline(always)]
+    fn close(&mut self, energy: &mut Power<S>, length: f64) {
+        let weights = self.scheme.weights();
+        let weight = weights[weights.len() - 1];
+        if self.plants.asking(!self.failed) {
+            for (response, &zone) in self.plants.responses.iter_mut().zip(&self.plan.plants) {
+                response.right.fill(S::zero());
+                response.right[self.plan.zones[zone].air_row] = S::one();
+                self.block.solve_again(&mut response.right);
+                let last = response.stages.len() - 1;
+                for (air, plan) in response.stages[last].air.iter_mut().zip(&self.plan.zones) {
+                    *air = response.right[plan.air_row];
+                }
+            }
+            self.plants.complete(&self.solved.air, &self.load, &mut self.block.right);
+            self.resolve_all();
+            self.known.amend(&self.solved);
+        }
+        for (p, &zone) in self.plan.plants.iter().enumerate() {
+            self.load[zone] += self.plants.correction[p];
+        }
+        self.accumulate(weight * length, energy);
+        self.plants.outdoor = [self.plants.outdoor[1], self.drive.outdoor_air];
+        for (p, &zone) in self.plan.plants.iter().enumerate() {
+            // The mean over the step.
+            self.load[zone] = self.load[zone] - self.plants.correction[p].scale(1.0 - weight);
+        }
+    }
+
+    /// Carries the solution of the room block to all airs, faces and cells once more.
+    #[inline(always)]
+    fn resolve_all(&mut self) {
+        for (zone, plan) in self.plan.zones.iter().enumerate() {
+            self.solved.air[zone] = self.block.right[plan.air_row];
+        }
+        for (w, wall) in self.plan.walls.iter().enumerate() {
+            let faces = self.resolve_faces(w, self.locals[w]);
+            self.solved.faces[2 * w..2 * w + 2].copy_from_slice(&faces);
+            if wall.nonlinear {
+                let cells = wall.first_cell..wall.first_cell + wall.len();
+                self.chains[w].temperatures(faces, &mut self.solved.cells[cells]);
+            }
+        }
+        self.slabs.temperatures(&self.solved.faces, &mut self.solved.cells);
     }
 
     /// How the stage just solved answers to a watt of each plant.
     #[inline(always)]
     fn respond(&mut self, stage: usize, length: f64) {
         let mut responses = core::mem::take(&mut self.plants.responses);
+        if stage > 0 && self.plants.carried.1.to_bits() != length.to_bits() {
+            self.carry_constant();
+            self.plants.carried.1 = length;
+        }
         for (response, &zone) in responses.iter_mut().zip(&self.plan.plants) {
             response.right.fill(S::zero());
             response.right[self.plan.zones[zone].air_row] = S::one();
@@ -494,6 +624,28 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.plants.responses = responses;
     }
 
+    /// What a degree more at each face of a wall of constant properties in the first stage sends into its faces in the
+    /// second.
+    #[cold]
+    fn carry_constant(&mut self) {
+        let ratio = (1.0 - self.scheme.diagonal()) / self.scheme.diagonal();
+        for &w in &self.changing.constant {
+            let chain = &self.chains[w];
+            let mut cells = vec![S::zero(); chain.storage.len()];
+            let (none, mut known) = (cells.clone(), cells.clone());
+            for e in 0..2 {
+                let mut faces = [S::zero(); 2];
+                faces[e] = S::one();
+                chain.temperature_changes(&none, faces, &mut cells);
+                for (cell, storage) in cells.iter_mut().zip(&chain.storage) {
+                    *cell = storage.capacity * cell.scale(ratio);
+                }
+                let heat = chain.source_changes(&cells, &mut known);
+                (self.plants.carried.0[w][0][e], self.plants.carried.0[w][1][e]) = (heat[0], heat[1]);
+            }
+        }
+    }
+
     /// What the first stage's answer leaves to the second: heat held in walls and airs.
     #[inline(always)]
     fn carry_over(&self, response: &mut Response<S>, length: f64) {
@@ -505,9 +657,13 @@ impl<'a, S: Real> Stepper<'a, S> {
             response.right[plan.air_row] += storage * first.air[zone];
         }
         for (w, wall) in self.plan.walls.iter().enumerate() {
-            let cells = wall.first_cell..wall.first_cell + wall.len();
-            let source =
-                self.chains[w].source_changes(&response.held[cells.clone()], &mut response.known[cells]);
+            let source = if wall.nonlinear {
+                let cells = wall.first_cell..wall.first_cell + wall.len();
+                self.chains[w].source_changes(&response.held[cells.clone()], &mut response.known[cells])
+            } else {
+                let [outside, inside] = [first.faces[2 * w], first.faces[2 * w + 1]];
+                self.plants.carried.0[w].map(|[a, b]| a * outside + b * inside)
+            };
             let area = self.coefficients.walls[w].area;
             for e in 0..2 {
                 let FaceRole::Zone { row, .. } = self.plan.faces[2 * w + e].role else { continue };
@@ -530,7 +686,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Carries the answer of the room block to all faces and cells.
+    /// Carries the answer of the room block to all faces, and to the cells of walls that change.
     #[inline(always)]
     fn spread(&self, response: &mut Response<S>, stage: usize) {
         let diagonal = self.scheme.diagonal();
@@ -552,6 +708,9 @@ impl<'a, S: Real> Stepper<'a, S> {
                 faces[side] = line.slope * faces[1 - side] + self.free_answer(w, side, source);
             }
             answer.faces[2 * w..2 * w + 2].copy_from_slice(&faces);
+            if !wall.nonlinear {
+                continue;
+            }
             let cells = wall.first_cell..wall.first_cell + wall.len();
             let chain = &self.chains[w];
             chain.temperature_changes(&known[cells.clone()], faces, &mut answer.cells[cells.clone()]);
@@ -695,7 +854,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         ledger.book(energy, stored);
     }
 
-    /// Solves one stage: by one linear solve where its solution is known, else by iteration.
+    /// Solves one stage: by one linear solve where its solution is known or one is asked for, else by iteration. False in
+    /// the lanes that are at no number.
     // Not inlined, for the compiler's sake: it is by far the largest part of a step.
     #[inline(never)]
     fn solve_stage(
@@ -703,31 +863,35 @@ impl<'a, S: Real> Stepper<'a, S> {
         state: &State<S>,
         length: f64,
         place: (usize, usize),
-        active: S::Mask,
-    ) -> Result<(), EngineError> {
+        search: Search<S>,
+    ) -> Result<S::Mask, EngineError> {
         S::vectorised(
             #[inline(always)]
             || {
                 self.stage = place.1.saturating_sub(1);
                 self.begin_stage(length);
                 if S::DERIVATIVES && self.known.guide(&mut self.iterate) {
-                    self.solve_known(state, length);
-                    return Ok(());
+                    return Ok(self.solve_once(state, length));
                 }
-                self.iterate_stage(state, length, place, active)?;
+                let mut sound = S::Mask::splat(true);
+                match search {
+                    Search::Once => sound = self.solve_once(state, length),
+                    Search::Whole(active) => self.iterate_stage(state, length, place, active)?,
+                }
                 self.known.keep(&self.solved);
-                Ok(())
+                Ok(sound)
             },
         )
     }
 
     /// One linear solve at the iterate.
     #[inline(always)]
-    fn solve_known(&mut self, state: &State<S>, length: f64) {
+    fn solve_once(&mut self, state: &State<S>, length: f64) -> S::Mask {
+        self.effort.iterations += 1;
         self.linearise_walls(state, length, None);
         self.linearise_faces();
         self.solve_linear(length);
-        self.finish_stage();
+        self.finish_stage()
     }
 
     /// Newton's iteration for one stage. Leaves the solution in `solved` and the linearisation that produced
@@ -1403,11 +1567,13 @@ impl<'a, S: Real> Stepper<'a, S> {
 /// What changes when, and what stays: found from the plan, never from a number.
 #[derive(Debug, Clone)]
 struct Changing {
-    /// Walls of constant properties, and the others.
+    /// Walls of constant properties, and the others with their cells.
     constant: Vec<usize>,
     walls: Vec<usize>,
-    /// Those of the former that touch no zone.
+    cells: Vec<Range<usize>>,
+    /// Those of the former that touch no zone, and their faces in zones.
     loose: Vec<usize>,
+    inner: Vec<FaceId>,
     /// Faces whose films depend on the wind alone, faces whose films depend on temperature, and faces that radiate with
     /// the fourth power of it.
     windy: Vec<FaceId>,
@@ -1426,8 +1592,23 @@ impl Changing {
             (0..plan.walls.len()).partition(|&wall| plan.walls[wall].nonlinear);
         let local = |face: FaceId| plan.faces[face].role == FaceRole::Local;
         let loose = constant.iter().copied().filter(|&wall| local(2 * wall) && local(2 * wall + 1)).collect();
+        let faces = constant.iter().flat_map(|&wall| [2 * wall, 2 * wall + 1]);
+        let inner = faces.filter(|&face| !local(face)).collect();
+        let cells = walls.iter().map(|&wall| &plan.walls[wall]);
+        let cells = cells.map(|wall| wall.first_cell..wall.first_cell + wall.len()).collect();
         let (windy, bent, radiant) = (Vec::new(), Vec::new(), Vec::new());
-        let mut all = Self { constant, walls, loose, windy, bent, radiant, curved: false, by_wind: false };
+        let mut all = Self {
+            constant,
+            walls,
+            cells,
+            loose,
+            inner,
+            windy,
+            bent,
+            radiant,
+            curved: false,
+            by_wind: false,
+        };
         let laws = (0..plan.faces.len()).map(|face| all.enter(plan, numbers, face)).collect();
         (all, laws)
     }
