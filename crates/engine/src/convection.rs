@@ -127,11 +127,11 @@ enum Law<S> {
     Power([Power<S>; 2]),
 }
 
-/// `laminar |d|^exponent`, above a difference `turbulent |d|^1/3 + offset`.
+/// `laminar |d|^1/4`, or `level |d|^1/5` where that is not zero; above a difference `turbulent |d|^1/3 + offset`.
 #[derive(Debug, Clone, Copy)]
 struct Glass<S> {
     laminar: S,
-    exponent: S,
+    level: S,
     turbulent: S,
     offset: S,
     /// Square of the difference where the flow turns turbulent [K2].
@@ -153,6 +153,17 @@ struct Power<S> {
 struct Natural<S> {
     coefficient: S,
     rise: S,
+}
+
+impl<S: Real> Natural<S> {
+    /// Another one where the mask is true.
+    #[inline(always)]
+    fn or(self, mask: S::Mask, other: Self) -> Self {
+        Self {
+            coefficient: S::select(mask, other.coefficient, self.coefficient),
+            rise: S::select(mask, other.rise, self.rise),
+        }
+    }
 }
 
 impl<S: Real> Film<S> {
@@ -271,15 +282,7 @@ impl<S: Real> Film<S> {
             }
             Law::Glass([open, still]) => {
                 let unstable = self.unstable(d);
-                let choose = |of: fn(&Glass<S>) -> S| S::select(unstable, of(open), of(still));
-                let slow = power_law(choose(|g| g.laminar), choose(|g| g.exponent), square, rounded);
-                let fast = cube_root_law(choose(|g| g.turbulent), square, rounded);
-                let turbulent = choose(|g| g.limit).lt(square);
-                let lifted = fast.coefficient + choose(|g| g.offset);
-                Natural {
-                    coefficient: S::select(turbulent, lifted, slow.coefficient),
-                    rise: S::select(turbulent, fast.rise, slow.rise),
-                }
+                glass(|of| S::select(unstable, of(open), of(still)), square, rounded)
             }
             Law::Power([up, down]) => {
                 let upward = self.unstable(d) | self.upward.abs().lt(S::constant(1e-6));
@@ -306,11 +309,7 @@ impl<S: Real> Film<S> {
         if !stable.any() {
             return otherwise;
         }
-        let still = power_law(gain, S::constant(0.2), d * d, rounded);
-        Natural {
-            coefficient: S::select(stable, still.coefficient, otherwise.coefficient),
-            rise: S::select(stable, still.rise, otherwise.rise),
-        }
+        otherwise.or(stable, power_law(gain, S::constant(0.2), d * d, rounded))
     }
 }
 
@@ -379,18 +378,13 @@ impl<S: Real> Glass<S> {
         let offset = laminar * quarter(limit) - turbulent * third(limit);
         let open = Self {
             laminar,
-            exponent: S::constant(0.25),
+            level: S::zero(),
             turbulent,
             offset: S::select(flat, S::zero(), offset),
             limit: S::select(flat, -S::one(), limit * limit),
         };
         let plate = per_nusselt.scale(0.58) * rayleigh.powf(S::constant(0.2));
-        let still = Self {
-            laminar: S::select(level, plate, laminar),
-            exponent: S::select(level, S::constant(0.2), S::constant(0.25)),
-            limit: S::constant(f64::MAX),
-            ..open
-        };
+        let still = Self { level: S::select(level, plate, S::zero()), limit: S::constant(f64::MAX), ..open };
         [open, still]
     }
 }
@@ -449,6 +443,26 @@ fn doe2<S: Real>(natural: Natural<S>, roughness: S, forced: S) -> Natural<S> {
     let Natural { coefficient: n, rise } = natural;
     let smooth = (n * n + forced * forced).sqrt();
     Natural { coefficient: n + roughness * (smooth - n), rise: rise + roughness * (n * rise / smooth - rise) }
+}
+
+/// The law of glass whose numbers are chosen.
+#[inline(always)]
+fn glass<S: Real>(choose: impl Fn(fn(&Glass<S>) -> S) -> S, square: S, rounded: S) -> Natural<S> {
+    // |d|^1/4 by roots: most glass stands upright and knows nothing else.
+    let coefficient = choose(|g| g.laminar) * rounded.sqrt().sqrt().sqrt();
+    let mut natural = Natural { coefficient, rise: coefficient.scale(0.25) * (square / rounded) };
+    let gain = choose(|g| g.level);
+    let level = S::zero().lt(gain);
+    if level.any() {
+        natural = natural.or(level, power_law(gain, S::constant(0.2), square, rounded));
+    }
+    let turbulent = choose(|g| g.limit).lt(square);
+    if turbulent.any() {
+        let mut fast = cube_root_law(choose(|g| g.turbulent), square, rounded);
+        fast.coefficient += choose(|g| g.offset);
+        natural = natural.or(turbulent, fast);
+    }
+    natural
 }
 
 /// `(laminar |d|^3/2 + turbulent d^2)^1/6`.

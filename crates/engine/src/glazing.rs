@@ -126,14 +126,9 @@ impl<S: Real> GlassWall<S> {
                         Gap::Given { conductance } => extra[link] = S::one() / values.get(*conductance),
                         Gap::Filled { thickness, pressure, gas } => {
                             let faces = [panes[k].emissivity[1], panes[k + 1].emissivity[0]];
-                            let gap = FilledGap {
-                                thickness: values.get(*thickness),
-                                pressure: values.get(*pressure),
-                                gas: properties(*gas),
-                                height: values.get_or(window.cavity_height, 1.0),
-                                tilt,
-                                exchange: plates(faces.map(|id| values.get(id))),
-                            };
+                            let sizes = [values.get(*thickness), values.get_or(window.cavity_height, 1.0)];
+                            let exchange = plates(faces.map(|id| values.get(id)));
+                            let gap = FilledGap::new(*gas, values.get(*pressure), sizes, tilt, exchange);
                             // Replaced in every iteration; one that is not zero keeps the set-up finite.
                             extra[link] = S::one();
                             filled.push((link, gap));
@@ -245,76 +240,93 @@ fn properties(gas: Gas) -> Properties {
 /// A gap filled with gas.
 #[derive(Debug, Clone)]
 struct FilledGap<S> {
-    thickness: S,
-    pressure: S,
     gas: Properties,
-    height: S,
+    /// One over its thickness [1/m].
+    inverse: S,
+    /// Rayleigh number times viscosity, conductivity and the cube of temperature, over specific heat and difference.
+    driving: S,
+    /// Height over thickness [-].
+    aspect: S,
+    /// Factor of the circulation round the whole gap [-].
+    round: S,
     /// Of the outside normal [deg].
     tilt: S,
     exchange: S,
 }
 
 impl<S: Real> FilledGap<S> {
+    /// A gap of a thickness and a height [m].
+    fn new(gas: Gas, pressure: S, [thickness, height]: [S; 2], tilt: S, exchange: S) -> Self {
+        let gas = properties(gas);
+        let (aspect, density) = (height / thickness, pressure.scale(gas.molar_mass / GAS_CONSTANT));
+        Self {
+            gas,
+            inverse: S::one() / thickness,
+            driving: (density * density * thickness * thickness * thickness).scale(GRAVITY),
+            aspect,
+            round: aspect.powf(S::constant(-0.272)).scale(0.242),
+            tilt,
+            exchange,
+        }
+    }
+
     /// Conductance of the gas [W/(m2 K)] between faces at two temperatures [degC].
     #[inline(always)]
     fn convection(&self, outer: S, inner: S) -> S {
         let mean = (outer + inner).scale(0.5) + S::constant(KELVIN);
         let linear = |[a, b]: [f64; 2]| S::constant(a) + mean.scale(b);
         let conductivity = linear(self.gas.conductivity);
-        let density = self.pressure.scale(self.gas.molar_mass / GAS_CONSTANT) / mean;
         let difference = (outer - inner).smooth_abs(ROUND_OFF);
-        let cube = self.thickness * self.thickness * self.thickness;
-        let rayleigh = (density * density * cube * linear(self.gas.specific_heat) * difference)
-            .scale(GRAVITY)
-            / (linear(self.gas.viscosity) * conductivity * mean);
+        let rayleigh = self.driving * linear(self.gas.specific_heat) * difference
+            / (linear(self.gas.viscosity) * conductivity * (mean * mean * mean));
         // Tilt 0 faces up: heat that flows outwards flows up.
         let inclination = S::select(outer.lt(inner), self.tilt, S::constant(180.0) - self.tilt);
-        nusselt(rayleigh, self.height / self.thickness, inclination) * conductivity / self.thickness
+        self.nusselt(rayleigh, inclination) * conductivity * self.inverse
     }
-}
 
-/// Nusselt number of a gap, heat flowing from below where the inclination is below 90 deg.
-#[inline(always)]
-fn nusselt<S: Real>(rayleigh: S, aspect: S, inclination: S) -> S {
-    let upright = S::constant(90.0);
-    let steep = !inclination.lt(S::constant(60.0));
-    let over = upright.lt(inclination);
-    let mut nusselt = S::one();
-    if steep.any() {
-        let vertical = vertical_nusselt(rayleigh, aspect);
-        let hanging = S::one() + (vertical - S::one()) * radians(inclination).sin();
-        nusselt = S::select(over, hanging, vertical);
+    /// Nusselt number, heat flowing from below where the inclination is below 90 deg.
+    #[inline(always)]
+    fn nusselt(&self, rayleigh: S, inclination: S) -> S {
+        let upright = S::constant(90.0);
+        let steep = !inclination.lt(S::constant(60.0));
+        let over = upright.lt(inclination);
+        let mut nusselt = S::one();
+        if steep.any() {
+            nusselt = vertical_nusselt(rayleigh, self.round);
+        }
+        if over.any() {
+            let hanging = S::one() + (nusselt - S::one()) * radians(inclination).sin();
+            nusselt = S::select(over, hanging, nusselt);
+        }
+        let between = steep & inclination.lt(upright);
+        if between.any() {
+            let low = nusselt_at_60(rayleigh, self.aspect);
+            let blend = low + (nusselt - low) * (inclination - S::constant(60.0)).scale(1.0 / 30.0);
+            nusselt = S::select(between, blend, nusselt);
+        }
+        if (!steep).any() {
+            nusselt = S::select(steep, nusselt, sloped_nusselt(rayleigh, inclination));
+        }
+        nusselt
     }
-    let between = steep & inclination.lt(upright);
-    if between.any() {
-        let low = nusselt_at_60(rayleigh, aspect);
-        let blend = low + (nusselt - low) * (inclination - S::constant(60.0)).scale(1.0 / 30.0);
-        nusselt = S::select(between, blend, nusselt);
-    }
-    if (!steep).any() {
-        nusselt = S::select(steep, nusselt, sloped_nusselt(rayleigh, inclination));
-    }
-    nusselt
 }
 
 fn radians<S: Real>(degrees: S) -> S {
     degrees.scale(core::f64::consts::PI / 180.0)
 }
 
-/// 90 deg.
+/// 90 deg; the circulation round the whole gap with its factor.
 #[inline(always)]
-fn vertical_nusselt<S: Real>(rayleigh: S, aspect: S) -> S {
+fn vertical_nusselt<S: Real>(rayleigh: S, round: S) -> S {
     let logarithm = rayleigh.max(S::constant(1e-12)).ln();
-    let power = |exponent: f64, factor: f64| logarithm.scale(exponent).exp().scale(factor);
-    let (slow, fast) = (S::constant(1e4), S::constant(5e4));
-    let mut core = S::one() + power(2.298_475_5, 1.759_667_8e-10);
-    if (!rayleigh.lt(slow)).any() {
-        let turbulent = S::select(rayleigh.lt(fast), power(0.4134, 0.028_154), power(1.0 / 3.0, 0.067_383_8));
-        core = S::select(rayleigh.lt(slow), core, turbulent);
-    }
-    // Circulation round the whole gap.
-    let round = ((logarithm - aspect.ln()).scale(0.272)).exp().scale(0.242);
-    core.max(round)
+    let (slow, fast) = (rayleigh.lt(S::constant(1e4)), !rayleigh.lt(S::constant(5e4)));
+    let choose = |below: f64, between: f64, above: f64| {
+        S::select(slow, S::constant(below), S::select(fast, S::constant(above), S::constant(between)))
+    };
+    let exponent = choose(2.298_475_5, 0.4134, 1.0 / 3.0);
+    let factor = choose(1.759_667_8e-10, 0.028_154, 0.067_383_8);
+    let core = choose(1.0, 0.0, 0.0) + (logarithm * exponent).exp() * factor;
+    core.max(round * logarithm.scale(0.272).exp())
 }
 
 /// 60 deg.
@@ -386,14 +398,7 @@ mod tests {
     use super::*;
 
     fn gap(gas: Gas, thickness: f64, tilt: f64) -> FilledGap<f64> {
-        FilledGap {
-            thickness,
-            pressure: 101_325.0,
-            gas: properties(gas),
-            height: 1.0,
-            tilt,
-            exchange: plates([0.84, 0.84]),
-        }
+        FilledGap::new(gas, 101_325.0, [thickness, 1.0], tilt, plates([0.84, 0.84]))
     }
 
     /// Still gas conducts: 5 mm of air upright at 10 degC, k = 2.873e-3 + 7.76e-5 T.
@@ -421,7 +426,8 @@ mod tests {
         let still = (2.873e-3 + 7.76e-5 * 283.15) / 0.016;
         assert!((up.convection(20.0, 0.0) / still - 1.0).abs() < 1e-9);
         for angle in [60.0, 90.0] {
-            let [below, above] = [-1e-7, 1e-7].map(|d| nusselt(2e4, 60.0, angle + d));
+            let [below, above] =
+                [-1e-7, 1e-7].map(|d| gap(Gas::Air, 1.0 / 60.0, 90.0).nusselt(2e4, angle + d));
             let most = if angle < 61.0 { 0.15 } else { 1e-6 };
             assert!((below / above - 1.0).abs() < most, "{angle}: {below} and {above}");
         }
