@@ -14,6 +14,8 @@
 //! All of this depends on vertices and the sun alone. It is worked out in plain numbers, once per instant, for all
 //! members of an ensemble.
 
+use std::borrow::Cow;
+
 use crate::description::{Description, Facing, ZoneSun};
 use crate::plan::{FaceId, ZonePlan};
 use crate::solar::{Open, Sunlight};
@@ -103,21 +105,22 @@ fn area(polygon: &[Point]) -> f64 {
     0.5 * sum
 }
 
-/// The part of a convex polygon to the left of a line; to the right with `from` and `to` exchanged.
-fn left_of(polygon: &[Point], from: Point, to: Point) -> Vec<Point> {
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (k, &here) in polygon.iter().enumerate() {
-        let next = polygon[(k + 1) % polygon.len()];
-        let (a, b) = (turn(from, to, here), turn(from, to, next));
-        if a >= 0.0 {
-            kept.push(here);
-        }
+/// The part of a convex polygon to the left of a line, into `kept`; to the right with `from` and `to` exchanged.
+fn left_of(polygon: &[Point], from: Point, to: Point, kept: &mut Vec<Point>) {
+    kept.clear();
+    let Some(&last) = polygon.last() else { return };
+    let (mut here, mut a) = (last, turn(from, to, last));
+    for &next in polygon {
+        let b = turn(from, to, next);
         if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
             let share = a / (a - b);
             kept.push([here[0] + share * (next[0] - here[0]), here[1] + share * (next[1] - here[1])]);
         }
+        if b >= 0.0 {
+            kept.push(next);
+        }
+        (here, a) = (next, b);
     }
-    kept
 }
 
 /// Whether the boxes round two polygons share no area.
@@ -144,11 +147,13 @@ fn cut_off(pieces: Vec<Vec<Point>>, hole: &[Point]) -> Vec<Vec<Point>> {
         let mut rest = piece;
         for (k, &from) in hole.iter().enumerate() {
             let to = hole[(k + 1) % hole.len()];
-            let outside = left_of(&rest, to, from);
+            let (mut outside, mut inside) = (Vec::new(), Vec::new());
+            left_of(&rest, to, from, &mut outside);
             if area(&outside) > TOUCH * TOUCH {
                 left.push(outside);
             }
-            rest = left_of(&rest, from, to);
+            left_of(&rest, from, to, &mut inside);
+            rest = inside;
             if area(&rest) <= TOUCH * TOUCH {
                 break;
             }
@@ -157,19 +162,22 @@ fn cut_off(pieces: Vec<Vec<Point>>, hole: &[Point]) -> Vec<Vec<Point>> {
     left
 }
 
-/// Area that two convex polygons share, the second turning to the left.
-fn shared(a: &[Point], b: &[Point]) -> f64 {
+/// Area that two convex polygons share, the second turning to the left; `scratch` is overwritten.
+fn shared(a: &[Point], b: &[Point], scratch: &mut [Vec<Point>; 2]) -> f64 {
     if apart(a, b) {
         return 0.0;
     }
-    let mut rest = a.to_vec();
+    let [rest, next] = scratch;
+    rest.clear();
+    rest.extend_from_slice(a);
     for (k, &from) in b.iter().enumerate() {
-        rest = left_of(&rest, from, b[(k + 1) % b.len()]);
+        left_of(rest, from, b[(k + 1) % b.len()], next);
+        core::mem::swap(rest, next);
         if rest.len() < 3 {
             return 0.0;
         }
     }
-    area(&rest)
+    area(rest)
 }
 
 /// A simple polygon that turns to the left, as convex pieces: itself, or triangles (ear clipping).
@@ -254,12 +262,12 @@ impl Shape {
 }
 
 /// Points at coordinates and heights, projected along a direction onto the plane; turned to the left.
-fn projected(points: &[Vertex], [su, sv, sn]: Vertex) -> Vec<Point> {
-    let mut flat: Vec<Point> = points.iter().map(|&[u, v, h]| [u - h * su / sn, v - h * sv / sn]).collect();
-    if area(&flat) < 0.0 {
+fn project(points: &[Vertex], [su, sv, sn]: Vertex, flat: &mut Vec<Point>) {
+    flat.clear();
+    flat.extend(points.iter().map(|&[u, v, h]| [u - h * su / sn, v - h * sv / sn]));
+    if area(flat) < 0.0 {
         flat.reverse();
     }
-    flat
 }
 
 /// A face outdoors, and the shades in front of it.
@@ -287,19 +295,19 @@ impl Receiver {
     }
 
     /// Pieces that the sun reaches.
-    fn lit(&self, sun: Vertex) -> Vec<Vec<Point>> {
+    fn lit(&self, sun: Vertex) -> Cow<'_, [Vec<Point>]> {
         let direction = self.shape.frame.direction(sun);
-        let mut pieces = self.shape.pieces.clone();
-        if direction[2] < GRAZING {
-            return pieces;
+        if self.shades.is_empty() || direction[2] < GRAZING {
+            return Cow::Borrowed(&self.shape.pieces);
         }
+        let (mut pieces, mut shadow) = (self.shape.pieces.clone(), Vec::new());
         for shade in &self.shades {
-            let shadow = projected(shade, direction);
+            project(shade, direction, &mut shadow);
             if area(&shadow) > TOUCH * TOUCH {
                 pieces = cut_off(pieces, &shadow);
             }
         }
-        pieces
+        Cow::Owned(pieces)
     }
 
     /// Share of the face that the sun reaches from a direction; 1 where it is behind.
@@ -372,13 +380,14 @@ impl Tracer {
             return;
         }
         let lit = self.window.lit(sun);
+        let (mut seen, mut scratch) = (Vec::new(), [Vec::new(), Vec::new()]);
         for ((normal, pieces), share) in self.faces.iter().zip(shares.iter_mut()) {
             if dot(*normal, sun) <= 0.0 {
                 continue;
             }
             for piece in pieces {
-                let seen = projected(piece, direction);
-                *share += lit.iter().map(|part| shared(part, &seen)).sum::<f64>();
+                project(piece, direction, &mut seen);
+                *share += lit.iter().map(|part| shared(part, &seen, &mut scratch)).sum::<f64>();
             }
         }
         let sum: f64 = shares.iter().sum();
@@ -452,10 +461,10 @@ impl Daylight {
         Self { receivers, tracers, size }
     }
 
-    /// Numbers of an instant, to be read by the functions below; none in the dark.
+    /// Numbers of an instant, to be read by the functions below; none where nothing comes from the sun.
     #[must_use]
     pub fn at(&self, light: &Sunlight) -> Box<[f64]> {
-        if self.size == 0 || light.dark() || light.direction[2] <= 0.0 {
+        if self.size == 0 || !light.directed() || light.direction[2] <= 0.0 {
             return Box::default();
         }
         let mut numbers = vec![0.0; self.size];

@@ -241,7 +241,7 @@ impl<S: Real> Drive<S> {
             if let Boundary::Outdoors(outdoors) = &face.boundary {
                 at.incident = match measured {
                     Some(irradiance) => irradiance,
-                    None if !face.exposure.sun => S::zero(),
+                    None if !face.exposure.sun || now.sunlight.dark() => S::zero(),
                     None => {
                         let open = now.open(plan, index);
                         now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open).total()
@@ -315,6 +315,13 @@ impl<S: Real> Drive<S> {
     fn land(&mut self, plan: &Plan, coefficients: &Coefficients<S>, now: &Instant<'_>) {
         for (z, (zone, numbers)) in plan.zones.iter().zip(&coefficients.zones).enumerate() {
             let Some(landing) = &numbers.landing else { continue };
+            if now.sunlight.dark() {
+                (self.light[z].lost, self.light[z].in_glass) = (S::zero(), S::zero());
+                for &face in &zone.faces {
+                    self.faces[face].solar = S::zero();
+                }
+                continue;
+            }
             let entered = self.light[z].transmitted;
             if let Some(traced) = &landing.traced {
                 self.follow(plan, z, traced, now);

@@ -75,6 +75,12 @@ impl Sunlight {
         parts.iter().all(|part| *part == 0.0)
     }
 
+    /// Whether light comes from the sun's direction.
+    #[must_use]
+    pub fn directed(&self) -> bool {
+        self.direct_normal > 0.0 || self.circumsolar > 0.0
+    }
+
     /// Irradiance on a plane [W/m2] of which shades leave some of the sky.
     #[must_use]
     #[inline(always)]
