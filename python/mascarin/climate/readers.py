@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import io
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date, tzinfo
@@ -22,18 +22,18 @@ _FIELDS = 35
 _TMY_HEAD = 7
 _HOURS = 8760
 
-# Channel, pvlib's column, field number in the file, factor, entry from which on it means "no value".
+# Channel, field number in the file, factor, entry from which on it means "no value".
 _EPW: Final = (
-    ("air_temperature", "temp_air", 6, 1.0, 99.9),
-    ("dew_point", "temp_dew", 7, 1.0, 99.9),
-    ("pressure", "atmospheric_pressure", 9, 1.0, 999999.0),
-    ("infrared", "ghi_infrared", 12, 1.0, 9999.0),
-    ("global_horizontal", "ghi", 13, 1.0, 9999.0),
-    ("direct_normal", "dni", 14, 1.0, 9999.0),
-    ("diffuse_horizontal", "dhi", 15, 1.0, 9999.0),
-    ("wind_direction", "wind_direction", 20, 1.0, 999.0),
-    ("wind_speed", "wind_speed", 21, 1.0, 999.0),
-    ("cloud_cover", "opaque_sky_cover", 23, 1.0, 99.0),
+    ("air_temperature", 6, 1.0, 99.9),
+    ("dew_point", 7, 1.0, 99.9),
+    ("pressure", 9, 1.0, 999999.0),
+    ("infrared", 12, 1.0, 9999.0),
+    ("global_horizontal", 13, 1.0, 9999.0),
+    ("direct_normal", 14, 1.0, 9999.0),
+    ("diffuse_horizontal", 15, 1.0, 9999.0),
+    ("wind_direction", 20, 1.0, 999.0),
+    ("wind_speed", 21, 1.0, 999.0),
+    ("cloud_cover", 23, 1.0, 99.0),
 )
 # Channel, pvlib's column, column in the file, factor.
 _TMY: Final = (
@@ -101,36 +101,35 @@ class Year:
 
 
 def read_epw(path: Path) -> Year:
-    """Read an EPW file, with pvlib after a check of every line.
+    """Read an EPW file (EnergyPlus Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary").
 
     Raises
     ------
     InputError
         Header or rows are broken; the line is named.
     """
-    from pvlib import iotools
-
     digest = file_hash(path)
     text = path.read_text(encoding="utf-8-sig", errors="replace")
     where = path.name
-    years = _check_epw(text.splitlines(), where)
-    frame, meta = iotools.read_epw(io.StringIO(text))
+    lines = text.splitlines()
+    years, table = _read_epw_rows(lines, where)
     values = {}
-    for channel, column, _, factor, limit in _EPW:
-        raw = frame[column].to_numpy(dtype=np.float64)
+    for (channel, _, factor, limit), raw in zip(_EPW, table.T, strict=True):
         # Many files write 0 where no infrared was known.
         unknown = (raw >= limit) | ((raw <= 0.0) & (channel == "infrared"))
         values[channel] = np.where(unknown, np.nan, raw * factor)
-    name = ", ".join(str(meta[key]) for key in ("city", "country") if meta.get(key))
-    place = (float(meta["latitude"]), float(meta["longitude"]), float(meta["altitude"]), name)
-    zone = fixed_zone(float(meta["TZ"]))
+    head = [field.strip() for field in lines[0].split(",")]
+    latitude, longitude, hours, altitude = (float(field) for field in head[6:10])
+    name = ", ".join(part for part in (head[1], head[3]) if part)
+    zone = fixed_zone(hours)
     notes = (
-        f"{where}: EPW, {len(frame)} hours, {name}, time zone {zone_name(zone)}.",
+        f"{where}: EPW, {len(table)} hours, {name}, time zone {zone_name(zone)}.",
         _STAMPS_NOTE.format(where=where),
         f"{where}: cloud cover is the opaque sky cover.",
     )
-    lines = np.arange(len(frame), dtype=np.int64) + _HEADER + 1
-    return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, lines, notes)
+    numbers = np.arange(len(table), dtype=np.int64) + _HEADER + 1
+    place = (latitude, longitude, altitude, name)
+    return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, numbers, notes)
 
 
 def read_tmy3(path: Path) -> Year:
@@ -207,11 +206,11 @@ def _check_tmy(lines: list[str], where: str) -> None:
                 f"damaged here: {_WHOLE}."
             )
         for name, place in places:
-            _check_number(fields[place], name, where, line, _NO_VALUE_TMY)
+            _number(fields[place], name, where, line, _NO_VALUE_TMY)
 
 
-def _check_epw(lines: list[str], where: str) -> list[int]:
-    """Check every line; return the year of each row."""
+def _read_epw_rows(lines: list[str], where: str) -> tuple[list[int], Array]:
+    """Check every line; the year of each row, and its numbers in the order of the channels."""
     if len(lines) <= _HEADER or not lines[0].upper().startswith("LOCATION"):
         raise InputError(
             f"{where}:1: expected the LOCATION line of an EPW file, found {lines[0][:60] if lines else ''!r}."
@@ -221,7 +220,7 @@ def _check_epw(lines: list[str], where: str) -> list[int]:
     rows = lines[_HEADER:]
     while rows and not rows[-1].strip():
         rows.pop()
-    years = []
+    years, table = [], []
     previous: tuple[int, int, int] | None = None
     for count, row in enumerate(rows):
         line = _HEADER + 1 + count
@@ -232,8 +231,12 @@ def _check_epw(lines: list[str], where: str) -> list[int]:
                 f"damaged here: {_WHOLE}."
             )
         stamp = _integers(fields, where, line)
-        for channel, _, field, _, code in _EPW:
-            _check_number(fields[field], f"{channel} (field {field + 1})", where, line, code)
+        table.append(
+            [
+                _number(fields[field], f"{channel} (field {field + 1})", where, line, code)
+                for channel, field, _, code in _EPW
+            ]
+        )
         years.append(stamp[0])
         previous = _check_order(previous, stamp, where, line)
     if len(rows) not in (_HOURS, _HOURS + 24):
@@ -241,7 +244,7 @@ def _check_epw(lines: list[str], where: str) -> list[int]:
             f"{where}:{_HEADER + len(rows)}: the file ends after {len(rows)} hours, expected 8760 "
             f"(or 8784 in a leap year); it is cut or holds gaps: {_WHOLE}."
         )
-    return years
+    return years, np.array(table)
 
 
 def _check_location(line: str, where: str) -> None:
@@ -281,17 +284,18 @@ def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, 
     return year, month, day, hour
 
 
-def _check_number(text: str, what: str, where: str, line: int, code: float) -> None:
-    """Refuse an entry that is no number; `code` is how the format says that there is none."""
+def _number(text: str, what: str, where: str, line: int, code: float) -> float:
+    """The number of an entry; `code` is how the format says that there is none."""
     try:
-        finite, wanted = bool(np.isfinite(float(text))), "a finite number"
+        number, wanted = float(text), "a finite number"
     except ValueError:
-        finite, wanted = False, "a number"
-    if not finite:
+        number, wanted = math.nan, "a number"
+    if not math.isfinite(number):
         raise InputError(
             f"{where}:{line}: {what} is {text.strip()!r}, expected {wanted}; correct it, or "
             f"write {code:.15g}, which stands for no value, and choose a period without this hour."
         )
+    return number
 
 
 def _check_order(

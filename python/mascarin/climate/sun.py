@@ -12,7 +12,12 @@ Kopp & Lean 2011, Geophysical Research Letters 38, L01706, doi:10.1029/2010GL045
 
 from __future__ import annotations
 
+import importlib
+import importlib.machinery
+import importlib.util
+import sys
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Final
 
 import numpy as np
@@ -23,6 +28,8 @@ SOLAR_CONSTANT: Final = 1361.0
 """Total solar irradiance at the mean distance of the earth (Kopp & Lean 2011, 1360.8) [W/m2]."""
 
 _NODE_STEP: Final = 3600.0
+#: Terrestrial time less universal time [s], which is pvlib's default too (2010 to 2025: 66 to 69 s).
+_DELTA_T: Final = 67.0
 _TURN: Final = 2.0 * np.pi / 86400.0
 
 
@@ -62,19 +69,16 @@ class SunPath:
         origin : float
             Time from which the times of the other methods count, seconds since 1970-01-01 UTC [s].
         """
-        import pandas as pd
-        from pvlib import solarposition
-
+        spa = _algorithm()
         first = (np.floor(start / _NODE_STEP) - 2.0) * _NODE_STEP
         count = int(np.ceil((end - first) / _NODE_STEP)) + 4
         seconds = first + _NODE_STEP * np.arange(count)
-        times = pd.DatetimeIndex(seconds.astype("datetime64[s]")).tz_localize("UTC")
-        position = solarposition.get_solarposition(times, latitude, longitude, method="nrel_numpy")
-        distance = np.asarray(solarposition.nrel_earthsun_distance(times), dtype=np.float64)
-        vector = _direction(
-            np.radians(position["zenith"].to_numpy(dtype=np.float64)),
-            np.radians(position["azimuth"].to_numpy(dtype=np.float64)),
+        # At sea level; pressure and temperature act on refraction alone, which is not looked at.
+        _, zenith, _, _, azimuth, _ = spa.solar_position(
+            seconds, latitude, longitude, 0.0, 1013.25, 12.0, _DELTA_T, 0.5667, 1
         )
+        distance = spa.earthsun_distance(seconds, _DELTA_T, 1)
+        vector = _direction(np.radians(zenith), np.radians(azimuth))
         slow = _turn(_to_pole(vector, np.radians(latitude)), _TURN * (seconds - first))
         return cls(latitude, first - origin, slow, SOLAR_CONSTANT / distance**2)
 
@@ -111,6 +115,24 @@ class SunPath:
         """
         place = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
         return _cubic(self.extra[:, None], place)[..., 0]
+
+
+def _algorithm() -> ModuleType:
+    """The file of pvlib with the algorithm, without the rest of pvlib where that is not in use already.
+
+    All of pvlib takes half a second to import; this file needs numpy alone.
+    """
+    name = "pvlib.spa"
+    if name in sys.modules:
+        return sys.modules[name]
+    package = importlib.util.find_spec("pvlib")
+    folders = package.submodule_search_locations if package else None
+    found = importlib.machinery.PathFinder.find_spec(name, folders)
+    if found is None or found.loader is None:
+        return importlib.import_module(name)
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    return module
 
 
 def _direction(zenith: Array, azimuth: Array) -> Array:
