@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+
 import numpy as np
 import pytest
 
@@ -43,10 +45,20 @@ def test_a_panel_for_each_profile(fit: Fit) -> None:
 
 def test_the_course_ends_at_the_lowest_cost(fit: Fit) -> None:
     axes = plots.course(fit).axes[0]
-    lowest = np.asarray(axes.lines[1].get_ydata(), dtype=float)
-    assert lowest.size == fit.trace.cost.size
-    assert np.all(np.diff(lowest) <= 0.0)
-    assert lowest[-1] < 1e-6 * lowest[0]
+    number, lowest = (np.asarray(d, dtype=float) for d in axes.lines[1].get_data())
+    assert (number[0], number[-1]) == (1, fit.trace.cost.size)
+    assert np.all(np.diff(lowest[:-1]) < 0.0)
+    assert lowest[-1] == lowest[-2] < 1e-6 * lowest[0]
+
+
+def test_many_evaluations_are_drawn_as_a_picture(fit: Fit, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not plots.course(fit).axes[0].lines[0].get_rasterized()
+    monkeypatch.setattr(plots, "MOST_DOTS", 10)
+    figure = plots.course(fit)
+    assert figure.axes[0].lines[0].get_rasterized()
+    drawn = io.StringIO()
+    figure.savefig(drawn, format="svg")
+    assert "data:image/png" in drawn.getvalue()
 
 
 def test_all_sequences_are_in_the_histogram(fit: Fit) -> None:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _INK: Final = "#333333"
 _BLUE: Final = "#0072b2"
 _RED: Final = "#d55e00"
+#: Evaluations beyond which their dots are drawn as a picture.
+MOST_DOTS: Final = 20_000
 
 
 def profiles(found: Sequence[Profile], *, columns: int = 3) -> Figure:
@@ -75,9 +77,14 @@ def course(fit: Fit) -> Figure:
     number = np.arange(1, cost.size + 1)
     figure = _figure(7.0, 3.2)
     axes = figure.subplots()
-    axes.plot(number, np.maximum(above, floor), ".", color=_BLUE, markersize=2, alpha=0.5)
+    # A million dots as dots would be a drawing of 100 MB; as a picture they are a few hundred kB.
+    dots = axes.plot(number, np.maximum(above, floor), ".", color=_BLUE, markersize=2, alpha=0.5)
+    dots[0].set_rasterized(cost.size > MOST_DOTS)
     lowest = np.fmin.accumulate(np.where(np.isnan(above), np.inf, above))
-    axes.plot(number, np.maximum(lowest, floor), color=_RED, linewidth=1.2)
+    steps = np.append(np.flatnonzero(lowest < np.append(np.inf, lowest[:-1])), cost.size - 1)
+    axes.plot(
+        number[steps], np.maximum(lowest[steps], floor), color=_RED, linewidth=1.2, drawstyle="steps-post"
+    )
     axes.set_yscale("log")
     axes.set_xlabel("evaluation", fontsize=9)
     axes.set_ylabel("cost above the lowest", fontsize=9)
