@@ -6,23 +6,29 @@
 model replaced by its first-order expansion about the truth, which every fit shares: 1000 fits then cost
 minutes. ``cover KIND N full`` fits with the model itself, from the truth. Repetitions are kept in a file and
 never made twice; a run that was stopped goes on.
+``python bench/calibration_lgi.py speed [starts]``: what a start costs with either kind of slopes, 6 starts
+when absent, on data with white errors, and what its parts cost.
 """
 
 from __future__ import annotations
 
 import json
 import math
+import resource
 import sys
+import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from lgi_seven import SENSOR_SD, Seven, seven
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.signal import lfilter
 
-from mascarin.calibration import CalibrationProblem, Rules, solve
-from mascarin.calibration.squares import derivative
+from mascarin.calibration import CalibrationProblem, Cost, Evaluator, Rules, solve
+from mascarin.calibration.rules import SLOPES
+from mascarin.calibration.squares import derivative, least_squares
 
 Floats = NDArray[np.float64]
 
@@ -81,7 +87,7 @@ def linear(case: Seven) -> CalibrationProblem:
         moved = np.array([problem.positions(row) - z for row in x])
         return np.asarray(case.clean + np.einsum("tsp,mp->mts", slope, moved))
 
-    return replace(problem, model=model)
+    return replace(problem, model=model, slopes=None)
 
 
 def one(case: Seven, problem: CalibrationProblem, kind: str, seed: int) -> dict[str, list[float]]:
@@ -99,6 +105,69 @@ def one(case: Seven, problem: CalibrationProblem, kind: str, seed: int) -> dict[
         "inside": [float(v) for v in (fit.low <= case.truth) & (case.truth <= fit.high)],
         "width": [float(v) for v in (fit.high - fit.low) / span],
     }
+
+
+def speed(starts: int) -> None:
+    """Print what a start costs by the clock and of a processor, and what it is made of."""
+    case = seven()
+    problem = case.measured(errors(np.random.default_rng(0), case.clean.shape, KINDS["white"]))
+    first = np.array([p.first for p in problem.parameters])
+    slopes = problem.require_slopes()
+    parts = {
+        "one run": lambda: problem.model(first[None]),
+        "eight in one batch": lambda: problem.model(np.tile(first, (8, 1))),
+        "exact slopes by seven": lambda: slopes(first),
+    }
+    for name, part in parts.items():
+        part()
+        clock, processor = timed(part, 10)
+        say(f"| {name} | {1e3 * clock:.0f} ms | {1e3 * processor:.0f} ms of a processor |")
+    for kind in SLOPES:
+        search = Search(problem, Rules(starts=starts, slopes=kind))
+        clock, processor = timed(search)
+        say(
+            f"| a start, {kind} | {clock / starts:.2f} s | {processor / starts:.2f} s of a processor | "
+            f"{search.runs / starts:.0f} runs, {search.jacobians / starts:.0f} times exact slopes |"
+        )
+    one = Rules(starts=1)
+    searched = timed(Search(problem, one))
+    whole = timed(lambda: solve(problem, rules=one))
+    say(
+        f"| intervals, once a fit | {whole[0] - searched[0]:.2f} s | "
+        f"{whole[1] - searched[1]:.2f} s of a processor |"
+    )
+
+
+class Search:
+    """Least squares alone, without the intervals."""
+
+    def __init__(self, problem: CalibrationProblem, rules: Rules) -> None:
+        self.jacobians, self.runs = 0, 0
+        self._problem, self._rules = replace(problem, slopes=self._slopes), rules
+        self._of_problem = problem.require_slopes()
+
+    def _slopes(self, x: Floats) -> ArrayLike:
+        self.jacobians += 1
+        return self._of_problem(x)
+
+    def __call__(self) -> None:
+        """Search from all starts."""
+        with Evaluator(Cost(self._problem, "nll"), keep_residuals=True) as evaluator:
+            least_squares(self._problem, evaluator, self._rules, 1)
+            self.runs = evaluator.count
+
+
+def timed(work: Callable[[], object], times: int = 1) -> tuple[float, float]:
+    """Seconds by the clock and of processors that a piece of work takes."""
+    clock, used = time.perf_counter(), _processor()
+    for _ in range(times):
+        work()
+    return (time.perf_counter() - clock) / times, (_processor() - used) / times
+
+
+def _processor() -> float:
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
 
 
 def errors(rng: np.random.Generator, shape: tuple[int, ...], hours: float) -> Floats:
@@ -123,6 +192,8 @@ def main() -> None:
         recover()
     elif sys.argv[1:2] == ["cover"] and sys.argv[2:3] and sys.argv[2] in KINDS:
         cover(sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 1000, "full" in sys.argv)
+    elif sys.argv[1:2] == ["speed"]:
+        speed(int(sys.argv[2]) if len(sys.argv) > 2 else 6)
     else:
         say(__doc__ or "")
 

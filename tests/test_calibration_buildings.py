@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +10,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from mascarin.calibration import Rules
-from mascarin.calibration.buildings import Sensor, calibrate, fit_parameter
+from mascarin.calibration import CalibrationProblem, FitParameter, Rules, solve
+from mascarin.calibration.buildings import Sensor, calibrate, fit_parameter, problem_of
+from mascarin.calibration.squares import derivative
 from mascarin.climate import Climate, Measurements
 from mascarin.errors import InputError
+from mascarin.examples import FOLDER
 from mascarin.model import Building, load
+from mascarin.simulation import Simulation
+from mascarin.study.pipeline import Study
+from mascarin.validation.observation import observe
 from study_support import BUILDING, FINE, NOISE, TRUTH, logger_table, open_climate
 
 SENSORS = {
@@ -182,3 +188,111 @@ def test_start_scale_and_a_relative_uncertainty_reach_the_problem(
     np.testing.assert_allclose(core.sigma, want)
     with pytest.raises(InputError, match=r"range \[0.2, 2\] W/\(m K\) does not hold the start 3"):
         fit_parameter(building, "materials.brick.conductivity", (0.2, 2.0), start=3.0)
+
+
+# --- exact slopes ---------------------------------------------------------------------------------------
+
+#: Where the seven parameters of the paper stand between the ends of their ranges, beside their start.
+PLACES = np.array([0.62, 0.35, 0.41, 0.55, 0.33, 0.47, 0.58])
+
+
+@pytest.fixture(scope="module")
+def seven() -> CalibrationProblem:
+    """The seven parameters of the LGI cell on two days, against data that a known truth made.
+
+    One sensor is a mean over its interval, one an output that the records are turned into.
+    """
+    study = Study(FOLDER / "lgi" / "study.yaml")
+    variant = "the paper's seven, 25 outside"
+    building = study.building_of(variant)
+    free = [fit_parameter(building, path) for path in study.plan_of(variant).parameters]
+    sensors = {
+        "operative": Sensor("room.operative_temperature", "room_air", 0.3),
+        "interface": Sensor("ceiling.energain_plasterboard_temperature", "pcm_plasterboard", 0.3),
+        "top": Sensor("ceiling.outside_temperature", "pcm_top", 0.3),
+        "gap": Sensor("air_gap.air_temperature", "gap_air", 0.3),
+        "steel": Sensor("roof.inside_temperature", "steel_sheet", 0.3),
+    }
+    simulation = Simulation(
+        building,
+        study.climate,
+        step="15min",
+        start="2010-09-20",
+        end="2010-09-23",
+        outputs=[sensor.output for sensor in sensors.values()],
+        measurements=study.measurements,
+        ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
+    )
+    begin = pd.Timestamp("2010-09-21", tz=study.climate.grid.zone)
+    observation = observe(simulation, study.measurements, sensors, begin)
+    observation = replace(observation, kinds=("instant", "instant", "instant", "mean", "instant"))
+    # Two stretches, of which one night between them takes no part.
+    use = np.ones(len(observation.times), dtype=np.bool_)
+    use[80:112] = False
+    posed = problem_of(simulation, observation, use, free, sensors)
+    truth = posed.values(PLACES[None])
+    made = np.asarray(posed.model(truth))[0]
+    data = (replace(s, measured=made[:, k]) for k, s in enumerate(posed.sensors))
+    return replace(posed, sensors=tuple(data))
+
+
+def test_exact_slopes_of_the_cell_are_those_of_differences(seven: CalibrationProblem) -> None:
+    for z in (PLACES, seven.positions(np.array([p.first for p in seven.parameters]))):
+        found = seven.jacobian(seven.values(z[None])[0]) * seven.rates(z)
+        near = derivative(seven, z, 1e-4)[1]
+        assert found.shape == (160, 5, 7)
+        largest = np.abs(found).max(axis=(0, 1))
+        assert (largest > 0.1).all()
+        apart = np.abs(found - near)
+        assert apart.max() < 1e-5 * largest.max()
+        # Of each parameter's own largest too, but for the few instants at which the iteration of a step ends
+        # early: differences are those of the last iterate, whatever their step, exact slopes of the solution.
+        assert (np.quantile(apart, 0.99, axis=(0, 1)) < 1e-6 * largest).all()
+        assert (apart.max(axis=(0, 1)) < 3e-5 * largest).all()
+
+
+def test_seven_parameters_of_the_cell_come_back_with_exact_slopes(
+    seven: CalibrationProblem, tmp_path: Path
+) -> None:
+    rules = Rules(starts=2, slopes="exact")
+    record = tmp_path / "record.jsonl"
+    fit = solve(seven, rules=rules, record=record)
+    assert len(fit.minima) == 2
+    for minimum in fit.minima:
+        np.testing.assert_allclose(minimum.x, seven.values(PLACES[None])[0], rtol=1e-6)
+    kept = record.read_bytes()
+    again = solve(seven, rules=rules, record=record)
+    np.testing.assert_array_equal(again.x, fit.x)
+    np.testing.assert_array_equal(again.low, fit.low)
+    assert record.read_bytes() == kept
+
+
+def test_exact_slopes_hold_at_bounds(
+    building: Building, climate: Climate, measured: Measurements, tmp_path: Path
+) -> None:
+    found, near = (
+        calibrate(
+            building, climate, measured,
+            parameters={
+                "surfaces.wall.outside.absorptance": (0.3, 0.55),
+                "surfaces.wall.inside.convection.coefficient": (4.0, 12.0),
+            },
+            sensors=SENSORS, rules=Rules(starts=2, slopes=slopes), **SPAN | {"step": "1h"},
+        )
+        for slopes in ("exact", "differences")
+    )  # fmt: skip
+    assert found.x[0] == near.x[0] == 0.55
+    assert "surfaces.wall.outside.absorptance" in found.on_bound
+    np.testing.assert_allclose(found.x, near.x, rtol=1e-3)
+
+
+def test_what_has_no_slope_is_refused(building: Building, climate: Climate, measured: Measurements) -> None:
+    exact = Rules(slopes="exact")
+    given: dict[str, Any] = {"sensors": SENSORS, "rules": exact, **SPAN}
+    by_hand = FitParameter("site.latitude", 40.0, 50.0)
+    with pytest.raises(InputError, match=r"site\.latitude: is structural"):
+        calibrate(building, climate, measured, parameters=[by_hand], **given)
+    with pytest.raises(InputError, match="least-squares minimises 'nll'; for the cost 'sd'"):
+        calibrate(
+            building, climate, measured, parameters=["materials.brick.conductivity"], cost="sd", **given
+        )

@@ -126,11 +126,13 @@ def test_an_optimiser_that_never_asks_is_stopped() -> None:
 
 
 def test_rules_that_cannot_be_are_named() -> None:
-    for keywords, text in (
+    wrong: tuple[tuple[dict[str, Any], str], ...] = (
         ({"walkers": 7}, "walkers: found 7, expected an even number"),
         ({"moves": 3}, "moves: found 3, expected at least 50"),
         ({"particles": 1}, "particles: found 1, expected at least 4"),
-    ):
+        ({"slopes": "newton"}, "slopes: found 'newton', expected differences or exact"),
+    )
+    for keywords, text in wrong:
         with pytest.raises(InputError, match=text):
             Rules(**keywords)
     with pytest.raises(

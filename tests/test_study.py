@@ -249,6 +249,20 @@ def test_without_a_sensitivity_the_other_steps_are_made(
     assert found.printed == ""
 
 
+def test_exact_slopes_find_the_same_wall(quick: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+    near = carried_out(quick.study, quick.folder / "near", capsys)
+    quick.edit("  starts: 1\n", "  starts: 1\n  slopes: exact\n")
+    found = carried_out(quick.study, quick.folder / "exact", capsys)
+    for path, entry in found.content["parameters"].items():
+        other = near.content["parameters"][path]
+        width = other["high"] - other["low"]
+        assert abs(entry["fitted"] - other["fitted"]) < 1e-2 * width, path
+        assert entry["high"] - entry["low"] == pytest.approx(width, rel=1e-2)
+    before = (found.out / "study.json").read_bytes()
+    carried_out(quick.study, found.out, capsys)
+    assert (found.out / "study.json").read_bytes() == before
+
+
 def test_what_keeps_from_an_aim_is_the_parameter_left_out(
     quick: Bench, capsys: pytest.CaptureFixture[str]
 ) -> None:

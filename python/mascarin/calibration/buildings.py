@@ -165,6 +165,14 @@ def problem_of(
         records, _, _ = simulation.ensemble(vectors)
         return observation.simulated(simulation.index, records)[:, rows][:, :, columns]
 
+    def slopes(x: Array) -> Array:
+        vector = simulation.vector({})
+        vector[positions] = x
+        _, by_parameter = simulation.jacobian([parameter.path for parameter in parameters], vector)
+        # Instants and means are linear in the records, and so are their slopes.
+        seen = observation.simulated(simulation.index, by_parameter)[:, rows][:, :, columns]
+        return np.moveaxis(seen, 0, -1)
+
     met = tuple(
         FitSensor(
             observation.names[s],
@@ -177,7 +185,12 @@ def problem_of(
         for s in columns
     )
     return CalibrationProblem(
-        tuple(parameters), met, model, identity=simulation.identity, step=observation.interval
+        tuple(parameters),
+        met,
+        model,
+        identity=simulation.identity,
+        step=observation.interval,
+        slopes=slopes,
     )
 
 

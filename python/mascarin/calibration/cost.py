@@ -98,6 +98,16 @@ class Cost:
         ]
         return np.column_stack(columns) if columns else np.empty((x.shape[0], 0))
 
+    def prior_slopes(self, z: Floats) -> Floats:
+        """Their derivatives by the positions (P,), shape (number of priors, P). [-]"""
+        rates = self.problem.rates(z)
+        rows = [
+            rates[i] / p.prior[1] * np.eye(z.size)[i]
+            for i, p in enumerate(self.problem.parameters)
+            if p.prior is not None
+        ]
+        return np.array(rows).reshape(-1, z.size)
+
     def weights(self, residuals: Floats) -> Floats:
         """Weights of the squared residuals for which least squares has its minimum where this cost has.
 

@@ -11,12 +11,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mascarin.errors import InputError, did_you_mean
+from mascarin.errors import InputError, SolverError, did_you_mean
 
 Floats = NDArray[np.float64]
 Model = Callable[[Floats], ArrayLike]
 """``(M, P) -> (M, T, S)``: simulated series of a batch of members, in the units of the parameters and the
 sensors. A member that could not be simulated is a row of NaN."""
+Slopes = Callable[[Floats], ArrayLike]
+"""``(P,) -> (T, S, P)``: exact derivatives of the simulated series of one member by each parameter, in the
+units of the sensors and the parameters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +97,12 @@ class FitParameter:
         if self.scale == "log":
             return math.log(value / self.lower) / math.log(self.upper / self.lower)
         return (value - self.lower) / (self.upper - self.lower)
+
+    def rate(self, z: float) -> float:
+        """Change of the value with its position, at a position between 0 and 1. [unit]"""
+        if self.scale == "log":
+            return self.value(z) * math.log(self.upper / self.lower)
+        return self.upper - self.lower
 
     @property
     def _range(self) -> str:
@@ -193,6 +202,8 @@ class CalibrationProblem:
         as a hash: a record of evaluations is only continued by a problem of the same identity.
     step : float, optional
         Time between samples, for texts. [s]
+    slopes : callable, optional
+        Exact derivatives of the model, see `Slopes`; raises `SolverError` where there are none.
     """
 
     parameters: tuple[FitParameter, ...]
@@ -200,6 +211,7 @@ class CalibrationProblem:
     model: Model
     identity: str = ""
     step: float | None = None
+    slopes: Slopes | None = None
     measured: Floats = field(init=False)
     mask: NDArray[np.bool_] = field(init=False)
     sigma: Floats = field(init=False)
@@ -267,6 +279,65 @@ class CalibrationProblem:
         failed = ~np.isfinite(residuals).all(axis=(1, 2))
         residuals[failed] = np.nan
         return residuals
+
+    def require_slopes(self) -> Slopes:
+        """The derivatives of the model.
+
+        Raises
+        ------
+        InputError
+            When there are none.
+        """
+        if self.slopes is None:
+            msg = (
+                "slopes: found 'exact', but the model of this problem is a function without derivatives; "
+                "give them as CalibrationProblem(slopes=...), or choose slopes 'differences'"
+            )
+            raise InputError(msg)
+        return self.slopes
+
+    def jacobian(self, x: Floats) -> Floats:
+        """Exact derivatives of the residuals of one member by the parameters.
+
+        Parameters
+        ----------
+        x : ndarray, shape (P,)
+            The member. [unit of each parameter]
+
+        Returns
+        -------
+        ndarray, shape (T, S, P)
+            0 where nothing is compared. [unit of the sensor / unit of the parameter]
+
+        Raises
+        ------
+        InputError
+            When the model has no derivatives, or returns another shape.
+        SolverError
+            When it has none at this place.
+        """
+        given = self.require_slopes()
+        where = ", ".join(f"{p} = {v:g}" for p, v in zip(self.paths, x.tolist(), strict=True))
+        try:
+            slopes = np.asarray(given(x), dtype=np.float64)
+        except SolverError as error:
+            msg = f"the model has no derivative at {where}: {error}"
+            raise SolverError(msg) from error
+        if slopes.shape != (*self.measured.shape, x.size):
+            msg = (
+                f"the model returned slopes of shape {slopes.shape}, expected "
+                f"{(*self.measured.shape, x.size)}: times, sensors, parameters"
+            )
+            raise InputError(msg)
+        slopes = np.where(self.mask[:, :, None], slopes, 0.0)
+        if not np.isfinite(slopes).all():
+            msg = f"the model has no derivative at {where}: it is not a number"
+            raise SolverError(msg)
+        return slopes
+
+    def rates(self, z: Floats) -> Floats:
+        """Change of each value with its position, both (P,). [unit of each parameter]"""
+        return np.array([p.rate(float(v)) for p, v in zip(self.parameters, z, strict=True)])
 
     def fingerprint(self) -> str:
         """Hash of everything that an evaluation depends on."""

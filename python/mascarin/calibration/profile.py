@@ -189,7 +189,7 @@ class _Search:
         _, jacobian = derivative(problem, self._centre, _DIFFERENCE)
         self._r = self._weighted(self._centre[None])[0]
         data = jacobian[problem.mask] * self._scale[:, None]
-        priors = self._prior_slopes()
+        priors = self._cost.prior_slopes(self._centre)
         self._j = np.concatenate([data, priors])
         information = self._j.T @ self._j
         variance = np.diag(np.linalg.pinv(information))
@@ -260,18 +260,6 @@ class _Search:
             data = self._problem.residuals(x)[:, self._problem.mask] * self._scale
             found.append(np.concatenate([data, self._cost.prior_residuals(x)], axis=1))
         return np.concatenate(found)
-
-    def _prior_slopes(self) -> Floats:
-        """Derivative of the priors' residuals by the positions, shape (number of priors, P)."""
-        ahead = np.clip(self._centre + _DIFFERENCE, 0.0, 1.0)
-        behind = np.clip(self._centre - _DIFFERENCE, 0.0, 1.0)
-        columns = []
-        for i in range(self._centre.size):
-            pair = np.tile(self._centre, (2, 1))
-            pair[:, i] = ahead[i], behind[i]
-            values = self._cost.prior_residuals(self._problem.values(pair))
-            columns.append((values[0] - values[1]) / (ahead[i] - behind[i]))
-        return np.column_stack(columns)
 
 
 def _learn(jacobian: Floats, change: Floats, step: Floats) -> None:

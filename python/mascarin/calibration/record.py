@@ -1,7 +1,8 @@
 """Every evaluation of a calibration, on disk as it happens, so that nothing is run twice.
 
 A record is a text file of JSON lines. The first says which problem it belongs to; each further line holds one
-evaluation: the parameter values, the cost of each sensor and, where the method needs them, the residuals. A
+evaluation: the parameter values, the cost of each sensor and, where the method needs them, the residuals; or
+the exact slopes at parameter values, where they were taken. A
 line that was cut short when the program was killed is dropped, and the file goes on from there.
 """
 
@@ -89,6 +90,7 @@ class Evaluator:
         self._x = array("d")
         self._of_sensors = array("d")
         self._residuals: dict[int, Floats] = {}
+        self._slopes: dict[bytes, Floats] = {}
         self._lowest = np.inf
         if path is not None:
             self._open(path)
@@ -129,6 +131,20 @@ class Evaluator:
         if not self._keep:
             return self.cost.problem.residuals(x)
         return np.stack([self._residuals[k] for k in self._evaluated(x, keep=True)])
+
+    def slopes(self, x: Floats) -> Floats:
+        """Exact derivatives of the residuals of one member (P,), shape (T, S, P), taken once and kept.
+
+        [unit of the sensor / unit of the parameter]
+        """
+        key = np.ascontiguousarray(x, dtype=np.float64).tobytes()
+        if key not in self._slopes:
+            self._slopes[key] = self.cost.problem.jacobian(x)
+            if self._path is not None:
+                entry = {"x": x.tolist(), "j": _packed(self._slopes[key])}
+                self._file.write((json.dumps(entry, allow_nan=False) + "\n").encode())
+                self._file.flush()
+        return self._slopes[key]
 
     def trace(self) -> Trace:
         """Everything evaluated so far."""
@@ -196,8 +212,7 @@ class Evaluator:
             "c": [c if np.isfinite(c) else None for c in of_sensors.tolist()],
         }
         if residuals is not None:
-            # Little-endian on every machine.
-            entry["r"] = base64.b64encode(residuals.astype("<f8").tobytes()).decode("ascii")
+            entry["r"] = _packed(residuals)
         return json.dumps(entry, allow_nan=False) + "\n"
 
     def _open(self, path: Path) -> None:
@@ -243,13 +258,15 @@ class Evaluator:
 
     def _take(self, path: Path, number: int, entry: dict[str, Any]) -> None:
         problem = self.cost.problem
+        if "j" in entry:
+            self._take_slopes(path, number, entry)
+            return
         try:
             x = np.array(entry["x"], dtype=np.float64)
             costs = np.array([np.nan if c is None else c for c in entry["c"]], dtype=np.float64)
             residuals = None
             if "r" in entry:
-                data = base64.b64decode(entry["r"], validate=True)
-                residuals = np.frombuffer(data, dtype="<f8").reshape(problem.measured.shape).astype(float)
+                residuals = _unpacked(entry["r"], problem.measured.shape)
             fits = x.shape == (len(problem.parameters),) and costs.shape == (len(problem.sensors),)
         except (KeyError, TypeError, ValueError):
             fits = False
@@ -257,6 +274,24 @@ class Evaluator:
             msg = f"{path}:{number}: not an evaluation of this problem; remove the line or name another file"
             raise InputError(msg)
         self._remember(x, costs, residuals)
+
+    def _take_slopes(self, path: Path, number: int, entry: dict[str, Any]) -> None:
+        shape = self.cost.problem.measured.shape
+        try:
+            x = np.array(entry["x"], dtype=np.float64)
+            self._slopes[x.tobytes()] = _unpacked(entry["j"], (*shape, len(self.cost.problem.parameters)))
+        except (KeyError, TypeError, ValueError) as error:
+            msg = f"{path}:{number}: not slopes of this problem; remove the line or name another file"
+            raise InputError(msg) from error
+
+
+def _packed(values: Floats) -> str:
+    """Bits as text, little-endian on every machine."""
+    return base64.b64encode(values.astype("<f8").tobytes()).decode("ascii")
+
+
+def _unpacked(text: str, shape: tuple[int, ...]) -> Floats:
+    return np.frombuffer(base64.b64decode(text, validate=True), dtype="<f8").reshape(shape).astype(float)
 
 
 def _parsed(path: Path, number: int, line: bytes) -> dict[str, Any]:

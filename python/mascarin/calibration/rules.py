@@ -19,6 +19,9 @@ WITH_SQUARES: Final = ("least-squares", "emcee")
 FINEST: Final = 24
 """Halvings after which a mesh on the binary grid of the sequences is still exact."""
 
+SlopesName = Literal["differences", "exact"]
+SLOPES: Final[tuple[SlopesName, ...]] = ("differences", "exact")
+
 _AGREE: Final = {"hooke-jeeves": 10}
 _AGREE_OTHERS: Final = 2
 
@@ -35,8 +38,11 @@ class Rules:
     starts : int
         Least squares: number of starts, the given one and others spread over the ranges by a Latin
         hypercube. [-]
+    slopes : str
+        Least squares and uncertainty: ``differences`` of members in the lanes of one batch, or ``exact``, the
+        derivatives that the engine gives.
     difference : float
-        Least squares and uncertainty: step of the finite differences, in ranges. [-]
+        Where slopes are differences: their step, in ranges. [-]
     tolerance : float
         Least squares: relative change of cost or position at which a search ends. [-]
     agree : int, optional
@@ -64,6 +70,7 @@ class Rules:
     """
 
     starts: int = 5
+    slopes: SlopesName = "differences"
     difference: float = 1e-4
     tolerance: float = 1e-8
     agree: int | None = None
@@ -86,6 +93,9 @@ class Rules:
             if found is not None and found < smallest:
                 msg = f"{name}: found {found}, expected at least {smallest}"
                 raise InputError(msg)
+        if self.slopes not in SLOPES:
+            msg = f"slopes: found '{self.slopes}', expected {' or '.join(SLOPES)}"
+            raise InputError(msg)
         if self.reductions > FINEST:
             msg = f"reductions: found {self.reductions}, expected at most {FINEST}"
             raise InputError(msg)

@@ -16,7 +16,7 @@ from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.record import Evaluator
 from mascarin.calibration.rules import METHODS, WITH_SQUARES, MethodName, Rules
 from mascarin.calibration.sequences import Make, maker, multi_start
-from mascarin.calibration.squares import derivative, least_squares
+from mascarin.calibration.squares import least_squares, sensed
 from mascarin.calibration.uncertainty import estimate, on_bounds, warnings
 from mascarin.errors import InputError, SolverError, did_you_mean
 from mascarin.optimise import Optimiser, Space
@@ -46,7 +46,7 @@ def solve(
     method : str
         ``least-squares``: the sum of squared residuals over the sensors' uncertainty (and priors), by a
         trust-region method within the bounds from several starts, derivatives by differences made in one
-        batch.
+        batch or exact ones (`Rules.slopes`).
         ``hooke-jeeves``: any cost, by pattern search from random starts until the same minimum was reached
         by several.
         ``particle-swarm``, ``hybrid`` (a swarm, then a pattern search from its best point), ``cma-es`` (an
@@ -84,6 +84,8 @@ def solve(
     """
     _require(method, cost, confidence, optimiser is not None)
     chosen = rules or Rules()
+    if chosen.slopes == "exact":
+        problem.require_slopes()
     function = Cost(problem, cost)
     make = None if optimiser is None else _own(optimiser)
     squares = method in WITH_SQUARES and make is None
@@ -154,7 +156,7 @@ def _report(
     """The fit at the best minimum with its uncertainty."""
     cost = evaluator.cost
     z = problem.positions(best.x)
-    residuals, jacobian = derivative(problem, z, rules.difference)
+    residuals, jacobian = sensed(problem, evaluator, z, rules)
     weights = cost.weights(residuals)
     found = estimate(
         problem,
@@ -200,10 +202,4 @@ def _report(
 
 def _prior_information(problem: CalibrationProblem, z: Floats) -> Floats:
     """Inverse variance of each parameter's prior in positions, 0 without one; shape (P,). [-]"""
-    information = np.zeros(z.size)
-    for i, p in enumerate(problem.parameters):
-        if p.prior is not None:
-            span = p.upper - p.lower
-            slope = span if p.scale == "linear" else p.value(float(z[i])) * math.log(p.upper / p.lower)
-            information[i] = (slope / p.prior[1]) ** 2
-    return information
+    return np.asarray(np.sum(Cost(problem, "nll").prior_slopes(z) ** 2, axis=0))

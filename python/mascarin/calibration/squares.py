@@ -1,8 +1,9 @@
-"""Least squares from several starts, with derivatives by differences made in one batch."""
+"""Least squares from several starts, with derivatives by differences made in one batch, or exact ones."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,9 @@ from mascarin.calibration.rules import Rules
 from mascarin.errors import SolverError
 
 Floats = NDArray[np.float64]
+
+#: Rows that are worked on at a time.
+_BLOCK: Final = 256
 
 
 def least_squares(
@@ -28,12 +32,12 @@ def least_squares(
         if k and not np.isfinite(evaluator.residuals(problem.values(z[None]))).all():
             skipped += 1
             continue
-        squares = Squares(problem, evaluator, rules.difference)
+        squares = Squares(problem, evaluator, rules)
         tight = rules.tolerance
         found = optimize.least_squares(
-            squares.residuals,
+            squares.size,
             z,
-            jac=squares.jacobian,
+            jac=squares.condensed,
             bounds=(0.0, 1.0),
             method="trf",
             ftol=tight,
@@ -57,25 +61,51 @@ def scale_of(problem: CalibrationProblem) -> Floats:
 
 
 class Squares:
-    """Weighted residuals and their derivative by the positions z."""
+    """Weighted residuals and their derivative by the positions z.
 
-    def __init__(self, problem: CalibrationProblem, evaluator: Evaluator, difference: float) -> None:
+    A search is handed no more of the residuals r (n,) than their size, and of their Jacobian J no more than
+    P + 1 rows that have the same J'J and J'r: all that it needs, whatever the number of samples. With a long
+    matrix the libraries below share the work among threads, which wait for one another on a busy machine.
+    """
+
+    def __init__(self, problem: CalibrationProblem, evaluator: Evaluator, rules: Rules) -> None:
         self._problem = problem
         self._evaluator = evaluator
-        self._difference = difference
+        self._exact = rules.slopes == "exact"
+        self._difference = rules.difference
         self._scale = scale_of(problem)
         self.asked = 0
+
+    def size(self, z: Floats) -> Floats:
+        """The norm of the residuals, then P zeros."""
+        return np.concatenate([[np.linalg.norm(self.residuals(z))], np.zeros(z.size)])
+
+    def condensed(self, z: Floats) -> Floats:
+        """The Jacobian (P + 1, P) that goes with `size`: of R in [r J] = Q R all but the first column."""
+        long = np.column_stack([self.weighted(z[None])[0], self.jacobian(z)])
+        rows = max(_BLOCK, long.shape[1])
+        count = -(-len(long) // rows)
+        blocks = np.zeros((count * rows, long.shape[1]))
+        blocks[: len(long)] = long
+        parts = _triangles(blocks.reshape(count, rows, -1))
+        found = _triangles(parts.reshape(-1, long.shape[1]))
+        return np.asarray(np.copysign(1.0, found[0, 0]) * found[:, 1:])
 
     def residuals(self, z: Floats) -> Floats:
         """Residuals over their uncertainty, then those of the priors."""
         # The neighbours are wanted next, unless the step is refused; together they fill a batch.
-        points = np.concatenate([z[None], self._neighbours(z)])
+        points = z[None] if self._exact else np.concatenate([z[None], self._neighbours(z)])
         self.asked += points.shape[0]
         values: Floats = self.weighted(points)[0]
         return values
 
     def jacobian(self, z: Floats) -> Floats:
-        """Forward differences, backward at the upper bound or where the model fails ahead."""
+        """Exact, or forward differences, backward at the upper bound or where the model fails ahead."""
+        if self._exact:
+            # Each parameter is a run of its own.
+            self.asked += z.size
+            data = exact(self._problem, self._evaluator, z)[self._problem.mask] * self._scale[:, None]
+            return np.concatenate([data, self._evaluator.cost.prior_slopes(z)])
         points = np.concatenate([z[None], self._neighbours(z)])
         values = self.weighted(points)
         for i in np.flatnonzero(~np.isfinite(values[1:]).all(axis=1)):
@@ -104,6 +134,11 @@ class Squares:
         return np.asarray(np.concatenate([residuals, priors], axis=1), dtype=np.float64)
 
 
+def _triangles(rows: Floats) -> Floats:
+    """R of Q R of each matrix (..., m, n), shape (..., n, n)."""
+    return np.asarray(np.linalg.qr(rows, mode="r"), dtype=np.float64)
+
+
 def _hypercube(problem: CalibrationProblem, count: int, seed: int) -> Iterator[Floats]:
     """The given start, then a Latin hypercube over the ranges."""
     from scipy.stats import qmc
@@ -113,6 +148,20 @@ def _hypercube(problem: CalibrationProblem, count: int, seed: int) -> Iterator[F
         yield from qmc.LatinHypercube(len(problem.parameters), rng=np.random.default_rng(seed)).random(
             count - 1
         )
+
+
+def exact(problem: CalibrationProblem, evaluator: Evaluator, z: Floats) -> Floats:
+    """Exact derivatives of the residuals by the positions z (P,), shape (T, S, P). [unit of the sensor]"""
+    return np.asarray(evaluator.slopes(problem.values(z[None])[0]) * problem.rates(z))
+
+
+def sensed(
+    problem: CalibrationProblem, evaluator: Evaluator, z: Floats, rules: Rules
+) -> tuple[Floats, Floats]:
+    """Residuals (T, S) at a minimum and their derivatives by z (T, S, P), as the rules take slopes."""
+    if rules.slopes == "exact":
+        return evaluator.residuals(problem.values(z[None]))[0], exact(problem, evaluator, z)
+    return derivative(problem, z, rules.difference)
 
 
 def derivative(problem: CalibrationProblem, z: Floats, difference: float) -> tuple[Floats, Floats]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from mascarin.calibration.rules import WITH_SQUARES
+from mascarin.calibration.rules import WITH_SQUARES, SlopesName
 from mascarin.calibration.rules import MethodName as FitMethod
 from mascarin.errors import InputError
 from mascarin.model.names import Name
@@ -240,6 +240,11 @@ class IdentificationPlan(Part):
         min_length=1, description="Path -> what is known of it; nothing after the colon for the usual"
     )
     method: FitMethod = Field("least-squares", description="Optimiser; docs/calibration.md says which when")
+    slopes: SlopesName = Field(
+        "differences",
+        description="Derivatives of least squares and of the intervals: differences of runs side by side, or "
+        "exact from the engine, which costs more (docs/calibration.md has numbers)",
+    )
     starts: int = Field(4, ge=1, description="Starts of least squares and of a coupled GenOpt project")
     sequences: int = Field(
         100, ge=1, description="Most sequences of the other methods; they end when enough of them agree"

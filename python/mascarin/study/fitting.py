@@ -136,6 +136,7 @@ def identify(
         seed=plan.seed,
         rules=Rules(
             starts=plan.starts,
+            slopes=plan.slopes,
             sequences=plan.sequences,
             agree=plan.agree,
             evaluations=plan.budget,
