@@ -112,9 +112,12 @@ def tell(fit: Fit, seconds: float, processor: float) -> None:
             f"different minima (cost within {100 * within:g} %, parameters within 2 % of their range): "
             f"{len(groups)}; the largest hold {sorted(sizes, reverse=True)[:5]}"
         )
-    best = fit.minima[int(np.argmin([minimum.cost for minimum in fit.minima]))]
-    near = [m for m in fit.minima if m.cost <= 1.001 * best.cost]
-    say(f"lowest cost {best.cost:.6g}; within 0.1 % of it {len(near)} sequences")
+    costs = [minimum.cost for minimum in fit.minima]
+    near = [m for m in fit.minima if m.cost <= 1.001 * min(costs)]
+    say(
+        f"lowest cost {min(costs):.6g}; within 0.1 % of it {len(near)} sequences, "
+        f"all within {100 * (max(costs) / min(costs) - 1):.2f} %"
+    )
     z = np.array([fit.problem.positions(minimum.x) for minimum in near])
     for path, low, high in zip(fit.problem.paths, z.min(axis=0), z.max(axis=0), strict=True):
         say(f"| {path} | {100 * (high - low):.1f} % of its range between them |")
