@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.model import quantities as q
-from mascarin.model.number import Number, Remark, problem
-from mascarin.model.part import Part, fault, insist
+from mascarin.model.number import Number, Remark
+from mascarin.model.part import Pair, Part, fault, insist
 
 ISO_15099 = "ISO 15099:2003, 5.3 and annex B"
 _FIT = "Karlsson & Roos 2000, doi:10.1016/S0038-092X(00)00083-9"
@@ -20,27 +20,8 @@ _RATED = "ISO 10292:1994 and EN 673"
 SUM_LIMIT, DIFFUSE_LIMIT = 0.006, 0.015
 
 
-def _or_pair(schema: dict[str, Any]) -> None:
-    """Allow the short form of :class:`TwoFaces` in its JSON Schema."""
-    written, properties = dict(schema), schema["properties"]
-    schema.clear()
-    pair = [properties["outside"], properties["inside"]]
-    schema["anyOf"] = [written, {"type": "array", "prefixItems": pair, "minItems": 2, "items": False}]
-
-
-class TwoFaces(Part):
+class TwoFaces(Pair):
     """A property of the outer and of the inner face of a pane; short form ``[outside, inside]``."""
-
-    model_config = ConfigDict(json_schema_extra=_or_pair)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_pair(cls, raw: Any) -> Any:
-        if not isinstance(raw, list | tuple):
-            return raw
-        if len(raw) != 2:
-            raise problem(f"{len(raw)} values", "[outside, inside]", "Write one value for each face.")
-        return {"outside": raw[0], "inside": raw[1]}
 
 
 class PaneEmissivities(TwoFaces):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from mascarin.model import quantities as q
 from mascarin.model.library import FromLibrary
@@ -19,16 +19,8 @@ from mascarin.model.melting import (
     Law,
     TableLaw,
 )
-from mascarin.model.number import Fixed, Number, problem
-from mascarin.model.part import Part, insist
-
-
-def _or_pair(schema: dict[str, Any]) -> None:
-    """Allow the short form of :class:`Phases` in its JSON Schema."""
-    written, properties = dict(schema), schema["properties"]
-    schema.clear()
-    pair = [properties["solid"], properties["liquid"]]
-    schema["anyOf"] = [written, {"type": "array", "prefixItems": pair, "minItems": 2, "items": False}]
+from mascarin.model.number import Fixed, Number
+from mascarin.model.part import Pair, Part, insist
 
 
 class Solid(Part):
@@ -49,19 +41,8 @@ class Resistance(Part):
     source: str | None = Field(None, description="Where the value comes from")
 
 
-class Phases(Part):
+class Phases(Pair):
     """A property of the solid and of the liquid; short form ``[solid, liquid]``."""
-
-    model_config = ConfigDict(json_schema_extra=_or_pair)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_pair(cls, raw: Any) -> Any:
-        if not isinstance(raw, list | tuple):
-            return raw
-        if len(raw) != 2:
-            raise problem(f"{len(raw)} values", "[solid, liquid]", "Write one value for each phase.")
-        return {"solid": raw[0], "liquid": raw[1]}
 
 
 class PhaseConductivities(Phases):

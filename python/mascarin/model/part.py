@@ -85,6 +85,29 @@ class Part(BaseModel):
         self.__dict__.update(values)
 
 
+def _or_list(schema: dict[str, Any]) -> None:
+    """Allow the short form of a :class:`Pair` in its JSON Schema."""
+    written, values = dict(schema), list(schema["properties"].values())
+    schema.clear()
+    schema["anyOf"] = [written, {"type": "array", "prefixItems": values, "minItems": 2, "items": False}]
+
+
+class Pair(Part):
+    """Two values of one property, such as those of a solid and a liquid; short form ``[one, other]``."""
+
+    model_config = ConfigDict(json_schema_extra=_or_list)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_list(cls, raw: Any) -> Any:
+        if not isinstance(raw, list | tuple):
+            return raw
+        names = tuple(cls.model_fields)
+        if len(raw) != len(names):
+            raise problem(f"{len(raw)} values", f"[{', '.join(names)}]", "Write one value for each.")
+        return dict(zip(names, raw, strict=True))
+
+
 def quantity_of(field: FieldInfo) -> Quantity | None:
     """Find the quantity in the annotation of a numeric field."""
     annotations = [field, *get_args(field.annotation)]
