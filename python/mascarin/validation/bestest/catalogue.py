@@ -11,7 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final, Literal
 
-from mascarin.errors import InputError, did_you_mean
+from mascarin.errors import InputError
 
 Opening = Literal["south", "east_west", "panels", "none"]
 Thermostat = Literal["20,27", "20,20", "setback", "day cooling", "none"]
@@ -205,10 +205,8 @@ def chosen(names: Sequence[str]) -> list[Case]:
     """
     for name in names:
         if name.upper() not in CASES:
-            hint = did_you_mean(name, CASES)
             raise InputError(
-                f"case: found '{name}'; expected one of {', '.join(CASES)}, or a building file (.yaml). "
-                f"{hint}".rstrip()
+                f"case: found '{name}'; expected one of {', '.join(CASES)}, or a building file (.yaml)."
             )
     wanted = {name.upper() for name in names}
     return [case for case in CASES.values() if case.name in wanted]
