@@ -465,6 +465,13 @@ impl<S: Real> Chain<S> {
         self.links[i].flux(left, right)
     }
 
+    /// Liquid fraction of a phase-change cell at the solution, along the last tangent.
+    #[inline(always)]
+    pub fn reached_fraction(&self, i: usize) -> S {
+        let reached = self.points[i].liquid_fraction + self.points[i].fraction_slope * self.storage[i].moved;
+        reached.max(S::zero()).min(S::one())
+    }
+
     /// Liquid fraction of a phase-change cell at the last linearisation.
     #[inline(always)]
     pub fn liquid_fraction(&self, i: usize) -> S {

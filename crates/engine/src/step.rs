@@ -828,17 +828,22 @@ impl<'a, S: Real> Stepper<'a, S> {
                 let mut enthalpy = chain.storage[i].reached();
                 if let Matter::Pcm(law) = cell.matter {
                     let law = &numbers.pcm[law];
-                    let point = law.at(temperature, &state.memory[k]);
-                    if self.scheme == Scheme::ApparentCapacity {
-                        // What the material holds in truth, not what the scheme believes to have stored.
-                        enthalpy = point.enthalpy;
+                    let mut fraction = chain.reached_fraction(i);
+                    // Where the way taken matters, or slopes are carried: the point itself.
+                    if law.remembers() || S::DERIVATIVES || self.scheme == Scheme::ApparentCapacity {
+                        let point = law.at(temperature, &state.memory[k]);
+                        fraction = point.liquid_fraction;
+                        if self.scheme == Scheme::ApparentCapacity {
+                            // What the material holds in truth, not what the scheme believes to have stored.
+                            enthalpy = point.enthalpy;
+                        }
                     }
                     if law.remembers() && self.scheme == Scheme::Sdirk2 {
                         let start = state.memory[k].liquid_fraction;
-                        let turned = reversed(start, self.midway[k], point.liquid_fraction);
+                        let turned = reversed(start, self.midway[k], fraction);
                         self.effort.reversals += S::select(turned, S::one(), S::zero());
                     }
-                    state.memory[k] = law.next(&state.memory[k], temperature, point.liquid_fraction);
+                    state.memory[k] = law.next(&state.memory[k], temperature, fraction);
                 }
                 stored += numbers.area * cell.thickness * (enthalpy - state.enthalpy[k]);
                 state.enthalpy[k] = enthalpy;

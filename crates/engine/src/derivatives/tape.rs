@@ -98,6 +98,13 @@ impl Taped {
         if self.place == NOWHERE && other == NOWHERE {
             return Self::fixed(value);
         }
+        // What differs from another number by a constant has its slopes, and needs no place of its own.
+        if other == NOWHERE && slope[0] == 1.0 {
+            return Self { value, place: self.place };
+        }
+        if self.place == NOWHERE && slope[1] == 1.0 {
+            return Self { value, place: other };
+        }
         Self { value, place: push(Entry { of: [self.place, other], slope }) }
     }
 }

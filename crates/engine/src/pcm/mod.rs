@@ -32,6 +32,8 @@ pub struct PcmPoint<S> {
     pub capacity: S,
     /// Liquid fraction [-].
     pub liquid_fraction: S,
+    /// Its slope [1/K].
+    pub fraction_slope: S,
     /// Conductivity [W/(m K)].
     pub conductivity: S,
     /// Slope of the conductivity [W/(m K2)].
@@ -49,6 +51,7 @@ impl<S: Real> PcmPoint<S> {
             enthalpy: zero,
             capacity: zero,
             liquid_fraction: zero,
+            fraction_slope: zero,
             conductivity: zero,
             conductivity_slope: zero,
             potential: zero,
@@ -160,6 +163,7 @@ impl<S: Real> PcmCoefficients<S> {
             enthalpy,
             capacity,
             liquid_fraction: fraction,
+            fraction_slope: slope,
             conductivity: self.conductivity[0] + fraction * spread,
             conductivity_slope: spread * slope,
             potential: self.conductivity[0] * temperature + spread * molten,
