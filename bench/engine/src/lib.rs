@@ -9,6 +9,7 @@ use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::{Options, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
+use mascarin_engine::state::Initial;
 use mascarin_engine::step::Scheme;
 use mascarin_engine::{batch, dispatch};
 use serde::Deserialize;
@@ -59,7 +60,7 @@ impl Case {
             options: Options {
                 dt: written.dt,
                 scheme: Scheme::Sdirk2,
-                initial: written.initial,
+                initial: Initial::Everywhere(written.initial),
                 warmup: None,
                 probes: written.probes,
                 record_from: 0,

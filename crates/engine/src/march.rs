@@ -9,7 +9,7 @@ use crate::ledger::Ledger;
 use crate::plan::Plan;
 use crate::probe::Probe;
 use crate::real::{Mask, Real};
-use crate::state::State;
+use crate::state::{Initial, State};
 use crate::step::{Effort, Scheme, Stepper};
 
 /// How a run is made.
@@ -19,8 +19,8 @@ pub struct Options {
     pub dt: f64,
     /// Time-stepping scheme.
     pub scheme: Scheme,
-    /// Temperature everywhere at the start [degC].
-    pub initial: f64,
+    /// What the run, or the repetition, starts from.
+    pub initial: Initial,
     /// The first period, repeated until the state at its end settles. None: start from `initial`.
     pub warmup: Option<Warmup>,
     /// What to record.
@@ -159,7 +159,7 @@ pub(crate) fn march_seen<'a, S: Real>(
     mut see: impl FnMut(&Stepper<'a, S>, &State<S>, Move) -> Result<(), EngineError>,
 ) -> Result<Run<S>, EngineError> {
     let plan = stepper.plan;
-    let mut state = stepper.uniform(S::constant(options.initial));
+    let mut state = stepper.begin(&options.initial);
     let (cycles, settled) = warm_up(&mut stepper, &mut state, weather, options, watch, &mut see)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
     let mut ledger = Ledger::new();
@@ -235,5 +235,6 @@ pub(crate) fn check(
     if options.warmup.is_some_and(|warmup| warmup.steps == 0 || warmup.steps > forcing.steps()) {
         return fail("the repeated first period is longer than the run".to_owned());
     }
+    options.initial.check(plan)?;
     options.probes.iter().try_for_each(|probe| probe.check(plan))
 }

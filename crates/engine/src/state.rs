@@ -1,9 +1,47 @@
 //! What passes from step to step, and the temperatures of one iterate.
 
 use crate::coefficients::{Coefficients, Matter};
+use crate::error::EngineError;
 use crate::pcm::PcmMemory;
 use crate::plan::{FaceId, Plan};
 use crate::real::Real;
+
+/// Temperatures that a run starts from [degC], the same for all members; what melts has come to them from below.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Initial {
+    /// One temperature everywhere.
+    Everywhere(f64),
+    /// One for each cell, face and air.
+    Given {
+        /// Of the cells of all walls.
+        cells: Vec<f64>,
+        /// Of the faces: where the search for their balance begins.
+        faces: Vec<f64>,
+        /// Of the airs of the zones.
+        air: Vec<f64>,
+    },
+}
+
+impl Initial {
+    /// Checks that it fits a plan.
+    pub(crate) fn check(&self, plan: &Plan) -> Result<(), EngineError> {
+        let Self::Given { cells, faces, air } = self else { return Ok(()) };
+        let expected = [
+            ("cells", cells, plan.n_cells),
+            ("faces", faces, plan.faces.len()),
+            ("airs", air, plan.zones.len()),
+        ];
+        for (what, given, count) in expected {
+            if given.len() != count || given.iter().any(|temperature| !temperature.is_finite()) {
+                return Err(EngineError::Input(format!(
+                    "the start gives temperatures for {} {what}, expected {count} finite ones",
+                    given.len()
+                )));
+            }
+        }
+        Ok(())
+    }
+}
 
 /// Everything that passes from step to step.
 #[derive(Debug, Clone)]

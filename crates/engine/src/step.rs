@@ -22,7 +22,7 @@ use crate::radiation::{Emission, black_temperature};
 use crate::real::{Mask, Real};
 use crate::room_block::RoomBlock;
 use crate::slabs::Slabs;
-use crate::state::{State, Unknowns, blend, line, squared_distance};
+use crate::state::{Initial, State, Unknowns, blend, line, squared_distance};
 use crate::zone;
 
 /// Root of the sum of squared changes in the last Newton iteration [K]. Convergence is quadratic: the error left is
@@ -241,16 +241,26 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// A state at one temperature throughout [degC].
-    pub fn uniform(&self, temperature: S) -> State<S> {
-        let nothing = PcmMemory::new(S::zero(), temperature);
+    /// The state that a run starts from.
+    pub fn begin(&self, initial: &Initial) -> State<S> {
+        let plan = self.plan;
+        let (cells, faces, air) = match initial {
+            Initial::Everywhere(temperature) => {
+                let all = |count| vec![S::constant(*temperature); count];
+                (all(plan.n_cells), all(plan.faces.len()), all(plan.zones.len()))
+            }
+            Initial::Given { cells, faces, air } => {
+                let all = |given: &[f64]| given.iter().map(|&temperature| S::constant(temperature)).collect();
+                (all(cells), all(faces), all(air))
+            }
+        };
         let mut state = State {
-            cells: vec![temperature; self.plan.n_cells],
-            enthalpy: vec![S::zero(); self.plan.n_cells],
-            memory: vec![nothing; self.plan.n_cells],
-            faces: vec![temperature; self.plan.faces.len()],
-            air: vec![temperature; self.plan.zones.len()],
-            load: vec![S::zero(); self.plan.zones.len()],
+            memory: cells.iter().map(|&cell| PcmMemory::new(S::zero(), cell)).collect(),
+            enthalpy: vec![S::zero(); plan.n_cells],
+            load: vec![S::zero(); plan.zones.len()],
+            cells,
+            faces,
+            air,
         };
         self.settle(&mut state);
         state

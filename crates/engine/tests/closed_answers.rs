@@ -9,6 +9,7 @@ use mascarin_engine::forcing::channel;
 use mascarin_engine::march::Warmup;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
+use mascarin_engine::state::Initial;
 use mascarin_engine::step::Scheme;
 
 const DAY: f64 = 86400.0;
@@ -92,7 +93,7 @@ impl Melting {
         let plan = b.plan();
         let rows = forcing(&plan, Scheme::Sdirk2, steps, dt, |_, row| set(row, 0, self.hot));
         let mut options = options(Scheme::Sdirk2, dt, vec![Probe::LiquidFraction { surface: 0, layer: 0 }]);
-        options.initial = self.initial;
+        options.initial = Initial::Everywhere(self.initial);
         let result = run(&plan, &rows, &options);
         assert!(result.ledger.closure() < 1e-10);
         result.records[steps] * self.thickness

@@ -14,6 +14,7 @@ use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::{Dual, Real};
+use mascarin_engine::state::Initial;
 use mascarin_engine::step::Scheme;
 
 const STEP: f64 = 900.0;
@@ -357,4 +358,25 @@ fn straight_lanes_are_scalars() {
         }
         assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
     }
+}
+
+/// Temperatures that are given one by one mean the same as one everywhere, and must be all there.
+#[test]
+fn a_start_may_be_given_cell_by_cell() {
+    let plan = Plan::new(cell(0.04)).unwrap();
+    let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, cell_weather);
+    let mut options = options(Scheme::Sdirk2, STEP, cell_probes());
+    let everywhere = run(&plan, &rows, &options);
+    let (faces, zones) = (plan.faces.len(), plan.zones.len());
+    let given = |cells: Vec<f64>| Initial::Given { cells, faces: vec![20.0; faces], air: vec![20.0; zones] };
+    options.initial = given(vec![20.0; plan.n_cells]);
+    let one_by_one = run(&plan, &rows, &options);
+    for (a, b) in everywhere.records.iter().zip(&one_by_one.records) {
+        assert_eq!(a.to_bits(), b.to_bits());
+    }
+    options.initial = given(vec![20.0; plan.n_cells + 1]);
+    let told = try_run(&plan, &values(&plan), &rows, &options).unwrap_err().to_string();
+    assert!(told.contains(&format!("{} cells, expected {}", plan.n_cells + 1, plan.n_cells)), "{told}");
+    options.initial = given(vec![f64::NAN; plan.n_cells]);
+    assert!(try_run(&plan, &values(&plan), &rows, &options).is_err());
 }

@@ -15,6 +15,7 @@ use mascarin_engine::ledger::Flow;
 use mascarin_engine::march::{Options, Run, Warmup, Watch, march};
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::probe::Probe;
+use mascarin_engine::state::Initial;
 use mascarin_engine::state_space;
 use mascarin_engine::step::Scheme;
 use numpy::{
@@ -107,13 +108,34 @@ struct Plan {
     plan: EnginePlan,
 }
 
+/// Temperatures at the start as they come from Python: one, or a dictionary with those of cells, faces and airs.
+#[derive(FromPyObject)]
+enum GivenInitial {
+    Everywhere(f64),
+    #[pyo3(from_item_all)]
+    Given {
+        cells: Vec<f64>,
+        faces: Vec<f64>,
+        air: Vec<f64>,
+    },
+}
+
+impl From<GivenInitial> for Initial {
+    fn from(given: GivenInitial) -> Self {
+        match given {
+            GivenInitial::Everywhere(temperature) => Self::Everywhere(temperature),
+            GivenInitial::Given { cells, faces, air } => Self::Given { cells, faces, air },
+        }
+    }
+}
+
 /// Options as they come from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct RunOptions {
     dt: f64,
     scheme: String,
-    initial: f64,
+    initial: GivenInitial,
     warmup_steps: usize,
     warmup_tolerance: f64,
     warmup_max_cycles: usize,
@@ -134,7 +156,7 @@ impl RunOptions {
         Ok(Options {
             dt: self.dt,
             scheme: scheme_named(&self.scheme)?,
-            initial: self.initial,
+            initial: self.initial.into(),
             warmup,
             probes,
             record_from: self.record_from,

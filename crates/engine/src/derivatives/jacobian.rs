@@ -70,7 +70,7 @@ fn along(
     let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::fixed(value)).collect();
     sloped[by] = Sloped::variable(numbers[by], 0);
     let mut stepper = Stepper::new(plan, &sloped, options.scheme);
-    let mut state = stepper.uniform(Sloped::fixed(options.initial));
+    let mut state = stepper.begin(&options.initial);
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
     let mut unused = Ledger::new();
     let mut plain = Stepper::new(plan, numbers, options.scheme);

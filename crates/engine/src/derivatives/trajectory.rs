@@ -14,7 +14,6 @@ use crate::known::Solution;
 use crate::ledger::Ledger;
 use crate::march::{Move, Options, Run, Watch, check, march_seen};
 use crate::plan::Plan;
-use crate::real::Real;
 use crate::state::State;
 use crate::step::Stepper;
 
@@ -57,7 +56,7 @@ impl Trajectory {
         let weather = Weather::new(plan, forcing);
         let mut stepper = Stepper::new(plan, numbers, options.scheme);
         stepper.known.start();
-        let mut before = stepper.uniform(options.initial);
+        let mut before = stepper.begin(&options.initial);
         let length = stretch(&before, weather.steps(), options, bytes);
         let (mut moves, mut starts, mut last) = (Vec::new(), Vec::new(), Stretch::default());
         let run = march_seen(stepper, &weather, options, watch, |stepper, reached, made| {
@@ -224,7 +223,7 @@ impl<'a> Back<'a> {
     /// Weights on the parameters.
     fn finish(mut self, leaves: &[Taped]) -> Vec<f64> {
         Tape::cut(self.base);
-        let start = self.fresh.uniform(Taped::constant(self.options.initial));
+        let start = self.fresh.begin(&self.options.initial);
         self.weights.resize(Tape::len(), 0.0);
         for (number, weight) in start.numbers().zip(&self.state) {
             self.weights[number.place()] += weight;

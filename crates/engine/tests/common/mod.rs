@@ -12,6 +12,7 @@ use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
 use mascarin_engine::march::{Options, Run, Warmup, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
+use mascarin_engine::state::Initial;
 use mascarin_engine::step::Scheme;
 
 /// All schemes.
@@ -331,7 +332,15 @@ pub fn weather(time: f64, row: &mut [f64]) {
 
 /// A run of given steps from 20 degC, recording everything asked for.
 pub fn options(scheme: Scheme, dt: f64, probes: Vec<Probe>) -> Options {
-    Options { dt, scheme, initial: 20.0, warmup: None, probes, record_from: 0, record_every: 1 }
+    Options {
+        dt,
+        scheme,
+        initial: Initial::Everywhere(20.0),
+        warmup: None,
+        probes,
+        record_from: 0,
+        record_every: 1,
+    }
 }
 
 /// A repeated first day.
