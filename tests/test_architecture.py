@@ -16,7 +16,7 @@ ORDER = [
     {"materials"},
     {"model"},
     {"climate"},
-    {"simulation", "results", "state_space"},
+    {"simulation", "results", "start", "state_space"},
     {"sweep", "derivatives"},
     {"sensitivity", "optimise", "calibration", "validation"},
     {"genopt"},

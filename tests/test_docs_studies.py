@@ -14,6 +14,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from mascarin.model.start import GivenStart
 from mascarin.study import description
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "studies.md"
@@ -26,6 +27,7 @@ SECTIONS = (
     ("`climate.measured`", description.MeasuredWeather),
     ("`measurements`", description.Table),
     ("Each of `sensors`", description.Sensor),
+    ("`initial`", GivenStart),
     ("`periods`", description.Periods),
     ("`quality`", description.Quality),
     ("Each of `criteria`", description.Limit),
@@ -100,7 +102,7 @@ def test_every_kind_of_section_is_on_the_page() -> None:
         for kind in vars(description).values()
         if isinstance(kind, type) and issubclass(kind, BaseModel) and kind.__module__ == description.__name__
     }
-    assert kinds == {kind for _, kind in SECTIONS}
+    assert kinds | {GivenStart} == {kind for _, kind in SECTIONS}
     for kind in kinds:
         for name, field in kind.model_fields.items():
             assert field.description, f"{kind.__name__}.{name}"

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mascarin.model import load as load
     from mascarin.sensitivity import screen as screen
     from mascarin.simulation import simulate as simulate
+    from mascarin.start import MeasuredStart as MeasuredStart
     from mascarin.state_space import state_space as state_space
     from mascarin.study import Study as Study
     from mascarin.sweep import sweep as sweep
@@ -28,6 +29,7 @@ __version__: Final = "0.1.0"
 
 _HOME: Final = {
     "Climate": "mascarin.climate",
+    "MeasuredStart": "mascarin.start",
     "Study": "mascarin.study",
     "calibrate": "mascarin.calibration",
     "from_dsc": "mascarin.materials.dsc",
@@ -42,6 +44,7 @@ _HOME: Final = {
 
 __all__ = [
     "Climate",
+    "MeasuredStart",
     "Study",
     "__version__",
     "calibrate",

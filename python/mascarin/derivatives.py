@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from mascarin.climate import Climate, Measurements
     from mascarin.model import Building
+    from mascarin.start import Initial
 
 Array = npt.NDArray[np.float64]
 
@@ -128,7 +129,7 @@ def gradient(
     start: object = None,
     end: object = None,
     scheme: Literal["sdirk2", "backward-euler"] = "sdirk2",
-    initial: Literal["repeat"] | float = "repeat",
+    initial: Initial = "repeat",
     measurements: Measurements | None = None,
     memory: int = MEMORY,
 ) -> Gradient:
@@ -206,7 +207,7 @@ def jacobian(
     start: object = None,
     end: object = None,
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
-    initial: Literal["repeat"] | float = "repeat",
+    initial: Initial = "repeat",
     measurements: Measurements | None = None,
     report: Callable[[int], object] | None = None,
 ) -> xr.Dataset:

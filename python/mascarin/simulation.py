@@ -16,7 +16,10 @@ from mascarin import _engine
 from mascarin.climate.table import seconds_of
 from mascarin.climate.timezones import moment
 from mascarin.errors import InputError, SolverError, did_you_mean
+from mascarin.model.start import Ambient, GivenStart, Profile
 from mascarin.results import EnergyLedger, Provenance, Results
+from mascarin.start import Initial, MeasuredStart, resolved
+from mascarin.start import read as read_start
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -74,9 +77,12 @@ class Simulation:
     scheme : str
         ``sdirk2`` (default), ``backward-euler``, or ``apparent-capacity``: the paper's, which loses latent
         heat.
-    initial : ``"repeat"`` or float
+    initial : ``"repeat"``, float, mapping, GivenStart or MeasuredStart
         ``repeat``: the first period is repeated until nothing changes by more than 0.01 K. A number: that
-        temperature everywhere at the start. [degC]
+        temperature everywhere at the start. A mapping, such as ``{"zones": {"room": 24.1}}``: temperatures
+        of airs and surfaces, see `GivenStart`. A `MeasuredStart`: the first values of sensors. All but
+        ``repeat`` are the same for all members of an ensemble, by the nominal resistances, and constant for
+        derivatives. [degC]
     first_period : str or float
         Length of the period that is repeated. [s]
     measurements : Measurements, optional
@@ -100,7 +106,7 @@ class Simulation:
         end: object = None,
         outputs: Sequence[str] | None = None,
         scheme: Scheme = "sdirk2",
-        initial: Literal["repeat"] | float = "repeat",
+        initial: Initial = "repeat",
         first_period: str | float = "1d",
         measurements: Measurements | None = None,
         ranges: Mapping[str, tuple[float, float]] | None = None,
@@ -116,14 +122,26 @@ class Simulation:
         self.step_seconds = seconds_of(step)
         self.start, self.end = _period(climate, start, end)
         self.outputs = _chosen(building, outputs)
-        self._initial = _initial(initial)
+        asked = read_start(initial)
         self._first_period = seconds_of(first_period, "first_period")
         self._description: EngineDescription = building.to_engine(self.step_seconds, dict(ranges or {}))
         with _told_apart():
             self._plan = _engine.Plan(self._description.json)
         self._forcing = self._driven(measurements)
         _finite(self._forcing, self._description.channels, building)
+        self.initial = self._started(asked)
         self._require_set_points_apart(self.values[None, :])
+
+    def _started(self, asked: float | GivenStart | MeasuredStart | None) -> float | Profile | None:
+        """Temperature or temperatures at the start; None to repeat the first period."""
+        from mascarin.climate import CHANNELS
+
+        if not isinstance(asked, GivenStart | MeasuredStart):
+            return asked
+        # The weather of the first stage stands for that of the start.
+        now = dict(zip((*CHANNELS, *self._description.channels), self._forcing[0, 0].tolist(), strict=True))
+        ambient = Ambient(now["air_temperature"], now["day_of_year"], now)
+        return resolved(asked, self.building, self._description.nodes, ambient, self.start)
 
     def _driven(self, measurements: Measurements | None) -> Array:
         """Climate, measured columns and schedules at every stage, shape (steps, stages, channels)."""
@@ -224,7 +242,7 @@ class Simulation:
         digest.update(self._forcing.tobytes())
         outputs = [output.name for output in self.outputs]
         digest.update(
-            repr((self.scheme, self.step_seconds, self._initial, self._first_period, outputs)).encode()
+            repr((self.scheme, self.step_seconds, self.initial, self._first_period, outputs)).encode()
         )
         return digest.hexdigest()
 
@@ -489,12 +507,11 @@ class Simulation:
         return re.sub(r"step (\d+)", said, reason, count=1)
 
     def _options(self, probes: str, record_from: int, record_every: int) -> dict[str, Any]:
-        repeat = self._initial is None
+        repeat = self.initial is None
         return {
             "dt": self.step_seconds,
             "scheme": self.scheme,
-            # Where the repetition starts from matters only for its length.
-            "initial": float(self._forcing[:, -1, 0].mean()) if self._initial is None else self._initial,
+            "initial": self._temperatures,
             "warmup_steps": self._repeated_steps if repeat else 0,
             "warmup_tolerance": SETTLED,
             "warmup_max_cycles": MAX_CYCLES,
@@ -502,6 +519,16 @@ class Simulation:
             "record_from": record_from,
             "record_every": record_every,
         }
+
+    @cached_property
+    def _temperatures(self) -> float | dict[str, list[float]]:
+        """Temperatures at the start, as the engine takes them."""
+        if self.initial is None:
+            # Where the repetition starts from matters only for its length.
+            return float(self._forcing[:, -1, 0].mean())
+        if isinstance(self.initial, Profile):
+            return {key: list(getattr(self.initial, key)) for key in ("cells", "faces", "air")}
+        return self.initial
 
     @property
     def _repeated_steps(self) -> int:
@@ -531,8 +558,10 @@ class Simulation:
         )
 
     def _start_note(self, raw: Mapping[str, Any]) -> str:
-        if self._initial is not None:
-            return f"{self._initial:g} degC everywhere"
+        if isinstance(self.initial, Profile):
+            return self.initial.words
+        if self.initial is not None:
+            return f"{self.initial:g} degC everywhere"
         hours = self._repeated_steps * self.step_seconds / 3600.0
         return (
             f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
@@ -549,7 +578,7 @@ def simulate(
     end: object = None,
     outputs: Sequence[str] | None = None,
     scheme: Scheme = "sdirk2",
-    initial: Literal["repeat"] | float = "repeat",
+    initial: Initial = "repeat",
     first_period: str | float = "1d",
     measurements: Measurements | None = None,
 ) -> Results:
@@ -690,15 +719,6 @@ def _chosen(building: Building, names: Sequence[str] | None) -> list[Output]:
         return [building.output(name) for name in names]
     usual = ("air_temperature", "face_temperature", "interface_temperature", "sensor", "liquid_fraction")
     return [output for output in building.outputs() if output.kind in usual]
-
-
-def _initial(given: object) -> float | None:
-    """Temperature at the start, or None to repeat the first period."""
-    if given == "repeat":
-        return None
-    if isinstance(given, (int, float)) and not isinstance(given, bool) and -100.0 < given < 200.0:
-        return float(given)
-    raise InputError(f"initial: found {given!r}, expected 'repeat' or a temperature in degC")
 
 
 def _boundary_limits(building: Building) -> dict[str, tuple[float, float]]:

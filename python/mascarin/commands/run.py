@@ -198,8 +198,12 @@ def _print(results: Results) -> None:
         for name, row in _summary(results)["outputs"].items()
     ]
     print_table(("output", "unit", "min", "mean", "max"), rows)
-    print(f"\n{results.energy}")
     notes = results.provenance
+    print(f"\nstart: {notes.start}")
+    for output, at_start in zip(results.outputs, results.records[0], strict=True):
+        if output.kind == "liquid_fraction":
+            print(f"{output.name} at the start: {at_start:.3f}")
+    print(results.energy)
     if notes.reversals:
         print(f"{notes.reversals} times a cell with hysteresis melted and froze within one step")
     if notes.halved_steps:

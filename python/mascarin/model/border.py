@@ -67,6 +67,8 @@ class EngineDescription:
         Names of the schedules, which are the last of the channels.
     notes : tuple of str
         Warnings about the mesh.
+    nodes : mapping of (str, str) to int
+        Finite volumes by construction and layer.
     """
 
     json: str
@@ -75,6 +77,7 @@ class EngineDescription:
     channels: list[str]
     schedules: tuple[str, ...]
     notes: tuple[str, ...]
+    nodes: Mapping[tuple[str, str], int]
 
 
 def describe(building: Building, step_seconds: float, ranges: Mapping[str, Interval]) -> EngineDescription:
@@ -127,6 +130,7 @@ def describe(building: Building, step_seconds: float, ranges: Mapping[str, Inter
         channels=columns,
         schedules=tuple(schedules),
         notes=mesh.warnings,
+        nodes=mesh.nodes,
     )
 
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from mascarin.calibration.rules import WITH_SQUARES, SlopesName
 from mascarin.calibration.rules import MethodName as FitMethod
-from mascarin.errors import InputError
+from mascarin.errors import InputError, did_you_mean
 from mascarin.model.names import Name
 from mascarin.model.number import problem
 from mascarin.model.part import Part, fault, insist
+from mascarin.model.start import Degrees, GivenStart
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.validation.criteria import Criterion
@@ -60,6 +62,28 @@ def _bounds(given: Any) -> Any:
         )
     return given
 
+
+def _start(given: Any) -> Any:
+    """A word that is one of the two."""
+    if isinstance(given, str) and given not in ("repeat", "measured"):
+        expected = "repeat, measured, a temperature in degC, or a mapping of temperatures"
+        raise problem(f"'{given}'", expected, did_you_mean(given, ("repeat", "measured")))
+    return given
+
+
+def _kind_of_start(given: Any) -> str:
+    if isinstance(given, str):
+        return "word"
+    return "given" if isinstance(given, Mapping | GivenStart) else "number"
+
+
+Initial = Annotated[
+    Annotated[Literal["repeat", "measured"], Tag("word")]
+    | Annotated[Degrees, Tag("number")]
+    | Annotated[GivenStart, Tag("given")],
+    Discriminator(_kind_of_start),
+    BeforeValidator(_start),
+]
 
 #: A local time, ISO 8601, with or without an offset.
 Time = str
@@ -370,10 +394,10 @@ class StudyFile(Part):
     sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
     step: Duration = Field("15min", description="Time step")
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field("sdirk2", description="Scheme")
-    initial: Literal["repeat"] | Annotated[float, Field(gt=-100.0, lt=200.0)] = Field(
+    initial: Initial = Field(
         "repeat",
-        description="State that a run starts from: its first day repeated until it settles (repeat), or one "
-        "temperature everywhere [degC]",
+        description="State that a run starts from: its first day repeated until it settles (repeat), the "
+        "first values of the sensors (measured), one temperature everywhere [degC], or those that are given",
     )
     periods: Periods = Field(description="Which part of the record is for what")
     quality: Quality = Field(default_factory=lambda: Quality(mask=()), description="Suspicious stretches")

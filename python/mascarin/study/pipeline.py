@@ -24,6 +24,7 @@ from mascarin.model import Building, load
 from mascarin.progress import Progress
 from mascarin.results import Results
 from mascarin.simulation import Simulation
+from mascarin.start import Initial, MeasuredStart
 from mascarin.study.description import IdentificationPlan, SensitivityPlan, StudyFile, Variant, read_study
 from mascarin.study.effects import Effects
 from mascarin.study.fitting import fit_parameters, identify, independent_weight, problem
@@ -313,10 +314,21 @@ class Study:
             end=end,
             outputs=[*(sensor.output for sensor in self.file.sensors.values()), *further],
             scheme=self.file.scheme,
-            initial=self.file.initial,
+            initial=self.initial,
             measurements=self.measurements,
             ranges=self._ranges(building),
         )
+
+    @cached_property
+    def initial(self) -> Initial:
+        """What runs start from; sensors that are only shown say nothing of it."""
+        if self.file.initial != "measured":
+            return self.file.initial
+        columns: dict[str, list[str]] = {}
+        for sensor in self.file.sensors.values():
+            if sensor.use:
+                columns.setdefault(self.building.output(sensor.output).name, []).extend(sensor.columns)
+        return MeasuredStart(self.measurements, columns)
 
     def building_of(self, variant: str | None) -> Building:
         """The building of a variant; the study's own for None."""

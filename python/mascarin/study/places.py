@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from mascarin.errors import InputError
+from mascarin.model.start import StartError
 
 
 class _Several(InputError):
@@ -95,8 +96,8 @@ class Places:
             yield
 
     def blamed(self, error: InputError, *place: str | int) -> InputError:
-        """The same error with file, line and place in front, the place not said twice."""
-        text = str(error)
+        """The same error with file, line and place in front, its own where it has one; none is said twice."""
+        text, place = str(error), error.place if isinstance(error, StartError) else place
         for said in (".".join(map(str, place)), *map(str, place[-1:])):
             text = text.removeprefix(f"{said}: ")
         return InputError(f"{self.at(*place)}: {text}")

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from mascarin.climate import Climate, Measurements
     from mascarin.model import Building
     from mascarin.simulation import Scheme, Simulation
+    from mascarin.start import Initial
 
 
 def sweep(
@@ -38,7 +39,7 @@ def sweep(
     start: object = None,
     end: object = None,
     scheme: Scheme = "sdirk2",
-    initial: Literal["repeat"] | float = "repeat",
+    initial: Initial = "repeat",
     measurements: Measurements | None = None,
     workers: int | Executor | None = None,
     report: Callable[[int], object] | None = None,
@@ -106,7 +107,7 @@ def sweep_into(
     start: object = None,
     end: object = None,
     scheme: Scheme = "sdirk2",
-    initial: Literal["repeat"] | float = "repeat",
+    initial: Initial = "repeat",
     measurements: Measurements | None = None,
     workers: int | Executor | None = None,
     seed: int | None = None,
