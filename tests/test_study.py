@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -288,6 +289,77 @@ def test_what_keeps_from_an_aim_is_the_parameter_left_out(
                for n in done.content["notes"])  # fmt: skip
     reached = sum(a["passed"] for a in done.content["aims"])
     assert f"aims reached: {reached} of {len(done.content['aims'])}" in done.said
+
+
+def _left(done: Done) -> str:
+    """What the report says in its section on the rest; nothing where there is none."""
+    page = (done.out / "report.html").read_text(encoding="utf-8")
+    if 'id="shortfall"' not in page:
+        return ""
+    section = page[page.index('id="shortfall"') :]
+    return re.sub(r"<[^>]+>|\s+", " ", section[: section.index("</section")])
+
+
+#: The least that a study can say.
+LEAST = {
+    "criteria:\n  - {metric: rmse, limit: 0.25}\n": "",
+    "  joint: {column: joint, output: wall.interface_1_temperature, uncertainty: 0.2}\n": "",
+    "    materials.insulation.conductivity:\n": "",
+    "    materials.brick.conductivity:\n": "",
+    "    surfaces.wall.outside.absorptance:\n": "",
+}
+
+
+def test_the_rest_is_asked_for_without_aims_or_criteria_and_of_one_sensor(
+    quick: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for before, after in LEAST.items():
+        quick.edit(before, after)
+    found = carried_out(quick.study, quick.folder / "out", capsys)
+    assert "1 sensor\n" in found.said
+    assert found.content["aims"] == found.content["criteria"] == []
+    shortfall = found.content["shortfall"]
+    assert list(shortfall["sd"]) == ["core"]
+    assert shortfall["steps"]
+    assert shortfall["every"]["sd"]["core"] < 0.5 * shortfall["sd"]["core"]
+    assert "The table adds them one by one" in _left(found)
+
+
+def test_where_only_noise_is_left_no_parameter_is_blamed(
+    quick: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    quick.edit("step: 1h", "step: 10min")
+    quick.edit("criteria:\n  - {metric: rmse, limit: 0.25}\n", "")
+    found = carried_out(quick.study, quick.folder / "out", capsys)
+    shortfall = found.content["shortfall"]
+    assert shortfall["steps"] == []
+    assert shortfall["sd"]["joint"] == pytest.approx(NOISE, rel=0.15)
+    assert "No parameter takes a noticeable part of it away" in _left(found)
+
+
+def test_a_sensor_without_blind_values_is_left_out_and_named(
+    quick: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = pd.read_csv(quick.table, index_col=0)
+    table.loc["2023-03-08 05:00:00":, "core"] = np.nan  # five hours of the blind days are left
+    table.to_csv(quick.table)
+    found = carried_out(quick.study, quick.folder / "out", capsys)
+    assert list(found.content["shortfall"]["sd"]) == ["joint"]
+    assert list(found.content["residuals"]) == ["joint"]
+    said = [note["text"] for note in found.content["notes"] if note["title"] == "What is left"]
+    assert said[0].startswith("core: 5 values on the blind days are too few to say what is left")
+
+
+def test_too_short_a_rest_is_not_asked_about_and_said(
+    quick: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    quick.edit('["2023-03-02 00:00", "2023-03-06 00:00"]', '["2023-03-02 00:00", "2023-03-09 12:00"]')
+    quick.edit('  corroboration: ["2023-03-06 00:00", "2023-03-08 00:00"]\n', "")
+    found = carried_out(quick.study, quick.folder / "out", capsys)
+    assert "shortfall" not in found.content
+    assert _left(found) == ""
+    said = [note["text"] for note in found.content["notes"] if note["title"] == "What is left"]
+    assert [text[: text.index(" values")] for text in said] == ["joint: 11", "core: 11"]
 
 
 @pytest.mark.filterwarnings("always::UserWarning")

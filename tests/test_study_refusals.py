@@ -197,6 +197,20 @@ CASES = {
         "corroboration:",
         ("periods.corroboration", "overlaps the identification", "move one of the two"),
     ),
+    "identification to the end": Refused(
+        """identification: ["2023-03-02 00:00", "2023-03-06 00:00"]
+  corroboration: ["2023-03-06 00:00", "2023-03-08 00:00"]
+""",
+        'identification: ["2023-03-02 00:00", "2023-03-10 00:00"]\n',
+        "identification: [",
+        ("periods.identification", "leaves nothing of the record, up to 2023-03-09 23:30", "end it earlier"),
+    ),
+    "corroboration between two instants": Refused(
+        HELD,
+        '["2023-03-06 00:10", "2023-03-06 00:20"]',
+        "corroboration:",
+        ("periods.corroboration", "in which no measured instant lies", "make it longer"),
+    ),
     "unknown output": Refused(
         "output: core.temperature",
         "output: core.temprature",

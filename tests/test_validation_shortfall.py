@@ -87,6 +87,14 @@ def test_chance_is_not_taken_for_a_cause() -> None:
         days=DAY,
     )
     assert min(found.every.sd) > 0.98 * min(found.sd)
+    assert found.steps == ()
+
+
+def test_without_effects_nothing_is_named() -> None:
+    found = shortfall({"air": NOISE[:, 0]}, {}, uncertainty=[0.05], room={}, days=DAY)
+    assert found.steps == ()
+    assert found.every.paths == ()
+    assert found.every.sd == pytest.approx(found.sd)
 
 
 def test_gaps_and_short_records() -> None:

@@ -202,7 +202,8 @@ def _report(out: Path) -> None:
 
 def _tell(opened: Study, findings: Findings, out: Path) -> None:
     """A summary for the person at the terminal."""
-    lines = [f"{opened.file.name}: {opened.file.observed}, {len(opened.file.sensors)} sensors"]
+    count = len(opened.file.sensors)
+    lines = [f"{opened.file.name}: {opened.file.observed}, {count} sensor{'s' * (count != 1)}"]
     if opened.quality:
         lines.append("suspicious stretches:")
         lines += [

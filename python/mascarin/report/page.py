@@ -776,7 +776,7 @@ def _statistics(study: Mapping[str, Any]) -> list[dict[str, Any]]:
 def _shortfall(study: Mapping[str, Any]) -> dict[str, Any] | None:
     """Aims, and the parameters that would lead to them."""
     aims, found = study.get("aims", []), study.get("shortfall", {})
-    if not aims and not found.get("steps"):
+    if not aims and not found:
         return None
     sensors = list(found.get("sd", {}))
     changes = found["steps"][-1]["changes"] if found.get("steps") else {}
@@ -801,6 +801,7 @@ def _shortfall(study: Mapping[str, Any]) -> dict[str, Any] | None:
         "labels": [figures.label_of(study, sensor) for sensor in sensors],
         "rows": rows if sensors else [],
         "wished": wished,
+        "named": bool(found.get("steps")),
         "notes": [
             words
             for note in study.get("notes", [])

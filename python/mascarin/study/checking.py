@@ -162,6 +162,7 @@ def _runs(study: Study) -> None:
     file, blame = study.file, study.places.blame
     with blame("periods"):
         _ = study.simulation
+    _corroborated(study)
     for period in ("identification", "corroboration"):
         for name in (name for name, sensor in file.sensors.items() if sensor.use):
             with blame("sensors", name):
@@ -174,6 +175,24 @@ def _runs(study: Study) -> None:
             study.whole(name)
             if variant.identify and file.identification is not None:
                 study.problem(name)
+
+
+def _corroborated(study: Study) -> None:
+    """Refuse a study in which no instant is left to hold the fitted model against."""
+    if study.during["corroboration"].any():
+        return
+    held = study.span("corroboration")
+    with study.places.blame("periods", "identification" if held is None else "corroboration"):
+        why = "only days that the fit has not seen corroborate anything"
+        if held is not None:
+            raise InputError(
+                f"found {_words(*held)}, in which no measured instant lies; {why}: make it longer"
+            )
+        raise InputError(
+            f"found {_words(*study.identification)}, which leaves nothing of the record, up to "
+            f"{study.end:%Y-%m-%d %H:%M}, to hold the model against; {why}: end it earlier, or name a "
+            "corroboration before it"
+        )
 
 
 def _sensible(study: Study) -> None:

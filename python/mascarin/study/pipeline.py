@@ -118,7 +118,8 @@ class Findings:
     aims : list of Verdict
         What one would have liked to reach, and whether the fitted model does.
     rest : Shortfall or None
-        What would take the rest of the error away on the blind days; None where too little is compared.
+        What would take the rest of the error away on the blind days, of the sensors that show enough there;
+        None where none does.
     band : Band
         What the fitted model foresees of every sensor, and how often that held.
     profiles : list of Profile
@@ -504,7 +505,7 @@ class Study:
             sensitivity,
             fit,
             examinations,
-            [*band_words(self, foreseen), *diagnose(examinations.values())],
+            [*self._too_few(), *band_words(self, foreseen), *diagnose(examinations.values())],
             judge(self.file.aims, fitted.scores, where=f"{self.path}: aims"),
             rest,
             foreseen,
@@ -636,6 +637,27 @@ class Study:
             if np.ptp(run.weather(channel)) > 0.0
         }
 
+    @cached_property
+    def _blind_values(self) -> dict[str, int]:
+        """How many values each sensor has on the blind days."""
+        count = np.isfinite(self.observation.measured[self.during["blind"]]).sum(axis=0)
+        return dict(zip(self.observation.names, count.tolist(), strict=True))
+
+    @property
+    def _telling(self) -> dict[str, int]:
+        """Sensors with values enough on the blind days to say what is left of them, and their columns."""
+        enough = (count >= FEWEST_EXAMINED for count in self._blind_values.values())
+        return {name: s for s, (name, use) in enumerate(zip(self._blind_values, enough, strict=True)) if use}
+
+    def _too_few(self) -> list[str]:
+        """Sensors of which nothing can be said, in words."""
+        return [
+            f"{name}: {count} values on the blind days are too few to say what is left or what would take it "
+            f"away; {FEWEST_EXAMINED} at least are needed."
+            for name, count in self._blind_values.items()
+            if count < FEWEST_EXAMINED
+        ]
+
     def _examined(self, run: ModelRun) -> dict[str, Examination]:
         """What is left of each sensor on the blind days."""
         observation, local = self.observation, self.observation.times.tz_localize(None)
@@ -652,27 +674,27 @@ class Study:
                 sensor=name,
                 unit=run.results.outputs[s].unit,
             )
-            for s, name in enumerate(observation.names)
-            if np.isfinite(observation.measured[self.during["blind"], s]).sum() >= FEWEST_EXAMINED
+            for name, s in self._telling.items()
         }
 
     def _rest(self, run: ModelRun, fit: Fit, tell: Teller) -> Shortfall | None:
         """What would take the rest of the error away on the blind days."""
         observation, blind = self.observation, self.during["blind"].copy()
-        error = observation.simulated(run.results.index, run.results.records) - observation.measured
-        if np.isfinite(error[blind]).sum(axis=0).min() < FEWEST_EXAMINED:
+        if not self._telling:
             return None
+        error = observation.simulated(run.results.index, run.results.records) - observation.measured
         effects = Effects(run.simulation, run.results, run.simulation.vector(fit.values))
         # Of a long record every other instant, or every third, says the same.
         values = int(blind.sum()) * len(observation.names) * effects.count
-        blind &= np.arange(blind.size) % math.ceil(values / MOST_EFFECTS) == 0
+        blind &= np.arange(blind.size) % max(1, math.ceil(values / MOST_EFFECTS)) == 0
         with tell.about("what is left") as progress:
             found = effects.found(observation, blind, progress.update)
         local = observation.times.tz_localize(None)
+        columns = list(self._telling.values())
         return shortfall(
-            dict(zip(observation.names, error[blind].T, strict=True)),
-            found,
-            uncertainty=[sensor.uncertainty / NORMAL_95 for sensor in self.file.sensors.values()],
+            {name: error[blind, s] for name, s in self._telling.items()},
+            {path: effect[:, columns] for path, effect in found.items()},
+            uncertainty=[self.file.sensors[name].uncertainty / NORMAL_95 for name in self._telling],
             room=effects.room,
             days=np.asarray((local[blind] - local[0]).days),
             weight=independent_weight(self.sought, observation.interval),

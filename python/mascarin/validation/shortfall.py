@@ -7,7 +7,7 @@ and nothing of it goes back into the fit: the days stay blind.
 
 A change has a normal prior about the fitted value, a quarter of its range wide, and stays inside the range.
 What it leaves is always told on days that the change was not found on: the record is cut into weeks, and
-every other week judges the rest.
+every other week judges the rest. Where no change makes the error smaller there, none is named.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ Flags = NDArray[np.bool_]
 PRIOR: Final = 0.25
 #: Parameters that are named one after the other, at most.
 MOST: Final = 6
-#: A parameter is named when it takes away this part at least of what all of them take away.
+#: A parameter is named when it takes away this part at least of what all of them take away, and any at all
+#: when some of them take this part of the squared error away where they were not found.
 _WORTH: Final = 0.05
 #: The search for the best changes ends when none moves by more [ranges], or after so many sweeps.
 _STILL: Final = 1e-6
@@ -71,7 +72,7 @@ class Shortfall:
     sd : tuple of float
         Standard deviation of the error as it is. [unit of each]
     steps : tuple of Correction
-        The most telling parameter, then with it the next, and so on.
+        The most telling parameter, then with it the next, and so on; empty where none helps.
     every : Correction
         All parameters together: what the equations can do.
     """
@@ -154,9 +155,11 @@ def shortfall(
         gained = gains[best]
         chosen.append(best)
         steps.append(fault.correction(chosen))
-    return Shortfall(
-        tuple(residuals), tuple(fault.scatter(fault.error)), tuple(steps), fault.correction(everything)
-    )
+    as_it_is, every = tuple(fault.scatter(fault.error)), fault.correction(everything)
+    least = min(fault.weighed(found.sd) for found in (*steps, every))
+    if least > (1.0 - _WORTH) * fault.weighed(as_it_is):
+        steps = []
+    return Shortfall(tuple(residuals), as_it_is, tuple(steps), every)
 
 
 def words(aims: Iterable[Verdict], found: Shortfall, period: str) -> list[str]:
@@ -224,8 +227,8 @@ class _Fault:
         if np.ptp(piece) == 0:
             piece = (np.arange(len(error)) >= len(error) // 2).astype(np.int64)
         self.pieces: list[Flags] = [piece == 0, piece == 1]
-        scale = np.sqrt(weight) / np.asarray(uncertainty, dtype=np.float64)
-        self.normal = [self._normal(use, scale) for use in self.pieces]
+        self.scale: Floats = np.sqrt(weight) / np.asarray(uncertainty, dtype=np.float64)
+        self.normal = [self._normal(use, self.scale) for use in self.pieces]
 
     def _centred(self, values: Floats) -> Floats:
         """A series less its mean where something is measured, zero elsewhere, shape (n, S)."""
@@ -235,7 +238,9 @@ class _Fault:
         return centred
 
     def _normal(self, use: Flags, scale: Floats) -> tuple[Floats, Floats]:
-        rows = np.stack([(effect[use] * scale).ravel() for effect in self.effects])
+        rows = np.array([(effect[use] * scale).ravel() for effect in self.effects]).reshape(
+            len(self.effects), int(use.sum()) * scale.size
+        )
         return rows @ rows.T, -rows @ (self.error[use] * scale).ravel()
 
     def _whole(self) -> tuple[Floats, Floats]:
@@ -265,6 +270,10 @@ class _Fault:
         return Correction(
             tuple(self.paths[k] for k in chosen), tuple(map(float, changes)), tuple(self.scatter(left))
         )
+
+    def weighed(self, sd: Sequence[float]) -> float:
+        """Sum of the squared standard deviations over the uncertainties of the sensors. [-]"""
+        return float(np.sum((np.asarray(sd) * self.scale) ** 2))
 
     def scatter(self, left: Floats) -> list[float]:
         """Standard deviation of each sensor. [unit of each]"""
