@@ -692,7 +692,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn free_answer(&self, w: usize, side: usize, source: S) -> S {
         match self.local_balance(2 * w + side) {
             LocalBalance::Fixed(_) => S::zero(),
-            LocalBalance::Gain(gain) => source / (gain.slope - self.responses[w][side][side]),
+            LocalBalance::Gain(_) => source * self.inverses[w],
         }
     }
 
