@@ -164,17 +164,24 @@ fn cut_off(pieces: Vec<Vec<Point>>, hole: &[Point]) -> Vec<Vec<Point>> {
 
 /// Area that two convex polygons share, the second turning to the left; `scratch` is overwritten.
 fn shared(a: &[Point], b: &[Point], scratch: &mut [Vec<Point>; 2]) -> f64 {
-    if apart(a, b) {
-        return 0.0;
-    }
     let [rest, next] = scratch;
     rest.clear();
     rest.extend_from_slice(a);
     for (k, &from) in b.iter().enumerate() {
-        left_of(rest, from, b[(k + 1) % b.len()], next);
-        core::mem::swap(rest, next);
-        if rest.len() < 3 {
+        let to = b[(k + 1) % b.len()];
+        let (mut left, mut right) = (false, false);
+        for &point in rest.iter() {
+            let side = turn(from, to, point);
+            left |= side > 0.0;
+            right |= side < 0.0;
+        }
+        if !left {
             return 0.0;
+        }
+        // Most edges pass by.
+        if right {
+            left_of(rest, from, to, next);
+            core::mem::swap(rest, next);
         }
     }
     area(rest)

@@ -247,8 +247,8 @@ struct FilledGap<S> {
     driving: S,
     /// Height over thickness [-].
     aspect: S,
-    /// Factor of the circulation round the whole gap [-].
-    round: S,
+    /// Factor of the circulation round the whole gap [-], and the Rayleigh number where it sets in.
+    round: [S; 2],
     /// Of the outside normal [deg].
     tilt: S,
     exchange: S,
@@ -264,7 +264,10 @@ impl<S: Real> FilledGap<S> {
             inverse: S::one() / thickness,
             driving: (density * density * thickness * thickness * thickness).scale(GRAVITY),
             aspect,
-            round: aspect.powf(S::constant(-0.272)).scale(0.242),
+            round: [
+                aspect.powf(S::constant(-0.272)).scale(0.242),
+                aspect.scale(f64::powf(0.242, -1.0 / 0.272)),
+            ],
             tilt,
             exchange,
         }
@@ -315,9 +318,9 @@ fn radians<S: Real>(degrees: S) -> S {
     degrees.scale(core::f64::consts::PI / 180.0)
 }
 
-/// 90 deg; the circulation round the whole gap with its factor.
+/// 90 deg; the circulation round the whole gap with its factor and the Rayleigh number from which it exceeds one.
 #[inline(always)]
-fn vertical_nusselt<S: Real>(rayleigh: S, round: S) -> S {
+fn vertical_nusselt<S: Real>(rayleigh: S, [round, onset]: [S; 2]) -> S {
     let logarithm = rayleigh.max(S::constant(1e-12)).ln();
     let (slow, fast) = (rayleigh.lt(S::constant(1e4)), !rayleigh.lt(S::constant(5e4)));
     let choose = |below: f64, between: f64, above: f64| {
@@ -326,7 +329,7 @@ fn vertical_nusselt<S: Real>(rayleigh: S, round: S) -> S {
     let exponent = choose(2.298_475_5, 0.4134, 1.0 / 3.0);
     let factor = choose(1.759_667_8e-10, 0.028_154, 0.067_383_8);
     let core = choose(1.0, 0.0, 0.0) + (logarithm * exponent).exp() * factor;
-    core.max(round * logarithm.scale(0.272).exp())
+    if onset.lt(rayleigh).any() { core.max(round * logarithm.scale(0.272).exp()) } else { core }
 }
 
 /// 60 deg.
