@@ -11,6 +11,7 @@ use crate::ledger::Ledger;
 use crate::march::{Options, Watch, check, march_seen};
 use crate::plan::Plan;
 use crate::real::Dual;
+use crate::state::State;
 use crate::step::Stepper;
 
 /// Records of a run and their slopes.
@@ -42,14 +43,17 @@ pub fn jacobian(
         )));
     }
     let weather = Weather::new(plan, forcing);
+    // Parameters that share a thread share the plain run that they follow.
+    let share = which.len().div_ceil(rayon::current_num_threads());
     let parts: Vec<_> = which
-        .par_iter()
-        .map(|&by| {
-            let part = along(plan, numbers, by, &weather, options, watch);
-            watch.done.fetch_add(1, Ordering::Relaxed);
+        .par_chunks(share)
+        .map(|some| {
+            let part = along(plan, numbers, some, &weather, options, watch);
+            watch.done.fetch_add(some.len(), Ordering::Relaxed);
             part
         })
         .collect::<Result<_, _>>()?;
+    let parts: Vec<_> = parts.into_iter().flatten().collect();
     let records = parts[0].iter().map(|record| record.value).collect();
     let slopes = parts.iter().flatten().map(|record| record.slope[0]).collect();
     Ok(Jacobian { records, slopes })
@@ -58,33 +62,52 @@ pub fn jacobian(
 /// A number with its slope by the parameter in hand.
 type Sloped = Dual<f64, 1>;
 
-/// Runs plain numbers, and beside them those with slopes, which take each step by one linear solve at its solution.
+/// A run with slopes by one parameter, on its way beside a plain one.
+struct Follower<'a> {
+    stepper: Stepper<'a, Sloped>,
+    state: State<Sloped>,
+    records: Vec<Sloped>,
+}
+
+/// Runs plain numbers, and beside them those with slopes by each parameter, which take each step by one linear solve at
+/// its solution. Their records, by parameter.
 fn along(
     plan: &Plan,
     numbers: &[f64],
-    by: usize,
+    by: &[usize],
     weather: &Weather<'_>,
     options: &Options,
     watch: &Watch,
-) -> Result<Vec<Sloped>, EngineError> {
-    let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::fixed(value)).collect();
-    sloped[by] = Sloped::variable(numbers[by], 0);
-    let mut stepper = Stepper::new(plan, &sloped, options.scheme);
-    let mut state = stepper.begin(&options.initial);
-    let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
+) -> Result<Vec<Vec<Sloped>>, EngineError> {
+    let sloped = |by: usize| -> Vec<_> {
+        let number = |(k, &value)| if k == by { Sloped::variable(value, 0) } else { Sloped::fixed(value) };
+        numbers.iter().enumerate().map(number).collect()
+    };
+    let vectors: Vec<_> = by.iter().map(|&by| sloped(by)).collect();
+    let mut followers: Vec<_> = vectors
+        .iter()
+        .map(|numbers| {
+            let stepper = Stepper::new(plan, numbers, options.scheme);
+            let state = stepper.begin(&options.initial);
+            Follower { state, stepper, records: Vec::new() }
+        })
+        .collect();
     let mut unused = Ledger::new();
     let mut plain = Stepper::new(plan, numbers, options.scheme);
     plain.known.start();
     march_seen(plain, weather, options, watch, |plain, reached, made| {
-        stepper.known.follow(plain.known.solution(&reached.load));
-        made.make(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
-        // Rounding and tolerances must not add up: the slopes are those along the plain run, as in reverse.
-        let mut values = reached.numbers();
-        state = state.map(|number| Sloped { value: values.next().unwrap_or(number.value), ..number });
-        if made.row(options).is_some() {
-            records.extend(options.probes.iter().map(|probe| probe.read(plan, &stepper, &state)));
+        let solution = plain.known.solution(&reached.load);
+        for Follower { stepper, state, records } in &mut followers {
+            stepper.known.follow(solution.clone());
+            made.make(stepper, state, weather, options.dt, &mut unused)?;
+            // Rounding and tolerances must not add up: the slopes are those along the plain run, as in reverse.
+            let mut values = reached.numbers();
+            *state = state.map(|number| Sloped { value: values.next().unwrap_or(number.value), ..number });
+            if made.row(options).is_some() {
+                records.extend(options.probes.iter().map(|probe| probe.read(plan, stepper, state)));
+            }
         }
         Ok(())
     })?;
-    Ok(records)
+    Ok(followers.into_iter().map(|follower| follower.records).collect())
 }
