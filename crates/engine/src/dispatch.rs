@@ -81,6 +81,23 @@ pub fn run<W: Packed>(level: Level, work: W) -> W::Output {
     }
 }
 
+/// Does work on plain numbers that stand side by side, such as slopes, with wider instructions where the machine has them.
+#[inline(always)]
+pub(crate) fn widened<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2")]
+        unsafe fn inside<R>(work: impl FnOnce() -> R) -> R {
+            work()
+        }
+        if avx2::available() {
+            // SAFETY: the machine has these instructions.
+            return unsafe { inside(work) };
+        }
+    }
+    work()
+}
+
 /// Does the work with the lanes that every machine has.
 pub fn run_plain<W: Packed>(work: W) -> W::Output {
     work.run(Lanes)

@@ -610,7 +610,7 @@ impl<S: Real, const K: usize> Real for Dual<S, K> {
     }
     #[inline(always)]
     fn vectorised<R>(work: impl FnOnce() -> R) -> R {
-        S::vectorised(work)
+        if S::LANES == 1 && K > 1 { crate::dispatch::widened(work) } else { S::vectorised(work) }
     }
     #[inline(always)]
     fn inverse_cbrt(self) -> Self {

@@ -43,8 +43,8 @@ pub fn jacobian(
         )));
     }
     let weather = Weather::new(plan, forcing);
-    // Parameters that share a thread share the plain run that they follow.
-    let share = which.len().div_ceil(rayon::current_num_threads());
+    // Groups that share a thread share the plain run that they follow.
+    let share = GROUP * which.len().div_ceil(GROUP).div_ceil(rayon::current_num_threads());
     let parts: Vec<_> = which
         .par_chunks(share)
         .map(|some| {
@@ -53,24 +53,35 @@ pub fn jacobian(
             part
         })
         .collect::<Result<_, _>>()?;
-    let parts: Vec<_> = parts.into_iter().flatten().collect();
-    let records = parts[0].iter().map(|record| record.value).collect();
-    let slopes = parts.iter().flatten().map(|record| record.slope[0]).collect();
-    Ok(Jacobian { records, slopes })
+    let groups: Vec<_> = parts.into_iter().flatten().collect();
+    let records = groups[0].records.iter().map(|record| record.value).collect();
+    let slopes = groups.iter().flat_map(|group| {
+        (0..group.parameters).flat_map(|k| group.records.iter().map(move |record| record.slope[k]))
+    });
+    Ok(Jacobian { records, slopes: slopes.collect() })
 }
 
-/// A number with its slope by the parameter in hand.
-type Sloped = Dual<f64, 1>;
+/// Parameters whose slopes are carried side by side.
+const GROUP: usize = 8;
 
-/// A run with slopes by one parameter, on its way beside a plain one.
+/// A number with its slopes by the parameters of a group.
+type Sloped = Dual<f64, GROUP>;
+
+/// A run with the slopes of a group, on its way beside a plain one.
 struct Follower<'a> {
     stepper: Stepper<'a, Sloped>,
     state: State<Sloped>,
+    slopes: Slopes,
+}
+
+/// What a group has recorded.
+struct Slopes {
+    parameters: usize,
     records: Vec<Sloped>,
 }
 
-/// Runs plain numbers, and beside them those with slopes by each parameter, which take each step by one linear solve at
-/// its solution. Their records, by parameter.
+/// Runs plain numbers, and beside them those with slopes by each group of parameters, which take each step by one linear
+/// solve at its solution.
 fn along(
     plan: &Plan,
     numbers: &[f64],
@@ -78,18 +89,22 @@ fn along(
     weather: &Weather<'_>,
     options: &Options,
     watch: &Watch,
-) -> Result<Vec<Vec<Sloped>>, EngineError> {
-    let sloped = |by: usize| -> Vec<_> {
-        let number = |(k, &value)| if k == by { Sloped::variable(value, 0) } else { Sloped::fixed(value) };
-        numbers.iter().enumerate().map(number).collect()
+) -> Result<Vec<Slopes>, EngineError> {
+    let sloped = |group: &[usize]| {
+        let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::fixed(value)).collect();
+        for (which, &by) in group.iter().enumerate() {
+            // A parameter may stand there twice.
+            sloped[by].slope[which] = 1.0;
+        }
+        (sloped, group.len())
     };
-    let vectors: Vec<_> = by.iter().map(|&by| sloped(by)).collect();
+    let vectors: Vec<_> = by.chunks(GROUP).map(sloped).collect();
     let mut followers: Vec<_> = vectors
         .iter()
-        .map(|numbers| {
+        .map(|(numbers, parameters)| {
             let stepper = Stepper::new(plan, numbers, options.scheme);
             let state = stepper.begin(&options.initial);
-            Follower { state, stepper, records: Vec::new() }
+            Follower { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })
         .collect();
     let mut unused = Ledger::new();
@@ -97,17 +112,17 @@ fn along(
     plain.known.start();
     march_seen(plain, weather, options, watch, |plain, reached, made| {
         let solution = plain.known.solution(&reached.load);
-        for Follower { stepper, state, records } in &mut followers {
+        for Follower { stepper, state, slopes } in &mut followers {
             stepper.known.follow(solution.clone());
             made.make(stepper, state, weather, options.dt, &mut unused)?;
             // Rounding and tolerances must not add up: the slopes are those along the plain run, as in reverse.
             let mut values = reached.numbers();
             *state = state.map(|number| Sloped { value: values.next().unwrap_or(number.value), ..number });
             if made.row(options).is_some() {
-                records.extend(options.probes.iter().map(|probe| probe.read(plan, stepper, state)));
+                slopes.records.extend(options.probes.iter().map(|probe| probe.read(plan, stepper, state)));
             }
         }
         Ok(())
     })?;
-    Ok(followers.into_iter().map(|follower| follower.records).collect())
+    Ok(followers.into_iter().map(|follower| follower.slopes).collect())
 }
