@@ -8,6 +8,7 @@ Data go to standard output, everything else to standard error.
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import sys
 import traceback
@@ -157,6 +158,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code.
     """
+    if arguments is None:
+        # What is imported stays: looking through it again and again finds nothing to free.
+        gc.set_threshold(100_000)
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = _take_debug(words)
     out, err = (cast("TextIO", _Output(stream)) for stream in (sys.stdout, sys.stderr))

@@ -227,6 +227,8 @@ def face_names(faces: list[ZoneFace]) -> list[str]:
 
 
 def _windows_lie_in_walls(building: Building) -> Faults:
+    if not building.windows:
+        return
     drawn = outlines(building.surfaces)
     for name, window in building.windows.items():
         wall, at = building.surfaces[window.surface], ("windows", name)
@@ -254,9 +256,11 @@ def _windows_lie_in_walls(building: Building) -> Faults:
         yield from _beside_the_others(building, name, polygon, drawn)
     for name, surface in building.surfaces.items():
         inside = dict(windows_of(name, building.windows))
+        if not inside:
+            continue
         gross = float(surface.area or drawn_areas(building.surfaces).get(name, 0.0))
         areas = {one: _window_area(one, window) for one, window in inside.items()}
-        if areas and sum(areas.values()) >= gross:
+        if sum(areas.values()) >= gross:
             listed = ", ".join(f"{one} {area:.2f}" for one, area in areas.items())
             yield fault(
                 ("windows", max(areas, key=lambda one: areas[one]), "area"),
