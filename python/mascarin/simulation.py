@@ -16,10 +16,7 @@ from mascarin import _engine
 from mascarin.climate.table import seconds_of
 from mascarin.climate.timezones import moment
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.model.start import Ambient, GivenStart, Profile
 from mascarin.results import EnergyLedger, Provenance, Results
-from mascarin.start import Initial, MeasuredStart, resolved
-from mascarin.start import read as read_start
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -27,6 +24,8 @@ if TYPE_CHECKING:
 
     from mascarin.climate import Climate, Measurements
     from mascarin.model import Building, EngineDescription, Output, Parameter
+    from mascarin.model.start import GivenStart, Profile
+    from mascarin.start import Initial, MeasuredStart
 
     Array = npt.NDArray[np.float64]
 
@@ -116,13 +115,15 @@ class Simulation:
                 f"scheme: found '{scheme}', expected one of {', '.join(SCHEMES)}. "
                 f"{did_you_mean(scheme, SCHEMES)}"
             )
+        from mascarin.start import read as start_asked_for
+
         self.building = building
         self.climate = climate
         self.scheme: Scheme = scheme
         self.step_seconds = seconds_of(step)
         self.start, self.end = _period(climate, start, end)
         self.outputs = _chosen(building, outputs)
-        asked = read_start(initial)
+        asked = start_asked_for(initial)
         self._first_period = seconds_of(first_period, "first_period")
         self._description: EngineDescription = building.to_engine(self.step_seconds, dict(ranges or {}))
         with _told_apart():
@@ -134,10 +135,12 @@ class Simulation:
 
     def _started(self, asked: float | GivenStart | MeasuredStart | None) -> float | Profile | None:
         """Temperature or temperatures at the start; None to repeat the first period."""
-        from mascarin.climate import CHANNELS
-
-        if not isinstance(asked, GivenStart | MeasuredStart):
+        if asked is None or isinstance(asked, float):
             return asked
+        from mascarin.climate import CHANNELS
+        from mascarin.model.start import Ambient
+        from mascarin.start import resolved
+
         # The weather of the first stage stands for that of the start.
         now = dict(zip((*CHANNELS, *self._description.channels), self._forcing[0, 0].tolist(), strict=True))
         ambient = Ambient(now["air_temperature"], now["day_of_year"], now)
@@ -526,9 +529,9 @@ class Simulation:
         if self.initial is None:
             # Where the repetition starts from matters only for its length.
             return float(self._forcing[:, -1, 0].mean())
-        if isinstance(self.initial, Profile):
-            return {key: list(getattr(self.initial, key)) for key in ("cells", "faces", "air")}
-        return self.initial
+        if isinstance(self.initial, float):
+            return self.initial
+        return {key: list(getattr(self.initial, key)) for key in ("cells", "faces", "air")}
 
     @property
     def _repeated_steps(self) -> int:
@@ -558,10 +561,10 @@ class Simulation:
         )
 
     def _start_note(self, raw: Mapping[str, Any]) -> str:
-        if isinstance(self.initial, Profile):
-            return self.initial.words
-        if self.initial is not None:
+        if isinstance(self.initial, float):
             return f"{self.initial:g} degC everywhere"
+        if self.initial is not None:
+            return self.initial.words
         hours = self._repeated_steps * self.step_seconds / 3600.0
         return (
             f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
