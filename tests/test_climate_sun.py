@@ -1,5 +1,9 @@
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -70,3 +74,15 @@ def test_origin_only_moves_the_zero_of_time() -> None:
     plain = SunPath.over(45.0, 5.0, seconds[0], seconds[-1]).vector(seconds)
     moved = SunPath.over(45.0, 5.0, seconds[0], seconds[-1], seconds[0]).vector(seconds - seconds[0])
     assert np.max(np.abs(plain - moved)) < 1e-9
+
+
+def test_a_yearly_file_and_its_sun_need_one_file_of_pvlib(data_dir: Path) -> None:
+    script = (
+        "import sys; from pathlib import Path; from mascarin.climate.readers import read_epw;"
+        "from mascarin.climate.sun import SunPath;"
+        f"year = read_epw(Path({str(data_dir / 'bestest' / '725650TYCST.epw')!r}));"
+        "SunPath.over(*year.place[:2], 0.0, 86400.0);"
+        "print([name for name in ('pvlib', 'scipy') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -47,7 +47,16 @@ def test_the_numbers_are_in_the_tables(html: str) -> None:
 def test_drawings_say_what_they_show(html: str) -> None:
     said = re.findall(r'<svg class="[^"]*" viewBox="[^"]*" role="img" aria-label="([^"]+)"', html)
     assert len(said) == html.count("<svg ") == 10 + 10 + 3 + 4 + 13 + 1
-    assert any(text.startswith("Annual heating, low mass. 600: 4.38 of 3.99 to 4.5;") for text in said)
+    assert any(text.startswith("Annual heating, low mass. 600: 4.380 of 3.993 to 4.504;") for text in said)
+
+
+def test_what_lies_outside_has_the_digits_of_its_range(html: str) -> None:
+    lines = re.findall(r"<li>(\w+: [^<]* where the programs have [^<]*)</li>", html)
+    assert lines
+    for line in lines:
+        numbers = re.findall(r"-?\d+\.?\d*", line.replace("−", "-"))[-3:]
+        found, low, high = (float(number) for number in numbers)
+        assert not low <= found <= high, line
 
 
 def test_nothing_is_loaded_or_run(html: str) -> None:

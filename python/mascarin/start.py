@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from mascarin.errors import InputError
 from mascarin.model.start import (
+    LIMITS,
     Ambient,
     GivenStart,
     Known,
@@ -30,8 +31,7 @@ if TYPE_CHECKING:
 
 #: A sensor's first value is looked for this long after the start. [s]
 WITHIN: Final = 3600.0
-#: A measured temperature of a building lies between these. [degC]
-_LIMITS: Final = (-100.0, 200.0)
+_BETWEEN: Final = f"between {LIMITS[0]:g} and {LIMITS[1]:g} degC"
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +92,11 @@ class MeasuredStart:
             value = float(row[np.isfinite(row)].mean()) if np.isfinite(row).any() else None
             if value is None:
                 continue
-            if not _LIMITS[0] < value < _LIMITS[1]:
+            if not LIMITS[0] < value < LIMITS[1]:
                 raise StartError(
-                    ("initial",), f"found {value:g} in {told} at the start, expected a temperature in degC"
+                    ("initial",),
+                    f"found {value:g} in {told} at the start, expected a temperature {_BETWEEN}: correct the "
+                    "column or its unit, or leave that sensor out (in a study use: false)",
                 )
             return value
         raise StartError(
@@ -121,7 +123,7 @@ def read(asked: object) -> float | GivenStart | MeasuredStart | None:
         return asked
     if isinstance(asked, str) and asked == "repeat":
         return None
-    if isinstance(asked, (int, float)) and not isinstance(asked, bool) and _LIMITS[0] < asked < _LIMITS[1]:
+    if isinstance(asked, (int, float)) and not isinstance(asked, bool) and LIMITS[0] < asked < LIMITS[1]:
         return float(asked)
     if isinstance(asked, Mapping):
         from mascarin.model.reading import explained
@@ -132,8 +134,8 @@ def read(asked: object) -> float | GivenStart | MeasuredStart | None:
         except ValidationError as error:
             raise explained(error, plain, "initial") from None
     raise InputError(
-        f"initial: found {asked!r}, expected 'repeat' or a temperature in degC, a mapping of temperatures, "
-        "or a MeasuredStart"
+        f"initial: found {asked!r}, expected 'repeat', a temperature {_BETWEEN}, a mapping of temperatures "
+        "such as {'zones': {'room': 21}}, or a MeasuredStart"
     )
 
 

@@ -17,6 +17,7 @@ import importlib.machinery
 import importlib.util
 import sys
 from dataclasses import dataclass
+from functools import cache
 from types import ModuleType
 from typing import Final
 
@@ -117,6 +118,7 @@ class SunPath:
         return _cubic(self.extra[:, None], place)[..., 0]
 
 
+@cache
 def _algorithm() -> ModuleType:
     """The file of pvlib with the algorithm, without the rest of pvlib where that is not in use already.
 

@@ -34,7 +34,9 @@ _LEAST: Final = 1e-3
 #: Places closer than this are one. [m2 K/W]
 _SAME: Final = 1e-9
 
-Degrees = Annotated[float, Field(gt=-100.0, lt=200.0, strict=True)]
+#: Temperatures of a building lie between these. [degC]
+LIMITS: Final = (-100.0, 200.0)
+Degrees = Annotated[float, Field(gt=LIMITS[0], lt=LIMITS[1], strict=True)]
 
 
 def _one_or_two(raw: Any) -> str:

@@ -169,7 +169,7 @@ def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> d
                 chart.bar(x, x + 0.85 * width, 0.0, theirs.programs[program], _CLASSES[index])
         x = left + 6 * width
         chart.bar(x, x + width, 0.0, row.value, "ours" if row.passed else "ours outside")
-    said = "; ".join(f"{name}: {text.significant(row.value)} of {_span(row)}" for name, row in rows)
+    said = "; ".join(f"{name}: {_shown(row, row.value)} of {_span(row)}" for name, row in rows)
     return {"title": f"{title}, {text.unit(unit)}", "drawing": chart.markup(f"{title}. {said}")}
 
 
@@ -179,7 +179,8 @@ def _outside(row: Quantity) -> str:
 
 
 def _span(row: Quantity) -> str:
-    return f"{text.significant(_theirs(row).low)} to {text.significant(_theirs(row).high)}"
+    # With the digits of the number beside them: cut shorter, they would put it on the wrong side.
+    return f"{_shown(row, _theirs(row).low)} to {_shown(row, _theirs(row).high)}"
 
 
 def _theirs(row: Quantity) -> Range:
