@@ -213,10 +213,10 @@ def jacobian(
 ) -> xr.Dataset:
     """Series of a building and their derivatives by some parameters, in forward mode.
 
-    Each parameter is a run of its own: this pays where parameters are few and series many. What comes
-    back is the exact derivative of the discrete solution, through phase change, convection that depends on
-    temperature and wind, long-wave exchange and the repeated start. Where the model switches (the ends of a
-    melting range, windward and leeward) it is the one-sided slope of the branch taken.
+    Slopes by eight parameters go along one run, side by side: this pays where parameters are few and series
+    many. What comes back is the exact derivative of the discrete solution, through phase change, convection
+    that depends on temperature and wind, long-wave exchange and the repeated start. Where the model switches
+    (the ends of a melting range, windward and leeward) it is the one-sided slope of the branch taken.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ class Squares:
     def jacobian(self, z: Floats) -> Floats:
         """Exact, or forward differences, backward at the upper bound or where the model fails ahead."""
         if self._exact:
-            # Each parameter is a run of its own.
+            # Counted as differences are: a run for each parameter.
             self.asked += z.size
             data = exact(self._problem, self._evaluator, z)[self._problem.mask] * self._scale[:, None]
             return np.concatenate([data, self._evaluator.cost.prior_slopes(z)])
