@@ -81,9 +81,9 @@ def test_an_output_by_its_alias(everything: Building, island: Climate) -> None:
         ({"end": "2001-01-02 00:10"}, "not a whole number of steps"),
         ({"step": "soon"}, "expected a positive time"),
         ({"step": -60}, "expected a positive time"),
-        ({"initial": "warm"}, "expected 'repeat' or a temperature"),
-        ({"initial": True}, "expected 'repeat' or a temperature"),
-        ({"initial": 500.0}, "expected 'repeat' or a temperature"),
+        ({"initial": "warm"}, "expected 'repeat', a temperature between -100 and 200 degC"),
+        ({"initial": True}, "expected 'repeat', a temperature between -100 and 200 degC"),
+        ({"initial": 500.0}, "expected 'repeat', a temperature between -100 and 200 degC"),
     ],
 )
 def test_what_cannot_be_used_is_refused(
