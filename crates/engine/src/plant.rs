@@ -93,9 +93,6 @@ pub(crate) struct Plants<S: Real> {
     limits: Vec<Limits<S>>,
     /// Answers to each plant.
     pub(crate) responses: Vec<Response<S>>,
-    /// By wall of constant properties: heat into face e in the second stage per degree of face o in the first
-    /// [W/(m2 K)], and the stage length that it holds for [s].
-    pub(crate) carried: (Vec<[[S; 2]; 2]>, f64),
     /// Iterate about which each stage was last linearised, and its solution.
     pub(crate) iterates: Vec<Unknowns<S>>,
     pub(crate) solved: Vec<Unknowns<S>>,
@@ -133,7 +130,6 @@ impl<S: Real> Plants<S> {
             zones: zones.to_vec(),
             limits: vec![nothing; count],
             responses: vec![response; count],
-            carried: (vec![[[S::zero(); 2]; 2]; unknowns.faces.len() / 2], f64::NAN),
             iterates: vec![unknowns.clone(); kept],
             solved: vec![unknowns.clone(); kept],
             first: unknowns.clone(),

@@ -171,12 +171,14 @@ impl Probe {
             Self::InterfaceTemperature { surface, interface } => {
                 interface_temperature(plan, stepper, state, surface, interface)
             }
-            Self::LayerFlux { surface, layer } => layer_flux(plan, stepper, surface, layer),
+            Self::LayerFlux { surface, layer } => layer_flux(plan, stepper, state, surface, layer),
             Self::LayerTemperature { surface, layer } => layer_mean(plan, surface, layer, |k| state.cells[k]),
             Self::LiquidFraction { surface, layer } => {
                 layer_mean(plan, surface, layer, |k| state.memory[k].liquid_fraction)
             }
-            Self::LayerEnthalpy { surface, layer } => layer_mean(plan, surface, layer, |k| state.enthalpy[k]),
+            Self::LayerEnthalpy { surface, layer } => {
+                layer_mean(plan, surface, layer, |k| stepper.enthalpy(state, surface, k))
+            }
             Self::IncidentSolar { surface } => stepper.sun.incident[2 * surface],
             Self::TransmittedSolar { surface } => {
                 let window = plan.windows.iter().position(|&w| w == surface);
@@ -213,10 +215,16 @@ fn layer_mean<S: Real>(plan: &Plan, surface: usize, layer: usize, value: impl Fn
 }
 
 /// Flux at the middle of a layer: along the middle link, or the mean of the two about the middle cell.
-fn layer_flux<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, surface: usize, layer: usize) -> S {
+fn layer_flux<S: Real>(
+    plan: &Plan,
+    stepper: &Stepper<'_, S>,
+    state: &State<S>,
+    surface: usize,
+    layer: usize,
+) -> S {
     let (start, end) = plan.walls[surface].layer_cells[layer];
     let (first, last) = (usize::midpoint(start, end), (start + end).div_ceil(2));
-    (stepper.link_flux(surface, first) + stepper.link_flux(surface, last)).scale(0.5)
+    (stepper.link_flux(state, surface, first) + stepper.link_flux(state, surface, last)).scale(0.5)
 }
 
 /// Half of a cell's resistance at its present state [m2 K/W].
@@ -242,7 +250,7 @@ fn interface_temperature<S: Real>(
     let (wall, numbers) = (&plan.walls[surface], &stepper.coefficients.walls[surface]);
     // The link that holds the interface follows the cells of all layers before it.
     let link = wall.layer_cells[interface - 1].1;
-    let flux = stepper.link_flux(surface, link);
+    let flux = stepper.link_flux(state, surface, link);
     let (mut temperature, mut resistance) = if link == 0 {
         (state.faces[2 * surface], S::zero())
     } else {

@@ -1,157 +1,280 @@
-//! Walls of constant properties: factored once per stage length, then swept over flat arrays.
+//! Walls of constant properties: a step of such a wall is one linear map, worked out once per stage length.
 //!
-//! Their elimination is that of [`Chain::factor`]; what is left of a stage is one sweep over what the cells hold and one
-//! over what they reach. What the sweeps need of a cell stands beside what they need of the next.
+//! A stage makes `P x + Q f` of cells that start from `x`, between faces at `f`. The second stage of a step starts from
+//! `x + r (T1 - x)`, with `r = (1 - g)/g` and `T1` what the first one reached, so that a step ends with
+//! `A x + B f1 + Q f2`, where `A = P ((1 - r) I + r P)` and `B = r P Q`; with one stage `r` is zero. The heat that a wall
+//! sends into a face is the conductance of its last half cell times the temperature of that cell: a row of these maps.
+//! Cells inside are never looked at between the stages.
 
 use core::ops::Range;
 
 use crate::coefficients::Coefficients;
 use crate::conduction::Chain;
+use crate::dispatch::widened;
 use crate::plan::Plan;
 use crate::real::Real;
 
-/// One wall.
+/// Rows of a map that are multiplied together: their sums do not wait for each other.
+const ROWS: usize = 4;
+
+/// Some rows of a map, column by column.
+type Rows<S> = [S; ROWS];
+
+/// One wall of at least one cell. Its maps have the cells as rows, filled up with zeros to whole [`Rows`].
 #[derive(Debug, Clone)]
 struct Slab<S> {
     wall: usize,
     cells: Range<usize>,
-    /// Heat into the inside face per `known` of the last cell [W/(m2 K)].
-    last: S,
+    /// Blocks of rows of the map from the cells, and of that from the faces.
+    blocks: [usize; 2],
+    /// Conductance between the faces and the cells behind them [W/(m2 K)].
+    ends: [S; 2],
+    /// Heat into face e in the second stage per degree of face o in the first [W/(m2 K)].
+    carried: [[S; 2]; 2],
+    /// Temperatures of the faces in the first stage.
+    first: [S; 2],
 }
 
-/// All of them; arrays run over all cells of the building.
+/// All of them. Maps follow each other wall by wall.
 #[derive(Debug, Clone)]
 pub(crate) struct Slabs<S> {
     walls: Vec<Slab<S>>,
-    /// Cells of slabs that follow each other.
-    runs: Vec<Range<usize>>,
-    /// Heat capacity [J/(m3 K)] and volume [m3].
+    /// `A`, and in two more rows the heat into the faces in the first stage; columns are cells.
+    from_cells: Vec<Rows<S>>,
+    /// `B` and `Q`; columns are the outside and inside face in the first and in the last stage.
+    from_faces: Vec<[Rows<S>; 4]>,
+    /// What the start of the step makes of the rows of the former.
+    left: Vec<Rows<S>>,
+    /// Heat capacity of the cells of the building [J/K].
     capacity: Vec<S>,
-    volume: Vec<S>,
-    /// `known_i = gain_i held_i + carry_i known_(i-1)`.
-    gain: Vec<S>,
-    carry: Vec<S>,
-    /// Heat into the outside face per `known` [W/(m2 K)].
-    weight: Vec<S>,
-    /// `T_i = known_i + to_outside_i T_outside + next_i T_(i+1)`.
-    to_outside: Vec<S>,
-    next: Vec<S>,
-    known: Vec<S>,
+    /// `(1 - g)/g` of the scheme's diagonal coefficient.
+    ratio: f64,
+    /// The start of the step is worked in.
+    begun: bool,
+}
+
+impl<S: Real> Slab<S> {
+    /// Works out the maps from an elimination, see [`Chain::factor`].
+    fn map(
+        &mut self,
+        chain: &Chain<S>,
+        ratio: f64,
+        from_cells: &mut [Rows<S>],
+        from_faces: &mut [[Rows<S>; 4]],
+    ) {
+        let n = self.cells.len();
+        self.ends = [chain.links[0].right, chain.links[n].left];
+        let (zeros, mut known) = (vec![S::zero(); n], vec![S::zero(); n]);
+        let (mut start, mut reached, mut carried) = (zeros.clone(), zeros.clone(), zeros.clone());
+        // What a stage makes of cells that start from temperatures.
+        let mut stage = |from: &[S], to: &mut [S]| {
+            let held: Vec<S> =
+                from.iter().zip(&chain.storage).map(|(&from, storage)| storage.capacity * from).collect();
+            chain.source_changes(&held, &mut known);
+            chain.temperature_changes(&known, [S::zero(); 2], to);
+        };
+        for column in 0..n {
+            start.fill(S::zero());
+            start[column] = S::one();
+            stage(&start, &mut reached);
+            let heat = [self.ends[0] * reached[0], self.ends[1] * reached[n - 1]];
+            for (start, &reached) in start.iter_mut().zip(&reached) {
+                *start = start.scale(1.0 - ratio) + reached.scale(ratio);
+            }
+            stage(&start, &mut carried);
+            for (row, &value) in carried.iter().chain(&heat).enumerate() {
+                from_cells[row / ROWS * n + column][row % ROWS] = value;
+            }
+        }
+        for side in 0..2 {
+            let mut faces = [S::zero(); 2];
+            faces[side] = S::one();
+            chain.temperature_changes(&zeros, faces, &mut reached);
+            for (start, &reached) in start.iter_mut().zip(&reached) {
+                *start = reached.scale(ratio);
+            }
+            stage(&start, &mut carried);
+            for (row, (&carried, &reached)) in carried.iter().zip(&reached).enumerate() {
+                from_faces[row / ROWS][side][row % ROWS] = carried;
+                from_faces[row / ROWS][2 + side][row % ROWS] = reached;
+            }
+            self.carried[0][side] = self.ends[0] * carried[0];
+            self.carried[1][side] = self.ends[1] * carried[n - 1];
+        }
+    }
+}
+
+/// `sum + map x` for some rows.
+#[inline(always)]
+fn multiply<S: Real>(mut sum: Rows<S>, map: &[Rows<S>], x: &[S]) -> Rows<S> {
+    for (column, &x) in map.iter().zip(x) {
+        for (sum, &factor) in sum.iter_mut().zip(column) {
+            *sum += factor * x;
+        }
+    }
+    sum
+}
+
+/// Does work on rows of plain numbers with wider instructions, where the machine has them. Lanes are as wide by themselves.
+#[inline(always)]
+fn side_by_side<S: Real, R>(work: impl FnOnce() -> R) -> R {
+    if S::LANES == 1 { widened(work) } else { work() }
 }
 
 impl<S: Real> Slabs<S> {
-    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, chains: &[Chain<S>]) -> Self {
-        let zeros = || vec![S::zero(); plan.n_cells];
+    /// Walls of a plan, for a scheme's diagonal coefficient.
+    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, chains: &[Chain<S>], diagonal: f64) -> Self {
         let mut slabs = Self {
             walls: Vec::new(),
-            runs: Vec::new(),
-            capacity: zeros(),
-            volume: zeros(),
-            gain: zeros(),
-            carry: zeros(),
-            weight: zeros(),
-            to_outside: zeros(),
-            next: zeros(),
-            known: zeros(),
+            from_cells: Vec::new(),
+            from_faces: Vec::new(),
+            left: Vec::new(),
+            capacity: vec![S::zero(); plan.n_cells],
+            ratio: (1.0 - diagonal) / diagonal,
+            begun: false,
         };
-        for (wall, of_plan) in plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear) {
+        let zero = [S::zero(); ROWS];
+        let constant = plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear && !wall.is_empty());
+        for (wall, of_plan) in constant {
             let cells = of_plan.first_cell..of_plan.first_cell + of_plan.len();
-            for (cell, k) in numbers.walls[wall].cells.iter().zip(cells.clone()) {
-                slabs.volume[k] = numbers.walls[wall].area * cell.thickness;
-                slabs.capacity[k] = chains[wall].storage[k - cells.start].capacity;
+            let of_cells = numbers.walls[wall].cells.iter().zip(&chains[wall].storage);
+            for (capacity, (cell, storage)) in slabs.capacity[cells.clone()].iter_mut().zip(of_cells) {
+                *capacity = numbers.walls[wall].area * cell.thickness * storage.capacity;
             }
-            match slabs.runs.last_mut() {
-                Some(run) if run.end == cells.start => run.end = cells.end,
-                _ => slabs.runs.push(cells.clone()),
-            }
-            slabs.walls.push(Slab { wall, cells, last: S::zero() });
+            let nothing = [S::zero(); 2];
+            let blocks = [2, 0].map(|more| (of_plan.len() + more).div_ceil(ROWS));
+            slabs.from_cells.resize(slabs.from_cells.len() + blocks[0] * of_plan.len(), zero);
+            slabs.from_faces.resize(slabs.from_faces.len() + blocks[1], [zero; 4]);
+            slabs.left.resize(slabs.left.len() + blocks[0], zero);
+            let carried = [nothing; 2];
+            slabs.walls.push(Slab { wall, cells, blocks, ends: nothing, carried, first: nothing });
         }
         slabs
     }
 
-    /// Factors all walls for a stage length [s].
-    #[inline(always)]
-    pub(crate) fn factor(
-        &mut self,
-        numbers: &Coefficients<S>,
-        chains: &mut [Chain<S>],
-        responses: &mut [[[S; 2]; 2]],
-        length: f64,
-    ) {
+    /// Works out all maps for a stage length [s].
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn factor(&mut self, chains: &[Chain<S>]) {
+        let (mut from_cells, mut from_faces) = (&mut self.from_cells[..], &mut self.from_faces[..]);
         for slab in &mut self.walls {
-            let chain = &mut chains[slab.wall];
-            responses[slab.wall] = chain.factor(&numbers.walls[slab.wall], length);
-            for (i, k) in slab.cells.clone().enumerate() {
-                self.gain[k] = chain.rate[i] * chain.inverse[i];
-                self.carry[k] = chain.links[i].left * chain.inverse[i];
-                self.weight[k] = chain.links[0].right * chain.path[i];
-                self.to_outside[k] = chain.to_outside[i];
-                self.next[k] = chain.next[i];
-            }
-            if let Some(link) = chain.links.last() {
-                slab.last = link.left;
-            }
+            let [all, tall] = slab.blocks;
+            let (own_cells, own_faces);
+            (own_cells, from_cells) = from_cells.split_at_mut(all * slab.cells.len());
+            (own_faces, from_faces) = from_faces.split_at_mut(tall);
+            slab.map(&chains[slab.wall], self.ratio, own_cells, own_faces);
         }
+        self.begun = false;
     }
 
-    /// Forward sweep: the part of the heat into the faces [W/m2] that comes from what the cells held [J/m3].
+    /// A step begins at another state.
     #[inline(always)]
-    pub(crate) fn sources(&mut self, held: &[S], sources: &mut [[S; 2]]) {
+    pub(crate) fn begin(&mut self) {
+        self.begun = false;
+    }
+
+    /// Heat into the faces [W/m2] in the first stage of a step that starts from cells.
+    #[inline(always)]
+    pub(crate) fn first_sources(&mut self, cells: &[S], sources: &mut [[S; 2]]) {
+        side_by_side::<S, _>(
+            #[inline(always)]
+            || self.set_out(cells, sources),
+        );
+    }
+
+    #[inline(always)]
+    fn set_out(&mut self, cells: &[S], sources: &mut [[S; 2]]) {
+        let (mut maps, mut left) = (&self.from_cells[..], &mut self.left[..]);
         for slab in &self.walls {
-            let cells = slab.cells.clone();
-            let (gain, carry) = (&self.gain[cells.clone()], &self.carry[cells.clone()]);
-            let (weight, held) = (&self.weight[cells.clone()], &held[cells.clone()]);
-            let sweep = self.known[cells].iter_mut().zip(held).zip(gain).zip(carry).zip(weight);
-            let (mut before, mut outside) = (S::zero(), S::zero());
-            for ((((known, &held), &gain), &carry), &weight) in sweep {
-                before = gain * held + carry * before;
-                *known = before;
-                outside += weight * before;
+            let x = &cells[slab.cells.clone()];
+            let n = x.len();
+            let own;
+            (own, left) = left.split_at_mut(slab.blocks[0]);
+            if !self.begun {
+                for rows in &mut *own {
+                    let map;
+                    (map, maps) = maps.split_at(n);
+                    *rows = multiply([S::zero(); ROWS], map, x);
+                }
             }
-            sources[slab.wall] = [outside, slab.last * before];
+            let own = own.as_flattened();
+            sources[slab.wall] = [own[n], own[n + 1]];
+        }
+        self.begun = true;
+    }
+
+    /// Takes over the faces that the first stage reached.
+    #[inline(always)]
+    pub(crate) fn hold_over(&mut self, faces: &[S]) {
+        let (pairs, _) = faces.as_chunks::<2>();
+        for slab in &mut self.walls {
+            slab.first = pairs[slab.wall];
         }
     }
 
-    /// Backward sweep: cell temperatures from those of the faces.
+    /// Heat into the faces [W/m2] in the second stage.
     #[inline(always)]
-    pub(crate) fn temperatures(&self, faces: &[S], cells: &mut [S]) {
+    pub(crate) fn second_sources(&self, sources: &mut [[S; 2]]) {
+        let mut left = &self.left[..];
         for slab in &self.walls {
-            let range = slab.cells.clone();
-            let (outside, mut behind) = (faces[2 * slab.wall], faces[2 * slab.wall + 1]);
-            let (known, to_outside) = (&self.known[range.clone()], &self.to_outside[range.clone()]);
-            let (next, cells) = (&self.next[range.clone()], &mut cells[range]);
-            let sweep = cells.iter_mut().zip(known).zip(to_outside).zip(next).rev();
-            for (((cell, &known), &to_outside), &next) in sweep {
-                behind = known + to_outside * outside + next * behind;
-                *cell = behind;
-            }
+            let own;
+            (own, left) = left.split_at(slab.blocks[0]);
+            let [outside, inside] = slab.first;
+            let [into_outside, into_inside] = slab.carried;
+            let ends = [own[0][0], own.as_flattened()[slab.cells.len() - 1]];
+            sources[slab.wall] = [
+                slab.ends[0] * ends[0] + into_outside[0] * outside + into_outside[1] * inside,
+                slab.ends[1] * ends[1] + into_inside[0] * outside + into_inside[1] * inside,
+            ];
         }
     }
 
-    /// `held = start + ratio (reached - start)` in enthalpies [J/m3], `reached` from temperatures.
-    #[inline(always)]
-    pub(crate) fn hold_over(&self, cells: &[S], enthalpy: &[S], ratio: f64, held: &mut [S]) {
-        for run in &self.runs {
-            let (cells, start) = (&cells[run.clone()], &enthalpy[run.clone()]);
-            let parts = held[run.clone()].iter_mut().zip(cells).zip(start).zip(&self.capacity[run.clone()]);
-            for (((held, &cell), &start), &capacity) in parts {
-                *held = start + (capacity * cell - start).scale(ratio);
-            }
-        }
+    /// What a degree more at each face of a wall in the first stage sends into its faces in the second [W/(m2 K)]:
+    /// wall, heat into face e by face o.
+    pub(crate) fn carried(&self) -> impl Iterator<Item = (usize, [[S; 2]; 2])> + '_ {
+        self.walls.iter().map(|slab| (slab.wall, slab.carried))
     }
 
-    /// Takes over the enthalpies that belong to temperatures; the heat stored [J].
+    /// Ends a step at the faces of its last stage: the cells in place of where they started, and the heat stored [J].
     #[inline(always)]
-    pub(crate) fn accept(&self, cells: &[S], enthalpy: &mut [S]) -> S {
-        // Four sums that do not wait for each other.
-        let mut stored = [S::zero(); 4];
-        for run in &self.runs {
-            let (capacity, volume) = (&self.capacity[run.clone()], &self.volume[run.clone()]);
-            let parts = enthalpy[run.clone()].iter_mut().zip(&cells[run.clone()]).zip(capacity).zip(volume);
-            for (i, (((enthalpy, &cell), &capacity), &volume)) in parts.enumerate() {
-                let reached = capacity * cell;
-                stored[i % 4] += volume * (reached - *enthalpy);
-                *enthalpy = reached;
+    pub(crate) fn finish(&self, faces: &[S], cells: &mut [S]) -> S {
+        side_by_side::<S, _>(
+            #[inline(always)]
+            || self.arrive(faces, cells),
+        )
+    }
+
+    #[inline(always)]
+    fn arrive(&self, faces: &[S], cells: &mut [S]) -> S {
+        // Sums that do not wait for each other.
+        let mut stored = [S::zero(); ROWS];
+        let (mut maps, mut left) = (&self.from_faces[..], &self.left[..]);
+        let (pairs, _) = faces.as_chunks::<2>();
+        for slab in &self.walls {
+            let [all, tall] = slab.blocks;
+            let (own, map);
+            (own, left) = left.split_at(all);
+            (map, maps) = maps.split_at(tall);
+            let [a, b] = slab.first;
+            let [c, d] = pairs[slab.wall];
+            let mut reached = own.iter().zip(map).map(
+                #[inline(always)]
+                |(&left, map)| multiply(left, map, &[a, b, c, d]),
+            );
+            let (cells, capacity) = (&mut cells[slab.cells.clone()], &self.capacity[slab.cells.clone()]);
+            let ((whole, rest), (whole_capacity, rest_capacity)) =
+                (cells.as_chunks_mut::<ROWS>(), capacity.as_chunks::<ROWS>());
+            for ((cells, capacity), reached) in whole.iter_mut().zip(whole_capacity).zip(&mut reached) {
+                for i in 0..ROWS {
+                    stored[i] += capacity[i] * (reached[i] - cells[i]);
+                }
+                *cells = reached;
+            }
+            if let Some(reached) = reached.next() {
+                for ((cell, &capacity), reached) in rest.iter_mut().zip(rest_capacity).zip(reached) {
+                    stored[0] += capacity * (reached - *cell);
+                    *cell = reached;
+                }
             }
         }
         (stored[0] + stored[1]) + (stored[2] + stored[3])

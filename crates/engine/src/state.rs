@@ -48,7 +48,7 @@ impl Initial {
 pub struct State<S> {
     /// Cell temperatures of all walls [degC].
     pub cells: Vec<S>,
-    /// Cell enthalpies [J/m3].
+    /// Enthalpies of the cells of walls that change [J/m3]; those of others are the capacity times the temperature.
     pub enthalpy: Vec<S>,
     /// What the cells remember.
     pub memory: Vec<PcmMemory<S>>,
@@ -185,31 +185,34 @@ impl<S: Real> Unknowns<S> {
         }
     }
 
-    /// `from + ratio (to - from)`, without leaping over a melting range.
+    /// `from + ratio (to - from)` at some faces, all airs and the cells of some walls, without leaping over a melting
+    /// range.
     #[inline(always)]
     pub(crate) fn extrapolate(
         &mut self,
         plan: &Plan,
         coefficients: &Coefficients<S>,
-        from: &Temperatures<'_, S>,
-        to: &Temperatures<'_, S>,
+        (faces, walls): (&[FaceId], &[usize]),
+        [from, to]: &[Temperatures<'_, S>; 2],
         ratio: f64,
         memory: &[PcmMemory<S>],
     ) {
-        for ((guess, &from), &to) in self.faces.iter_mut().zip(from.faces).zip(to.faces) {
-            *guess = line(from, to, ratio);
+        for &face in faces {
+            self.faces[face] = line(from.faces[face], to.faces[face], ratio);
         }
         for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
             *guess = line(from, to, ratio);
         }
-        for (wall, numbers) in plan.walls.iter().zip(&coefficients.walls).filter(|(wall, _)| wall.nonlinear) {
-            for (i, cell) in numbers.cells.iter().enumerate() {
-                let k = wall.first_cell + i;
-                let guess = line(from.cells[k], to.cells[k], ratio);
-                self.cells[k] = match cell.matter {
-                    Matter::Pcm(law) => numbers.pcm[law].limit(to.cells[k], guess, &memory[k]).0,
-                    Matter::Solid { .. } => guess,
-                };
+        for &w in walls {
+            let (wall, numbers) = (&plan.walls[w], &coefficients.walls[w]);
+            let cells = wall.first_cell..wall.first_cell + wall.len();
+            let ends = from.cells[cells.clone()].iter().zip(&to.cells[cells.clone()]);
+            let laws = numbers.cells.iter().zip(&memory[cells.clone()]);
+            for ((guess, (&from, &to)), (cell, memory)) in self.cells[cells].iter_mut().zip(ends).zip(laws) {
+                *guess = line(from, to, ratio);
+                if let Matter::Pcm(law) = cell.matter {
+                    *guess = numbers.pcm[law].limit(to, *guess, memory).0;
+                }
             }
         }
     }

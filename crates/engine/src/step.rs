@@ -205,7 +205,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let gap_convection = vec![gaps.map(zeros).collect(); scheme.weights().len()];
         Self {
             plan,
-            slabs: Slabs::new(plan, &coefficients, &chains),
+            slabs: Slabs::new(plan, &coefficients, &chains, scheme.diagonal()),
             coefficients,
             numbers,
             scheme,
@@ -266,9 +266,10 @@ impl<'a, S: Real> Stepper<'a, S> {
         state
     }
 
-    /// Enthalpies and memory that belong to the temperatures of a state.
+    /// Enthalpies and memory that belong to the temperatures of a state, in the walls that change.
     fn settle(&self, state: &mut State<S>) {
-        for (wall, plan) in self.coefficients.walls.iter().zip(&self.plan.walls) {
+        for &w in &self.changing.walls {
+            let (wall, plan) = (&self.coefficients.walls[w], &self.plan.walls[w]);
             for (i, cell) in wall.cells.iter().enumerate() {
                 let k = plan.first_cell + i;
                 match &cell.matter {
@@ -307,7 +308,7 @@ impl<'a, S: Real> Stepper<'a, S> {
 
     /// Factors what stays as long as steps of this length are made [s].
     pub(crate) fn prepare(&mut self, dt: f64) {
-        self.begin_stage(self.scheme.diagonal() * dt);
+        self.factor_constant(self.scheme.diagonal() * dt);
     }
 
     /// Stage length of the factors in hand [s].
@@ -595,7 +596,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Carries the solution of the room block to all airs, faces and cells once more.
+    /// Carries the solution of the room block to all airs and faces, and to the cells of walls that change, once more.
     #[inline(always)]
     fn resolve_all(&mut self) {
         for (zone, plan) in self.plan.zones.iter().enumerate() {
@@ -609,17 +610,12 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.chains[w].temperatures(faces, &mut self.solved.cells[cells]);
             }
         }
-        self.slabs.temperatures(&self.solved.faces, &mut self.solved.cells);
     }
 
     /// How the stage just solved answers to a watt of each plant.
     #[inline(always)]
     fn respond(&mut self, stage: usize, length: f64) {
         let mut responses = core::mem::take(&mut self.plants.responses);
-        if stage > 0 && self.plants.carried.1.to_bits() != length.to_bits() {
-            self.carry_constant();
-            self.plants.carried.1 = length;
-        }
         for (response, &zone) in responses.iter_mut().zip(&self.plan.plants) {
             response.right.fill(S::zero());
             response.right[self.plan.zones[zone].air_row] = S::one();
@@ -634,28 +630,6 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.plants.responses = responses;
     }
 
-    /// What a degree more at each face of a wall of constant properties in the first stage sends into its faces in the
-    /// second.
-    #[cold]
-    fn carry_constant(&mut self) {
-        let ratio = (1.0 - self.scheme.diagonal()) / self.scheme.diagonal();
-        for &w in &self.changing.constant {
-            let chain = &self.chains[w];
-            let mut cells = vec![S::zero(); chain.storage.len()];
-            let (none, mut known) = (cells.clone(), cells.clone());
-            for e in 0..2 {
-                let mut faces = [S::zero(); 2];
-                faces[e] = S::one();
-                chain.temperature_changes(&none, faces, &mut cells);
-                for (cell, storage) in cells.iter_mut().zip(&chain.storage) {
-                    *cell = storage.capacity * cell.scale(ratio);
-                }
-                let heat = chain.source_changes(&cells, &mut known);
-                (self.plants.carried.0[w][0][e], self.plants.carried.0[w][1][e]) = (heat[0], heat[1]);
-            }
-        }
-    }
-
     /// What the first stage's answer leaves to the second: heat held in walls and airs.
     #[inline(always)]
     fn carry_over(&self, response: &mut Response<S>, length: f64) {
@@ -666,14 +640,17 @@ impl<'a, S: Real> Stepper<'a, S> {
             let storage = self.coefficients.zones[zone].capacity.scale(ratio / length);
             response.right[plan.air_row] += storage * first.air[zone];
         }
+        for (w, carried) in self.slabs.carried() {
+            let [outside, inside] = [first.faces[2 * w], first.faces[2 * w + 1]];
+            response.sources[w] = carried.map(|[a, b]| a * outside + b * inside);
+        }
         for (w, wall) in self.plan.walls.iter().enumerate() {
-            let source = if wall.nonlinear {
+            if wall.nonlinear {
                 let cells = wall.first_cell..wall.first_cell + wall.len();
-                self.chains[w].source_changes(&response.held[cells.clone()], &mut response.known[cells])
-            } else {
-                let [outside, inside] = [first.faces[2 * w], first.faces[2 * w + 1]];
-                self.plants.carried.0[w].map(|[a, b]| a * outside + b * inside)
-            };
+                let (held, known) = (&response.held[cells.clone()], &mut response.known[cells]);
+                response.sources[w] = self.chains[w].source_changes(held, known);
+            }
+            let source = response.sources[w];
             let area = self.coefficients.walls[w].area;
             for e in 0..2 {
                 let FaceRole::Zone { row, .. } = self.plan.faces[2 * w + e].role else { continue };
@@ -683,7 +660,6 @@ impl<'a, S: Real> Stepper<'a, S> {
                 }
                 response.right[row] += area * heat;
             }
-            response.sources[w] = source;
         }
     }
 
@@ -769,14 +745,15 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.held.copy_from_slice(&state.enthalpy);
         self.held_air.copy_from_slice(&state.air);
         self.load.copy_from_slice(&state.load);
+        self.slabs.begin();
         self.known.restart();
         match &self.previous {
             Some(previous) if share > 0.0 => {
                 self.iterate.extrapolate(
                     self.plan,
                     &self.coefficients,
-                    &previous.view(),
-                    &state.view(),
+                    (&self.changing.watched, &self.changing.walls),
+                    &[previous.view(), state.view()],
                     1.0 + share,
                     &state.memory,
                 );
@@ -803,7 +780,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn hold_over(&mut self, state: &State<S>, diagonal: f64) {
         let ratio = (1.0 - diagonal) / diagonal;
-        self.slabs.hold_over(&self.solved.cells, &state.enthalpy, ratio, &mut self.held);
+        self.slabs.hold_over(&self.solved.faces);
         for &w in &self.changing.walls {
             let (wall, chain) = (&self.plan.walls[w], &self.chains[w]);
             for i in 0..wall.len() {
@@ -818,8 +795,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.iterate.extrapolate(
             self.plan,
             &self.coefficients,
-            &state.view(),
-            &self.solved.view(),
+            (&self.changing.watched, &self.changing.walls),
+            &[state.view(), self.solved.view()],
             1.0 / diagonal,
             &state.memory,
         );
@@ -829,7 +806,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Takes the last stage as the new state and books the step.
     #[inline(always)]
     fn accept(&mut self, state: &mut State<S>, energy: &Power<S>, ledger: &mut Ledger<S>) {
-        let mut stored = self.slabs.accept(&self.solved.cells, &mut state.enthalpy);
+        let mut stored = self.slabs.finish(&self.solved.faces, &mut state.cells);
         for &w in &self.changing.walls {
             let (wall, chain, numbers) = (&self.plan.walls[w], &self.chains[w], &self.coefficients.walls[w]);
             for (i, cell) in numbers.cells.iter().enumerate() {
@@ -857,12 +834,12 @@ impl<'a, S: Real> Stepper<'a, S> {
                 }
                 stored += numbers.area * cell.thickness * (enthalpy - state.enthalpy[k]);
                 state.enthalpy[k] = enthalpy;
+                state.cells[k] = temperature;
             }
         }
         for (zone, numbers) in self.coefficients.zones.iter().enumerate() {
             stored += numbers.capacity * (self.solved.air[zone] - state.air[zone]);
         }
-        state.cells.copy_from_slice(&self.solved.cells);
         state.faces.copy_from_slice(&self.solved.faces);
         state.air.copy_from_slice(&self.solved.air);
         state.load.copy_from_slice(&self.load);
@@ -884,7 +861,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             #[inline(always)]
             || {
                 self.stage = place.1.saturating_sub(1);
-                self.begin_stage(length);
+                self.begin_stage(state, length);
                 if S::DERIVATIVES && self.known.guide(&mut self.iterate) {
                     return Ok(self.solve_once(state, length));
                 }
@@ -1029,14 +1006,13 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Everything that stays during a stage: what constant walls send into their faces, what the wind makes of films; and
     /// the faces of constant walls, eliminated, where they answer to temperatures in straight lines.
     #[inline(always)]
-    fn begin_stage(&mut self, length: f64) {
-        let mut new = self.changing.by_wind;
-        if self.factored.to_bits() != length.to_bits() {
-            self.slabs.factor(&self.coefficients, &mut self.chains, &mut self.responses, length);
-            self.factored = length;
-            new = true;
+    fn begin_stage(&mut self, state: &State<S>, length: f64) {
+        let new = self.factor_constant(length) | self.changing.by_wind;
+        if self.stage == 0 {
+            self.slabs.first_sources(&state.cells, &mut self.sources);
+        } else {
+            self.slabs.second_sources(&mut self.sources);
         }
-        self.slabs.sources(&self.held, &mut self.sources);
         for &face in &self.changing.windy {
             let numbers = &self.coefficients.faces[face];
             self.laws[face].film.slope = self.drive.faces[face].forced[0] * numbers.area_factor;
@@ -1044,6 +1020,20 @@ impl<'a, S: Real> Stepper<'a, S> {
         if !self.changing.curved {
             self.enter_constant(new);
         }
+    }
+
+    /// Factors the walls of constant properties for a stage length [s]. True where that was not done before.
+    #[inline(always)]
+    fn factor_constant(&mut self, length: f64) -> bool {
+        let new = self.factored.to_bits() != length.to_bits();
+        if new {
+            for &w in &self.changing.constant {
+                self.responses[w] = self.chains[w].factor(&self.coefficients.walls[w], length);
+            }
+            self.slabs.factor(&self.chains);
+            self.factored = length;
+        }
+        new
     }
 
     /// What a wall's cells held, and the sun in its panes, send into its faces.
@@ -1341,22 +1331,17 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Sum of the squared distances of the solution from an iterate, by lane [K2]. Not a number when any part of it is
+    /// Sum of the squared distances of the solution from an iterate where something is linearised, by lane [K2]. Not a number when any part of it is
     /// not one.
     #[inline(always)]
     fn distance(&self, iterate: &Unknowns<S>) -> S {
         let mut sum = squared_distance(&self.solved.air, &iterate.air);
-        if self.changing.curved {
-            sum += squared_distance(&self.solved.faces, &iterate.faces);
+        for &face in &self.changing.watched {
+            let change = self.solved.faces[face] - iterate.faces[face];
+            sum += change * change;
         }
-        for &w in &self.changing.walls {
-            if !self.changing.curved {
-                let faces = 2 * w..2 * w + 2;
-                sum += squared_distance(&self.solved.faces[faces.clone()], &iterate.faces[faces]);
-            }
-            let wall = &self.plan.walls[w];
-            let cells = wall.first_cell..wall.first_cell + wall.len();
-            sum += squared_distance(&self.solved.cells[cells.clone()], &iterate.cells[cells]);
+        for cells in &self.changing.cells {
+            sum += squared_distance(&self.solved.cells[cells.clone()], &iterate.cells[cells.clone()]);
         }
         sum
     }
@@ -1371,22 +1356,25 @@ impl<'a, S: Real> Stepper<'a, S> {
         // The apparent capacity is a constant of the step: no curve to leap over.
         let curved = self.scheme.storage_rule() == StorageRule::Enthalpy;
         let mut limited = S::Mask::splat(false);
-        blend(active, &mut self.iterate.faces, &self.solved.faces);
+        for &face in &self.changing.watched {
+            let old = self.iterate.faces[face];
+            self.iterate.faces[face] = S::select(active, self.solved.faces[face], old);
+        }
         blend(active, &mut self.iterate.air, &self.solved.air);
-        for (w, wall) in self.plan.walls.iter().enumerate().filter(|(_, wall)| wall.nonlinear) {
+        for (&w, cells) in self.changing.walls.iter().zip(&self.changing.cells) {
             let numbers = &self.coefficients.walls[w];
-            for (i, cell) in numbers.cells.iter().enumerate() {
-                let k = wall.first_cell + i;
-                let (old, new) = (self.iterate.cells[k], self.solved.cells[k]);
+            let ways = self.iterate.cells[cells.clone()].iter_mut().zip(&self.solved.cells[cells.clone()]);
+            let laws = numbers.cells.iter().zip(&memory[cells.clone()]);
+            for ((old, &new), (cell, memory)) in ways.zip(laws) {
                 let target = match cell.matter {
                     Matter::Pcm(law) if curved => {
-                        let (target, leaps) = numbers.pcm[law].limit(old, new, &memory[k]);
+                        let (target, leaps) = numbers.pcm[law].limit(*old, new, memory);
                         limited = limited | leaps;
                         target
                     }
                     Matter::Pcm(_) | Matter::Solid { .. } => new,
                 };
-                self.iterate.cells[k] = S::select(active, target, old);
+                *old = S::select(active, target, *old);
             }
         }
         limited
@@ -1411,12 +1399,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn finish_stage(&mut self) -> S::Mask {
         if !self.changing.curved {
             self.resolve_constant();
-            for &w in &self.changing.constant {
-                let faces = 2 * w..2 * w + 2;
-                self.iterate.faces[faces.clone()].copy_from_slice(&self.solved.faces[faces]);
-            }
         }
-        self.slabs.temperatures(&self.solved.faces, &mut self.solved.cells);
         let mut sum = S::zero();
         for &w in &self.changing.loose {
             sum += self.solved.faces[2 * w] + self.solved.faces[2 * w + 1];
@@ -1520,23 +1503,39 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[must_use]
     #[inline(always)]
     pub fn face_flux(&self, index: FaceId) -> S {
-        let link = if index.is_multiple_of(2) { 0 } else { self.plan.walls[index / 2].len() };
-        self.link_flux(index / 2, link)
+        let (w, e) = (index / 2, index % 2);
+        let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
+        if self.plan.walls[w].nonlinear {
+            return self.chains[w].link_flux(e * self.plan.walls[w].len(), faces);
+        }
+        let [by_outside, by_inside] = self.responses[w][e];
+        let into = self.sources[w][e] + by_outside * faces[0] + by_inside * faces[1];
+        if e == 0 { -into } else { into }
     }
 
-    /// Conduction along a link of a wall at the end of the last stage [W/m2], positive towards the inside.
+    /// Enthalpy of a cell of a wall [J/m3].
+    #[must_use]
+    pub fn enthalpy(&self, state: &State<S>, w: usize, cell: usize) -> S {
+        let wall = &self.plan.walls[w];
+        if wall.nonlinear {
+            return state.enthalpy[cell];
+        }
+        self.chains[w].storage[cell - wall.first_cell].capacity * state.cells[cell]
+    }
+
+    /// Conduction along a link of a wall at the end of the step that led to a state [W/m2], positive towards the inside.
     #[must_use]
     #[inline(always)]
-    pub fn link_flux(&self, w: usize, link: usize) -> S {
+    pub fn link_flux(&self, state: &State<S>, w: usize, link: usize) -> S {
         let wall = &self.plan.walls[w];
-        let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
-        if wall.nonlinear {
-            return self.chains[w].link_flux(link, faces);
+        if link == 0 || link == wall.len() {
+            return self.face_flux(2 * w + usize::from(link > 0));
         }
-        let cells = &self.solved.cells[wall.first_cell..wall.first_cell + wall.len()];
-        let left = if link == 0 { faces[0] } else { cells[link - 1] };
-        let right = if link == cells.len() { faces[1] } else { cells[link] };
-        self.chains[w].links[link].flux(left, right)
+        if wall.nonlinear {
+            return self.chains[w].link_flux(link, [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]]);
+        }
+        let inside = wall.first_cell + link;
+        self.chains[w].links[link].flux(state.cells[inside - 1], state.cells[inside])
     }
 
     /// Names the part that moves most in the first lane that failed.
@@ -1550,8 +1549,8 @@ impl<'a, S: Real> Stepper<'a, S> {
                 worst = (change, name());
             }
         };
-        for (index, (new, old)) in self.solved.faces.iter().zip(&self.iterate.faces).enumerate() {
-            look(*new, *old, &|| self.plan.face_name(index));
+        for &face in &self.changing.watched {
+            look(self.solved.faces[face], self.iterate.faces[face], &|| self.plan.face_name(face));
         }
         for (zone, (new, old)) in self.solved.air.iter().zip(&self.iterate.air).enumerate() {
             look(*new, *old, &|| format!("zone {} (air)", self.plan.description.zones[zone].name));
@@ -1594,6 +1593,8 @@ struct Changing {
     windy: Vec<FaceId>,
     bent: Vec<FaceId>,
     radiant: Vec<FaceId>,
+    /// Faces at which something is linearised: the last two, and the faces of walls that change.
+    watched: Vec<FaceId>,
     /// Whether the balance of a face of a constant wall is more than a straight line of its temperature.
     curved: bool,
     /// Whether the wind changes its slope.
@@ -1611,7 +1612,7 @@ impl Changing {
         let inner = faces.filter(|&face| !local(face)).collect();
         let cells = walls.iter().map(|&wall| &plan.walls[wall]);
         let cells = cells.map(|wall| wall.first_cell..wall.first_cell + wall.len()).collect();
-        let (windy, bent, radiant) = (Vec::new(), Vec::new(), Vec::new());
+        let (windy, bent, radiant, watched) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut all = Self {
             constant,
             walls,
@@ -1621,10 +1622,15 @@ impl Changing {
             windy,
             bent,
             radiant,
+            watched,
             curved: false,
             by_wind: false,
         };
         let laws = (0..plan.faces.len()).map(|face| all.enter(plan, numbers, face)).collect();
+        let linearised = |face: &FaceId| {
+            plan.walls[face / 2].nonlinear || all.bent.contains(face) || all.radiant.contains(face)
+        };
+        all.watched = (0..plan.faces.len()).filter(linearised).collect();
         (all, laws)
     }
 
