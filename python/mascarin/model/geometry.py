@@ -85,9 +85,7 @@ class Polygon:
                     "[x east, y north, z up] in metres"
                 )
             corners.append((float(vertex[0]), float(vertex[1]), float(vertex[2])))
-        polygon = cls(name, tuple(corners))
-        polygon._check()
-        return polygon
+        return _checked(name, tuple(corners))
 
     def _check(self) -> None:
         if len(self.vertices) < 3:
@@ -237,6 +235,14 @@ class Polygon:
             for outline, cut in ((here, there), (there, here))
             for middle in _pieces(cut, outline)
         )
+
+
+@lru_cache(maxsize=4096)
+def _checked(name: str, corners: tuple[tuple[float, float, float], ...]) -> Polygon:
+    """Check a polygon: once, for a description asks for each of its own many times."""
+    polygon = Polygon(name, corners)
+    polygon._check()
+    return polygon
 
 
 @dataclass(frozen=True)
