@@ -109,7 +109,8 @@ macro_rules! eight {
     ($features:tt) => {
         use super::WIDTH;
         use crate::real::{
-            Bits, EXPONENT_BIAS, INVERSE_CBRT, Mask, Real, SPLIT, THIRD, TWO_52, exp, inverse_cbrt, ln,
+            Bits, EXPONENT_BIAS, INVERSE_CBRT, Logistic, Mask, Real, SPLIT, THIRD, TWO_52, exp, inverse_cbrt,
+            ln, logistic,
         };
         use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -262,6 +263,22 @@ macro_rules! eight {
                 inverse_cbrt(self)
             }
             #[inline(always)]
+            fn logistic(self) -> Logistic<Self> {
+                logistic(self)
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                Self(unsafe { smaller(other.0, self.0) })
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                Self(unsafe { larger(other.0, self.0) })
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self(unsafe { magnitude(self.0) })
+            }
+            #[inline(always)]
             fn sin(self) -> Self {
                 Self::new(self.numbers().map(f64::sin))
             }
@@ -329,6 +346,10 @@ mod avx512 {
         fn mul(a: Vector, b: Vector) -> Vector { _mm512_mul_pd(a, b) }
         fn div(a: Vector, b: Vector) -> Vector { _mm512_div_pd(a, b) }
         fn sqrt(a: Vector) -> Vector { _mm512_sqrt_pd(a) }
+        // The second where the first is not the smaller, or larger, one: as a plain number selects.
+        fn smaller(a: Vector, b: Vector) -> Vector { _mm512_min_pd(a, b) }
+        fn larger(a: Vector, b: Vector) -> Vector { _mm512_max_pd(a, b) }
+        fn magnitude(a: Vector) -> Vector { _mm512_abs_pd(a) }
         fn splat(value: f64) -> Vector { _mm512_set1_pd(value) }
         fn negate(a: Vector) -> Vector {
             let sign = _mm512_set1_epi64(i64::MIN);
@@ -386,6 +407,12 @@ mod avx2 {
         fn mul(a: Vector, b: Vector) -> Vector { [_mm256_mul_pd(a[0], b[0]), _mm256_mul_pd(a[1], b[1])] }
         fn div(a: Vector, b: Vector) -> Vector { [_mm256_div_pd(a[0], b[0]), _mm256_div_pd(a[1], b[1])] }
         fn sqrt(a: Vector) -> Vector { [_mm256_sqrt_pd(a[0]), _mm256_sqrt_pd(a[1])] }
+        fn smaller(a: Vector, b: Vector) -> Vector { [_mm256_min_pd(a[0], b[0]), _mm256_min_pd(a[1], b[1])] }
+        fn larger(a: Vector, b: Vector) -> Vector { [_mm256_max_pd(a[0], b[0]), _mm256_max_pd(a[1], b[1])] }
+        fn magnitude(a: Vector) -> Vector {
+            let sign = _mm256_set1_pd(-0.0);
+            [_mm256_andnot_pd(sign, a[0]), _mm256_andnot_pd(sign, a[1])]
+        }
         fn splat(value: f64) -> Vector { [_mm256_set1_pd(value); 2] }
         fn negate(a: Vector) -> Vector {
             let sign = _mm256_set1_pd(-0.0);
@@ -472,6 +499,9 @@ mod tests {
             x.inverse_cbrt(),
             x.cbrt(),
             x.powf(y),
+            y.logistic().rise,
+            y.logistic().rest,
+            y.logistic().tail,
             y.sin(),
             y.cos(),
             y.abs(),

@@ -6,7 +6,7 @@
 use core::cell::RefCell;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use crate::real::Real;
+use crate::real::{Logistic, Real};
 
 thread_local! {
     static TAPE: RefCell<Tape> = const { RefCell::new(Tape { entries: Vec::new() }) };
@@ -188,6 +188,16 @@ impl Real for Taped {
     #[inline(never)]
     fn ln(self) -> Self {
         self.chain(Real::ln(self.value), 1.0 / self.value)
+    }
+    #[inline(never)]
+    fn logistic(self) -> Logistic<Self> {
+        let at = self.value.logistic();
+        let slopes = at.slopes(self.value);
+        Logistic {
+            rise: self.chain(at.rise, slopes.rise),
+            rest: self.chain(at.rest, slopes.rest),
+            tail: self.chain(at.tail, slopes.tail),
+        }
     }
     #[inline(never)]
     fn inverse_cbrt(self) -> Self {

@@ -4,7 +4,8 @@ use super::normal::normal;
 use super::segments::Segments;
 use crate::description::{MeltingCurve, Tail};
 use crate::parameters::Values;
-use crate::real::Real;
+use crate::real::{Logistic, Real};
+use core::f64::consts::LOG2_E;
 
 /// Share of the transition that is cut off at either end of a curve with tails to make it compact.
 pub const CUT: f64 = 1e-3;
@@ -36,7 +37,8 @@ pub(super) struct Curve<S> {
 /// What the curve is over `u = (T - centre)/width`.
 #[derive(Debug, Clone)]
 enum Shape<S> {
-    Tanh,
+    /// Twice `u` over ln 2 per kelvin, twice the slope of `u`, half a width.
+    Tanh([S; 3]),
     /// `v^2 (3 - 2 v)`, `v = (1 + u)/2`.
     Cubic,
     /// `v^3 (10 - 15 v + 6 v^2)`.
@@ -58,13 +60,16 @@ impl<S: Real> Curve<S> {
             width,
             inverse_width: S::one() / width,
         };
+        let tanh = |centre, width: S| {
+            let twice = S::constant(2.0) / width;
+            of(Shape::Tanh([twice.scale(LOG2_E), twice, width.scale(0.5)]), centre, width)
+        };
         match curve {
             MeltingCurve::TanhWidth { melting_temperature, width } => {
-                of(Shape::Tanh, *melting_temperature, values.get(*width))
+                tanh(*melting_temperature, values.get(*width))
             }
             MeltingCurve::TanhGamma { melting_temperature, gamma, delta_t } => {
-                let width = values.get(*delta_t).scale(4.0) / values.get(*gamma);
-                of(Shape::Tanh, *melting_temperature, width)
+                tanh(*melting_temperature, values.get(*delta_t).scale(4.0) / values.get(*gamma))
             }
             MeltingCurve::SmoothStep { melting_temperature, width, continuity } => {
                 let shape = if *continuity == 1 { Shape::Cubic } else { Shape::Quintic };
@@ -98,7 +103,7 @@ impl<S: Real> Curve<S> {
         let excess = temperature - self.centre;
         let u = excess * self.inverse_width;
         let (fraction, slope, molten) = match &self.shape {
-            Shape::Tanh => return self.tanh(excess),
+            Shape::Tanh(numbers) => return tanh(excess, numbers),
             Shape::Cubic => cubic(u),
             Shape::Quintic => quintic(u),
             Shape::Gaussian => {
@@ -113,17 +118,6 @@ impl<S: Real> Curve<S> {
         CurvePoint { fraction, slope: slope * self.inverse_width, molten: molten * self.width }
     }
 
-    /// One exponential serves all.
-    #[inline(always)]
-    fn tanh(&self, excess: S) -> CurvePoint<S> {
-        let fraction = S::one() / (S::one() + (excess * self.inverse_width).scale(-2.0).exp());
-        let slope = (fraction * (S::one() - fraction)).scale(2.0) * self.inverse_width;
-        // The integral of the fraction, w/2 ln(1 + e^(2x)), from the fraction itself.
-        let larger = fraction.max(S::one() - fraction);
-        let molten = excess.max(S::zero()) - (self.width * larger.ln()).scale(0.5);
-        CurvePoint { fraction, slope, molten }
-    }
-
     /// The curve with its tails cut off and the rest stretched to 0..1: fraction and slope.
     #[inline(never)]
     pub(super) fn compact(&self, temperature: S) -> (S, S) {
@@ -136,7 +130,7 @@ impl<S: Real> Curve<S> {
     #[inline(always)]
     fn cut(&self, temperature: S) -> (S, S) {
         let point = self.at(temperature);
-        if !matches!(self.shape, Shape::Tanh | Shape::Gaussian | Shape::Gumbel(_)) {
+        if !matches!(self.shape, Shape::Tanh(_) | Shape::Gaussian | Shape::Gumbel(_)) {
             return (point.fraction, point.slope);
         }
         let gain = 1.0 / (1.0 - 2.0 * CUT);
@@ -199,7 +193,7 @@ impl<S: Real> Curve<S> {
     #[inline(always)]
     fn support(&self) -> [S; 2] {
         let [low, high] = match &self.shape {
-            Shape::Tanh => [-3.453_377_389_324_276_5, 3.453_377_389_324_276_5],
+            Shape::Tanh(_) => [-3.453_377_389_324_276_5, 3.453_377_389_324_276_5],
             Shape::Gaussian => [-3.090_232_306_167_813, 3.090_232_306_167_813],
             Shape::Gumbel(Tail::Low) => [-6.907_255_070_523_716, 1.932_644_733_916_065_5],
             Shape::Gumbel(Tail::High) => [-1.932_644_733_916_065_5, 6.907_255_070_523_716],
@@ -227,6 +221,15 @@ impl<S: Real> Curve<S> {
         }
         [low, high]
     }
+}
+
+/// `(1 + tanh u)/2`, a logistic function of `2 u`.
+#[inline(always)]
+fn tanh<S: Real>(excess: S, &[rate, steepness, half]: &[S; 3]) -> CurvePoint<S> {
+    let Logistic { rise, rest, tail } = (excess * rate).logistic();
+    // The integral of the fraction is w/2 ln(1 + e^(2u)).
+    let molten = excess.max(S::zero()) + half * tail;
+    CurvePoint { fraction: rise, slope: rise * rest * steepness, molten }
 }
 
 /// `(1 + u)/2` held within 0 and 1, and how far u lies above 1.
