@@ -4,6 +4,8 @@
 //! tridiagonal system of the cells with the two face temperatures as right-hand sides; one forward sweep gives the heat
 //! that the wall sends into each face as an affine function of both face temperatures.
 
+use core::ops::Range;
+
 use crate::coefficients::{Matter, Wall};
 use crate::pcm::{PcmMemory, PcmPoint};
 use crate::real::Real;
@@ -79,13 +81,13 @@ pub struct Chain<S> {
     pub(crate) next: Vec<S>,
     /// `T_1` = sum of `path_i known_i` + ...: product of `next` up to the cell.
     pub(crate) path: Vec<S>,
-    /// Response of the first cell to the two faces.
-    first: [S; 2],
     /// Properties of the phase-change cells at the iterate.
     points: Vec<PcmPoint<S>>,
-    ways: Vec<Way>,
-    /// One over the distance between the ends of each link within a phase-change layer [1/m].
-    inverse_lengths: Vec<S>,
+    melting: Vec<Melting>,
+    /// Links from cell to cell of one law, and those of such a cell with a bare face.
+    within: Vec<Within<S>>,
+    bare: Vec<Within<S>>,
+    mixed: Vec<Mixed<S>>,
 }
 
 /// Heat that the wall sends into its faces, `source_e + sum_o response_eo T_o` [W/m2].
@@ -133,48 +135,57 @@ pub struct Start<'a, S> {
     pub memory: &'a [PcmMemory<S>],
 }
 
-/// Resistance of half a cell [m2 K/W], `-d(resistance)/dT`, and the place it is linearised about [degC].
-struct End<S> {
+/// Neighbouring cells of one law.
+#[derive(Debug, Clone)]
+struct Melting {
+    law: usize,
+    cells: Range<usize>,
+}
+
+/// A link through one phase-change layer: between two of its cells, or from a cell to a bare face.
+#[derive(Debug, Clone, Copy)]
+struct Within<S> {
+    link: usize,
+    law: usize,
+    /// One over the distance between its ends [1/m].
+    inverse_length: S,
+}
+
+/// A link through half cells of two layers, or a massless layer, with phase change at one end or both.
+#[derive(Debug, Clone, Copy)]
+struct Mixed<S> {
+    link: usize,
+    /// What does not change [m2 K/W].
     resistance: S,
-    gain: S,
-    place: S,
+    /// Thickness of the half cell at either end where it changes phase [m].
+    halves: [Option<S>; 2],
 }
 
-/// What a link runs through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
-    /// Constant properties.
-    Solid,
-    /// One phase-change layer, from cell to cell or from a cell to a bare face: index of the law.
-    Pcm(usize),
-    /// Half cells of two layers, or a massless layer, with phase change at one end or both.
-    Mixed,
+/// One end of such a link.
+struct End<S> {
+    /// Thickness [m], conductivity [W/(m K)] and its slope [W/(m K2)] of what changes phase.
+    half: S,
+    conductivity: S,
+    slope: S,
+    /// Temperature [degC], and how far it is above the place about which the end is linearised [K].
+    temperature: S,
+    above: S,
 }
 
-impl Way {
-    fn of<S: Real>(wall: &Wall<S>, i: usize) -> Self {
-        let law = |cell: usize| match wall.cells[cell].matter {
-            Matter::Pcm(law) => Some(law),
-            Matter::Solid { .. } => None,
-        };
-        let Some(last) = wall.cells.len().checked_sub(1) else { return Self::Solid };
-        // The face belongs to the layer behind it.
-        match (law(i.saturating_sub(1)), law(i.min(last))) {
-            (None, None) => Self::Solid,
-            (Some(left), Some(right))
-                if left == right && !wall.massless[i] && wall.pcm[left].integrable() =>
-            {
-                Self::Pcm(left)
+impl<S: Real> Mixed<S> {
+    fn new(wall: &Wall<S>, link: usize) -> Self {
+        let mut mixed = Self { link, resistance: wall.extra[link], halves: [None; 2] };
+        for (side, half) in mixed.halves.iter_mut().enumerate() {
+            let Some(cell) = link.checked_sub(1 - side).and_then(|cell| wall.cells.get(cell)) else {
+                continue;
+            };
+            let thickness = cell.thickness.scale(0.5);
+            match cell.matter {
+                Matter::Pcm(_) => *half = Some(thickness),
+                Matter::Solid { conductivity, .. } => mixed.resistance += thickness / conductivity,
             }
-            _ => Self::Mixed,
         }
-    }
-}
-
-impl<S: Real> End<S> {
-    #[inline(always)]
-    fn face() -> Self {
-        Self { resistance: S::zero(), gain: S::zero(), place: S::zero() }
+        mixed
     }
 }
 
@@ -193,13 +204,14 @@ impl<S: Real> Chain<S> {
             to_outside: zeros.clone(),
             next: zeros.clone(),
             path: zeros,
-            first: [S::zero(); 2],
             points: vec![PcmPoint::zero(); n],
-            ways: (0..=n).map(|i| Way::of(wall, i)).collect(),
-            inverse_lengths: vec![S::zero(); n + 1],
+            melting: Vec::new(),
+            within: Vec::new(),
+            bare: Vec::new(),
+            mixed: Vec::new(),
         };
         chain.link_solids(wall);
-        chain.measure_links(wall);
+        chain.link_changing(wall);
         chain
     }
 
@@ -225,11 +237,38 @@ impl<S: Real> Chain<S> {
         }
     }
 
-    fn measure_links(&mut self, wall: &Wall<S>) {
+    /// Sorts cells and links that change.
+    fn link_changing(&mut self, wall: &Wall<S>) {
         let n = wall.cells.len();
-        for i in (0..=n).filter(|&i| matches!(self.ways[i], Way::Pcm(_))) {
-            let share = if i == 0 || i == n { 0.5 } else { 1.0 };
-            self.inverse_lengths[i] = S::one() / wall.cells[i.min(n - 1)].thickness.scale(share);
+        let law = |cell: usize| match wall.cells[cell].matter {
+            Matter::Pcm(law) => Some(law),
+            Matter::Solid { .. } => None,
+        };
+        for (cell, of_cell) in (0..n).filter_map(|cell| Some((cell, law(cell)?))) {
+            match self.melting.last_mut() {
+                Some(run) if run.law == of_cell && run.cells.end == cell => run.cells.end += 1,
+                _ => self.melting.push(Melting { law: of_cell, cells: cell..cell + 1 }),
+            }
+        }
+        if n == 0 {
+            return;
+        }
+        for link in 0..=n {
+            // The face belongs to the layer behind it.
+            let ends = [law(link.saturating_sub(1)), law(link.min(n - 1))];
+            let face = link == 0 || link == n;
+            match ends {
+                [None, None] => {}
+                [Some(left), Some(right)]
+                    if left == right && !wall.massless[link] && wall.pcm[left].integrable() =>
+                {
+                    let share = if face { 0.5 } else { 1.0 };
+                    let inverse_length = S::one() / wall.cells[link.min(n - 1)].thickness.scale(share);
+                    let links = if face { &mut self.bare } else { &mut self.within };
+                    links.push(Within { link, law: left, inverse_length });
+                }
+                _ => self.mixed.push(Mixed::new(wall, link)),
+            }
         }
     }
 
@@ -242,107 +281,115 @@ impl<S: Real> Chain<S> {
         start: &Start<'_, S>,
         rule: StorageRule,
     ) {
-        for (i, cell) in wall.cells.iter().enumerate() {
-            let Matter::Pcm(law) = cell.matter else { continue };
-            let (temperature, memory) = (at.cells[i], &start.memory[i]);
-            let point = wall.pcm[law].at(temperature, memory);
-            let (offset, capacity) = match (rule, at.outer) {
-                (StorageRule::Enthalpy, None) => (point.enthalpy, point.capacity),
-                (StorageRule::Enthalpy, Some(outer)) => {
-                    split_tangent(&wall.pcm[law], temperature, outer[i], memory)
-                }
-                (StorageRule::ApparentCapacity, _) => {
-                    let capacity = wall.pcm[law].at(start.cells[i], memory).capacity;
-                    (start.enthalpy[i] + capacity * (temperature - start.cells[i]), capacity)
-                }
-            };
-            self.storage[i] = Storage { place: temperature, offset, capacity, moved: S::zero() };
-            self.points[i] = point;
+        for Melting { law, cells } in &self.melting {
+            let places = &at.cells[cells.clone()];
+            let (points, storage) = (&mut self.points[cells.clone()], &mut self.storage[cells.clone()]);
+            wall.pcm[*law].at_all(places, &start.memory[cells.clone()], points);
+            for ((storage, point), &place) in storage.iter_mut().zip(points).zip(places) {
+                let (offset, capacity) = (point.enthalpy, point.capacity);
+                *storage = Storage { place, offset, capacity, moved: S::zero() };
+            }
         }
-        for i in 0..self.links.len() {
-            match self.ways[i] {
-                Way::Solid => {}
-                Way::Pcm(law) => self.links[i] = self.link_in_pcm(wall, i, law, at, start),
-                Way::Mixed => self.links[i] = self.link_of_halves(wall, i, at),
+        if at.outer.is_some() || rule == StorageRule::ApparentCapacity {
+            self.store_otherwise(wall, at, start);
+        }
+        for within in &self.within {
+            let (left, right) = (&self.points[within.link - 1], &self.points[within.link]);
+            self.links[within.link] = Link {
+                left: left.conductivity * within.inverse_length,
+                right: right.conductivity * within.inverse_length,
+                offset: (left.potential - right.potential) * within.inverse_length,
+            };
+        }
+        for bare in &self.bare {
+            self.links[bare.link] = self.link_to_face(wall, bare, at, start);
+        }
+        for mixed in &self.mixed {
+            self.links[mixed.link] = self.link_of_halves(mixed, at);
+        }
+    }
+
+    /// Storage along two tangents, or by the apparent capacity.
+    #[cold]
+    #[inline(never)]
+    fn store_otherwise(&mut self, wall: &Wall<S>, at: &Iterate<'_, S>, start: &Start<'_, S>) {
+        for run in &self.melting {
+            let law = &wall.pcm[run.law];
+            for i in run.cells.clone() {
+                let (temperature, memory) = (at.cells[i], &start.memory[i]);
+                let (offset, capacity) = if let Some(outer) = at.outer {
+                    split_tangent(law, temperature, outer[i], memory)
+                } else {
+                    let capacity = law.at(start.cells[i], memory).capacity;
+                    (start.enthalpy[i] + capacity * (temperature - start.cells[i]), capacity)
+                };
+                self.storage[i] = Storage { place: temperature, offset, capacity, moved: S::zero() };
             }
         }
     }
 
-    /// Newton form of the flux between two points of one phase-change layer, or of its cell and a bare face.
+    /// Newton form of the flux between a cell and the bare face of its layer; that between two of its cells is alike.
     ///
     /// The flux is the difference of the integrals of the conductivity (Kirchhoff's transformation) over the
     /// distance: exact in a steady state, however much the conductivity changes in between, and its derivatives
     /// keep the sign of the conductivity, so that Newton's matrix stays an M-matrix.
     #[inline(always)]
-    fn link_in_pcm(
+    fn link_to_face(
         &self,
         wall: &Wall<S>,
-        i: usize,
-        law: usize,
+        bare: &Within<S>,
         at: &Iterate<'_, S>,
         start: &Start<'_, S>,
     ) -> Link<S> {
-        let last = wall.cells.len() - 1;
+        let outside = bare.link == 0;
+        let (cell, face) = if outside { (0, at.faces[0]) } else { (bare.link - 1, at.faces[1]) };
+        let (bare_point, point) = (wall.pcm[bare.law].at(face, &start.memory[cell]), &self.points[cell]);
+        let inverse = bare.inverse_length;
+        let (by_face, by_cell) = (bare_point.conductivity * inverse, point.conductivity * inverse);
         // Cells are reckoned from their iterate, faces from zero.
-        let (left_above, left) = if i == 0 {
-            (at.faces[0], wall.pcm[law].at(at.faces[0], &start.memory[0]))
+        let inwards = (bare_point.potential - point.potential) * inverse - by_face * face;
+        if outside {
+            Link { left: by_face, right: by_cell, offset: inwards }
         } else {
-            (S::zero(), self.points[i - 1])
-        };
-        let (right_above, right) = if i > last {
-            (at.faces[1], wall.pcm[law].at(at.faces[1], &start.memory[last]))
-        } else {
-            (S::zero(), self.points[i])
-        };
-        let inverse = self.inverse_lengths[i];
-        let (by_left, by_right) = (left.conductivity * inverse, right.conductivity * inverse);
-        Link {
-            left: by_left,
-            right: by_right,
-            offset: (left.potential - right.potential) * inverse - by_left * left_above
-                + by_right * right_above,
+            Link { left: by_cell, right: by_face, offset: -inwards }
         }
     }
 
     /// Newton form of `K (T_left - T_right)` with K from the half cells at their own temperatures. Its derivatives are
     /// kept from turning their sign where the conductivity changes steeply: the flux stays what it is.
     #[inline(always)]
-    fn link_of_halves(&self, wall: &Wall<S>, i: usize, at: &Iterate<'_, S>) -> Link<S> {
+    fn link_of_halves(&self, mixed: &Mixed<S>, at: &Iterate<'_, S>) -> Link<S> {
         const LEAST: f64 = 0.9;
-        let n = wall.cells.len();
-        let (left, left_temperature) =
-            if i > 0 { (self.end(wall, i - 1), at.cells[i - 1]) } else { (End::face(), at.faces[0]) };
-        let (right, right_temperature) =
-            if i < n { (self.end(wall, i), at.cells[i]) } else { (End::face(), at.faces[1]) };
-        let conductance = S::one() / (left.resistance + wall.extra[i] + right.resistance);
-        let difference = left_temperature - right_temperature;
-        let square = conductance * conductance * difference;
+        let (left, right) = (self.end(mixed, 0, at), self.end(mixed, 1, at));
+        // K = 1/(R + a_left/k_left + a_right/k_right), with one division.
+        let both = left.conductivity * right.conductivity;
+        let thickness = left.half * right.conductivity + right.half * left.conductivity;
+        let inverse = S::one() / (mixed.resistance * both + thickness);
+        let conductance = both * inverse;
+        let difference = left.temperature - right.temperature;
+        let (by_left, by_right) = (right.conductivity * inverse, left.conductivity * inverse);
         let most = conductance.scale(LEAST);
-        let by_left = conductance + (square * left.gain).max(-most);
-        let by_right = conductance - (square * right.gain).min(most);
-        let (left_above, right_above) = (left_temperature - left.place, right_temperature - right.place);
+        let gain = (difference * left.half * left.slope * (by_left * by_left)).max(-most);
+        let loss = (difference * right.half * right.slope * (by_right * by_right)).min(most);
+        let (by_left, by_right) = (conductance + gain, conductance - loss);
         Link {
             left: by_left,
             right: by_right,
-            offset: conductance * difference - by_left * left_above + by_right * right_above,
+            offset: conductance * difference - by_left * left.above + by_right * right.above,
         }
     }
 
-    /// The half of a cell that a link crosses.
     #[inline(always)]
-    fn end(&self, wall: &Wall<S>, cell: usize) -> End<S> {
-        let half = wall.cells[cell].thickness.scale(0.5);
-        match &wall.cells[cell].matter {
-            Matter::Solid { conductivity, .. } => {
-                End { resistance: half / *conductivity, gain: S::zero(), place: S::zero() }
-            }
-            Matter::Pcm(_) => {
-                let point = &self.points[cell];
-                let resistance = half / point.conductivity;
-                let gain = resistance / point.conductivity * point.conductivity_slope;
-                End { resistance, gain, place: self.storage[cell].place }
-            }
-        }
+    fn end(&self, mixed: &Mixed<S>, side: usize, at: &Iterate<'_, S>) -> End<S> {
+        // Before the first cell and after the last lie the faces.
+        let cell = (mixed.link + side).checked_sub(1).filter(|&cell| cell < at.cells.len());
+        let temperature = cell.map_or(at.faces[side], |cell| at.cells[cell]);
+        let (Some(half), Some(cell)) = (mixed.halves[side], cell) else {
+            let (half, conductivity, slope) = (S::zero(), S::one(), S::zero());
+            return End { half, conductivity, slope, temperature, above: temperature };
+        };
+        let PcmPoint { conductivity, conductivity_slope: slope, .. } = self.points[cell];
+        End { half, conductivity, slope, temperature, above: S::zero() }
     }
 
     /// Eliminates the cells for a stage of effective length `stage` [s]. Called again only when a coefficient changes.
@@ -353,10 +400,10 @@ impl<S: Real> Chain<S> {
             let link = self.links[0];
             return [[-link.left, link.right], [link.left, -link.right]];
         }
+        self.pace(wall, stage);
         let mut path = S::one();
         let (mut first_outside, mut to_outside) = (S::zero(), S::zero());
         for i in 0..n {
-            self.rate[i] = wall.cells[i].thickness.scale(1.0 / stage);
             let (before, after) = (self.links[i], self.links[i + 1]);
             let mut diagonal = self.storage[i].capacity * self.rate[i] + before.right + after.left;
             let mut outside = before.left;
@@ -372,7 +419,6 @@ impl<S: Real> Chain<S> {
             first_outside += path * to_outside;
             path = path * self.next[i];
         }
-        self.first = [first_outside, path];
         let (outer, inner) = (self.links[0], self.links[n]);
         [
             [outer.right * first_outside - outer.left, outer.right * path],
@@ -380,36 +426,64 @@ impl<S: Real> Chain<S> {
         ]
     }
 
-    /// The part of the face fluxes that comes from what the cells held: `held` is the right-hand enthalpy [J/m3].
+    /// Sets the stage length that cells are eliminated for by [`Self::condense`] [s].
     #[inline(always)]
-    pub fn sources(&mut self, held: &[S]) -> [S; 2] {
-        self.sweep(held, |right, _| right)
+    pub fn pace(&mut self, wall: &Wall<S>, stage: f64) {
+        for (rate, cell) in self.rate.iter_mut().zip(&wall.cells) {
+            *rate = cell.thickness.scale(1.0 / stage);
+        }
+    }
+
+    /// Eliminates the cells, and with them what they held: `held` is the right-hand enthalpy [J/m3]. The stage length is
+    /// that of [`Self::pace`].
+    #[inline(always)]
+    pub fn condense(&mut self, held: &[S]) -> Condensed<S> {
+        self.condense_with(held, |right, _| right)
     }
 
     /// The same with heat released in the cells [W/m2].
     #[inline(always)]
-    pub fn sources_with(&mut self, held: &[S], gains: &[S]) -> [S; 2] {
-        self.sweep(held, |right, i| right + gains[i])
+    pub fn condense_heated(&mut self, held: &[S], gains: &[S]) -> Condensed<S> {
+        self.condense_with(held, |right, i| right + gains[i])
     }
 
     #[inline(always)]
-    fn sweep(&mut self, held: &[S], add: impl Fn(S, usize) -> S) -> [S; 2] {
-        let n = self.storage.len();
+    fn condense_with(&mut self, held: &[S], add: impl Fn(S, usize) -> S) -> Condensed<S> {
+        let n = held.len();
+        let (links, storage, rate) = (&self.links[..=n], &self.storage[..n], &self.rate[..n]);
+        let (inverses, nexts) = (&mut self.inverse[..n], &mut self.next[..n]);
+        let (to_outsides, knowns) = (&mut self.to_outside[..n], &mut self.known[..n]);
+        let paths = &mut self.path[..n];
+        // Of the node before: the outside face is its own.
+        let (mut known, mut to_outside, mut next) = (S::zero(), S::one(), S::zero());
+        // Of the first cell: its part that is known, its gains of the outside face and of the next node.
+        let (mut first, mut first_outside, mut path) = (S::zero(), S::zero(), S::one());
+        for i in 0..n {
+            let (before, after) = (&links[i], &links[i + 1]);
+            let carried = storage[i].capacity * rate[i] + before.right + after.left;
+            let inverse = S::one() / (carried - before.left * next);
+            let right = add((held[i] - storage[i].offset) * rate[i], i) + before.offset - after.offset;
+            known = (right + before.left * known) * inverse;
+            to_outside = before.left * to_outside * inverse;
+            next = after.right * inverse;
+            first += path * known;
+            first_outside += path * to_outside;
+            (inverses[i], nexts[i], to_outsides[i], knowns[i], paths[i]) =
+                (inverse, next, to_outside, known, path);
+            path = path * next;
+        }
+        let (outer, inner) = (&links[0], &links[n]);
         if n == 0 {
-            return [-self.links[0].offset, self.links[0].offset];
+            let source = [-outer.offset, outer.offset];
+            return Condensed { source, response: [[-outer.left, outer.right], [outer.left, -outer.right]] };
         }
-        let mut first = S::zero();
-        for (i, &held) in held.iter().enumerate() {
-            let mut right = add((held - self.storage[i].offset) * self.rate[i], i);
-            right = right + self.links[i].offset - self.links[i + 1].offset;
-            if i > 0 {
-                right += self.links[i].left * self.known[i - 1];
-            }
-            self.known[i] = right * self.inverse[i];
-            first += self.path[i] * self.known[i];
+        Condensed {
+            source: [outer.right * first - outer.offset, inner.left * known + inner.offset],
+            response: [
+                [outer.right * first_outside - outer.left, outer.right * path],
+                [inner.left * to_outside, inner.left * next - inner.right],
+            ],
         }
-        let (outer, inner) = (self.links[0], self.links[n]);
-        [outer.right * first - outer.offset, inner.left * self.known[n - 1] + inner.offset]
     }
 
     /// Cell temperatures from the face temperatures.
@@ -468,7 +542,8 @@ impl<S: Real> Chain<S> {
     /// Liquid fraction of a phase-change cell at the solution, along the last tangent.
     #[inline(always)]
     pub fn reached_fraction(&self, i: usize) -> S {
-        let reached = self.points[i].liquid_fraction + self.points[i].fraction_slope * self.storage[i].moved;
+        let point = &self.points[i];
+        let reached = point.liquid_fraction + point.fraction_slope * self.storage[i].moved;
         reached.max(S::zero()).min(S::one())
     }
 

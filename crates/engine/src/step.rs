@@ -880,7 +880,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn solve_once(&mut self, state: &State<S>, length: f64) -> S::Mask {
         self.effort.iterations += 1;
-        self.linearise_walls(state, length, None);
+        self.linearise_walls(state, None);
         self.linearise_faces();
         self.solve_linear(length);
         self.finish_stage()
@@ -905,7 +905,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let mut before = S::zero();
         for iteration in 0..MAX_ITERATIONS {
             self.effort.iterations += 1;
-            self.linearise_walls(state, length, None);
+            self.linearise_walls(state, None);
             self.linearise_faces();
             self.solve_linear(length);
             let change = self.distance(&self.iterate);
@@ -963,7 +963,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         for _ in 0..MAX_ITERATIONS {
             for _ in 0..MAX_ITERATIONS {
                 self.effort.iterations += 1;
-                self.linearise_walls(&state, length, Some(&outer.cells));
+                self.linearise_walls(&state, Some(&outer.cells));
                 self.linearise_faces();
                 self.solve_linear(length);
                 let settled = self.distance(&self.iterate).lt(enough);
@@ -1022,7 +1022,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Factors the walls of constant properties for a stage length [s]. True where that was not done before.
+    /// Factors the walls of constant properties for a stage length [s], and tells it to the others. True where that was not done before.
     #[inline(always)]
     fn factor_constant(&mut self, length: f64) -> bool {
         let new = self.factored.to_bits() != length.to_bits();
@@ -1030,22 +1030,13 @@ impl<'a, S: Real> Stepper<'a, S> {
             for &w in &self.changing.constant {
                 self.responses[w] = self.chains[w].factor(&self.coefficients.walls[w], length);
             }
+            for &w in &self.changing.walls {
+                self.chains[w].pace(&self.coefficients.walls[w], length);
+            }
             self.slabs.factor(&self.chains);
             self.factored = length;
         }
         new
-    }
-
-    /// What a wall's cells held, and the sun in its panes, send into its faces.
-    #[inline(always)]
-    fn heat_to_faces(&mut self, w: usize) -> [S; 2] {
-        let wall = &self.plan.walls[w];
-        let held = &self.held[wall.first_cell..wall.first_cell + wall.len()];
-        if wall.glass.is_none() {
-            return self.chains[w].sources(held);
-        }
-        let gains = self.plan.windows.iter().zip(&self.drive.windows).find(|(window, _)| **window == w);
-        if let Some((_, at)) = gains { self.chains[w].sources_with(held, &at.cells) } else { [S::zero(); 2] }
     }
 
     /// Takes the convection in gaps at the temperatures that are expected in a stage: those of the step's start in the
@@ -1063,7 +1054,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     #[inline(always)]
-    fn linearise_walls(&mut self, state: &State<S>, length: f64, outer: Option<&[S]>) {
+    fn linearise_walls(&mut self, state: &State<S>, outer: Option<&[S]>) {
         for i in 0..self.changing.walls.len() {
             let w = self.changing.walls[i];
             let wall = &self.plan.walls[w];
@@ -1082,13 +1073,20 @@ impl<'a, S: Real> Stepper<'a, S> {
                 enthalpy: &state.enthalpy[cells.clone()],
                 memory: &state.memory[cells.clone()],
             };
-            if let Some(glass) = &numbers.glass {
-                glass.linearise(at.cells, &self.gap_convection[self.stage][w], &mut self.chains[w].links);
+            let (chain, held) = (&mut self.chains[w], &self.held[cells]);
+            let condensed = if let Some(glass) = &numbers.glass {
+                glass.linearise(at.cells, &self.gap_convection[self.stage][w], &mut chain.links);
+                let mut windows = self.plan.windows.iter().zip(&self.drive.windows);
+                match windows.find(|(window, _)| **window == w) {
+                    // The sun in the panes.
+                    Some((_, sun)) => chain.condense_heated(held, &sun.cells),
+                    None => chain.condense(held),
+                }
             } else {
-                self.chains[w].linearise(numbers, &at, &start, self.scheme.storage_rule());
-            }
-            self.responses[w] = self.chains[w].factor(numbers, length);
-            self.sources[w] = self.heat_to_faces(w);
+                chain.linearise(numbers, &at, &start, self.scheme.storage_rule());
+                chain.condense(held)
+            };
+            (self.sources[w], self.responses[w]) = (condensed.source, condensed.response);
         }
     }
 

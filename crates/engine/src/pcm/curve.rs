@@ -34,11 +34,38 @@ pub(super) struct Curve<S> {
     inverse_width: S,
 }
 
+/// `(1 + tanh u)/2`, a logistic function of `2 u`.
+#[derive(Debug, Clone)]
+pub(super) struct Tanh<S> {
+    centre: S,
+    /// `2 u/ln 2` [1/K].
+    rate: S,
+    /// Twice the slope of `u` [1/K].
+    steepness: S,
+    /// [K].
+    half_width: S,
+}
+
+impl<S: Real> Tanh<S> {
+    fn new(centre: S, width: S) -> Self {
+        let steepness = S::constant(2.0) / width;
+        Self { centre, rate: steepness.scale(LOG2_E), steepness, half_width: width.scale(0.5) }
+    }
+
+    #[inline(always)]
+    pub(super) fn at(&self, temperature: S) -> CurvePoint<S> {
+        let excess = temperature - self.centre;
+        let Logistic { rise, rest, tail } = (excess * self.rate).logistic();
+        // The integral of the fraction is w/2 ln(1 + e^(2u)).
+        let molten = excess.max(S::zero()) + self.half_width * tail;
+        CurvePoint { fraction: rise, slope: rise * rest * self.steepness, molten }
+    }
+}
+
 /// What the curve is over `u = (T - centre)/width`.
 #[derive(Debug, Clone)]
 enum Shape<S> {
-    /// Twice `u` over ln 2 per kelvin, twice the slope of `u`, half a width.
-    Tanh([S; 3]),
+    Tanh(Tanh<S>),
     /// `v^2 (3 - 2 v)`, `v = (1 + u)/2`.
     Cubic,
     /// `v^3 (10 - 15 v + 6 v^2)`.
@@ -60,10 +87,7 @@ impl<S: Real> Curve<S> {
             width,
             inverse_width: S::one() / width,
         };
-        let tanh = |centre, width: S| {
-            let twice = S::constant(2.0) / width;
-            of(Shape::Tanh([twice.scale(LOG2_E), twice, width.scale(0.5)]), centre, width)
-        };
+        let tanh = |centre, width| of(Shape::Tanh(Tanh::new(values.get(centre), width)), centre, width);
         match curve {
             MeltingCurve::TanhWidth { melting_temperature, width } => {
                 tanh(*melting_temperature, values.get(*width))
@@ -103,7 +127,7 @@ impl<S: Real> Curve<S> {
         let excess = temperature - self.centre;
         let u = excess * self.inverse_width;
         let (fraction, slope, molten) = match &self.shape {
-            Shape::Tanh(numbers) => return tanh(excess, numbers),
+            Shape::Tanh(tanh) => return tanh.at(temperature),
             Shape::Cubic => cubic(u),
             Shape::Quintic => quintic(u),
             Shape::Gaussian => {
@@ -116,6 +140,12 @@ impl<S: Real> Curve<S> {
             Shape::Measured(segments) => return measured(segments, excess),
         };
         CurvePoint { fraction, slope: slope * self.inverse_width, molten: molten * self.width }
+    }
+
+    /// The curve itself where it is of this kind.
+    #[inline(always)]
+    pub(super) fn tanh(&self) -> Option<&Tanh<S>> {
+        if let Shape::Tanh(tanh) = &self.shape { Some(tanh) } else { None }
     }
 
     /// The curve with its tails cut off and the rest stretched to 0..1: fraction and slope.
@@ -221,15 +251,6 @@ impl<S: Real> Curve<S> {
         }
         [low, high]
     }
-}
-
-/// `(1 + tanh u)/2`, a logistic function of `2 u`.
-#[inline(always)]
-fn tanh<S: Real>(excess: S, &[rate, steepness, half]: &[S; 3]) -> CurvePoint<S> {
-    let Logistic { rise, rest, tail } = (excess * rate).logistic();
-    // The integral of the fraction is w/2 ln(1 + e^(2u)).
-    let molten = excess.max(S::zero()) + half * tail;
-    CurvePoint { fraction: rise, slope: rise * rest * steepness, molten }
 }
 
 /// `(1 + u)/2` held within 0 and 1, and how far u lies above 1.

@@ -121,33 +121,72 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     /// Properties at a temperature [degC].
+    pub fn at(&self, temperature: S, memory: &PcmMemory<S>) -> PcmPoint<S> {
+        let mut point = PcmPoint::zero();
+        self.at_all(&[temperature], &[*memory], core::slice::from_mut(&mut point));
+        point
+    }
+
+    /// Properties at several temperatures [degC]; a law that remembers takes a memory for each.
     // Not inlined: all laws at every place where a cell is looked at would be a lot of code.
     #[inline(never)]
-    pub fn at(&self, temperature: S, memory: &PcmMemory<S>) -> PcmPoint<S> {
+    pub fn at_all(&self, temperatures: &[S], memory: &[PcmMemory<S>], points: &mut [PcmPoint<S>]) {
         S::vectorised(
             #[inline(always)]
-            || self.evaluate(temperature, memory),
-        )
+            || {
+                let places = points.iter_mut().zip(temperatures);
+                match &self.law {
+                    Law::Melting(latent, curve) => {
+                        // The usual curve by itself, so that its loop holds nothing else.
+                        if let Some(tanh) = curve.tanh() {
+                            for (point, &temperature) in places {
+                                *point = self.melt(*latent, temperature, tanh.at(temperature));
+                            }
+                        } else {
+                            for (point, &temperature) in places {
+                                *point = self.melt(*latent, temperature, curve.at(temperature));
+                            }
+                        }
+                    }
+                    Law::Hysteresis(latent, hysteresis) => {
+                        for ((point, &temperature), memory) in places.zip(memory) {
+                            *point = self.turn(*latent, hysteresis, temperature, memory);
+                        }
+                    }
+                    Law::Table(table) => {
+                        for (point, &temperature) in places {
+                            *point = self.read(table, temperature);
+                        }
+                    }
+                }
+            },
+        );
     }
 
     #[inline(always)]
-    fn evaluate(&self, temperature: S, memory: &PcmMemory<S>) -> PcmPoint<S> {
-        match &self.law {
-            Law::Melting(latent, curve) => {
-                let CurvePoint { fraction, slope, molten } = curve.at(temperature);
-                let (enthalpy, capacity) = self.heat(*latent, temperature, fraction, slope);
-                self.point(temperature, [enthalpy, capacity], [fraction, slope], molten)
-            }
-            Law::Hysteresis(latent, hysteresis) => {
-                let (fraction, slope) = hysteresis.at(temperature, memory);
-                let (enthalpy, capacity) = self.heat(*latent, temperature, fraction, slope);
-                self.point(temperature, [enthalpy, capacity], [fraction, slope], S::zero())
-            }
-            Law::Table(table) => {
-                let (enthalpy, capacity, fraction, slope) = table.at(temperature, self.volumetric_heat);
-                self.point(temperature, [enthalpy, capacity], [fraction, slope], table.molten(temperature))
-            }
-        }
+    fn melt(&self, latent: Latent<S>, temperature: S, point: CurvePoint<S>) -> PcmPoint<S> {
+        let CurvePoint { fraction, slope, molten } = point;
+        let (enthalpy, capacity) = self.heat(latent, temperature, fraction, slope);
+        self.point(temperature, [enthalpy, capacity], [fraction, slope], molten)
+    }
+
+    #[inline(always)]
+    fn turn(
+        &self,
+        latent: Latent<S>,
+        hysteresis: &Hysteresis<S>,
+        temperature: S,
+        memory: &PcmMemory<S>,
+    ) -> PcmPoint<S> {
+        let (fraction, slope) = hysteresis.at(temperature, memory);
+        let (enthalpy, capacity) = self.heat(latent, temperature, fraction, slope);
+        self.point(temperature, [enthalpy, capacity], [fraction, slope], S::zero())
+    }
+
+    #[inline(always)]
+    fn read(&self, table: &Table<S>, temperature: S) -> PcmPoint<S> {
+        let (enthalpy, capacity, fraction, slope) = table.at(temperature, self.volumetric_heat);
+        self.point(temperature, [enthalpy, capacity], [fraction, slope], table.molten(temperature))
     }
 
     #[inline(always)]
