@@ -326,21 +326,24 @@ fn boundary<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_
     }
 }
 
-fn outdoors<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
-    let surface = &plan.description.surfaces[index / 2];
+/// The plane of a face that looks outdoors, and its azimuth vector (north, east).
+pub(crate) fn plane<S: Real>(plan: &Plan, index: FaceId, values: &Values<'_, S>) -> (Plane<S>, [S; 2]) {
+    let (surface, side) = (&plan.description.surfaces[index / 2], plan.side(index));
     let (tilt, azimuth) = (radians(values.get(surface.tilt)), radians(values.get(surface.azimuth)));
     // The inside face of a surface that looks outdoors looks the other way.
     let outward = if index.is_multiple_of(2) { S::one() } else { -S::one() };
     let (sin_tilt, cos_tilt) = (tilt.sin(), tilt.cos() * outward);
     let heading = [azimuth.cos() * outward, azimuth.sin() * outward];
     let sky_view = side.sky_view.map_or_else(|| (S::one() + cos_tilt).scale(0.5), |id| values.get(id));
+    let normal = [heading[1] * sin_tilt, heading[0] * sin_tilt, cos_tilt];
+    (Plane { normal, sin_tilt, sky_view, ground_view: (S::one() - cos_tilt).scale(0.5) }, heading)
+}
+
+fn outdoors<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
+    let (plane, heading) = plane(plan, index, values);
+    let sky_view = plane.sky_view;
     Outdoors {
-        plane: Plane {
-            normal: [heading[1] * sin_tilt, heading[0] * sin_tilt, cos_tilt],
-            sin_tilt,
-            sky_view,
-            ground_view: (S::one() - cos_tilt).scale(0.5),
-        },
+        plane,
         heading,
         // F_sky sqrt(F_sky): the sky near the horizon is as warm as the air (Walton 1983).
         to_sky: if side.exposure.sky {

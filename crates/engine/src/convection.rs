@@ -41,16 +41,49 @@ pub struct Wind {
     logarithm: f64,
 }
 
+/// What the films of a building ask of the wind beside its speed and the root of it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Asked {
+    /// `MoWiTT`'s powers.
+    mowitt: bool,
+    /// The logarithm.
+    logarithm: bool,
+    /// Where it comes from.
+    pub direction: bool,
+}
+
+impl Asked {
+    /// What some laws ask together.
+    pub fn by<'a>(laws: impl Iterator<Item = &'a Convection>) -> Self {
+        laws.fold(Self::default(), |mut asked, law| {
+            match law {
+                Convection::Tarp { .. } => asked.direction = true,
+                Convection::Mowitt { .. } | Convection::Doe2 { .. } => {
+                    (asked.direction, asked.mowitt) = (true, true);
+                }
+                Convection::Power { .. } => asked.logarithm = true,
+                Convection::Constant { .. }
+                | Convection::LinearWind { .. }
+                | Convection::AlamdariHammond { .. }
+                | Convection::PaperEq5 { .. }
+                | Convection::Iso15099 { .. } => {}
+            }
+            asked
+        })
+    }
+}
+
 impl Wind {
-    /// Powers of a speed [m/s].
+    /// What is asked of a speed [m/s]; zeros for the rest.
     #[must_use]
-    pub fn new(speed: f64) -> Self {
+    pub fn new(speed: f64, asked: Asked) -> Self {
         let moving = if speed < CALM { CALM } else { speed };
+        let power = |exponent| if asked.mowitt { Real::powf(moving, exponent) } else { 0.0 };
         Self {
             speed,
             root: Real::sqrt(moving),
-            mowitt: MOWITT_EXPONENTS.map(|exponent| Real::powf(moving, exponent)),
-            logarithm: Real::ln(moving),
+            mowitt: MOWITT_EXPONENTS.map(power),
+            logarithm: if asked.logarithm { Real::ln(moving) } else { 0.0 },
         }
     }
 }
@@ -221,6 +254,11 @@ impl<S: Real> Film<S> {
     /// Whether the coefficient is the same at all temperatures.
     pub fn straight(&self) -> bool {
         matches!(self.law, Law::Constant(_) | Law::LinearWind { .. })
+    }
+
+    /// Whether the wind makes a part of the coefficient.
+    pub fn windy(&self) -> bool {
+        !matches!(self.law, Law::Constant(_) | Law::Blend { .. } | Law::Glass(_))
     }
 
     /// What a wind makes of the film coefficient; `windward`: where it blows onto the face.
@@ -499,7 +537,8 @@ mod tests {
     }
 
     fn coefficient(film: &Film<f64>, difference: f64, wind: f64, windward: bool) -> f64 {
-        let forced = film.forced(&Wind::new(wind), windward);
+        let forced =
+            film.forced(&Wind::new(wind, Asked { mowitt: true, logarithm: true, direction: true }), windward);
         let flux = film.flux(difference, &forced);
         let step = 1e-5;
         let slope = (film.flux(difference + step, &forced).flux - film.flux(difference - step, &forced).flux)

@@ -484,6 +484,12 @@ impl Daylight {
         numbers.into_boxed_slice()
     }
 
+    /// Whether anything shades a wall.
+    #[must_use]
+    pub fn shaded(&self, wall: usize) -> bool {
+        self.receivers[wall].is_some()
+    }
+
     /// What shades leave a wall of the sky.
     #[must_use]
     pub fn open(&self, wall: usize, numbers: &[f64]) -> Open {

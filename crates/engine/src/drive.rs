@@ -1,7 +1,8 @@
 //! What acts on the building at one instant: forcing turned into numbers at each face.
 
-use crate::coefficients::{Boundary, Coefficients, Face, Imposed, Outdoors};
-use crate::convection::{Film, Forced, Wind};
+use crate::coefficients::{Boundary, Coefficients, Imposed};
+use crate::convection::{Asked, Film, Forced, Wind};
+use crate::facade::{Facade, Sun};
 use crate::forcing::{Forcing, channel};
 use crate::glazing::{Node, Site};
 use crate::interior::Traced;
@@ -26,7 +27,7 @@ pub struct Instant<'a> {
     sunlight: Sunlight,
     heaven: Heaven,
     wind: Wind,
-    /// North and east components of the direction the wind comes from.
+    /// North and east components of the direction the wind comes from, where films ask for it.
     wind_from: [f64; 2],
     /// Sun and shade, see [`Daylight`](crate::daylight::Daylight).
     geometry: Box<[f64]>,
@@ -35,7 +36,7 @@ pub struct Instant<'a> {
 impl<'a> Instant<'a> {
     /// Reads a forcing row.
     #[must_use]
-    pub fn new(plan: &Plan, row: &'a [f64]) -> Self {
+    pub fn new(plan: &Plan, row: &'a [f64], asked: Asked) -> Self {
         let from = row[channel::WIND_DIRECTION].to_radians();
         let sunlight = Sunlight::new(row, plan.description.site.diffuse);
         Self {
@@ -43,8 +44,8 @@ impl<'a> Instant<'a> {
             geometry: plan.daylight.at(&sunlight),
             sunlight,
             heaven: Heaven::new(&plan.description.site.sky, row),
-            wind: Wind::new(row[channel::WIND_SPEED]),
-            wind_from: [from.cos(), from.sin()],
+            wind: Wind::new(row[channel::WIND_SPEED], asked),
+            wind_from: if asked.direction { [from.cos(), from.sin()] } else { [0.0; 2] },
         }
     }
 }
@@ -68,8 +69,9 @@ impl<'a> Weather<'a> {
     #[must_use]
     pub fn new(plan: &Plan, forcing: &Forcing<'a>) -> Self {
         let stages = forcing.stages();
+        let asked = Asked::by((0..plan.faces.len()).filter_map(|face| plan.side(face).convection.as_ref()));
         let instants = (0..forcing.steps() * stages)
-            .map(|k| Instant::new(plan, forcing.at(k / stages, k % stages)))
+            .map(|k| Instant::new(plan, forcing.at(k / stages, k % stages), asked))
             .collect();
         Self { instants, stages }
     }
@@ -98,8 +100,6 @@ pub struct FaceDrive<S: Real> {
     pub temperature: S,
     /// What the wind makes of the film.
     pub forced: Forced<S>,
-    /// Short-wave radiation on a face outdoors [W/m2].
-    pub incident: S,
 }
 
 /// The sun at a window.
@@ -145,6 +145,10 @@ pub struct Drive<S: Real> {
     pub windows: Vec<WindowDrive<S>>,
     /// The sun in each zone.
     pub light: Vec<ZoneLight<S>>,
+    /// Irradiance by each of [`Facade::suns`] [W/m2].
+    suns: Vec<S>,
+    /// Emission of the outdoor air by each of [`Facade::emissions`] [W/m2].
+    from_air: Vec<S>,
     /// Power that lands first on each face of each zone [W].
     first: Vec<Vec<S>>,
 }
@@ -152,11 +156,11 @@ pub struct Drive<S: Real> {
 impl<S: Real> Drive<S> {
     /// A place for the numbers of a building, in still air.
     #[must_use]
-    pub fn new(plan: &Plan, coefficients: &Coefficients<S>) -> Self {
+    pub(crate) fn new(plan: &Plan, coefficients: &Coefficients<S>, facade: &Facade<S>) -> Self {
         let zero = S::zero();
         let faces = coefficients.faces.iter().map(|face| {
             let forced = face.film.as_ref().map_or([zero; 2], Film::still);
-            FaceDrive { solar: zero, longwave: zero, temperature: zero, forced, incident: zero }
+            FaceDrive { solar: zero, longwave: zero, temperature: zero, forced }
         });
         let windows = plan.windows.iter().map(|&w| WindowDrive {
             transmitted: zero,
@@ -173,6 +177,8 @@ impl<S: Real> Drive<S> {
             sky: zero,
             windows: windows.collect(),
             light: vec![ZoneLight { transmitted: zero, lost: zero, in_glass: zero }; plan.zones.len()],
+            suns: vec![zero; facade.suns.len()],
+            from_air: vec![zero; facade.emissions.len()],
             first: plan.zones.iter().map(|zone| vec![zero; zone.faces.len()]).collect(),
         }
     }
@@ -187,8 +193,10 @@ impl<S: Real> Drive<S> {
             at.solar = line(a.solar, b.solar);
             at.longwave = line(a.longwave, b.longwave);
             at.temperature = line(a.temperature, b.temperature);
-            at.incident = line(a.incident, b.incident);
             at.forced = [rate(a.forced[0], b.forced[0]), rate(a.forced[1], b.forced[1])];
+        }
+        for (at, (&a, &b)) in self.suns.iter_mut().zip(first.suns.iter().zip(&second.suns)) {
+            *at = line(a, b);
         }
         for (at, (a, b)) in self.zones.iter_mut().zip(first.zones.iter().zip(&second.zones)) {
             at.between(a, b, share);
@@ -219,45 +227,57 @@ impl<S: Real> Drive<S> {
     /// Turns the weather into numbers at each face.
     // Not inlined, for the compiler's sake: it is large and asked for in several places.
     #[inline(never)]
-    pub fn update(&mut self, plan: &Plan, coefficients: &Coefficients<S>, numbers: &[S], now: &Instant<'_>) {
+    pub(crate) fn update(
+        &mut self,
+        plan: &Plan,
+        coefficients: &Coefficients<S>,
+        facade: &Facade<S>,
+        numbers: &[S],
+        now: &Instant<'_>,
+    ) {
         S::vectorised(
             #[inline(always)]
-            || self.read(plan, coefficients, numbers, now),
+            || self.read(plan, coefficients, facade, numbers, now),
         );
     }
 
     #[inline(always)]
-    fn read(&mut self, plan: &Plan, coefficients: &Coefficients<S>, numbers: &[S], now: &Instant<'_>) {
+    fn read(
+        &mut self,
+        plan: &Plan,
+        coefficients: &Coefficients<S>,
+        facade: &Facade<S>,
+        numbers: &[S],
+        now: &Instant<'_>,
+    ) {
         let site = &plan.description.site;
+        let air = S::constant(now.row[channel::AIR_TEMPERATURE]);
         let sky = sky_emission(&Values::new(numbers), &site.sky, coefficients.cloud, &now.heaven);
-        self.sky = sky;
-        self.outdoor_air = S::constant(now.row[channel::AIR_TEMPERATURE]);
+        (self.sky, self.outdoor_air) = (sky, air);
         self.wind = S::constant(now.wind.speed);
-        for (index, (at, face)) in self.faces.iter_mut().zip(&coefficients.faces).enumerate() {
-            let measured = face.irradiance.map(
-                #[inline(always)]
-                |channel| S::constant(now.row[channel]),
-            );
-            if let Boundary::Outdoors(outdoors) = &face.boundary {
-                at.incident = match measured {
-                    Some(irradiance) => irradiance,
-                    None if !face.exposure.sun || now.sunlight.dark() => S::zero(),
-                    None => {
-                        let open = now.open(plan, index);
-                        now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open).total()
-                    }
-                };
-                at.solar = face.absorptance * at.incident;
-                at.longwave = face.emissivity * incoming_longwave(outdoors, sky, self.outdoor_air);
-                at.temperature = self.outdoor_air;
-                if face.exposure.wind {
-                    at.forced = forced(face, outdoors, now);
-                }
-            } else if let Some(irradiance) = measured {
-                at.solar = face.absorptance * irradiance;
+        self.shine(plan, coefficients, facade, now);
+        for (emission, law) in self.from_air.iter_mut().zip(&facade.emissions) {
+            *emission = law.at(air).0;
+        }
+        for outside in &facade.outdoors {
+            let at = &mut self.faces[outside.face];
+            at.temperature = air;
+            if let Some(sun) = outside.sun {
+                at.solar = outside.absorptance * self.suns[sun];
             }
-            if let Boundary::Imposed(imposed) = &face.boundary {
-                at.temperature = imposed_temperature(imposed, now.row);
+            if let Some(emission) = outside.emission {
+                at.longwave = outside.of_air * self.from_air[emission] + outside.of_sky * sky;
+            }
+        }
+        for &index in &facade.windy {
+            self.faces[index].forced = forced(coefficients, index, now);
+        }
+        for &(index, sun, absorptance) in &facade.lit {
+            self.faces[index].solar = absorptance * self.suns[sun];
+        }
+        for &index in &facade.imposed {
+            if let Boundary::Imposed(imposed) = &coefficients.faces[index].boundary {
+                self.faces[index].temperature = imposed_temperature(imposed, now.row);
             }
         }
         for (at, zone) in self.zones.iter_mut().zip(&coefficients.zones) {
@@ -270,6 +290,24 @@ impl<S: Real> Drive<S> {
             self.let_in(plan, coefficients, now);
             self.land(plan, coefficients, now);
             self.settle_panes(plan);
+        }
+    }
+
+    /// The sun on all planes.
+    #[inline(always)]
+    fn shine(&mut self, plan: &Plan, coefficients: &Coefficients<S>, facade: &Facade<S>, now: &Instant<'_>) {
+        let dark = now.sunlight.dark();
+        for (irradiance, sun) in self.suns.iter_mut().zip(&facade.suns) {
+            *irradiance = match sun {
+                Sun::Measured(channel) => S::constant(now.row[*channel]),
+                _ if dark => S::zero(),
+                Sun::Even(plane, ground, face) => {
+                    S::constant(now.sunlight.on(plane, *ground, &now.open(plan, *face)).total())
+                }
+                Sun::Varied(plane, face) => {
+                    now.sunlight.on(plane, coefficients.ground_reflectance, &now.open(plan, *face)).total()
+                }
+            };
         }
     }
 
@@ -409,8 +447,8 @@ impl<S: Real> Drive<S> {
 /// The sun over a step: means of its stages.
 #[derive(Debug, Clone)]
 pub struct SunMeans<S> {
-    /// On each face outdoors [W/m2].
-    pub incident: Vec<S>,
+    /// By each of [`Facade::suns`] [W/m2].
+    pub(crate) suns: Vec<S>,
     /// Let in by each window [W].
     pub windows: Vec<S>,
     /// Let into each zone [W].
@@ -425,7 +463,7 @@ impl<S: Real> SunMeans<S> {
     pub fn new(drive: &Drive<S>) -> Self {
         let zeros = |count: usize| vec![S::zero(); count];
         Self {
-            incident: zeros(drive.faces.len()),
+            suns: zeros(drive.suns.len()),
             windows: zeros(drive.windows.len()),
             zones: zeros(drive.light.len()),
             lost: zeros(drive.light.len()),
@@ -435,7 +473,7 @@ impl<S: Real> SunMeans<S> {
     /// Forgets the step before.
     #[inline(always)]
     pub fn restart(&mut self) {
-        for means in [&mut self.incident, &mut self.windows, &mut self.zones, &mut self.lost] {
+        for means in [&mut self.suns, &mut self.windows, &mut self.zones, &mut self.lost] {
             means.fill(S::zero());
         }
     }
@@ -443,8 +481,8 @@ impl<S: Real> SunMeans<S> {
     /// Adds a stage by its weight.
     #[inline(always)]
     pub fn add(&mut self, drive: &Drive<S>, weight: f64) {
-        for (mean, face) in self.incident.iter_mut().zip(&drive.faces) {
-            *mean += face.incident.scale(weight);
+        for (mean, sun) in self.suns.iter_mut().zip(&drive.suns) {
+            *mean += sun.scale(weight);
         }
         for (mean, window) in self.windows.iter_mut().zip(&drive.windows) {
             *mean += window.transmitted.scale(weight);
@@ -456,17 +494,12 @@ impl<S: Real> SunMeans<S> {
     }
 }
 
-/// `F_sky (beta E_sky + (1 - beta) E_air) + F_ground E_air`, `beta = sqrt(F_sky)`; the ground is at air temperature.
 #[inline(always)]
-fn incoming_longwave<S: Real>(outdoors: &Outdoors<S>, sky: S, air: S) -> S {
-    let Some(emission) = &outdoors.emission else { return S::zero() };
-    let from_air = emission.at(air).0;
-    from_air + outdoors.to_sky * (sky - from_air)
-}
-
-#[inline(always)]
-fn forced<S: Real>(face: &Face<S>, outdoors: &Outdoors<S>, now: &Instant<'_>) -> Forced<S> {
-    let Some(film) = &face.film else { return [S::zero(); 2] };
+fn forced<S: Real>(coefficients: &Coefficients<S>, index: FaceId, now: &Instant<'_>) -> Forced<S> {
+    let face = &coefficients.faces[index];
+    let (Some(film), Boundary::Outdoors(outdoors)) = (&face.film, &face.boundary) else {
+        return [S::zero(); 2];
+    };
     let [north, east] = now.wind_from;
     let facing = outdoors.heading[0].scale(north) + outdoors.heading[1].scale(east);
     let onto = S::constant(LEEWARD_COSINE).lt(facing);

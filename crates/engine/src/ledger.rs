@@ -1,5 +1,6 @@
 //! The energy ledger: where heat came from, and whether the books close.
 
+use crate::booking::Sum;
 use crate::real::Real;
 
 /// The ways in which heat enters a building.
@@ -68,7 +69,7 @@ impl Flow {
     }
 }
 
-/// Heat of one stage [W].
+/// Heat of one stage [W], or of a step [J].
 #[derive(Debug, Clone, Copy)]
 pub struct Power<S> {
     /// Net heat into the building by flow.
@@ -90,6 +91,22 @@ impl<S: Real> Power<S> {
     pub fn book(&mut self, flow: Flow, power: S) {
         self.into[flow as usize] += power;
         self.turnover += power.abs();
+    }
+
+    /// Books a flow through several faces.
+    #[inline(always)]
+    pub(crate) fn book_sum(&mut self, flow: Flow, sum: &Sum<S>) {
+        self.into[flow as usize] += sum.net;
+        self.turnover += sum.magnitude;
+    }
+
+    /// Adds another one that acts for a time.
+    #[inline(always)]
+    pub fn add_for(&mut self, duration: f64, power: &Self) {
+        for (sum, part) in self.into.iter_mut().zip(power.into) {
+            *sum += part.scale(duration);
+        }
+        self.turnover += power.turnover.scale(duration);
     }
 }
 

@@ -8,6 +8,7 @@
 
 pub(crate) mod balance;
 pub mod batch;
+mod booking;
 pub mod coefficients;
 pub mod conduction;
 pub mod convection;
@@ -17,6 +18,7 @@ pub mod description;
 pub mod dispatch;
 pub mod drive;
 pub mod error;
+mod facade;
 pub mod forcing;
 pub mod glazing;
 pub mod interior;

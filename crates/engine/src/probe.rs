@@ -179,7 +179,7 @@ impl Probe {
             Self::LayerEnthalpy { surface, layer } => {
                 layer_mean(plan, surface, layer, |k| stepper.enthalpy(state, surface, k))
             }
-            Self::IncidentSolar { surface } => stepper.sun.incident[2 * surface],
+            Self::IncidentSolar { surface } => stepper.incident(2 * surface),
             Self::TransmittedSolar { surface } => {
                 let window = plan.windows.iter().position(|&w| w == surface);
                 window.map_or_else(S::zero, |window| stepper.sun.windows[window])

@@ -12,7 +12,7 @@
 use crate::description::Sky;
 use crate::forcing::channel;
 use crate::parameters::Values;
-use crate::real::Real;
+use crate::real::{Real, same};
 
 /// Stefan-Boltzmann constant [W/(m2 K4)] (CODATA 2018).
 pub const SIGMA: f64 = 5.670_374_419e-8;
@@ -31,6 +31,15 @@ pub enum Emission<S> {
 }
 
 impl<S: Real> Emission<S> {
+    /// Whether another law is this one.
+    pub(crate) fn same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Exact, Self::Exact) => true,
+            (Self::Linearised(mine), Self::Linearised(theirs)) => same(*mine, *theirs),
+            _ => false,
+        }
+    }
+
     /// (sigma T^4, its slope) [W/m2, W/(m2 K)].
     #[inline(always)]
     pub fn at(&self, temperature: S) -> (S, S) {

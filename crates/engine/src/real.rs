@@ -180,6 +180,11 @@ pub trait Real:
     }
 }
 
+/// Whether two numbers have the same bits in all lanes; of slopes nothing is known.
+pub(crate) fn same<S: Real>(a: S, b: S) -> bool {
+    !S::DERIVATIVES && (0..S::LANES).all(|lane| a.lane(lane).to_bits() == b.lane(lane).to_bits())
+}
+
 // ---------------------------------------------------------------- elementary functions
 
 /// What elementary functions need to know of the bits of a number, by lane.

@@ -10,7 +10,7 @@
 
 use crate::description::DiffuseSky;
 use crate::forcing::channel;
-use crate::real::Real;
+use crate::real::{Real, same};
 
 /// The sun and its radiation at one instant, independent of any plane.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +39,28 @@ pub struct Plane<S> {
     pub sky_view: S,
     /// Fraction of the ground seen, (1 - cos tilt)/2.
     pub ground_view: S,
+}
+
+impl<S: Real> Plane<S> {
+    /// The same plane in numbers made of these.
+    pub(crate) fn map<T>(&self, change: impl Fn(S) -> T) -> Plane<T> {
+        let Self { normal, sin_tilt, sky_view, ground_view } = *self;
+        Plane {
+            normal: normal.map(&change),
+            sin_tilt: change(sin_tilt),
+            sky_view: change(sky_view),
+            ground_view: change(ground_view),
+        }
+    }
+
+    /// Whether another plane has the same numbers.
+    pub(crate) fn same(&self, other: &Self) -> bool {
+        let numbers = |plane: &Self| {
+            let [east, north, up] = plane.normal;
+            [east, north, up, plane.sin_tilt, plane.sky_view, plane.ground_view]
+        };
+        numbers(self).into_iter().zip(numbers(other)).all(|(a, b)| same(a, b))
+    }
 }
 
 impl Sunlight {

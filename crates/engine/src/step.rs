@@ -8,10 +8,12 @@
 use core::ops::Range;
 
 use crate::balance::{FaceLaws, Line, LocalBalance, LocalFaces, solve_pair};
+use crate::booking::Books;
 use crate::coefficients::{Boundary, Coefficients, Face, Matter};
 use crate::conduction::{Chain, Iterate, Start, StorageRule};
 use crate::drive::{Drive, FaceDrive, Instant, SunMeans, Weather};
 use crate::error::EngineError;
+use crate::facade::Facade;
 use crate::glazing::Glass;
 use crate::known::Known;
 use crate::ledger::{Flow, Ledger, Power};
@@ -101,6 +103,8 @@ pub struct Stepper<'a, S: Real> {
     inflow: Vec<Line<S>>,
     /// Outdoor air let into each zone, likewise.
     airing: Vec<Line<S>>,
+    facade: Facade<S>,
+    books: Books<S>,
     drive: Drive<S>,
     /// What drives the other stage of a step whose stages are gone through again.
     other_drive: Drive<S>,
@@ -199,7 +203,9 @@ impl<'a, S: Real> Stepper<'a, S> {
             faces: zeros(plan.faces.len()),
             air: zeros(plan.zones.len()),
         };
-        let drive = Drive::new(plan, &coefficients);
+        let facade = Facade::new(plan, &coefficients);
+        let drive = Drive::new(plan, &coefficients, &facade);
+        let books = Books::new(plan, &coefficients);
         let means = SunMeans::new(&drive);
         let gaps = coefficients.walls.iter().map(|wall| wall.glass.as_ref().map_or(0, Glass::filled_gaps));
         let gap_convection = vec![gaps.map(zeros).collect(); scheme.weights().len()];
@@ -216,6 +222,8 @@ impl<'a, S: Real> Stepper<'a, S> {
             laws,
             inflow: vec![Line::zero(); plan.zones.len()],
             airing: vec![Line::zero(); plan.zones.len()],
+            facade,
+            books,
             other_drive: drive.clone(),
             drive,
             load: zeros(plan.zones.len()),
@@ -295,7 +303,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         S::vectorised(
             #[inline(always)]
             || {
-                self.drive.update(self.plan, &self.coefficients, self.numbers, now);
+                self.drive.update(self.plan, &self.coefficients, &self.facade, self.numbers, now);
                 self.start(state, 0.0);
                 self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.faces.copy_from_slice(&self.solved.faces);
@@ -715,7 +723,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn drive_at(&mut self, weather: &Weather<'_>, part: Part, stage: usize) {
         let read = |drive: &mut Drive<S>, stage: usize| {
-            drive.update(self.plan, &self.coefficients, self.numbers, weather.at(part.step, stage));
+            let now = weather.at(part.step, stage);
+            drive.update(self.plan, &self.coefficients, &self.facade, self.numbers, now);
         };
         read(&mut self.drive, stage);
         let weights = self.scheme.weights();
@@ -1411,67 +1420,55 @@ impl<'a, S: Real> Stepper<'a, S> {
         if self.known.guides() {
             return; // the run that found the solution has booked it
         }
-        for (index, face) in self.coefficients.faces.iter().enumerate() {
-            let area = self.coefficients.walls[index / 2].area;
-            let (at, laws) = (&self.drive.faces[index], &self.laws[index]);
-            let temperature = self.solved.faces[index];
-            let opaque = self.plan.walls[index / 2].glass.is_none();
-            if opaque && (face.irradiance.is_some() || matches!(face.boundary, Boundary::Outdoors(_))) {
-                energy.book(Flow::Solar, (area * at.solar).scale(duration));
-            }
-            match &face.boundary {
-                Boundary::Outdoors(outdoors) => {
-                    let power = -(area * laws.film.at(temperature - at.temperature));
-                    energy.book(Flow::Convection, power.scale(duration));
-                    if outdoors.emission.is_some() {
-                        let net = at.longwave - face.emissivity * laws.emission.at(temperature);
-                        energy.book(Flow::Longwave, (area * net).scale(duration));
-                    }
-                }
-                Boundary::Imposed(_) => {
-                    let power = area * self.boundary_heat(index, at);
-                    energy.book(Flow::Boundary, power.scale(duration));
-                }
-                Boundary::Zone | Boundary::Adiabatic => {}
-            }
-        }
-        for (&w, window) in self.plan.windows.iter().zip(&self.drive.windows) {
-            let absorbed = window.panes.iter().fold(S::zero(), |sum, heat| sum + *heat);
-            energy.book(Flow::Glass, (self.coefficients.walls[w].area * absorbed).scale(duration));
+        let mut power = Power::none();
+        self.books.faces(&self.drive, &self.laws, &self.solved.faces, &mut power);
+        for &(face, area) in &self.books.imposed {
+            power.book(Flow::Boundary, area * self.boundary_heat(face, &self.drive.faces[face]));
         }
         if !self.plan.windows.is_empty() {
-            for zone in &self.drive.light {
-                // What the faces absorb, seen from what came in: the two agree or the books do not close.
-                let kept = zone.transmitted - zone.lost - zone.in_glass;
-                energy.book(Flow::Transmitted, kept.scale(duration));
-            }
+            self.accumulate_windows(&mut power);
         }
-        for (zone, inflow) in self.inflow.iter().enumerate() {
-            let power = inflow.at(self.drive.outdoor_air - self.solved.air[zone]);
-            energy.book(Flow::Infiltration, power.scale(duration));
-        }
-        self.accumulate_zones(duration, energy);
+        self.accumulate_zones(&mut power);
+        energy.add_for(duration, &power);
     }
 
-    /// Adds what acts in the zones beside walls and infiltration.
+    /// Adds the sun in windows and what they let in.
     #[inline(always)]
-    fn accumulate_zones(&self, duration: f64, energy: &mut Power<S>) {
-        for (zone, airing) in self.airing.iter().enumerate() {
+    fn accumulate_windows(&self, power: &mut Power<S>) {
+        for (&w, window) in self.plan.windows.iter().zip(&self.drive.windows) {
+            let absorbed = window.panes.iter().fold(S::zero(), |sum, heat| sum + *heat);
+            power.book(Flow::Glass, self.coefficients.walls[w].area * absorbed);
+        }
+        for zone in &self.drive.light {
+            // What the faces absorb, seen from what came in: the two agree or the books do not close.
+            power.book(Flow::Transmitted, zone.transmitted - zone.lost - zone.in_glass);
+        }
+    }
+
+    /// Adds what acts on the airs of the zones beside walls, and what radiates there.
+    #[inline(always)]
+    fn accumulate_zones(&self, power: &mut Power<S>) {
+        let outdoor = self.drive.outdoor_air;
+        for (inflow, &air) in self.inflow.iter().zip(&self.solved.air) {
+            power.book(Flow::Infiltration, inflow.at(outdoor - air));
+        }
+        for &zone in &self.books.aired {
+            power.book(Flow::Ventilation, self.airing[zone].at(outdoor - self.solved.air[zone]));
+        }
+        for &zone in &self.books.gaining {
             let at = &self.drive.zones[zone];
-            let power = airing.at(self.drive.outdoor_air - self.solved.air[zone]);
-            energy.book(Flow::Ventilation, power.scale(duration));
-            energy.book(Flow::Gains, (at.convective + at.radiant).scale(duration));
+            power.book(Flow::Gains, at.convective + at.radiant);
         }
         for (path, &conductance) in self.coefficients.paths.iter().zip(&self.drive.paths) {
             let [a, b] = path.between.map(|zone| self.solved.air[zone]);
-            let power = (conductance * (b - a)).scale(duration);
-            energy.book(Flow::Interzone, power);
-            energy.book(Flow::Interzone, -power);
+            let heat = conductance * (b - a);
+            power.book(Flow::Interzone, heat);
+            power.book(Flow::Interzone, -heat);
         }
         for &zone in &self.plan.plants {
-            let load = self.load[zone].scale(duration);
-            energy.book(Flow::Heating, load.max(S::zero()));
-            energy.book(Flow::Cooling, load.min(S::zero()));
+            let load = self.load[zone];
+            power.book(Flow::Heating, load.max(S::zero()));
+            power.book(Flow::Cooling, load.min(S::zero()));
         }
     }
 
@@ -1489,6 +1486,11 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
         let flux = self.face_flux(index);
         if index.is_multiple_of(2) { flux } else { -flux }
+    }
+
+    /// Short-wave radiation on a face outdoors, mean over the last step [W/m2].
+    pub(crate) fn incident(&self, face: FaceId) -> S {
+        self.facade.sun_on(face).map_or_else(S::zero, |sun| self.sun.suns[sun])
     }
 
     /// Temperature of the sky at the end of the last stage [degC].
