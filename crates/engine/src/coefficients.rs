@@ -22,6 +22,9 @@ const RATED_FILMS: f64 = 0.17;
 /// Gas constant of dry air [J/(kg K)].
 const AIR_GAS_CONSTANT: f64 = 287.055;
 
+/// Angle of a day in the year [rad/d].
+pub(crate) const PER_DAY: f64 = core::f64::consts::TAU / 365.0;
+
 /// All numbers of a run.
 #[derive(Debug, Clone)]
 pub struct Coefficients<S> {
@@ -118,10 +121,8 @@ pub enum Imposed<S> {
     Annual {
         /// Annual mean [degC].
         mean: S,
-        /// Half of the annual swing [K].
-        amplitude: S,
-        /// Day of the year with the lowest temperature [d].
-        coldest: S,
+        /// Amplitude times cosine and sine of the coldest day's angle [K].
+        swing: [S; 2],
     },
 }
 
@@ -317,11 +318,11 @@ fn boundary<S: Real>(plan: &Plan, index: FaceId, side: &Side, values: &Values<'_
         Facing::Zone { .. } => Boundary::Zone,
         Facing::Adiabatic => Boundary::Adiabatic,
         Facing::Measured { channel } => Boundary::Imposed(Imposed::Channel(CLIMATE_CHANNELS + channel)),
-        Facing::Ground { mean, amplitude, coldest_day } => Boundary::Imposed(Imposed::Annual {
-            mean: values.get(mean),
-            amplitude: values.get(amplitude),
-            coldest: values.get(coldest_day),
-        }),
+        Facing::Ground { mean, amplitude, coldest_day } => {
+            let (amplitude, angle) = (values.get(amplitude), values.get(coldest_day).scale(PER_DAY));
+            let swing = [amplitude * angle.cos(), amplitude * angle.sin()];
+            Boundary::Imposed(Imposed::Annual { mean: values.get(mean), swing })
+        }
         Facing::Outdoors => Boundary::Outdoors(Box::new(outdoors(plan, index, side, values))),
     }
 }

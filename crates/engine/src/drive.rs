@@ -1,7 +1,8 @@
 //! What acts on the building at one instant: forcing turned into numbers at each face.
 
-use crate::coefficients::{Boundary, Coefficients, Imposed};
+use crate::coefficients::{Boundary, Coefficients, Imposed, PER_DAY};
 use crate::convection::{Asked, Film, Forced, Wind};
+use crate::description::Facing;
 use crate::facade::{Facade, Sun};
 use crate::forcing::{Forcing, channel};
 use crate::glazing::{Node, Site};
@@ -29,6 +30,8 @@ pub struct Instant<'a> {
     wind: Wind,
     /// North and east components of the direction the wind comes from, where films ask for it.
     wind_from: [f64; 2],
+    /// Cosine and sine of the angle of the day in the year, where the ground asks for it.
+    season: [f64; 2],
     /// Sun and shade, see [`Daylight`](crate::daylight::Daylight).
     geometry: Box<[f64]>,
 }
@@ -36,8 +39,8 @@ pub struct Instant<'a> {
 impl<'a> Instant<'a> {
     /// Reads a forcing row.
     #[must_use]
-    pub fn new(plan: &Plan, row: &'a [f64], asked: Asked) -> Self {
-        let from = row[channel::WIND_DIRECTION].to_radians();
+    pub fn new(plan: &Plan, row: &'a [f64], asked: Asked, ground: bool) -> Self {
+        let turn = |angle: f64, asked: bool| if asked { [angle.cos(), angle.sin()] } else { [0.0; 2] };
         let sunlight = Sunlight::new(row, plan.description.site.diffuse);
         Self {
             row,
@@ -45,7 +48,8 @@ impl<'a> Instant<'a> {
             sunlight,
             heaven: Heaven::new(&plan.description.site.sky, row),
             wind: Wind::new(row[channel::WIND_SPEED], asked),
-            wind_from: if asked.direction { [from.cos(), from.sin()] } else { [0.0; 2] },
+            wind_from: turn(row[channel::WIND_DIRECTION].to_radians(), asked.direction),
+            season: turn(row[channel::DAY_OF_YEAR] * PER_DAY, ground),
         }
     }
 }
@@ -69,9 +73,11 @@ impl<'a> Weather<'a> {
     #[must_use]
     pub fn new(plan: &Plan, forcing: &Forcing<'a>) -> Self {
         let stages = forcing.stages();
-        let asked = Asked::by((0..plan.faces.len()).filter_map(|face| plan.side(face).convection.as_ref()));
+        let sides = || (0..plan.faces.len()).map(|face| plan.side(face));
+        let asked = Asked::by(sides().filter_map(|side| side.convection.as_ref()));
+        let ground = sides().any(|side| matches!(side.facing, Facing::Ground { .. }));
         let instants = (0..forcing.steps() * stages)
-            .map(|k| Instant::new(plan, forcing.at(k / stages, k % stages), asked))
+            .map(|k| Instant::new(plan, forcing.at(k / stages, k % stages), asked, ground))
             .collect();
         Self { instants, stages }
     }
@@ -277,7 +283,7 @@ impl<S: Real> Drive<S> {
         }
         for &index in &facade.imposed {
             if let Boundary::Imposed(imposed) = &coefficients.faces[index].boundary {
-                self.faces[index].temperature = imposed_temperature(imposed, now.row);
+                self.faces[index].temperature = imposed_temperature(imposed, now);
             }
         }
         for (at, zone) in self.zones.iter_mut().zip(&coefficients.zones) {
@@ -508,13 +514,12 @@ fn forced<S: Real>(coefficients: &Coefficients<S>, index: FaceId, now: &Instant<
 }
 
 #[inline(always)]
-fn imposed_temperature<S: Real>(imposed: &Imposed<S>, row: &[f64]) -> S {
+fn imposed_temperature<S: Real>(imposed: &Imposed<S>, now: &Instant<'_>) -> S {
     match imposed {
-        Imposed::Channel(channel) => S::constant(row[*channel]),
-        Imposed::Annual { mean, amplitude, coldest } => {
-            let phase =
-                (S::constant(row[channel::DAY_OF_YEAR]) - *coldest).scale(core::f64::consts::TAU / 365.0);
-            *mean - *amplitude * phase.cos()
+        Imposed::Channel(channel) => S::constant(now.row[*channel]),
+        Imposed::Annual { mean, swing } => {
+            let [cosine, sine] = now.season;
+            *mean - (swing[0].scale(cosine) + swing[1].scale(sine))
         }
     }
 }
