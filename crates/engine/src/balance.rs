@@ -14,14 +14,24 @@ impl<S: Real> Line<S> {
     pub(crate) fn zero() -> Self {
         Self { offset: S::zero(), slope: S::zero() }
     }
-    /// The tangent of a function with a value and a slope at a point.
+    /// The tangent of a function with a value and a slope at a point. What derivatives do to the slope does not matter:
+    /// it counts only away from that point, where no solution lies.
     #[inline(always)]
     pub(crate) fn tangent(value: S, slope: S, at: S) -> Self {
+        let slope = slope.fixed();
         Self { offset: value - slope * at, slope }
     }
     #[inline(always)]
     pub(crate) fn at(&self, x: S) -> S {
         self.offset + self.slope * x
+    }
+}
+
+impl Line<f64> {
+    /// The values of another line.
+    #[inline(always)]
+    pub(crate) fn of<S: Real>(other: &Line<S>) -> Self {
+        Self { offset: other.offset.lane(0), slope: other.slope.lane(0) }
     }
 }
 

@@ -287,7 +287,7 @@ impl<S: Real> Chain<S> {
             wall.pcm[*law].at_all(places, &start.memory[cells.clone()], points);
             for ((storage, point), &place) in storage.iter_mut().zip(points).zip(places) {
                 let (offset, capacity) = (point.enthalpy, point.capacity);
-                *storage = Storage { place, offset, capacity, moved: S::zero() };
+                *storage = Storage { place, offset, capacity: capacity.fixed(), moved: S::zero() };
             }
         }
         if at.outer.is_some() || rule == StorageRule::ApparentCapacity {
@@ -295,9 +295,10 @@ impl<S: Real> Chain<S> {
         }
         for within in &self.within {
             let (left, right) = (&self.points[within.link - 1], &self.points[within.link]);
+            let inverse = within.inverse_length.fixed();
             self.links[within.link] = Link {
-                left: left.conductivity * within.inverse_length,
-                right: right.conductivity * within.inverse_length,
+                left: left.conductivity.fixed() * inverse,
+                right: right.conductivity.fixed() * inverse,
                 offset: (left.potential - right.potential) * within.inverse_length,
             };
         }
@@ -323,7 +324,8 @@ impl<S: Real> Chain<S> {
                     let capacity = law.at(start.cells[i], memory).capacity;
                     (start.enthalpy[i] + capacity * (temperature - start.cells[i]), capacity)
                 };
-                self.storage[i] = Storage { place: temperature, offset, capacity, moved: S::zero() };
+                self.storage[i] =
+                    Storage { place: temperature, offset, capacity: capacity.fixed(), moved: S::zero() };
             }
         }
     }
@@ -345,7 +347,9 @@ impl<S: Real> Chain<S> {
         let (cell, face) = if outside { (0, at.faces[0]) } else { (bare.link - 1, at.faces[1]) };
         let (bare_point, point) = (wall.pcm[bare.law].at(face, &start.memory[cell]), &self.points[cell]);
         let inverse = bare.inverse_length;
-        let (by_face, by_cell) = (bare_point.conductivity * inverse, point.conductivity * inverse);
+        let steady = inverse.fixed();
+        let (by_face, by_cell) =
+            (bare_point.conductivity.fixed() * steady, point.conductivity.fixed() * steady);
         // Cells are reckoned from their iterate, faces from zero.
         let inwards = (bare_point.potential - point.potential) * inverse - by_face * face;
         if outside {
@@ -367,11 +371,12 @@ impl<S: Real> Chain<S> {
         let inverse = S::one() / (mixed.resistance * both + thickness);
         let conductance = both * inverse;
         let difference = left.temperature - right.temperature;
-        let (by_left, by_right) = (right.conductivity * inverse, left.conductivity * inverse);
-        let most = conductance.scale(LEAST);
-        let gain = (difference * left.half * left.slope * (by_left * by_left)).max(-most);
-        let loss = (difference * right.half * right.slope * (by_right * by_right)).min(most);
-        let (by_left, by_right) = (conductance + gain, conductance - loss);
+        let (steady, inverse, apart) = (conductance.fixed(), inverse.fixed(), difference.fixed());
+        let (by_left, by_right) = (right.conductivity.fixed() * inverse, left.conductivity.fixed() * inverse);
+        let most = steady.scale(LEAST);
+        let gain = (apart * left.half.fixed() * left.slope.fixed() * (by_left * by_left)).max(-most);
+        let loss = (apart * right.half.fixed() * right.slope.fixed() * (by_right * by_right)).min(most);
+        let (by_left, by_right) = (steady + gain, steady - loss);
         Link {
             left: by_left,
             right: by_right,
@@ -531,6 +536,14 @@ impl<S: Real> Chain<S> {
         self.back_substitute(known, faces, cells);
     }
 
+    /// Takes over the way from the iterate to a solution found elsewhere.
+    #[inline(always)]
+    pub(crate) fn arrive(&mut self, cells: &[S]) {
+        for (storage, &cell) in self.storage.iter_mut().zip(cells) {
+            storage.moved = cell - storage.place;
+        }
+    }
+
     /// Flux along link `i` at the solution with these face temperatures [W/m2], positive towards the inside.
     #[inline(always)]
     pub fn link_flux(&self, i: usize, faces: [S; 2]) -> S {
@@ -554,6 +567,67 @@ impl<S: Real> Chain<S> {
     }
 }
 
+impl Chain<f64> {
+    /// Takes over the values of another linearisation.
+    #[inline(always)]
+    pub(crate) fn adopt<S: Real>(&mut self, other: &Chain<S>) {
+        for (mine, theirs) in self.links.iter_mut().zip(&other.links) {
+            (mine.left, mine.right) = (theirs.left.lane(0), theirs.right.lane(0));
+        }
+        for (mine, theirs) in self.storage.iter_mut().zip(&other.storage) {
+            mine.capacity = theirs.capacity.lane(0);
+        }
+    }
+
+    /// Heat into the faces [W/m2] from heat released in the cells [W/m2], which [`Self::back`] needs in its place.
+    #[inline(always)]
+    pub(crate) fn forward<R: Real>(&self, cells: &mut [R]) -> [R; 2] {
+        let (mut first, mut known) = (R::zero(), R::zero());
+        for (i, cell) in cells.iter_mut().enumerate() {
+            known = (*cell + known.scale(self.links[i].left)).scale(self.inverse[i]);
+            *cell = known;
+            first += known.scale(self.path[i]);
+        }
+        let inner = self.links.last().map_or(0.0, |link| link.left);
+        [first.scale(self.links[0].right), known.scale(inner)]
+    }
+
+    /// Cell temperatures from what [`Self::forward`] left and those of the faces.
+    #[inline(always)]
+    pub(crate) fn back<R: Real>(&self, [outside, mut next]: [R; 2], cells: &mut [R]) {
+        for (i, cell) in cells.iter_mut().enumerate().rev() {
+            next = *cell + outside.scale(self.to_outside[i]) + next.scale(self.next[i]);
+            *cell = next;
+        }
+    }
+
+    /// The transpose of [`Self::back`]: weights on the faces from weights on the cells, which become weights on what
+    /// `forward` left.
+    #[inline(always)]
+    pub(crate) fn back_transposed(&self, cells: &mut [f64]) -> [f64; 2] {
+        let (mut outside, mut next) = (0.0, 0.0);
+        for (i, cell) in cells.iter_mut().enumerate() {
+            *cell += next;
+            outside += self.to_outside[i] * *cell;
+            next = self.next[i] * *cell;
+        }
+        [outside, next]
+    }
+
+    /// The transpose of [`Self::forward`]: weights on heat released in the cells from weights on heat into the faces and
+    /// on what `forward` left.
+    #[inline(always)]
+    pub(crate) fn forward_transposed(&self, [outside, inside]: [f64; 2], cells: &mut [f64]) {
+        let outside = self.links[0].right * outside;
+        let mut known = self.links.last().map_or(0.0, |link| link.left) * inside;
+        for (i, cell) in cells.iter_mut().enumerate().rev() {
+            let weight = (*cell + known + outside * self.path[i]) * self.inverse[i];
+            *cell = weight;
+            known = self.links[i].left * weight;
+        }
+    }
+}
+
 /// Enthalpy and slope at a temperature, the concave part of the enthalpy taken along its tangent at another one.
 fn split_tangent<S: Real>(
     law: &crate::pcm::PcmCoefficients<S>,
@@ -566,4 +640,63 @@ fn split_tangent<S: Real>(
     let concave_slope = outer_slope - all.capacity;
     let concave = outer_convex - all.enthalpy + concave_slope * (temperature - outer);
     (convex - concave, convex_slope - concave_slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::coefficients::Cell;
+
+    /// Cells and faces of walls without symmetry, and the transpose: `w . (A^-1 b) = (A^-T w) . b`.
+    #[test]
+    fn sweeps_solve_and_transpose() {
+        const STAGE: f64 = 300.0;
+        for n in [0, 1, 2, 6] {
+            let vary = |i: usize, by: f64| 1.0 + (by * (i + 1) as f64).sin().abs();
+            let cell = |i| {
+                let matter =
+                    Matter::Solid { conductivity: 0.3 * vary(i, 1.3), capacity: 1.2e6 * vary(i, 0.7) };
+                Cell { thickness: 0.02 * vary(i, 2.1), matter }
+            };
+            let wall = Wall {
+                area: 1.0,
+                cells: (0..n).map(cell).collect(),
+                extra: vec![0.05; n + 1],
+                massless: vec![true; n + 1],
+                pcm: Vec::new(),
+                layer_resistance: Vec::new(),
+                glass: None,
+            };
+            let mut chain = Chain::<f64>::new(&wall);
+            for (i, link) in chain.links.iter_mut().enumerate() {
+                link.left *= vary(i, 0.4);
+            }
+            let response = chain.factor(&wall, STAGE);
+            let released: Vec<f64> = (0..n).map(|i| 10.0 * vary(i, 3.1) - 14.0).collect();
+            let faces = [3.0, -1.5];
+            let mut cells = released.clone();
+            let sources = chain.forward(&mut cells);
+            chain.back(faces, &mut cells);
+            // Heat into each cell and face along the links.
+            let at = |k: usize| if k == 0 { faces[0] } else { *cells.get(k - 1).unwrap_or(&faces[1]) };
+            let flux = |link: usize| chain.links[link].flux(at(link), at(link + 1));
+            for i in 0..n {
+                let stored = chain.storage[i].capacity * chain.rate[i] * cells[i];
+                assert!((released[i] + flux(i) - flux(i + 1) - stored).abs() < 1e-9, "cell {i} of {n}");
+            }
+            let heat = [-flux(0), flux(n)];
+            for e in 0..2 {
+                let expected = sources[e] + response[e][0] * faces[0] + response[e][1] * faces[1];
+                assert!((heat[e] - expected).abs() < 1e-9, "face {e} of {n}");
+            }
+            let (weights, outer) = ((0..n).map(|i| vary(i, 5.0)).collect::<Vec<_>>(), [0.7, -0.4]);
+            let mut back = weights.clone();
+            let by_faces = chain.back_transposed(&mut back);
+            chain.forward_transposed(outer, &mut back);
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let forth = dot(&weights, &cells) + dot(&outer, &sources);
+            let back = dot(&back, &released) + dot(&by_faces, &faces);
+            assert!((forth - back).abs() < 1e-9, "{forth} is not {back} with {n} cells");
+        }
+    }
 }

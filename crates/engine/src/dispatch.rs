@@ -227,6 +227,7 @@ macro_rules! eight {
         }
         impl Real for Eight {
             type Mask = EightMask;
+            type Residual = ();
             const LANES: usize = WIDTH;
             const DERIVATIVES: bool = false;
 

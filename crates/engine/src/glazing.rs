@@ -387,6 +387,7 @@ impl<S: Real> Glass<S> {
             };
             let (outer, inner) = (cells[link - 1], cells[*link]);
             let ((out, left), (back, right)) = (emission(outer), emission(inner));
+            let (left, right) = (left.fixed(), right.fixed());
             links[*link] = Link {
                 left: convection + left,
                 right: convection + right,

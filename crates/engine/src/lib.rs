@@ -33,6 +33,7 @@ pub mod plant;
 pub mod probe;
 pub mod radiation;
 pub mod real;
+pub mod residual;
 pub(crate) mod room_block;
 mod slabs;
 pub mod solar;

@@ -5,6 +5,7 @@ use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use crate::drive::Weather;
 use crate::error::EngineError;
 use crate::forcing::Forcing;
+use crate::known::Solution;
 use crate::ledger::Ledger;
 use crate::plan::Plan;
 use crate::probe::Probe;
@@ -135,6 +136,25 @@ impl Move {
                 stepper.balance_faces(state, weather.at(0, 0))
             }
         }
+    }
+
+    /// Makes it along its solution, where that is known.
+    pub(crate) fn follow<S: Real>(
+        self,
+        stepper: &mut Stepper<'_, S>,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        dt: f64,
+        solution: Option<&Solution>,
+    ) -> Result<(), EngineError> {
+        let Some(solution) = solution else {
+            return self.make(stepper, state, weather, dt, &mut Ledger::new());
+        };
+        match self {
+            Self::Repeat(step) | Self::Step(step) => stepper.follow_step(state, weather, step, dt, solution),
+            Self::Balance => stepper.follow_balance(state, weather.at(0, 0), solution),
+        }
+        Ok(())
     }
 
     /// Row of the record that it leads to.

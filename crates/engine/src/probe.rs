@@ -167,7 +167,9 @@ impl Probe {
             Self::CoolingLoad { zone } => (-state.load[zone]).max(S::zero()),
             Self::AirChanges { zone } => stepper.air_changes(zone, state.air[zone]),
             Self::FaceTemperature { surface, side } => state.faces[2 * surface + side],
-            Self::FaceFlux { surface, side } => stepper.face_flux(2 * surface + side),
+            Self::FaceFlux { surface, side } => {
+                stepper.link_flux(state, surface, side * plan.walls[surface].len())
+            }
             Self::InterfaceTemperature { surface, interface } => {
                 interface_temperature(plan, stepper, state, surface, interface)
             }

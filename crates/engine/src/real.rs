@@ -11,6 +11,8 @@
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use crate::residual::{Residual, Slopes};
+
 /// A truth value per lane.
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// The same answer in every lane.
@@ -75,6 +77,8 @@ pub trait Real:
     type Mask: Mask;
     /// Number of ensemble members carried.
     const LANES: usize;
+    /// What becomes of the derivatives of equations.
+    type Residual: Residual<Self>;
     /// True when the number carries derivatives (Newton then adds one iteration, so that they converge too).
     const DERIVATIVES: bool;
 
@@ -82,6 +86,17 @@ pub trait Real:
     fn constant(value: f64) -> Self;
     /// Value of one lane, without derivatives.
     fn lane(self, lane: usize) -> f64;
+    /// The value alone, without derivatives.
+    #[inline(always)]
+    #[must_use]
+    fn fixed(self) -> Self {
+        self
+    }
+    /// Whether it has derivatives that are not zero.
+    #[inline(always)]
+    fn carries(self) -> bool {
+        false
+    }
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -367,6 +382,7 @@ impl Bits for f64 {
 
 impl Real for f64 {
     type Mask = bool;
+    type Residual = ();
     const LANES: usize = 1;
     const DERIVATIVES: bool = false;
 
@@ -521,6 +537,7 @@ impl<const N: usize> Mask for LaneMask<N> {
 
 impl<const N: usize> Real for Lanes<N> {
     type Mask = LaneMask<N>;
+    type Residual = ();
     const LANES: usize = N;
     const DERIVATIVES: bool = false;
 
@@ -593,35 +610,30 @@ impl<const N: usize> Bits for Lanes<N> {
 
 /// A number with `K` forward derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dual<S, const K: usize> {
+pub struct Dual<const K: usize> {
     /// Value.
-    pub value: S,
+    pub value: f64,
     /// Derivatives of the value.
-    pub slope: [S; K],
+    pub slope: [f64; K],
 }
 
-impl<S: Real, const K: usize> Dual<S, K> {
-    /// A number whose derivatives are all zero.
-    #[inline(always)]
-    pub fn fixed(value: S) -> Self {
-        Self { value, slope: [S::zero(); K] }
-    }
+impl<const K: usize> Dual<K> {
     /// The variable whose derivative number `which` is one.
     #[inline(always)]
     #[must_use]
-    pub fn variable(value: S, which: usize) -> Self {
-        let mut dual = Self::fixed(value);
-        dual.slope[which] = S::one();
+    pub fn variable(value: f64, which: usize) -> Self {
+        let mut dual = Self::constant(value);
+        dual.slope[which] = 1.0;
         dual
     }
     /// f(self) from the value and slope of f.
     #[inline(always)]
-    fn chain(self, value: S, slope: S) -> Self {
+    fn chain(self, value: f64, slope: f64) -> Self {
         Self { value, slope: self.slope.map(|s| s * slope) }
     }
 }
 
-impl<S: Real, const K: usize> Add for Dual<S, K> {
+impl<const K: usize> Add for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -631,7 +643,7 @@ impl<S: Real, const K: usize> Add for Dual<S, K> {
         }
     }
 }
-impl<S: Real, const K: usize> Sub for Dual<S, K> {
+impl<const K: usize> Sub for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -641,7 +653,7 @@ impl<S: Real, const K: usize> Sub for Dual<S, K> {
         }
     }
 }
-impl<S: Real, const K: usize> Mul for Dual<S, K> {
+impl<const K: usize> Mul for Dual<K> {
     type Output = Self;
     #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule is a sum")]
     #[inline(always)]
@@ -652,7 +664,7 @@ impl<S: Real, const K: usize> Mul for Dual<S, K> {
         }
     }
 }
-impl<S: Real, const K: usize> Div for Dual<S, K> {
+impl<const K: usize> Div for Dual<K> {
     type Output = Self;
     #[allow(clippy::suspicious_arithmetic_impl, reason = "the quotient rule has a product and a difference")]
     #[inline(always)]
@@ -664,46 +676,55 @@ impl<S: Real, const K: usize> Div for Dual<S, K> {
         }
     }
 }
-impl<S: Real, const K: usize> Neg for Dual<S, K> {
+impl<const K: usize> Neg for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
         Self { value: -self.value, slope: self.slope.map(|s| -s) }
     }
 }
-impl<S: Real, const K: usize> AddAssign for Dual<S, K> {
+impl<const K: usize> AddAssign for Dual<K> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<S: Real, const K: usize> Real for Dual<S, K> {
-    type Mask = S::Mask;
-    const LANES: usize = S::LANES;
+impl<const K: usize> Real for Dual<K> {
+    type Mask = bool;
+    type Residual = Slopes<K>;
+    const LANES: usize = 1;
     const DERIVATIVES: bool = true;
 
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self::fixed(S::constant(value))
+        Self { value, slope: [0.0; K] }
     }
     #[inline(always)]
-    fn lane(self, lane: usize) -> f64 {
-        self.value.lane(lane)
+    fn lane(self, _lane: usize) -> f64 {
+        self.value
+    }
+    #[inline(always)]
+    fn fixed(self) -> Self {
+        Self::constant(self.value)
+    }
+    #[inline(always)]
+    fn carries(self) -> bool {
+        self.slope != [0.0; K]
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        self.chain(root, S::constant(0.5) / root)
+        self.chain(root, 0.5 / root)
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        let value = self.value.exp();
+        let value = exp(self.value);
         self.chain(value, value)
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        self.chain(self.value.ln(), S::one() / self.value)
+        self.chain(ln(self.value), 1.0 / self.value)
     }
     #[inline(always)]
     fn logistic(self) -> Logistic<Self> {
@@ -717,14 +738,14 @@ impl<S: Real, const K: usize> Real for Dual<S, K> {
     }
     #[inline(always)]
     fn vectorised<R>(work: impl FnOnce() -> R) -> R {
-        if S::LANES == 1 && K > 1 { crate::dispatch::widened(work) } else { S::vectorised(work) }
+        if K > 1 { crate::dispatch::widened(work) } else { work() }
     }
     #[inline(always)]
     fn inverse_cbrt(self) -> Self {
         // d x^(-1/3)/dx = -1/3 x^(-4/3)
-        let y = self.value.inverse_cbrt();
+        let y = inverse_cbrt(self.value);
         let square = y * y;
-        self.chain(y, (square * square).scale(-1.0 / 3.0))
+        self.chain(y, square * square * (-1.0 / 3.0))
     }
     #[inline(always)]
     fn sin(self) -> Self {
@@ -735,15 +756,16 @@ impl<S: Real, const K: usize> Real for Dual<S, K> {
         self.chain(self.value.cos(), -self.value.sin())
     }
     #[inline(always)]
-    fn lt(self, other: Self) -> S::Mask {
-        self.value.lt(other.value)
+    fn scale(self, factor: f64) -> Self {
+        self.chain(self.value * factor, factor)
     }
     #[inline(always)]
-    fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
-        Self {
-            value: S::select(mask, yes.value, no.value),
-            slope: core::array::from_fn(|i| S::select(mask, yes.slope[i], no.slope[i])),
-        }
+    fn lt(self, other: Self) -> bool {
+        self.value < other.value
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
     }
 }
 
@@ -804,15 +826,15 @@ mod tests {
 
     #[test]
     fn duals_differentiate() {
-        let x: Dual<f64, 1> = Dual::variable(1.3, 0);
-        let f = |x: Dual<f64, 1>| (x * x).exp() / x.sqrt() + x.ln() * x.cbrt() - x.sin() / x.cos();
+        let x: Dual<1> = Dual::variable(1.3, 0);
+        let f = |x: Dual<1>| (x * x).exp() / x.sqrt() + x.ln() * x.cbrt() - x.sin() / x.cos();
         let value = |x: f64| (x * x).exp() / x.sqrt() + x.ln() * x.cbrt() - x.tan();
         let step = 1e-6;
         let difference = (value(1.3 + step) - value(1.3 - step)) / (2.0 * step);
         close(f(x).value, value(1.3), 1e-14);
         close(f(x).slope[0], difference, 1e-8);
         for place in [-2.3, -0.4, 0.7, 5.1] {
-            let at = Dual::<f64, 1>::variable(place, 0).logistic();
+            let at = Dual::<1>::variable(place, 0).logistic();
             let [after, before] = [step, -step].map(|step| (place + step).logistic());
             let quotient = |after: f64, before: f64| (after - before) / (2.0 * step);
             close(at.rise.slope[0], quotient(after.rise, before.rise), 1e-7);

@@ -129,6 +129,51 @@ impl<'a, S: Real> RoomBlock<'a, S> {
     }
 }
 
+impl RoomBlock<'_, f64> {
+    /// The solution for right-hand sides of another kind of number, with the factors in hand.
+    #[inline(always)]
+    pub(crate) fn solve_beside<R: Real>(&self, right: &mut [R]) {
+        let n = self.reach.len();
+        for k in 0..n {
+            let known = right[k].scale(self.matrix[k * n + k]);
+            for row in self.reach[k].iter().cloned().flatten() {
+                right[row] = right[row] - known.scale(self.matrix[row * n + k]);
+            }
+        }
+        for k in (0..n).rev() {
+            let line = &self.matrix[k * n..(k + 1) * n];
+            let mut sum = right[k];
+            for column in self.reach[k].iter().cloned().flatten() {
+                sum = sum - right[column].scale(line[column]);
+            }
+            right[k] = sum.scale(line[k]);
+        }
+    }
+
+    /// The solution of the transposed system, with the factors in hand.
+    #[inline(always)]
+    pub(crate) fn solve_transposed(&self, right: &mut [f64]) {
+        let n = self.reach.len();
+        for k in 0..n {
+            let line = &self.matrix[k * n..(k + 1) * n];
+            let weight = right[k] * line[k];
+            right[k] = weight;
+            for run in &self.reach[k] {
+                for (later, &factor) in right[run.clone()].iter_mut().zip(&line[run.clone()]) {
+                    *later -= factor * weight;
+                }
+            }
+        }
+        for k in (0..n).rev() {
+            let mut sum = 0.0;
+            for row in self.reach[k].iter().cloned().flatten() {
+                sum += self.matrix[row * n + k] * right[row];
+            }
+            right[k] -= self.matrix[k * n + k] * sum;
+        }
+    }
+}
+
 /// The right-hand side through the elimination of some unknowns.
 #[inline(always)]
 fn forward<S: Real>(reach: &[Vec<Range<usize>>], matrix: &[S], right: &mut [S], rows: Range<usize>) {
@@ -203,6 +248,59 @@ mod tests {
             let mut again = whole.right.clone();
             block.solve_again(&mut again);
             assert!(again.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-12), "solved again at {last}");
+        }
+    }
+
+    /// Numbers that follow no rule, between 0 and 1.
+    fn numbers() -> impl FnMut() -> f64 {
+        let mut state = 1_u32;
+        move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1_u32 << 24)
+        }
+    }
+
+    /// `w . (A^-1 b) = (A^-T w) . b` with the factors of random M-matrices that are not symmetric.
+    #[test]
+    fn the_transpose_is_the_transpose() {
+        const N: usize = 7;
+        let mut next = numbers();
+        let reach: Vec<Vec<Range<usize>>> =
+            (0..N).map(|k| Vec::from_iter((k + 1 < N).then_some(k + 1..N))).collect();
+        for first in [0, 3, N] {
+            let mut block: RoomBlock<'_, f64> = RoomBlock::new(&reach, first);
+            block.clear_matrix();
+            block.clear_right();
+            let mut whole = [[0.0; N]; N];
+            for row in 0..N {
+                for column in (0..N).filter(|&column| column != row) {
+                    let (gain, held) = (next(), next());
+                    whole[row][column] = -gain;
+                    // Columns that sum up to more than nothing make an M-matrix.
+                    whole[column][column] += gain + 0.1 * held;
+                }
+            }
+            for (row, line) in whole.iter().enumerate() {
+                for (column, &value) in line.iter().enumerate() {
+                    block.add(row, column, value);
+                }
+            }
+            block.keep_matrix();
+            block.keep_right();
+            block.begin();
+            block.solve_rest();
+            let right: [f64; N] = core::array::from_fn(|_| next());
+            let weights: [f64; N] = core::array::from_fn(|_| next());
+            let (mut solution, mut back) = (right, weights);
+            block.solve_beside(&mut solution);
+            block.solve_transposed(&mut back);
+            for (line, right) in whole.iter().zip(right) {
+                let sum: f64 = line.iter().zip(solution).map(|(a, x)| a * x).sum();
+                assert!((sum - right).abs() < 1e-12, "{sum} is not {right}");
+            }
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let (forth, back) = (dot(&weights, &solution), dot(&back, &right));
+            assert!((forth - back).abs() < 1e-12 * forth.abs(), "{forth} is not {back}");
         }
     }
 }

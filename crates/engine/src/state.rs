@@ -66,20 +66,30 @@ impl<S: Real> State<S> {
         Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
     }
 
-    /// All its numbers, in the order of [`Self::map`].
+    /// All its numbers, in the order of [`Self::meet`].
     pub(crate) fn numbers(&self) -> impl Iterator<Item = S> + '_ {
         let State { cells, enthalpy, memory, faces, air, load } = self;
         let plain = [cells, enthalpy, faces, air, load].into_iter().flatten().copied();
         plain.chain(memory.iter().flat_map(PcmMemory::numbers))
     }
 
-    /// The same state in other numbers.
-    pub(crate) fn map<T: Real>(&self, mut change: impl FnMut(S) -> T) -> State<T> {
-        let mut all = |numbers: &[S]| numbers.iter().map(|&number| change(number)).collect();
-        let (cells, enthalpy) = (all(&self.cells), all(&self.enthalpy));
-        let (faces, air, load) = (all(&self.faces), all(&self.air), all(&self.load));
-        let memory = self.memory.iter().map(|memory| memory.map(&mut change)).collect();
-        State { cells, enthalpy, memory, faces, air, load }
+    /// Changes each number by the one at its place in another state.
+    pub(crate) fn meet<T: Copy>(&mut self, other: &State<T>, mut change: impl FnMut(&mut S, T)) {
+        let plain = [
+            (&mut self.cells, &other.cells),
+            (&mut self.enthalpy, &other.enthalpy),
+            (&mut self.faces, &other.faces),
+            (&mut self.air, &other.air),
+            (&mut self.load, &other.load),
+        ];
+        for (mine, theirs) in plain {
+            for (mine, &theirs) in mine.iter_mut().zip(theirs) {
+                change(mine, theirs);
+            }
+        }
+        for (mine, theirs) in self.memory.iter_mut().zip(&other.memory) {
+            mine.meet(theirs, &mut change);
+        }
     }
 
     /// Takes over the lanes of `other` where the mask is true.

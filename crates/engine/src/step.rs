@@ -5,6 +5,9 @@
 //!
 //! Sources: SDIRK2 of Alexander (1977), SIAM J. Numer. Anal. 14(6), doi:10.1137/0714068.
 
+mod follow;
+mod twin;
+
 use core::ops::Range;
 
 use crate::balance::{FaceLaws, Line, LocalBalance, LocalFaces, solve_pair};
@@ -27,6 +30,8 @@ use crate::slabs::Slabs;
 use crate::state::{Initial, State, Unknowns, blend, line, squared_distance};
 use crate::zone;
 
+use follow::Following;
+
 /// Root of the sum of squared changes in the last Newton iteration [K]. Convergence is quadratic: the error left is
 /// of the order of its square.
 const TOLERANCE: f64 = 1e-6;
@@ -41,6 +46,8 @@ const MAX_ITERATIONS: usize = 60;
 /// Sweeps over the stages of a step before it counts as unsolvable, and those of them that solve each stage only once.
 const MAX_SWEEPS: usize = 40;
 const SINGLE_SWEEPS: usize = 12;
+/// Effective length of the stage that brings faces into balance [s]: too short for anything to be stored.
+const INSTANT: f64 = 1e-3;
 /// How often a step may be halved before it counts as unsolvable.
 const MAX_HALVINGS: u32 = 6;
 
@@ -139,6 +146,8 @@ pub struct Stepper<'a, S: Real> {
     /// What is left of the step, the next part last.
     parts: Vec<Part>,
     pub(crate) known: Known<S>,
+    /// Only where slopes are carried along a known solution.
+    following: Option<Box<Following<'a, S>>>,
     /// What was spent since the start.
     pub effort: Effort<S>,
 }
@@ -188,7 +197,15 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Prepares a plan with a parameter vector.
     #[must_use]
     pub fn new(plan: &'a Plan, numbers: &'a [S], scheme: Scheme) -> Self {
-        let coefficients = Coefficients::new(plan, numbers);
+        let mut stepper = Self::with(plan, Coefficients::new(plan, numbers), numbers, scheme);
+        if S::DERIVATIVES {
+            stepper.following = Some(Box::new(Following::new(&stepper)));
+        }
+        stepper
+    }
+
+    /// Prepares a plan with coefficients; without numbers it can be driven by nothing.
+    fn with(plan: &'a Plan, coefficients: Coefficients<S>, numbers: &'a [S], scheme: Scheme) -> Self {
         let chains: Vec<_> = coefficients.walls.iter().map(Chain::new).collect();
         let (changing, laws) = Changing::sort(plan, &coefficients);
         let foresight = coefficients
@@ -245,6 +262,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             failed: S::Mask::splat(false),
             parts: Vec::new(),
             known: Known::nothing(),
+            following: None,
             effort: Effort { iterations: 0, nested: 0, halvings: 0, reversals: S::zero() },
         }
     }
@@ -299,7 +317,6 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// # Errors
     /// [`EngineError::NotConverged`].
     pub fn balance_faces(&mut self, state: &mut State<S>, now: &Instant<'_>) -> Result<(), EngineError> {
-        const INSTANT: f64 = 1e-3;
         S::vectorised(
             #[inline(always)]
             || {
@@ -312,16 +329,6 @@ impl<'a, S: Real> Stepper<'a, S> {
                 Ok(())
             },
         )
-    }
-
-    /// Factors what stays as long as steps of this length are made [s].
-    pub(crate) fn prepare(&mut self, dt: f64) {
-        self.factor_constant(self.scheme.diagonal() * dt);
-    }
-
-    /// Stage length of the factors in hand [s].
-    pub(crate) fn factored(&self) -> f64 {
-        self.factored
     }
 
     /// Forgets the step before: what comes next does not follow it.
@@ -448,7 +455,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             before = S::select(limited, S::zero(), before);
             // The first sweep books nothing: it is never the last.
             let still = self.settled(change, before) & S::Mask::splat(sweep > 0);
-            let still = still | S::Mask::splat(whole || self.known.guides());
+            let still = still | S::Mask::splat(whole);
             before = change;
             let settled = self.plants.correct(&self.solved.air, &mut self.load, active, polish > 0);
             let moving = active & !(settled & still) & !self.failed;
@@ -478,7 +485,6 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn set_out(&mut self, state: &State<S>, row: &[f64]) {
         self.plants.begin(&self.coefficients.zones, row, &mut self.load, self.previous.is_some());
-        self.known.load(&mut self.load);
         let (iterate, diagonal) = (&self.iterate, self.scheme.diagonal());
         self.plants.ask(&self.load, |zone| line(state.air[zone], iterate.air[zone], 1.0 / diagonal));
         if let Some(previous) = &self.previous {
@@ -513,10 +519,6 @@ impl<'a, S: Real> Stepper<'a, S> {
             // Numbers settle quadratically, but what a parameter does to them one sweep later: quotients would show it.
             return if self.known.keeps() { 2 } else { 0 };
         }
-        // Where no plant is asked, a known solution has no load whose slope is missing.
-        if self.known.guides() && !self.plants.asking(S::Mask::splat(true)) {
-            return 0;
-        }
         // Responses leave out what a load does to the convection expected in gaps: its slope is then found in two rounds.
         if self.plan.windows.is_empty() { 1 } else { 2 }
     }
@@ -539,10 +541,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         if again {
             self.held.copy_from_slice(&state.enthalpy);
             self.held_air.copy_from_slice(&state.air);
-            if !self.known.guides() {
-                // What is known of a stage leads once; from there the sweeps go on by themselves.
-                self.known.restart();
-            }
+            self.known.restart();
         }
         for (stage, &weight) in weights.iter().enumerate() {
             if stage > 0 {
@@ -801,21 +800,41 @@ impl<'a, S: Real> Stepper<'a, S> {
         for (zone, held) in self.held_air.iter_mut().enumerate() {
             *held = state.air[zone] + (self.solved.air[zone] - state.air[zone]).scale(ratio);
         }
+        self.extrapolate_on(state);
+        self.expect_gaps(1, state);
+    }
+
+    /// Guesses the end of a step on the straight line through its start and the first stage.
+    #[inline(always)]
+    fn extrapolate_on(&mut self, state: &State<S>) {
         self.iterate.extrapolate(
             self.plan,
             &self.coefficients,
             (&self.changing.watched, &self.changing.walls),
             &[state.view(), self.solved.view()],
-            1.0 / diagonal,
+            1.0 / self.scheme.diagonal(),
             &state.memory,
         );
-        self.expect_gaps(1, state);
     }
 
     /// Takes the last stage as the new state and books the step.
     #[inline(always)]
     fn accept(&mut self, state: &mut State<S>, energy: &Power<S>, ledger: &mut Ledger<S>) {
         let mut stored = self.slabs.finish(&self.solved.faces, &mut state.cells);
+        stored += self.accept_changing(state);
+        for (zone, numbers) in self.coefficients.zones.iter().enumerate() {
+            stored += numbers.capacity * (self.solved.air[zone] - state.air[zone]);
+        }
+        state.faces.copy_from_slice(&self.solved.faces);
+        state.air.copy_from_slice(&self.solved.air);
+        state.load.copy_from_slice(&self.load);
+        ledger.book(energy, stored);
+    }
+
+    /// Cells of the walls that change at the end of the last stage, and what they remember; the heat stored [J].
+    #[inline(always)]
+    fn accept_changing(&mut self, state: &mut State<S>) -> S {
+        let mut stored = S::zero();
         for &w in &self.changing.walls {
             let (wall, chain, numbers) = (&self.plan.walls[w], &self.chains[w], &self.coefficients.walls[w]);
             for (i, cell) in numbers.cells.iter().enumerate() {
@@ -825,8 +844,8 @@ impl<'a, S: Real> Stepper<'a, S> {
                 if let Matter::Pcm(law) = cell.matter {
                     let law = &numbers.pcm[law];
                     let mut fraction = chain.reached_fraction(i);
-                    // Where the way taken matters, or slopes are carried: the point itself.
-                    if law.remembers() || S::DERIVATIVES || self.scheme == Scheme::ApparentCapacity {
+                    // Where the way taken matters: the point itself.
+                    if law.remembers() || self.scheme == Scheme::ApparentCapacity {
                         let point = law.at(temperature, &state.memory[k]);
                         fraction = point.liquid_fraction;
                         if self.scheme == Scheme::ApparentCapacity {
@@ -846,17 +865,11 @@ impl<'a, S: Real> Stepper<'a, S> {
                 state.cells[k] = temperature;
             }
         }
-        for (zone, numbers) in self.coefficients.zones.iter().enumerate() {
-            stored += numbers.capacity * (self.solved.air[zone] - state.air[zone]);
-        }
-        state.faces.copy_from_slice(&self.solved.faces);
-        state.air.copy_from_slice(&self.solved.air);
-        state.load.copy_from_slice(&self.load);
-        ledger.book(energy, stored);
+        stored
     }
 
-    /// Solves one stage: by one linear solve where its solution is known or one is asked for, else by iteration. False in
-    /// the lanes that are at no number.
+    /// Solves one stage: by one linear solve where one is asked for, else by iteration. False in the lanes that are at no
+    /// number.
     // Not inlined, for the compiler's sake: it is by far the largest part of a step.
     #[inline(never)]
     fn solve_stage(
@@ -871,9 +884,6 @@ impl<'a, S: Real> Stepper<'a, S> {
             || {
                 self.stage = place.1.saturating_sub(1);
                 self.begin_stage(state, length);
-                if S::DERIVATIVES && self.known.guide(&mut self.iterate) {
-                    return Ok(self.solve_once(state, length));
-                }
                 let mut sound = S::Mask::splat(true);
                 match search {
                     Search::Once => sound = self.solve_once(state, length),
@@ -1022,16 +1032,23 @@ impl<'a, S: Real> Stepper<'a, S> {
         } else {
             self.slabs.second_sources(&mut self.sources);
         }
-        for &face in &self.changing.windy {
-            let numbers = &self.coefficients.faces[face];
-            self.laws[face].film.slope = self.drive.faces[face].forced[0] * numbers.area_factor;
-        }
+        self.blow();
         if !self.changing.curved {
             self.enter_constant(new);
         }
     }
 
-    /// Factors the walls of constant properties for a stage length [s], and tells it to the others. True where that was not done before.
+    /// What the wind makes of films that depend on nothing else.
+    #[inline(always)]
+    fn blow(&mut self) {
+        for &face in &self.changing.windy {
+            let numbers = &self.coefficients.faces[face];
+            self.laws[face].film.slope = self.drive.faces[face].forced[0] * numbers.area_factor;
+        }
+    }
+
+    /// Factors the walls of constant properties for a stage length [s], and tells it to the others. True where that was
+    /// not done before.
     #[inline(always)]
     fn factor_constant(&mut self, length: f64) -> bool {
         let new = self.factored.to_bits() != length.to_bits();
@@ -1066,36 +1083,44 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn linearise_walls(&mut self, state: &State<S>, outer: Option<&[S]>) {
         for i in 0..self.changing.walls.len() {
             let w = self.changing.walls[i];
+            self.linearise_wall(w, state, outer);
             let wall = &self.plan.walls[w];
-            let cells = wall.first_cell..wall.first_cell + wall.len();
-            let numbers = &self.coefficients.walls[w];
-            let at = Iterate {
-                cells: &self.iterate.cells[cells.clone()],
-                faces: [self.iterate.faces[2 * w], self.iterate.faces[2 * w + 1]],
-                outer: outer.map(
-                    #[inline(always)]
-                    |outer| &outer[cells.clone()],
-                ),
-            };
-            let start = Start {
-                cells: &state.cells[cells.clone()],
-                enthalpy: &state.enthalpy[cells.clone()],
-                memory: &state.memory[cells.clone()],
-            };
-            let (chain, held) = (&mut self.chains[w], &self.held[cells]);
-            let condensed = if let Some(glass) = &numbers.glass {
-                glass.linearise(at.cells, &self.gap_convection[self.stage][w], &mut chain.links);
-                let mut windows = self.plan.windows.iter().zip(&self.drive.windows);
-                match windows.find(|(window, _)| **window == w) {
-                    // The sun in the panes.
-                    Some((_, sun)) => chain.condense_heated(held, &sun.cells),
-                    None => chain.condense(held),
-                }
-            } else {
-                chain.linearise(numbers, &at, &start, self.scheme.storage_rule());
-                chain.condense(held)
+            let (chain, held) =
+                (&mut self.chains[w], &self.held[wall.first_cell..wall.first_cell + wall.len()]);
+            let mut windows = self.plan.windows.iter().zip(&self.drive.windows);
+            let condensed = match windows.find(|(window, _)| **window == w) {
+                // The sun in the panes.
+                Some((_, sun)) => chain.condense_heated(held, &sun.cells),
+                None => chain.condense(held),
             };
             (self.sources[w], self.responses[w]) = (condensed.source, condensed.response);
+        }
+    }
+
+    /// Linearises a wall that changes about the iterate.
+    #[inline(always)]
+    fn linearise_wall(&mut self, w: usize, state: &State<S>, outer: Option<&[S]>) {
+        let wall = &self.plan.walls[w];
+        let cells = wall.first_cell..wall.first_cell + wall.len();
+        let numbers = &self.coefficients.walls[w];
+        let at = Iterate {
+            cells: &self.iterate.cells[cells.clone()],
+            faces: [self.iterate.faces[2 * w], self.iterate.faces[2 * w + 1]],
+            outer: outer.map(
+                #[inline(always)]
+                |outer| &outer[cells.clone()],
+            ),
+        };
+        let start = Start {
+            cells: &state.cells[cells.clone()],
+            enthalpy: &state.enthalpy[cells.clone()],
+            memory: &state.memory[cells],
+        };
+        let chain = &mut self.chains[w];
+        if let Some(glass) = &numbers.glass {
+            glass.linearise(at.cells, &self.gap_convection[self.stage][w], &mut chain.links);
+        } else {
+            chain.linearise(numbers, &at, &start, self.scheme.storage_rule());
         }
     }
 
@@ -1134,18 +1159,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         if self.changing.curved {
             self.enter_constant(true);
         }
-        self.block.begin();
-        for i in 0..self.changing.walls.len() {
-            let w = self.changing.walls[i];
-            self.locals[w] = self.eliminate_wall(w, true);
-        }
-        for zone in 0..self.plan.zones.len() {
-            self.enter_air(zone, length);
-        }
-        for (path, &conductance) in self.coefficients.paths.iter().zip(&self.drive.paths) {
-            let [a, b] = path.between.map(|zone| self.plan.zones[zone].air_row);
-            self.block.couple(a, b, conductance);
-        }
+        self.enter_changing(length);
         self.block.solve_rest();
         for (zone, plan) in self.plan.zones.iter().enumerate() {
             self.solved.air[zone] = self.block.right[plan.air_row];
@@ -1159,6 +1173,23 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
         if self.changing.curved {
             self.resolve_constant();
+        }
+    }
+
+    /// Enters what changes from iteration to iteration: the other walls and all that acts on airs.
+    #[inline(always)]
+    fn enter_changing(&mut self, length: f64) {
+        self.block.begin();
+        for i in 0..self.changing.walls.len() {
+            let w = self.changing.walls[i];
+            self.locals[w] = self.eliminate_wall(w, true);
+        }
+        for zone in 0..self.plan.zones.len() {
+            self.enter_air(zone, length);
+        }
+        for (path, &conductance) in self.coefficients.paths.iter().zip(&self.drive.paths) {
+            let [a, b] = path.between.map(|zone| self.plan.zones[zone].air_row);
+            self.block.couple(a, b, conductance);
         }
     }
 
@@ -1417,9 +1448,6 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Adds the stage's heat to the step's, at the values of the last linear solve.
     #[inline(always)]
     fn accumulate(&self, duration: f64, energy: &mut Power<S>) {
-        if self.known.guides() {
-            return; // the run that found the solution has booked it
-        }
         let mut power = Power::none();
         self.books.faces(&self.drive, &self.laws, &self.solved.faces, &mut power);
         for &(face, area) in &self.books.imposed {
@@ -1500,9 +1528,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// Conduction through a face at the end of the last stage [W/m2], positive towards the inside.
-    #[must_use]
     #[inline(always)]
-    pub fn face_flux(&self, index: FaceId) -> S {
+    fn face_flux(&self, index: FaceId) -> S {
         let (w, e) = (index / 2, index % 2);
         let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
         if self.plan.walls[w].nonlinear {
@@ -1528,14 +1555,14 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     pub fn link_flux(&self, state: &State<S>, w: usize, link: usize) -> S {
         let wall = &self.plan.walls[w];
-        if link == 0 || link == wall.len() {
-            return self.face_flux(2 * w + usize::from(link > 0));
-        }
+        let faces = [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]];
         if wall.nonlinear {
-            return self.chains[w].link_flux(link, [self.solved.faces[2 * w], self.solved.faces[2 * w + 1]]);
+            return self.chains[w].link_flux(link, faces);
         }
-        let inside = wall.first_cell + link;
-        self.chains[w].links[link].flux(state.cells[inside - 1], state.cells[inside])
+        let cells = &state.cells[wall.first_cell..wall.first_cell + wall.len()];
+        let left = if link == 0 { faces[0] } else { cells[link - 1] };
+        let right = if link == cells.len() { faces[1] } else { cells[link] };
+        self.chains[w].links[link].flux(left, right)
     }
 
     /// Names the part that moves most in the first lane that failed.

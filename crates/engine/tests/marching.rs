@@ -151,7 +151,7 @@ fn duals_are_differences() {
     };
     let mut differ = Vec::new();
     for (which, parameter) in plan.description.parameters.iter().enumerate() {
-        let duals: Vec<Dual<f64, 1>> = numbers
+        let duals: Vec<Dual<1>> = numbers
             .iter()
             .enumerate()
             .map(|(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) })

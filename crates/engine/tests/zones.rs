@@ -197,7 +197,7 @@ fn duals_are_differences_with_plants() {
             continue;
         }
         let variable = |(i, &n)| if i == which { Dual::variable(n, 0) } else { Dual::constant(n) };
-        let duals: Vec<Dual<f64, 1>> = numbers.iter().enumerate().map(variable).collect();
+        let duals: Vec<Dual<1>> = numbers.iter().enumerate().map(variable).collect();
         let records = march(&plan, &duals, &drive, &options, &Watch::default()).unwrap().records;
         let slope: f64 = records.iter().enumerate().map(|(i, r)| weight(i) * r.slope[0]).sum();
         let step = 1e-5 * numbers[which].abs().max(1e-3);

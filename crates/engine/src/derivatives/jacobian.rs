@@ -7,10 +7,9 @@ use rayon::prelude::*;
 use crate::drive::Weather;
 use crate::error::EngineError;
 use crate::forcing::Forcing;
-use crate::ledger::Ledger;
 use crate::march::{Options, Watch, check, march_seen};
 use crate::plan::Plan;
-use crate::real::Dual;
+use crate::real::{Dual, Real};
 use crate::state::State;
 use crate::step::Stepper;
 
@@ -65,7 +64,7 @@ pub fn jacobian(
 const GROUP: usize = 8;
 
 /// A number with its slopes by the parameters of a group.
-type Sloped = Dual<f64, GROUP>;
+type Sloped = Dual<GROUP>;
 
 /// A run with the slopes of a group, on its way beside a plain one.
 struct Follower<'a> {
@@ -80,8 +79,7 @@ struct Slopes {
     records: Vec<Sloped>,
 }
 
-/// Runs plain numbers, and beside them those with slopes by each group of parameters, which take each step by one linear
-/// solve at its solution.
+/// Runs plain numbers, and beside them those with slopes by each group of parameters, along the same solutions.
 fn along(
     plan: &Plan,
     numbers: &[f64],
@@ -91,7 +89,7 @@ fn along(
     watch: &Watch,
 ) -> Result<Vec<Slopes>, EngineError> {
     let sloped = |group: &[usize]| {
-        let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::fixed(value)).collect();
+        let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::constant(value)).collect();
         for (which, &by) in group.iter().enumerate() {
             // A parameter may stand there twice.
             sloped[by].slope[which] = 1.0;
@@ -107,17 +105,14 @@ fn along(
             Follower { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })
         .collect();
-    let mut unused = Ledger::new();
     let mut plain = Stepper::new(plan, numbers, options.scheme);
     plain.known.start();
     march_seen(plain, weather, options, watch, |plain, reached, made| {
         let solution = plain.known.solution(&reached.load);
         for Follower { stepper, state, slopes } in &mut followers {
-            stepper.known.follow(solution.clone());
-            made.make(stepper, state, weather, options.dt, &mut unused)?;
+            made.follow(stepper, state, weather, options.dt, solution.as_ref())?;
             // Rounding and tolerances must not add up: the slopes are those along the plain run, as in reverse.
-            let mut values = reached.numbers();
-            *state = state.map(|number| Sloped { value: values.next().unwrap_or(number.value), ..number });
+            state.meet(reached, |number, value| number.value = value);
             if made.row(options).is_some() {
                 slopes.records.extend(options.probes.iter().map(|probe| probe.read(plan, stepper, state)));
             }

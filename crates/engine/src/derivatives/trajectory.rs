@@ -1,7 +1,7 @@
 //! Reverse derivatives: a run that can be gone back along, from weights on its records to the slopes by all parameters.
 //!
 //! The run keeps the states between its steps and the solutions of their stages. On the way back each step is made once
-//! more with numbers that remember what they were made of, by one linear solve at its solution; the weights of the state
+//! more with numbers that remember what they were made of, along its solution; the weights of the state
 //! after it become those of the state before it and of the coefficients. What the coefficients were made of stays on the
 //! tape from the start to the end. Where all of this would take too much memory, only every n-th state is kept and the
 //! steps between are run again.
@@ -141,7 +141,7 @@ fn again(
 
 /// The way back.
 struct Back<'a> {
-    /// With the coefficients, and the factors of what never changes, on the tape.
+    /// With the coefficients on the tape.
     fresh: Stepper<'a, Taped>,
     stepper: Stepper<'a, Taped>,
     weather: &'a Weather<'a>,
@@ -154,6 +154,8 @@ struct Back<'a> {
     weights: Vec<f64>,
     /// Weights on the state.
     state: Vec<f64>,
+    /// The state before the step in hand, then after it.
+    now: State<Taped>,
 }
 
 impl<'a> Back<'a> {
@@ -164,10 +166,11 @@ impl<'a> Back<'a> {
         options: &'a Options,
         records: &'a [f64],
     ) -> Self {
-        let mut fresh = Stepper::new(plan, leaves, options.scheme);
-        fresh.prepare(options.dt);
+        let fresh = Stepper::new(plan, leaves, options.scheme);
         let (stepper, base) = (fresh.clone(), Tape::len());
-        Self { fresh, stepper, weather, options, records, base, weights: Vec::new(), state: Vec::new() }
+        let now = stepper.begin(&options.initial);
+        let state = vec![0.0; now.numbers().count()];
+        Self { fresh, stepper, weather, options, records, base, weights: Vec::new(), state, now }
     }
 
     /// Goes back over a stretch.
@@ -177,7 +180,7 @@ impl<'a> Back<'a> {
             if watch.stop.load(core::sync::atomic::Ordering::Relaxed) {
                 return Err(EngineError::Interrupted);
             }
-            self.pass(made, before, solution.clone())?;
+            self.pass(made, before, solution.as_ref())?;
         }
         Ok(())
     }
@@ -187,36 +190,42 @@ impl<'a> Back<'a> {
         &mut self,
         made: Move,
         before: &State<f64>,
-        solution: Option<Solution>,
+        solution: Option<&Solution>,
     ) -> Result<(), EngineError> {
-        if self.stepper.factored().to_bits() != self.fresh.factored().to_bits() {
-            // Its factors lie beyond the base: they are about to be cut off.
-            self.stepper = self.fresh.clone();
-        }
         Tape::cut(self.base);
-        let mut state = before.map(Taped::variable);
-        let leaves = Tape::len();
+        let first = Tape::reserve(self.state.len());
+        let (leaves, mut places) = (Tape::len(), first..);
+        let state = &mut self.now;
+        state.meet(before, |number, value| {
+            if let Some(place) = places.next() {
+                *number = Taped::new(value, place);
+            }
+        });
         self.stepper.forget();
-        self.stepper.known.follow(solution);
-        made.make(&mut self.stepper, &mut state, self.weather, self.options.dt, &mut Ledger::new())?;
+        made.follow(&mut self.stepper, state, self.weather, self.options.dt, solution)?;
         let read = made.row(self.options).map(|row| {
             let probes = &self.options.probes;
-            let records = probes.iter().map(|probe| probe.read(self.stepper.plan, &self.stepper, &state));
+            let records = probes.iter().map(|probe| probe.read(self.stepper.plan, &self.stepper, state));
             (row * probes.len(), records.collect::<Vec<_>>())
         });
-        self.weights.resize(Tape::len(), 0.0);
+        self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         for (number, weight) in state.numbers().zip(&self.state) {
-            self.weights[number.place()] += weight;
+            number.weigh(*weight, &mut self.weights);
         }
         if let Some((first, records)) = read {
             for (record, weight) in records.iter().zip(&self.records[first..]) {
-                self.weights[record.place()] += weight;
+                record.weigh(*weight, &mut self.weights);
             }
         }
-        Tape::pull(&mut self.weights, leaves);
-        self.state.clear();
-        self.state.extend(self.weights.drain(self.base..leaves));
-        self.weights.truncate(self.base);
+        let stepper = &mut self.stepper;
+        Tape::pull(&mut self.weights, leaves, |stage, weights| stepper.pull_stage(stage, weights));
+        let passed = &mut self.weights[self.base..leaves];
+        self.state.copy_from_slice(passed);
+        passed.fill(0.0);
+        if solution.is_none() {
+            // It has made factors that are about to be cut off.
+            self.stepper = self.fresh.clone();
+        }
         Ok(())
     }
 
@@ -224,11 +233,11 @@ impl<'a> Back<'a> {
     fn finish(mut self, leaves: &[Taped]) -> Vec<f64> {
         Tape::cut(self.base);
         let start = self.fresh.begin(&self.options.initial);
-        self.weights.resize(Tape::len(), 0.0);
+        self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         for (number, weight) in start.numbers().zip(&self.state) {
-            self.weights[number.place()] += weight;
+            number.weigh(*weight, &mut self.weights);
         }
-        Tape::pull(&mut self.weights, leaves.len() + 1);
-        leaves.iter().map(|leaf| self.weights[leaf.place()]).collect()
+        Tape::pull(&mut self.weights, leaves.len() + 1, |_, _| {});
+        self.weights[1..=leaves.len()].to_vec()
     }
 }

@@ -35,15 +35,19 @@ impl<S: Real> PcmMemory<S> {
         Self { liquid_fraction, temperature, marks: [S::zero(); 2] }
     }
 
-    /// All its numbers, in the order of [`Self::map`].
+    /// All its numbers, in the order of [`Self::meet`].
     pub(crate) fn numbers(&self) -> [S; 4] {
         [self.liquid_fraction, self.temperature, self.marks[0], self.marks[1]]
     }
 
-    /// The same memory in other numbers.
-    pub(crate) fn map<T: Real>(&self, change: &mut impl FnMut(S) -> T) -> PcmMemory<T> {
-        let [liquid_fraction, temperature, first, second] = self.numbers().map(change);
-        PcmMemory { liquid_fraction, temperature, marks: [first, second] }
+    /// Changes each number by the one at its place in another memory.
+    #[inline(always)]
+    pub(crate) fn meet<T: Copy>(&mut self, other: &PcmMemory<T>, change: &mut impl FnMut(&mut S, T)) {
+        change(&mut self.liquid_fraction, other.liquid_fraction);
+        change(&mut self.temperature, other.temperature);
+        for (mine, &theirs) in self.marks.iter_mut().zip(&other.marks) {
+            change(mine, theirs);
+        }
     }
 
     /// Takes over the lanes of another one where the mask is true.

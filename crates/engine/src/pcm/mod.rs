@@ -312,7 +312,7 @@ mod tests {
     use crate::description::{MeltingCurve, ParamId, TablePoints};
     use crate::real::Dual;
 
-    type D = Dual<f64, 1>;
+    type D = Dual<1>;
 
     fn ids<const N: usize>(first: u32) -> [ParamId; N] {
         core::array::from_fn(|i| ParamId(first + u32::try_from(i).unwrap()))

@@ -1,0 +1,523 @@
+//! Steps along solutions that are known: how numbers with derivatives go beside a plain run.
+//!
+//! At a known solution nothing is to be iterated and nothing to be eliminated with derivatives: the equations of a stage
+//! are gathered term by term, the laws in them linearised at the solution as ever, and a plain twin of the stepper, which
+//! takes over the values of that linearisation, solves for all slopes (see [`crate::residual`]).
+
+use crate::balance::Line;
+use crate::coefficients::{Boundary, Matter};
+use crate::drive::{Instant, Weather};
+use crate::known::Solution;
+use crate::plan::{FaceId, FaceRole};
+use crate::radiation::Emission;
+use crate::real::{Mask, Real};
+use crate::residual::Residual;
+use crate::state::{State, Unknowns};
+
+use super::{INSTANT, Part, Stepper, outdoor_emission};
+
+/// What a stepper needs to follow a plain run.
+#[derive(Debug, Clone)]
+pub(super) struct Following<'a, S: Real> {
+    /// One for each stage, with its linearisation at the solution.
+    twins: Vec<Stepper<'a, f64>>,
+    equations: S::Residual,
+    carries: Carries,
+    /// Of the cells of constant walls [J/(m2 K)].
+    capacity: Vec<S>,
+    /// The solution of the stage in hand: cells, faces, airs [degC].
+    at: Vec<f64>,
+    /// How air and walls answer to a watt of a plant.
+    answers: Vec<Vec<f64>>,
+    block: Vec<f64>,
+}
+
+/// Which numbers that stay have derivatives: of the others nothing need be gathered.
+#[derive(Debug, Clone)]
+struct Carries {
+    /// By wall: conductances, heat capacities.
+    links: Vec<bool>,
+    capacity: Vec<bool>,
+    /// By zone: exchange between its faces.
+    exchange: Vec<bool>,
+}
+
+/// Whether one of some numbers has derivatives.
+fn any<S: Real>(numbers: impl IntoIterator<Item = S>) -> bool {
+    numbers.into_iter().any(S::carries)
+}
+
+impl<'a, S: Real> Following<'a, S> {
+    pub(super) fn new(stepper: &Stepper<'a, S>) -> Self {
+        let plan = stepper.plan;
+        let plain: Vec<f64> = stepper.numbers.iter().map(|number| number.lane(0)).collect();
+        let twin =
+            Stepper::with(plan, crate::coefficients::Coefficients::new(plan, &plain), &[], stepper.scheme);
+        let mut capacity = vec![S::zero(); plan.n_cells];
+        for (wall, numbers) in plan.walls.iter().zip(&stepper.coefficients.walls) {
+            for (capacity, cell) in capacity[wall.first_cell..].iter_mut().zip(&numbers.cells) {
+                if let Matter::Solid { capacity: heat, .. } = cell.matter {
+                    *capacity = heat * cell.thickness;
+                }
+            }
+        }
+        let zones = &stepper.coefficients.zones;
+        let unknowns = plan.n_cells + plan.faces.len() + plan.zones.len();
+        Self {
+            twins: vec![twin; stepper.scheme.weights().len()],
+            equations: S::Residual::default(),
+            carries: Carries {
+                links: stepper
+                    .chains
+                    .iter()
+                    .map(|chain| any(chain.links.iter().map(|link| link.left)))
+                    .collect(),
+                capacity: plan
+                    .walls
+                    .iter()
+                    .map(|wall| any(capacity[wall.first_cell..wall.first_cell + wall.len()].iter().copied()))
+                    .collect(),
+                exchange: zones.iter().map(|zone| any(zone.exchange.iter().copied())).collect(),
+            },
+            capacity,
+            at: vec![0.0; unknowns],
+            answers: vec![vec![0.0; unknowns]; plan.plants.len()],
+            block: Vec::new(),
+        }
+    }
+}
+
+/// Where in the stages of a step a stage stands.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    stage: usize,
+    /// Effective length [s].
+    length: f64,
+    /// Share of the way from the start of the step to the solution of the first stage that this one starts from.
+    ratio: f64,
+}
+
+impl<S: Real> Stepper<'_, S> {
+    /// One step of length `dt` [s] along its solution.
+    // Once, not at every place that takes steps: the compiler has enough to do.
+    #[inline(never)]
+    pub(crate) fn follow_step(
+        &mut self,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        step: usize,
+        dt: f64,
+        solution: &Solution,
+    ) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                self.set_off(state);
+                let asked = !self.plan.plants.is_empty() && self.ask_plants(weather, step, solution);
+                // Responses leave out what a load does to the convection expected in gaps: with windows its slope is
+                // found in a round more.
+                let rounds = if !asked {
+                    0
+                } else if self.plan.windows.is_empty() {
+                    1
+                } else {
+                    2
+                };
+                for round in 0..=rounds {
+                    self.follow_stages(state, weather, (step, dt), solution);
+                    if round < rounds {
+                        self.answer();
+                        self.plants.correct(&self.solved.air, &mut self.load, S::Mask::splat(true), true);
+                    }
+                }
+                self.arrive(state);
+            },
+        );
+    }
+
+    /// Brings the faces of a state into balance with the weather along the solution.
+    pub(crate) fn follow_balance(&mut self, state: &mut State<S>, now: &Instant<'_>, solution: &Solution) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                self.set_off(state);
+                self.drive.update(self.plan, &self.coefficients, &self.facade, self.numbers, now);
+                let place = Place { stage: 0, length: INSTANT, ratio: 0.0 };
+                self.follow_stage(state, place, &solution.stages[0]);
+                state.faces.copy_from_slice(&self.solved.faces);
+                self.sun.restart();
+                self.sun.add(&self.drive, 1.0);
+            },
+        );
+    }
+
+    /// Weights on the equations of a stage from weights on its solution, in place.
+    pub(crate) fn pull_stage(&mut self, stage: usize, weights: &mut [f64]) {
+        if let Some(following) = &mut self.following {
+            following.twins[stage].solve_transposed(weights, &mut following.block);
+        }
+    }
+
+    #[inline(always)]
+    fn set_off(&mut self, state: &State<S>) {
+        self.forget();
+        self.load.copy_from_slice(&state.load);
+        self.expect_gaps(0, state);
+    }
+
+    #[inline(always)]
+    fn follow_stages(
+        &mut self,
+        state: &State<S>,
+        weather: &Weather<'_>,
+        (step, dt): (usize, f64),
+        solution: &Solution,
+    ) {
+        let diagonal = self.scheme.diagonal();
+        let part = Part { step, from: 0.0, share: 1.0, halvings: 0 };
+        for (stage, known) in solution.stages.iter().enumerate() {
+            if stage > 0 {
+                self.carry(state);
+            }
+            self.drive_at(weather, part, stage);
+            let ratio = if stage > 0 { (1.0 - diagonal) / diagonal } else { 0.0 };
+            self.follow_stage(state, Place { stage, length: diagonal * dt, ratio }, known);
+        }
+    }
+
+    /// One stage: its equations at the solution, gathered and solved.
+    #[inline(always)]
+    fn follow_stage(&mut self, state: &State<S>, place: Place, known: &Unknowns<f64>) {
+        let Some(mut following) = self.following.take() else { return };
+        self.stage = place.stage;
+        self.iterate.set(known);
+        let twin = &mut following.twins[place.stage];
+        let new = twin.factor_constant(place.length);
+        self.locate(state, place, known, twin, &mut following.at);
+        self.linearise_at(state);
+        twin.adopt(self, place.length, new);
+        following.equations.begin(following.at.len());
+        self.gather_walls(state, place, &mut following);
+        self.gather_zones(state, place, &mut following);
+        let Following { equations, twins, at, .. } = &mut *following;
+        let Unknowns { cells, faces, air } = &mut self.solved;
+        equations.solve(place.stage, &twins[place.stage], at, [cells, faces, air]);
+        for &w in &self.changing.walls {
+            let wall = &self.plan.walls[w];
+            self.chains[w].arrive(&self.solved.cells[wall.first_cell..wall.first_cell + wall.len()]);
+        }
+        self.following = Some(following);
+    }
+
+    /// The known solution: as it stands, but cells of constant walls follow from the rest.
+    #[inline(always)]
+    fn locate(
+        &self,
+        state: &State<S>,
+        place: Place,
+        known: &Unknowns<f64>,
+        twin: &Stepper<'_, f64>,
+        at: &mut [f64],
+    ) {
+        let (cells, rest) = at.split_at_mut(self.plan.n_cells);
+        let (faces, air) = rest.split_at_mut(self.plan.faces.len());
+        faces.copy_from_slice(&known.faces);
+        air.copy_from_slice(&known.air);
+        cells.copy_from_slice(&known.cells);
+        for &w in &self.changing.constant {
+            let (wall, chain) = (&self.plan.walls[w], &twin.chains[w]);
+            let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
+            for (i, cell) in own.iter_mut().enumerate() {
+                let k = wall.first_cell + i;
+                let start = state.cells[k].lane(0);
+                let held = start + (self.solved.cells[k].lane(0) - start) * place.ratio;
+                *cell = chain.rate[i] * chain.storage[i].capacity * held;
+            }
+            chain.forward(own);
+            chain.back([known.faces[2 * w], known.faces[2 * w + 1]], own);
+        }
+    }
+
+    /// Linearises everything at the iterate.
+    #[inline(always)]
+    fn linearise_at(&mut self, state: &State<S>) {
+        for i in 0..self.changing.walls.len() {
+            self.linearise_wall(self.changing.walls[i], state, None);
+        }
+        self.blow();
+        self.linearise_faces();
+    }
+
+    /// Cells of all walls: heat held and heat that flows between them and into the faces.
+    #[inline(always)]
+    fn gather_walls(&self, state: &State<S>, place: Place, following: &mut Following<'_, S>) {
+        let Following { equations, capacity, at, twins, carries, .. } = following;
+        let twin = &twins[place.stage];
+        let per_second = 1.0 / place.length;
+        for (w, wall) in self.plan.walls.iter().enumerate() {
+            let (chain, first, n) = (&self.chains[w], wall.first_cell, wall.len());
+            let faces = [2 * w, 2 * w + 1].map(|face| self.plan.n_cells + face);
+            let shares = [2 * w, 2 * w + 1].map(|face| twin.takes(face));
+            if wall.nonlinear {
+                self.gather_storage(state, place, w, (&mut *equations, at));
+            } else {
+                for k in first..first + n {
+                    let (start, heat) = (state.cells[k], capacity[k].lane(0) * per_second);
+                    let mut held = start.lane(0);
+                    equations.add(k, start, heat * (1.0 - place.ratio));
+                    if place.stage > 0 {
+                        equations.add(k, self.solved.cells[k], heat * place.ratio);
+                        held += (self.solved.cells[k].lane(0) - held) * place.ratio;
+                    }
+                    if carries.capacity[w] {
+                        equations.add(k, capacity[k], (held - at[k]) * per_second);
+                    }
+                }
+            }
+            for (j, link) in chain.links.iter().enumerate() {
+                let above = |i: usize| at[first + i] - chain.storage[i].place.lane(0);
+                let (outer, left, gives) = if j == 0 {
+                    (faces[0], at[faces[0]], shares[0])
+                } else {
+                    (first + j - 1, above(j - 1), 1.0)
+                };
+                let (inner, right, takes) =
+                    if j == n { (faces[1], at[faces[1]], shares[1]) } else { (first + j, above(j), 1.0) };
+                if wall.nonlinear {
+                    for (row, share) in [(outer, -gives), (inner, takes)] {
+                        equations.add(row, link.offset, share);
+                        equations.add(row, link.left, share * left);
+                        equations.add(row, link.right, -share * right);
+                    }
+                } else if carries.links[w] {
+                    let conductance = link.left;
+                    equations.add(outer, conductance, -gives * (left - right));
+                    equations.add(inner, conductance, takes * (left - right));
+                }
+            }
+            let ends = [(0, -1.0), (n, 1.0)].map(|(j, sign)| {
+                let link = &chain.links[j];
+                let left = if j == 0 {
+                    at[faces[0]]
+                } else {
+                    at[first + j - 1] - chain.storage[j - 1].place.lane(0)
+                };
+                let right =
+                    if j == n { at[faces[1]] } else { at[first + j] - chain.storage[j].place.lane(0) };
+                sign * (link.offset.lane(0) + link.left.lane(0) * left - link.right.lane(0) * right)
+            });
+            for (e, heat) in ends.into_iter().enumerate() {
+                match self.plan.faces[2 * w + e].role {
+                    // What enters by its area beside the heat from the wall is added with the zone.
+                    FaceRole::Zone { .. } => equations.add(faces[e], self.coefficients.walls[w].area, heat),
+                    FaceRole::Local => {
+                        self.gather_local(2 * w + e, at[faces[e]], (&mut *equations, faces[e]));
+                    }
+                }
+            }
+        }
+    }
+
+    /// What the cells of a wall that changes hold, and the sun in its panes.
+    #[inline(always)]
+    fn gather_storage(
+        &self,
+        state: &State<S>,
+        place: Place,
+        w: usize,
+        (equations, at): (&mut S::Residual, &[f64]),
+    ) {
+        let (wall, chain, numbers) = (&self.plan.walls[w], &self.chains[w], &self.coefficients.walls[w]);
+        for (i, (storage, cell)) in chain.storage.iter().zip(&numbers.cells).enumerate() {
+            let k = wall.first_cell + i;
+            let rate = cell.thickness.lane(0) / place.length;
+            let above = at[k] - storage.place.lane(0);
+            let mut held = state.enthalpy[k].lane(0);
+            equations.add(k, state.enthalpy[k], rate * (1.0 - place.ratio));
+            if place.stage > 0 {
+                equations.add(k, self.held[k], rate * place.ratio);
+                held += (self.held[k].lane(0) - held) * place.ratio;
+            }
+            equations.add(k, storage.offset, -rate);
+            equations.add(k, storage.capacity, -rate * above);
+            let reached = storage.offset.lane(0) + storage.capacity.lane(0) * above;
+            equations.add(k, cell.thickness, (held - reached) / place.length);
+        }
+        let gains = self.plan.windows.iter().zip(&self.drive.windows).find(|(window, _)| **window == w);
+        for (i, &gain) in gains.iter().flat_map(|(_, at)| &at.cells).enumerate() {
+            equations.add(wall.first_cell + i, gain, 1.0);
+        }
+    }
+
+    /// What a face outside the zones takes from there.
+    #[inline(always)]
+    fn gather_local(&self, index: FaceId, at: f64, (equations, row): (&mut S::Residual, usize)) {
+        let face = &self.coefficients.faces[index];
+        let (drive, laws) = (&self.drive.faces[index], &self.laws[index]);
+        match face.boundary {
+            Boundary::Imposed(_) if face.film.is_none() => equations.add(row, drive.temperature, 1.0),
+            Boundary::Adiabatic => equations.add(row, drive.solar, 1.0),
+            _ => {
+                equations.add(row, drive.solar, 1.0);
+                equations.add(row, drive.longwave, 1.0);
+                equations.add(row, laws.film.offset, -1.0);
+                equations.add(row, laws.film.slope, drive.temperature.lane(0) - at);
+                equations.add(row, drive.temperature, laws.film.slope.lane(0));
+                if outdoor_emission(face).is_some() {
+                    let (emissivity, emission) = (face.emissivity, Line::of(&laws.emission));
+                    equations.add(row, emissivity, -emission.at(at));
+                    equations.add(row, laws.emission.offset, -emissivity.lane(0));
+                    equations.add(row, laws.emission.slope, -emissivity.lane(0) * at);
+                }
+            }
+        }
+    }
+
+    /// Faces and airs of the zones.
+    #[inline(always)]
+    fn gather_zones(&self, state: &State<S>, place: Place, following: &mut Following<'_, S>) {
+        let Following { equations, at, carries, .. } = following;
+        let first_air = self.plan.n_cells + self.plan.faces.len();
+        for (z, (zone, numbers)) in self.plan.zones.iter().zip(&self.coefficients.zones).enumerate() {
+            let (row, drive) = (first_air + z, &self.drive.zones[z]);
+            let air = at[row];
+            for (i, &index) in zone.faces.iter().enumerate() {
+                let (face, film) = (self.plan.n_cells + index, &self.laws[index].film);
+                let (area, above, solar) = (
+                    numbers.areas[i].lane(0),
+                    at[self.plan.n_cells + index] - air,
+                    self.drive.faces[index].solar,
+                );
+                for (row, area) in [(face, -area), (row, area)] {
+                    equations.add(row, film.offset, area);
+                    equations.add(row, film.slope, area * above);
+                }
+                let flux = Line::of(film).at(above);
+                equations.add(row, numbers.areas[i], flux);
+                equations.add(face, numbers.areas[i], solar.lane(0) - flux);
+                equations.add(face, solar, area);
+                equations.add(face, drive.radiant, numbers.radiant_shares[i].lane(0));
+                equations.add(face, numbers.radiant_shares[i], drive.radiant.lane(0));
+            }
+            self.gather_exchange(z, carries.exchange[z], (&mut *equations, at));
+            let held = if place.stage > 0 {
+                equations.add(row, self.solved.air[z], numbers.capacity.lane(0) / place.length * place.ratio);
+                state.air[z].lane(0) + (self.solved.air[z].lane(0) - state.air[z].lane(0)) * place.ratio
+            } else {
+                state.air[z].lane(0)
+            };
+            equations.add(row, state.air[z], numbers.capacity.lane(0) / place.length * (1.0 - place.ratio));
+            equations.add(row, numbers.capacity, (held - air) / place.length);
+            let below = self.drive.outdoor_air.lane(0) - air;
+            for entering in [&self.inflow[z], &self.airing[z]] {
+                equations.add(row, entering.offset, 1.0);
+                equations.add(row, entering.slope, below);
+            }
+            equations.add(row, drive.convective, 1.0);
+            equations.add(row, self.load[z], 1.0);
+        }
+        for (path, &conductance) in self.coefficients.paths.iter().zip(&self.drive.paths) {
+            let [a, b] = path.between.map(|zone| first_air + zone);
+            equations.add(a, conductance, at[b] - at[a]);
+            equations.add(b, conductance, at[a] - at[b]);
+        }
+    }
+
+    /// Long-wave exchange between the faces of a zone.
+    #[inline(always)]
+    fn gather_exchange(&self, z: usize, carries: bool, (equations, at): (&mut S::Residual, &[f64])) {
+        let (faces, numbers) = (&self.plan.zones[z].faces, &self.coefficients.zones[z]);
+        if numbers.exchange.is_empty() {
+            return;
+        }
+        let n = faces.len();
+        let linear =
+            self.laws[faces[0]].emission.slope.carries() && !matches!(numbers.emission, Emission::Exact);
+        if !carries && !linear {
+            return;
+        }
+        for (i, &index) in faces.iter().enumerate() {
+            let row = self.plan.n_cells + index;
+            let emission =
+                |face: FaceId| Line::of(&self.laws[face].emission).at(at[self.plan.n_cells + face]);
+            let own = emission(index);
+            let mut by_slope = 0.0;
+            for (&other, &exchange) in faces.iter().zip(&numbers.exchange[i * n..(i + 1) * n]) {
+                if other != index {
+                    // All that a face sends out comes back to it from the others, as far as they are alike.
+                    equations.add(row, exchange, emission(other) - own);
+                    by_slope += exchange.lane(0) * (at[self.plan.n_cells + other] - at[row]);
+                }
+            }
+            // The slope of a straight law is a number of the building; an exact one depends on the solution alone.
+            if linear {
+                equations.add(row, self.laws[index].emission.slope, by_slope);
+            }
+        }
+    }
+
+    /// What the first stage leaves to the second.
+    #[inline(always)]
+    fn carry(&mut self, state: &State<S>) {
+        for &w in &self.changing.walls {
+            let (wall, chain) = (&self.plan.walls[w], &self.chains[w]);
+            for (i, storage) in chain.storage.iter().enumerate() {
+                self.held[wall.first_cell + i] = storage.reached();
+                self.midway[wall.first_cell + i] = chain.liquid_fraction(i);
+            }
+        }
+        if !self.plan.windows.is_empty() {
+            self.extrapolate_on(state);
+            self.expect_gaps(1, state);
+        }
+    }
+
+    /// Takes the last stage as the new state.
+    #[inline(always)]
+    fn arrive(&mut self, state: &mut State<S>) {
+        self.accept_changing(state);
+        state.cells.copy_from_slice(&self.solved.cells);
+        state.faces.copy_from_slice(&self.solved.faces);
+        state.air.copy_from_slice(&self.solved.air);
+        state.load.copy_from_slice(&self.load);
+    }
+
+    /// Sets the loads of plants to those of the solution. False where none is asked for any.
+    #[inline(always)]
+    fn ask_plants(&mut self, weather: &Weather<'_>, step: usize, solution: &Solution) -> bool {
+        let (last, all) = (self.scheme.weights().len() - 1, S::Mask::splat(true));
+        self.plants.begin(&self.coefficients.zones, weather.at(step, last).row, &mut self.load, false);
+        for (load, &known) in self.load.iter_mut().zip(&solution.load) {
+            *load = S::constant(known);
+        }
+        let reached = &solution.stages[last].air;
+        self.plants.ask(&self.load, |zone| S::constant(reached[zone]));
+        self.plants.answering(0, all)
+    }
+
+    /// How the airs at the end of the step answer to a watt of each plant, with the factors of the twins.
+    #[inline(always)]
+    fn answer(&mut self) {
+        let Some(mut following) = self.following.take() else { return };
+        let diagonal = self.scheme.diagonal();
+        let ratio = (1.0 - diagonal) / diagonal;
+        let first_air = self.plan.n_cells + self.plan.faces.len();
+        let Following { twins, answers, block, .. } = &mut *following;
+        for (p, (&zone, rows)) in self.plan.plants.iter().zip(answers).enumerate() {
+            rows.fill(0.0);
+            for (stage, twin) in twins.iter().enumerate() {
+                if stage > 0 {
+                    twin.hand_on(rows, ratio);
+                }
+                rows[first_air + zone] += 1.0;
+                twin.solve_beside(rows, block);
+            }
+            if let Some(answer) = self.plants.responses[p].stages.last_mut() {
+                for (air, &row) in answer.air.iter_mut().zip(&rows[first_air..]) {
+                    *air = S::constant(row);
+                }
+            }
+        }
+        self.following = Some(following);
+    }
+}
