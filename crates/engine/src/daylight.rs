@@ -484,6 +484,12 @@ impl Daylight {
         numbers.into_boxed_slice()
     }
 
+    /// Whether nothing depends on where the sun stands.
+    #[must_use]
+    pub fn idle(&self) -> bool {
+        self.size == 0
+    }
+
     /// Whether anything shades a wall.
     #[must_use]
     pub fn shaded(&self, wall: usize) -> bool {

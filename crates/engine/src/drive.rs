@@ -1,5 +1,7 @@
 //! What acts on the building at one instant: forcing turned into numbers at each face.
 
+use std::borrow::Cow;
+
 use crate::coefficients::{Boundary, Coefficients, Imposed, PER_DAY};
 use crate::convection::{Asked, Film, Forced, Wind};
 use crate::description::Facing;
@@ -64,34 +66,63 @@ impl Instant<'_> {
 /// The weather of all stages of a run.
 #[derive(Debug)]
 pub struct Weather<'a> {
-    instants: Vec<Instant<'a>>,
-    stages: usize,
+    plan: &'a Plan,
+    forcing: Forcing<'a>,
+    asked: Asked,
+    /// Whether the ground asks for the season.
+    ground: bool,
+    /// Empty where it is worked out when it is asked for.
+    kept: Vec<Instant<'a>>,
 }
 
 impl<'a> Weather<'a> {
-    /// Reads a forcing.
+    /// Reads a forcing for many runs.
     #[must_use]
-    pub fn new(plan: &Plan, forcing: &Forcing<'a>) -> Self {
+    pub fn new(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
+        let mut weather = Self::passing(plan, forcing);
         let stages = forcing.stages();
+        weather.kept =
+            (0..forcing.steps() * stages).map(|k| weather.reckon(k / stages, k % stages)).collect();
+        weather
+    }
+
+    /// Reads a forcing for one run: what is looked at once need not be kept.
+    #[must_use]
+    pub fn once(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
+        // Where the sun is followed, what it meets is not to be found twice when days are repeated.
+        if plan.daylight.idle() { Self::passing(plan, forcing) } else { Self::new(plan, forcing) }
+    }
+
+    fn passing(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
         let sides = || (0..plan.faces.len()).map(|face| plan.side(face));
         let asked = Asked::by(sides().filter_map(|side| side.convection.as_ref()));
         let ground = sides().any(|side| matches!(side.facing, Facing::Ground { .. }));
-        let instants = (0..forcing.steps() * stages)
-            .map(|k| Instant::new(plan, forcing.at(k / stages, k % stages), asked, ground))
-            .collect();
-        Self { instants, stages }
+        Self { plan, forcing: *forcing, asked, ground, kept: Vec::new() }
+    }
+
+    fn reckon(&self, step: usize, stage: usize) -> Instant<'a> {
+        Instant::new(self.plan, self.forcing.at(step, stage), self.asked, self.ground)
     }
 
     /// Number of steps.
     #[must_use]
     pub fn steps(&self) -> usize {
-        self.instants.len() / self.stages
+        self.forcing.steps()
+    }
+
+    /// All channels at a stage of a step.
+    #[must_use]
+    pub fn row(&self, step: usize, stage: usize) -> &'a [f64] {
+        self.forcing.at(step, stage)
     }
 
     /// The weather at a stage of a step.
     #[must_use]
-    pub fn at(&self, step: usize, stage: usize) -> &Instant<'a> {
-        &self.instants[step * self.stages + stage]
+    pub fn at(&self, step: usize, stage: usize) -> Cow<'_, Instant<'a>> {
+        match self.kept.get(step * self.forcing.stages() + stage) {
+            Some(kept) => Cow::Borrowed(kept),
+            None => Cow::Owned(self.reckon(step, stage)),
+        }
     }
 }
 

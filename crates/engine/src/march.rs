@@ -92,7 +92,7 @@ pub fn march<S: Real>(
     watch: &Watch,
 ) -> Result<Run<S>, EngineError> {
     check(plan, numbers.len(), forcing, options)?;
-    march_in(plan, numbers, &Weather::new(plan, forcing), options, watch)
+    march_in(plan, numbers, &Weather::once(plan, forcing), options, watch)
 }
 
 /// Runs a plan at a parameter vector in a weather that many runs share. What `march` checks must hold.
@@ -133,7 +133,7 @@ impl Move {
             Self::Balance => {
                 stepper.forget();
                 // The weather of the first stage stands for that of the start.
-                stepper.balance_faces(state, weather.at(0, 0))
+                stepper.balance_faces(state, &weather.at(0, 0))
             }
         }
     }
@@ -152,7 +152,7 @@ impl Move {
         };
         match self {
             Self::Repeat(step) | Self::Step(step) => stepper.follow_step(state, weather, step, dt, solution),
-            Self::Balance => stepper.follow_balance(state, weather.at(0, 0), solution),
+            Self::Balance => stepper.follow_balance(state, &weather.at(0, 0), solution),
         }
         Ok(())
     }

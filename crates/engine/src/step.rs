@@ -401,7 +401,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.start(state, self.scheme.diagonal());
         let regulated = !self.plan.plants.is_empty();
         if regulated {
-            self.set_out(state, weather.at(part.step, self.scheme.weights().len() - 1).row);
+            self.set_out(state, weather.row(part.step, self.scheme.weights().len() - 1));
         }
         self.remember(state);
         let energy = if regulated {
@@ -723,7 +723,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn drive_at(&mut self, weather: &Weather<'_>, part: Part, stage: usize) {
         let read = |drive: &mut Drive<S>, stage: usize| {
             let now = weather.at(part.step, stage);
-            drive.update(self.plan, &self.coefficients, &self.facade, self.numbers, now);
+            drive.update(self.plan, &self.coefficients, &self.facade, self.numbers, &now);
         };
         read(&mut self.drive, stage);
         let weights = self.scheme.weights();

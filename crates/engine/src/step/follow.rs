@@ -486,7 +486,7 @@ impl<S: Real> Stepper<'_, S> {
     #[inline(always)]
     fn ask_plants(&mut self, weather: &Weather<'_>, step: usize, solution: &Solution) -> bool {
         let (last, all) = (self.scheme.weights().len() - 1, S::Mask::splat(true));
-        self.plants.begin(&self.coefficients.zones, weather.at(step, last).row, &mut self.load, false);
+        self.plants.begin(&self.coefficients.zones, weather.row(step, last), &mut self.load, false);
         for (load, &known) in self.load.iter_mut().zip(&solution.load) {
             *load = S::constant(known);
         }
