@@ -1,5 +1,7 @@
 //! What passes from step to step, and the temperatures of one iterate.
 
+use core::ops::Range;
+
 use crate::coefficients::{Coefficients, Matter};
 use crate::error::EngineError;
 use crate::pcm::PcmMemory;
@@ -118,6 +120,14 @@ impl<S: Real> State<S> {
 pub(crate) fn blend<S: Real>(mask: S::Mask, mine: &mut [S], theirs: &[S]) {
     for (a, &b) in mine.iter_mut().zip(theirs) {
         *a = S::select(mask, b, *a);
+    }
+}
+
+/// Copies some runs of numbers.
+#[inline(always)]
+pub(crate) fn copy_runs<S: Real>(runs: &[Range<usize>], mine: &mut [S], theirs: &[S]) {
+    for run in runs {
+        mine[run.clone()].copy_from_slice(&theirs[run.clone()]);
     }
 }
 

@@ -27,7 +27,7 @@ use crate::radiation::{Emission, black_temperature};
 use crate::real::{Mask, Real};
 use crate::room_block::RoomBlock;
 use crate::slabs::Slabs;
-use crate::state::{Initial, State, Unknowns, blend, line, squared_distance};
+use crate::state::{Initial, State, Unknowns, blend, copy_runs, line, squared_distance};
 use crate::zone;
 
 use follow::Following;
@@ -539,7 +539,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let (mut energy, mut change, mut limited) = (Power::none(), S::zero(), S::Mask::splat(false));
         let (again, answer) = (sweep > 0, self.plants.answering(sweep, active));
         if again {
-            self.held.copy_from_slice(&state.enthalpy);
+            copy_runs(&self.changing.cells, &mut self.held, &state.enthalpy);
             self.held_air.copy_from_slice(&state.air);
             self.known.restart();
         }
@@ -750,7 +750,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Sets out from a state; guesses that it goes on as in the step before for a share of a step.
     #[inline(always)]
     fn start(&mut self, state: &State<S>, share: f64) {
-        self.held.copy_from_slice(&state.enthalpy);
+        copy_runs(&self.changing.cells, &mut self.held, &state.enthalpy);
         self.held_air.copy_from_slice(&state.air);
         self.load.copy_from_slice(&state.load);
         self.slabs.begin();
@@ -767,7 +767,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 );
             }
             _ => {
-                self.iterate.cells.copy_from_slice(&state.cells);
+                copy_runs(&self.changing.cells, &mut self.iterate.cells, &state.cells);
                 self.iterate.faces.copy_from_slice(&state.faces);
                 self.iterate.air.copy_from_slice(&state.air);
             }
@@ -779,7 +779,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn remember(&mut self, state: &State<S>) {
         let previous = self.previous.get_or_insert_with(|| self.solved.clone());
-        previous.cells.copy_from_slice(&state.cells);
+        copy_runs(&self.changing.cells, &mut previous.cells, &state.cells);
         previous.faces.copy_from_slice(&state.faces);
         previous.air.copy_from_slice(&state.air);
     }
