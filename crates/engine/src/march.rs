@@ -145,7 +145,7 @@ impl Move {
         state: &mut State<S>,
         weather: &Weather<'_>,
         dt: f64,
-        solution: Option<&Solution>,
+        solution: Option<Solution<'_>>,
     ) -> Result<(), EngineError> {
         let Some(solution) = solution else {
             return self.make(stepper, state, weather, dt, &mut Ledger::new());

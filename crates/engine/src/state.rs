@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use crate::coefficients::{Coefficients, Matter};
 use crate::error::EngineError;
-use crate::pcm::PcmMemory;
+use crate::pcm::{PcmMemory, REMEMBERED};
 use crate::plan::{FaceId, Plan};
 use crate::real::Real;
 
@@ -68,15 +68,69 @@ impl<S: Real> State<S> {
         Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
     }
 
-    /// All its numbers, in the order of [`Self::meet`].
-    pub(crate) fn numbers(&self) -> impl Iterator<Item = S> + '_ {
-        let State { cells, enthalpy, memory, faces, air, load } = self;
-        let plain = [cells, enthalpy, faces, air, load].into_iter().flatten().copied();
-        plain.chain(memory.iter().flat_map(PcmMemory::numbers))
+    /// All its numbers, one after the other.
+    pub(crate) fn write(&self, numbers: &mut Vec<S>) {
+        for values in [&self.cells, &self.enthalpy, &self.faces, &self.air, &self.load] {
+            numbers.extend_from_slice(values);
+        }
+        for memory in &self.memory {
+            numbers.extend_from_slice(&memory.numbers());
+        }
+    }
+
+    /// Changes each number by one of others, in the order of [`Self::write`].
+    #[inline(always)]
+    pub(crate) fn read<T: Copy>(&mut self, mut numbers: &[T], mut change: impl FnMut(&mut S, T)) {
+        let Self { cells, enthalpy, memory, faces, air, load } = self;
+        for values in [cells, enthalpy, faces, air, load] {
+            let (own, rest) = numbers.split_at(values.len());
+            numbers = rest;
+            for (mine, &theirs) in values.iter_mut().zip(own) {
+                change(mine, theirs);
+            }
+        }
+        let (all, _) = numbers.as_chunks::<REMEMBERED>();
+        for (memory, numbers) in memory.iter_mut().zip(all) {
+            memory.read(*numbers, &mut change);
+        }
+    }
+
+    /// Shows each number with one of others, in the order of [`Self::write`].
+    #[inline(always)]
+    pub(crate) fn beside<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
+        for values in [&self.cells, &self.enthalpy, &self.faces, &self.air, &self.load] {
+            let (own, rest) = numbers.split_at(values.len());
+            numbers = rest;
+            for (&mine, &theirs) in values.iter().zip(own) {
+                see(mine, theirs);
+            }
+        }
+        let (all, _) = numbers.as_chunks::<REMEMBERED>();
+        for (memory, numbers) in self.memory.iter().zip(all) {
+            for (mine, &theirs) in memory.numbers().into_iter().zip(numbers) {
+                see(mine, theirs);
+            }
+        }
+    }
+
+    /// Takes over another state.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.cells.copy_from_slice(&other.cells);
+        self.enthalpy.copy_from_slice(&other.enthalpy);
+        self.faces.copy_from_slice(&other.faces);
+        self.air.copy_from_slice(&other.air);
+        self.load.copy_from_slice(&other.load);
+        self.memory.copy_from_slice(&other.memory);
+    }
+
+    /// How many numbers it has.
+    pub(crate) fn count(&self) -> usize {
+        let plain = [&self.cells, &self.enthalpy, &self.faces, &self.air, &self.load];
+        plain.into_iter().map(Vec::len).sum::<usize>() + REMEMBERED * self.memory.len()
     }
 
     /// Changes each number by the one at its place in another state.
-    pub(crate) fn meet<T: Copy>(&mut self, other: &State<T>, mut change: impl FnMut(&mut S, T)) {
+    pub(crate) fn meet<T: Real>(&mut self, other: &State<T>, mut change: impl FnMut(&mut S, T)) {
         let plain = [
             (&mut self.cells, &other.cells),
             (&mut self.enthalpy, &other.enthalpy),
@@ -90,7 +144,7 @@ impl<S: Real> State<S> {
             }
         }
         for (mine, theirs) in self.memory.iter_mut().zip(&other.memory) {
-            mine.meet(theirs, &mut change);
+            mine.read(theirs.numbers(), &mut change);
         }
     }
 
@@ -166,6 +220,12 @@ impl<S: Real> Unknowns<S> {
     #[inline(always)]
     pub(crate) fn view(&self) -> Temperatures<'_, S> {
         Temperatures { cells: &self.cells, faces: &self.faces, air: &self.air }
+    }
+
+    /// The values alone.
+    pub(crate) fn plain(&self) -> Unknowns<f64> {
+        let values = |numbers: &[S]| numbers.iter().map(|number| number.lane(0)).collect();
+        Unknowns { cells: values(&self.cells), faces: values(&self.faces), air: values(&self.air) }
     }
 
     /// Takes over plain temperatures.

@@ -331,6 +331,16 @@ impl<'a, S: Real> Stepper<'a, S> {
         )
     }
 
+    /// Cells whose temperatures are unknowns of their own, not consequences of others.
+    pub(crate) fn changing_cells(&self) -> &[Range<usize>] {
+        &self.changing.cells
+    }
+
+    /// A place for the unknowns of each stage.
+    pub(crate) fn places(&self) -> Vec<Unknowns<S>> {
+        vec![self.solved.clone(); self.scheme.weights().len()]
+    }
+
     /// Forgets the step before: what comes next does not follow it.
     pub fn forget(&mut self) {
         self.previous = None;

@@ -110,7 +110,7 @@ fn along(
     march_seen(plain, weather, options, watch, |plain, reached, made| {
         let solution = plain.known.solution(&reached.load);
         for Follower { stepper, state, slopes } in &mut followers {
-            made.follow(stepper, state, weather, options.dt, solution.as_ref())?;
+            made.follow(stepper, state, weather, options.dt, solution)?;
             // Rounding and tolerances must not add up: the slopes are those along the plain run, as in reverse.
             state.meet(reached, |number, value| number.value = value);
             if made.row(options).is_some() {

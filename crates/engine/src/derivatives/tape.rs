@@ -188,7 +188,9 @@ impl Taped {
 
     /// Adds to the weight of what this depends on.
     pub(super) fn weigh(self, weight: f64, weights: &mut [f64]) {
-        weights[self.place as usize] += self.slope * weight;
+        if weight != 0.0 {
+            weights[self.place as usize] += self.slope * weight;
+        }
     }
 
     /// The number at a place.

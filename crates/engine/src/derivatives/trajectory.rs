@@ -10,11 +10,11 @@ use super::tape::{Tape, Taped};
 use crate::drive::Weather;
 use crate::error::EngineError;
 use crate::forcing::Forcing;
-use crate::known::Solution;
+use crate::known::{Solution, read_solution};
 use crate::ledger::Ledger;
 use crate::march::{Move, Options, Run, Watch, check, march_seen};
 use crate::plan::Plan;
-use crate::state::State;
+use crate::state::{State, Unknowns};
 use crate::step::Stepper;
 
 /// A run, and what is needed to go back along it.
@@ -32,11 +32,33 @@ pub struct Trajectory {
     last: Stretch,
 }
 
-/// Moves in a row, each with the state before it and its solution.
+/// Moves in a row, each with the numbers of the state before it and of its solution.
 #[derive(Debug, Default)]
 struct Stretch {
-    states: Vec<State<f64>>,
-    solutions: Vec<Option<Solution>>,
+    states: Vec<f64>,
+    solutions: Vec<f64>,
+    /// Where the numbers of each solution end; it has none where it is not known.
+    ends: Vec<usize>,
+}
+
+impl Stretch {
+    /// Adds a move that a stepper has made, from the state before it to one with these loads.
+    fn push(&mut self, before: &State<f64>, stepper: &Stepper<'_, f64>, load: &[f64]) {
+        before.write(&mut self.states);
+        if let Some(solution) = stepper.known.solution(load) {
+            solution.write(stepper.changing_cells(), &mut self.solutions);
+        }
+        self.ends.push(self.solutions.len());
+    }
+
+    /// The moves from the last to the first: numbers of the states before them and of their solutions.
+    fn back(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        let size = self.states.len() / self.ends.len().max(1);
+        (0..self.ends.len()).rev().map(move |k| {
+            let first = k.checked_sub(1).map_or(0, |before| self.ends[before]);
+            (&self.states[k * size..(k + 1) * size], &self.solutions[first..self.ends[k]])
+        })
+    }
 }
 
 impl Trajectory {
@@ -57,16 +79,18 @@ impl Trajectory {
         let mut stepper = Stepper::new(plan, numbers, options.scheme);
         stepper.known.start();
         let mut before = stepper.begin(&options.initial);
+        let mut start = before.clone();
         let length = stretch(&before, weather.steps(), options, bytes);
         let (mut moves, mut starts, mut last) = (Vec::new(), Vec::new(), Stretch::default());
+        last.states.reserve(before.count() * length.min(weather.steps() + 1));
         let run = march_seen(stepper, &weather, options, watch, |stepper, reached, made| {
-            if last.states.len() == length {
-                starts.push(last.states.swap_remove(0));
+            if last.ends.len() == length {
+                starts.push(core::mem::replace(&mut start, before.clone()));
                 last = Stretch::default();
             }
             moves.push(made);
-            last.states.push(core::mem::replace(&mut before, reached.clone()));
-            last.solutions.push(stepper.known.solution(&reached.load));
+            last.push(&before, stepper, &reached.load);
+            before.copy_from(reached);
             Ok(())
         })?;
         Ok(Self { run, moves, starts, length, last })
@@ -110,7 +134,7 @@ impl Trajectory {
 /// Moves between two kept states: all of them where they fit into the bytes.
 fn stretch(state: &State<f64>, steps: usize, options: &Options, bytes: usize) -> usize {
     // A state and the solutions of its stages, which are never larger.
-    let each = state.numbers().count() * size_of::<f64>() * (1 + options.scheme.weights().len());
+    let each = state.count() * size_of::<f64>() * (1 + options.scheme.weights().len());
     let repeated = options.warmup.map_or(0, |warmup| warmup.steps * warmup.max_cycles);
     let all = repeated + 1 + steps;
     let fit = (bytes / each).max(1);
@@ -129,12 +153,12 @@ fn again(
 ) -> Result<Stretch, EngineError> {
     let mut stepper = Stepper::new(plan, numbers, options.scheme);
     stepper.known.start();
-    let (mut state, mut unused) = (start.clone(), Ledger::new());
+    let (mut before, mut state, mut unused) = (start.clone(), start.clone(), Ledger::new());
     let mut made = Stretch::default();
     for step in moves {
-        made.states.push(state.clone());
+        before.copy_from(&state);
         step.make(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
-        made.solutions.push(stepper.known.solution(&state.load));
+        made.push(&before, &stepper, &state.load);
     }
     Ok(made)
 }
@@ -148,14 +172,18 @@ struct Back<'a> {
     options: &'a Options,
     /// Weights on the records.
     records: &'a [f64],
-    /// Entries of the tape that stay.
+    /// Entries of the tape that stay, and the first of them that stands for a number of the state before a move.
     base: usize,
+    first: u32,
     /// Weights on the entries of the tape.
     weights: Vec<f64>,
     /// Weights on the state.
     state: Vec<f64>,
     /// The state before the step in hand, then after it.
     now: State<Taped>,
+    /// Its solution.
+    stages: Vec<Unknowns<f64>>,
+    load: Vec<f64>,
 }
 
 impl<'a> Back<'a> {
@@ -167,62 +195,69 @@ impl<'a> Back<'a> {
         records: &'a [f64],
     ) -> Self {
         let fresh = Stepper::new(plan, leaves, options.scheme);
-        let (stepper, base) = (fresh.clone(), Tape::len());
+        let (stepper, made) = (fresh.clone(), Tape::len());
         let now = stepper.begin(&options.initial);
-        let state = vec![0.0; now.numbers().count()];
-        Self { fresh, stepper, weather, options, records, base, weights: Vec::new(), state, now }
+        Tape::cut(made);
+        let state = vec![0.0; now.count()];
+        let first = Tape::reserve(state.len());
+        let plain = |unknowns: &Unknowns<Taped>| unknowns.plain();
+        Self {
+            stages: stepper.places().iter().map(plain).collect(),
+            load: vec![0.0; plan.zones.len()],
+            fresh,
+            stepper,
+            weather,
+            options,
+            records,
+            base: Tape::len(),
+            first,
+            weights: Vec::new(),
+            state,
+            now,
+        }
     }
 
     /// Goes back over a stretch.
     fn over(&mut self, moves: &[Move], stretch: &Stretch, watch: &Watch) -> Result<(), EngineError> {
-        let known = stretch.states.iter().zip(&stretch.solutions);
-        for (&made, (before, solution)) in moves.iter().zip(known).rev() {
+        for (&made, (before, solution)) in moves.iter().rev().zip(stretch.back()) {
             if watch.stop.load(core::sync::atomic::Ordering::Relaxed) {
                 return Err(EngineError::Interrupted);
             }
-            self.pass(made, before, solution.as_ref())?;
+            self.pass(made, before, solution)?;
         }
         Ok(())
     }
 
     /// Goes back over a move: its weights on the state before it take the place of those on the state after it.
-    fn pass(
-        &mut self,
-        made: Move,
-        before: &State<f64>,
-        solution: Option<&Solution>,
-    ) -> Result<(), EngineError> {
+    fn pass(&mut self, made: Move, before: &[f64], solution: &[f64]) -> Result<(), EngineError> {
         Tape::cut(self.base);
-        let first = Tape::reserve(self.state.len());
-        let (leaves, mut places) = (Tape::len(), first..);
-        let state = &mut self.now;
-        state.meet(before, |number, value| {
-            if let Some(place) = places.next() {
-                *number = Taped::new(value, place);
-            }
+        let (stepper, state) = (&mut self.stepper, &mut self.now);
+        let mut place = self.first;
+        state.read(before, |number, value| {
+            *number = Taped::new(value, place);
+            place += 1;
         });
-        self.stepper.forget();
-        made.follow(&mut self.stepper, state, self.weather, self.options.dt, solution)?;
-        let read = made.row(self.options).map(|row| {
-            let probes = &self.options.probes;
-            let records = probes.iter().map(|probe| probe.read(self.stepper.plan, &self.stepper, state));
-            (row * probes.len(), records.collect::<Vec<_>>())
-        });
+        let cells = stepper.changing_cells();
+        let known = read_solution(solution, cells, &mut self.stages, &mut self.load);
+        let solution = known.then_some(Solution { stages: &self.stages, load: &self.load });
+        stepper.forget();
+        made.follow(stepper, state, self.weather, self.options.dt, solution)?;
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
-        for (number, weight) in state.numbers().zip(&self.state) {
-            number.weigh(*weight, &mut self.weights);
-        }
-        if let Some((first, records)) = read {
-            for (record, weight) in records.iter().zip(&self.records[first..]) {
+        let weights = &mut self.weights;
+        state.beside(&self.state, |number, weight| number.weigh(weight, weights));
+        if let Some(row) = made.row(self.options) {
+            let probes = &self.options.probes;
+            for (probe, weight) in probes.iter().zip(&self.records[row * probes.len()..]) {
+                let record = probe.read(stepper.plan, stepper, state);
+                self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
                 record.weigh(*weight, &mut self.weights);
             }
         }
-        let stepper = &mut self.stepper;
-        Tape::pull(&mut self.weights, leaves, |stage, weights| stepper.pull_stage(stage, weights));
-        let passed = &mut self.weights[self.base..leaves];
+        Tape::pull(&mut self.weights, self.base, |stage, weights| stepper.pull_stage(stage, weights));
+        let passed = &mut self.weights[self.base - self.state.len()..self.base];
         self.state.copy_from_slice(passed);
         passed.fill(0.0);
-        if solution.is_none() {
+        if !known {
             // It has made factors that are about to be cut off.
             self.stepper = self.fresh.clone();
         }
@@ -234,9 +269,8 @@ impl<'a> Back<'a> {
         Tape::cut(self.base);
         let start = self.fresh.begin(&self.options.initial);
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
-        for (number, weight) in start.numbers().zip(&self.state) {
-            number.weigh(*weight, &mut self.weights);
-        }
+        let weights = &mut self.weights;
+        start.beside(&self.state, |number, weight| number.weigh(weight, weights));
         Tape::pull(&mut self.weights, leaves.len() + 1, |_, _| {});
         self.weights[1..=leaves.len()].to_vec()
     }

@@ -12,6 +12,9 @@ use crate::real::{Mask, Real};
 /// A temperature beyond all others, for what is not known [degC].
 const FAR: f64 = 1e100;
 
+/// How many numbers a memory has.
+pub(crate) const REMEMBERED: usize = 4;
+
 /// What a phase-change cell remembers between steps. Changes once per accepted step;
 /// both stages of a step read the memory as it stood at the step's start.
 #[derive(Debug, Clone, Copy)]
@@ -35,19 +38,19 @@ impl<S: Real> PcmMemory<S> {
         Self { liquid_fraction, temperature, marks: [S::zero(); 2] }
     }
 
-    /// All its numbers, in the order of [`Self::meet`].
-    pub(crate) fn numbers(&self) -> [S; 4] {
+    /// All its numbers.
+    pub(crate) fn numbers(&self) -> [S; REMEMBERED] {
         [self.liquid_fraction, self.temperature, self.marks[0], self.marks[1]]
     }
 
-    /// Changes each number by the one at its place in another memory.
+    /// Changes each number by one of others, in the order of [`Self::numbers`].
     #[inline(always)]
-    pub(crate) fn meet<T: Copy>(&mut self, other: &PcmMemory<T>, change: &mut impl FnMut(&mut S, T)) {
-        change(&mut self.liquid_fraction, other.liquid_fraction);
-        change(&mut self.temperature, other.temperature);
-        for (mine, &theirs) in self.marks.iter_mut().zip(&other.marks) {
-            change(mine, theirs);
-        }
+    pub(crate) fn read<T>(&mut self, numbers: [T; REMEMBERED], change: &mut impl FnMut(&mut S, T)) {
+        let [fraction, temperature, first, second] = numbers;
+        change(&mut self.liquid_fraction, fraction);
+        change(&mut self.temperature, temperature);
+        change(&mut self.marks[0], first);
+        change(&mut self.marks[1], second);
     }
 
     /// Takes over the lanes of another one where the mask is true.

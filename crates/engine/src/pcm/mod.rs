@@ -21,6 +21,7 @@ use hysteresis::Hysteresis;
 use table::Table;
 
 pub use curve::CUT;
+pub(crate) use hysteresis::REMEMBERED;
 pub use hysteresis::{PcmMemory, reversed};
 
 /// State of a phase-change material at one temperature, per unit volume of layer.

@@ -107,7 +107,7 @@ impl<S: Real> Stepper<'_, S> {
         weather: &Weather<'_>,
         step: usize,
         dt: f64,
-        solution: &Solution,
+        solution: Solution<'_>,
     ) {
         S::vectorised(
             #[inline(always)]
@@ -136,7 +136,7 @@ impl<S: Real> Stepper<'_, S> {
     }
 
     /// Brings the faces of a state into balance with the weather along the solution.
-    pub(crate) fn follow_balance(&mut self, state: &mut State<S>, now: &Instant<'_>, solution: &Solution) {
+    pub(crate) fn follow_balance(&mut self, state: &mut State<S>, now: &Instant<'_>, solution: Solution<'_>) {
         S::vectorised(
             #[inline(always)]
             || {
@@ -171,7 +171,7 @@ impl<S: Real> Stepper<'_, S> {
         state: &State<S>,
         weather: &Weather<'_>,
         (step, dt): (usize, f64),
-        solution: &Solution,
+        solution: Solution<'_>,
     ) {
         let diagonal = self.scheme.diagonal();
         let part = Part { step, from: 0.0, share: 1.0, halvings: 0 };
@@ -484,10 +484,10 @@ impl<S: Real> Stepper<'_, S> {
 
     /// Sets the loads of plants to those of the solution. False where none is asked for any.
     #[inline(always)]
-    fn ask_plants(&mut self, weather: &Weather<'_>, step: usize, solution: &Solution) -> bool {
+    fn ask_plants(&mut self, weather: &Weather<'_>, step: usize, solution: Solution<'_>) -> bool {
         let (last, all) = (self.scheme.weights().len() - 1, S::Mask::splat(true));
         self.plants.begin(&self.coefficients.zones, weather.row(step, last), &mut self.load, false);
-        for (load, &known) in self.load.iter_mut().zip(&solution.load) {
+        for (load, &known) in self.load.iter_mut().zip(solution.load) {
             *load = S::constant(known);
         }
         let reached = &solution.stages[last].air;

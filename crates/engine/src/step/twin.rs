@@ -4,7 +4,8 @@
 //! faces outside the zones counts per square metre, at faces and airs of zones whole; the equation of a face that is held
 //! at a temperature is that temperature.
 
-use crate::balance::{FaceLaws, Line, LocalBalance, LocalFaces};
+use crate::balance::{FaceLaws, Line, LocalFaces};
+use crate::coefficients::Boundary;
 use crate::plan::{FaceId, FaceRole};
 use crate::real::Real;
 
@@ -42,20 +43,24 @@ impl Stepper<'_, f64> {
     /// What of the heat that a wall sends into a face enters the equation of that face [-], in zones [m2].
     #[inline(always)]
     pub(super) fn takes(&self, face: FaceId) -> f64 {
-        match (self.plan.faces[face].role, self.local_balance(face)) {
-            (FaceRole::Zone { .. }, _) => self.coefficients.walls[face / 2].area,
-            (FaceRole::Local, LocalBalance::Fixed(_)) => 0.0,
-            (FaceRole::Local, LocalBalance::Gain(_)) => 1.0,
+        match self.plan.faces[face].role {
+            FaceRole::Zone { .. } => self.coefficients.walls[face / 2].area,
+            FaceRole::Local if self.held_at(face) => 0.0,
+            FaceRole::Local => 1.0,
         }
+    }
+
+    /// Whether a local face is held at a temperature.
+    #[inline(always)]
+    fn held_at(&self, face: FaceId) -> bool {
+        let numbers = &self.coefficients.faces[face];
+        numbers.film.is_none() && matches!(numbers.boundary, Boundary::Imposed(_))
     }
 
     /// How much a local face gives way, the other face of its wall held.
     #[inline(always)]
     fn yields(&self, face: FaceId) -> f64 {
-        match self.local_balance(face) {
-            LocalBalance::Fixed(_) => 1.0,
-            LocalBalance::Gain(_) => self.inverses[face / 2],
-        }
+        if self.held_at(face) { 1.0 } else { self.inverses[face / 2] }
     }
 
     /// The matrix of a wall that touches no zone, and one over its determinant.
