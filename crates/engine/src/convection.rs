@@ -199,6 +199,114 @@ impl<S: Real> Natural<S> {
     }
 }
 
+impl<S> Film<S> {
+    /// The same correlation with other numbers.
+    #[inline(always)]
+    pub(crate) fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> Film<T> {
+        let law = match &self.law {
+            Law::Constant(h) => Law::Constant(change(h)),
+            Law::LinearWind { constant, wind } => {
+                Law::LinearWind { constant: change(constant), wind: change(wind) }
+            }
+            Law::Blend { factor, open: [laminar, turbulent], stable } => Law::Blend {
+                factor: change(factor),
+                open: [change(laminar), change(turbulent)],
+                stable: stable.as_ref().map(&mut change),
+            },
+            Law::Tarp { natural: [open, still], forced } => {
+                Law::Tarp { natural: [change(open), change(still)], forced: change(forced) }
+            }
+            Law::Mowitt { factor, wind: [onto, away] } => {
+                Law::Mowitt { factor: change(factor), wind: [change(onto), change(away)] }
+            }
+            Law::Doe2 { natural: [open, still], roughness, wind: [onto, away] } => Law::Doe2 {
+                natural: [change(open), change(still)],
+                roughness: change(roughness),
+                wind: [change(onto), change(away)],
+            },
+            Law::Glass([open, still]) => Law::Glass([open.map(&mut change), still.map(&mut change)]),
+            Law::Power([up, down]) => Law::Power([up.map(&mut change), down.map(&mut change)]),
+        };
+        Film { law, upward: change(&self.upward) }
+    }
+
+    /// Whether another film follows the same correlation.
+    pub(crate) fn alike(&self, other: &Self) -> bool {
+        let stable = |film: &Self| matches!(film.law, Law::Blend { stable: Some(_), .. });
+        core::mem::discriminant(&self.law) == core::mem::discriminant(&other.law)
+            && stable(self) == stable(other)
+    }
+
+    /// [`Film::flux`] of a film whose numbers are still to be turned into those that it computes with.
+    #[inline(always)]
+    pub(crate) fn flux_of<V: Real>(&self, number: impl Fn(&S) -> V, d: V, forced: &Forced<V>) -> FilmFlux<V> {
+        // h = natural(d) + forced, or the root of the sum of their squares: q = h d, q' = h + d h'.
+        let square = d * d;
+        let rounded = square + V::constant(ROUND_OFF * ROUND_OFF);
+        let upward = &self.upward;
+        let Natural { coefficient, rise } = match &self.law {
+            Law::Constant(h) => Natural { coefficient: number(h), rise: V::zero() },
+            Law::LinearWind { .. } => Natural { coefficient: forced[0], rise: V::zero() },
+            Law::Tarp { natural: [open, still], .. } => {
+                let gain = V::select(unstable(d, number(upward)), number(open), number(still));
+                let natural = cube_root_law(gain, square, rounded);
+                Natural { coefficient: natural.coefficient + forced[0], rise: natural.rise }
+            }
+            Law::Mowitt { factor, .. } => mowitt(number(factor), forced[0], square, rounded),
+            Law::Doe2 { natural: [open, still], roughness, .. } => {
+                let gain = V::select(unstable(d, number(upward)), number(open), number(still));
+                doe2(cube_root_law(gain, square, rounded), number(roughness), forced[0])
+            }
+            Law::Blend { factor, open: [laminar, turbulent], stable } => {
+                let mut natural = blend(&[number(laminar), number(turbulent)], square, rounded);
+                if let Some(gain) = stable {
+                    let flat = V::constant(HORIZONTAL).lt(number(upward).abs());
+                    natural =
+                        on_plate(natural, flat & !unstable(d, number(upward)), number(gain), square, rounded);
+                }
+                let factor = number(factor);
+                Natural { coefficient: factor * natural.coefficient, rise: factor * natural.rise }
+            }
+            Law::Glass([open, still]) => {
+                let (unstable, open, still) =
+                    (unstable(d, number(upward)), open.map(&number), still.map(&number));
+                glass(
+                    #[inline(always)]
+                    |of| V::select(unstable, of(&open), of(&still)),
+                    square,
+                    rounded,
+                )
+            }
+            Law::Power([up, down]) => {
+                let upward = unstable(d, number(upward)) | number(upward).abs().lt(V::constant(1e-6));
+                let gain = V::select(upward, number(&up.gain), number(&down.gain));
+                let exponent = V::select(upward, number(&up.exponent), number(&down.exponent));
+                let natural = power_law(gain, exponent, square, rounded);
+                let forced = V::select(upward, forced[0], forced[1]);
+                Natural { coefficient: natural.coefficient + forced, rise: natural.rise }
+            }
+        };
+        FilmFlux { flux: coefficient * d, slope: coefficient + rise }
+    }
+}
+
+impl<S: Copy> Film<S> {
+    /// Films of one correlation, their numbers side by side.
+    pub(crate) fn together(films: &[&Self]) -> Film<Box<[S]>> {
+        let numbers = films.iter().map(|film| {
+            let mut numbers = Vec::new();
+            film.map(|&number| numbers.push(number));
+            numbers
+        });
+        let numbers: Vec<_> = numbers.collect();
+        let mut place = 0..;
+        films[0].map(|_| {
+            let place = place.next().unwrap_or(0);
+            numbers.iter().map(|film| film[place]).collect()
+        })
+    }
+}
+
 impl<S: Real> Film<S> {
     /// Reads the numbers of a correlation for a face.
     pub fn new(values: &Values<'_, S>, law: &Convection, face: &Exposure<S>) -> Self {
@@ -295,59 +403,12 @@ impl<S: Real> Film<S> {
     /// Heat flow at `d = T_face - T_air` [K].
     #[inline(always)]
     pub fn flux(&self, d: S, forced: &Forced<S>) -> FilmFlux<S> {
-        // h = natural(d) + forced, or the root of the sum of their squares: q = h d, q' = h + d h'.
-        let square = d * d;
-        let rounded = square + S::constant(ROUND_OFF * ROUND_OFF);
-        let Natural { coefficient, rise } = match &self.law {
-            Law::Constant(h) => Natural { coefficient: *h, rise: S::zero() },
-            Law::LinearWind { .. } => Natural { coefficient: forced[0], rise: S::zero() },
-            Law::Tarp { natural: [open, still], .. } => {
-                let gain = S::select(self.unstable(d), *open, *still);
-                let natural = cube_root_law(gain, square, rounded);
-                Natural { coefficient: natural.coefficient + forced[0], rise: natural.rise }
-            }
-            Law::Mowitt { factor, .. } => mowitt(*factor, forced[0], square, rounded),
-            Law::Doe2 { natural: [open, still], roughness, .. } => {
-                let gain = S::select(self.unstable(d), *open, *still);
-                doe2(cube_root_law(gain, square, rounded), *roughness, forced[0])
-            }
-            Law::Blend { factor, open, stable } => {
-                let mut natural = blend(open, square, rounded);
-                if let Some(gain) = stable {
-                    natural = self.on_plate(natural, *gain, d, rounded);
-                }
-                Natural { coefficient: *factor * natural.coefficient, rise: *factor * natural.rise }
-            }
-            Law::Glass([open, still]) => {
-                let unstable = self.unstable(d);
-                glass(|of| S::select(unstable, of(open), of(still)), square, rounded)
-            }
-            Law::Power([up, down]) => {
-                let upward = self.unstable(d) | self.upward.abs().lt(S::constant(1e-6));
-                let gain = S::select(upward, up.gain, down.gain);
-                let exponent = S::select(upward, up.exponent, down.exponent);
-                let natural = power_law(gain, exponent, square, rounded);
-                let forced = S::select(upward, forced[0], forced[1]);
-                Natural { coefficient: natural.coefficient + forced, rise: natural.rise }
-            }
-        };
-        FilmFlux { flux: coefficient * d, slope: coefficient + rise }
-    }
-
-    /// Where buoyancy drives the air off the face: warm and facing up, or cold and facing down. Heat flows up there.
-    #[inline(always)]
-    fn unstable(&self, d: S) -> S::Mask {
-        S::zero().lt(d * self.upward)
-    }
-
-    /// `gain |d|^1/5` where the air lies stably on a horizontal plate, else what is given.
-    #[inline(always)]
-    fn on_plate(&self, otherwise: Natural<S>, gain: S, d: S, rounded: S) -> Natural<S> {
-        let stable = S::constant(HORIZONTAL).lt(self.upward.abs()) & !self.unstable(d);
-        if !stable.any() {
-            return otherwise;
-        }
-        otherwise.or(stable, power_law(gain, S::constant(0.2), d * d, rounded))
+        self.flux_of(
+            #[inline(always)]
+            |number| *number,
+            d,
+            forced,
+        )
     }
 }
 
@@ -390,6 +451,34 @@ const ROOM_AIR: [f64; 2] = [0.025_621, 1.820_5e-5];
 const ROOM: f64 = 293.15;
 /// [m/s2].
 const GRAVITY: f64 = 9.806_65;
+
+impl<S> Glass<S> {
+    #[inline(always)]
+    fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> Glass<T> {
+        let Self { laminar, level, turbulent, offset, limit } = self;
+        Glass {
+            laminar: change(laminar),
+            level: change(level),
+            turbulent: change(turbulent),
+            offset: change(offset),
+            limit: change(limit),
+        }
+    }
+}
+
+impl<S> Power<S> {
+    #[inline(always)]
+    fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> Power<T> {
+        let Self { constant, gain, exponent, wind, wind_exponent } = self;
+        Power {
+            constant: change(constant),
+            gain: change(gain),
+            exponent: change(exponent),
+            wind: change(wind),
+            wind_exponent: change(wind_exponent),
+        }
+    }
+}
 
 impl<S: Real> Glass<S> {
     /// ISO 15099, 8.3.2.2, by the angle g from the horizontal, counted from where heat flows up: Nusselt number
@@ -515,6 +604,21 @@ fn blend<S: Real>([laminar, turbulent]: &[S; 2], square: S, rounded: S) -> Natur
     let share = square / rounded;
     let slope = (laminar.scale(0.25) + turbulent.scale(1.0 / 3.0)) * (inverse * inverse * inverse);
     Natural { coefficient, rise: coefficient * share * slope }
+}
+
+/// Where buoyancy drives the air off the face: warm and facing up, or cold and facing down. Heat flows up there.
+#[inline(always)]
+fn unstable<S: Real>(d: S, upward: S) -> S::Mask {
+    S::zero().lt(d * upward)
+}
+
+/// `gain |d|^1/5` where the air lies stably on a horizontal plate, else what is given.
+#[inline(always)]
+fn on_plate<S: Real>(otherwise: Natural<S>, stable: S::Mask, gain: S, square: S, rounded: S) -> Natural<S> {
+    if !stable.any() {
+        return otherwise;
+    }
+    otherwise.or(stable, power_law(gain, S::constant(0.2), square, rounded))
 }
 
 /// `gain |d|^exponent`.

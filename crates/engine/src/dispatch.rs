@@ -7,7 +7,7 @@
 #![allow(unsafe_code, reason = "vector instructions are unsafe to call where the machine may not have them")]
 
 use crate::error::EngineError;
-use crate::real::Lanes;
+use crate::real::{Abreast, Lanes, Real, Task};
 
 /// Members in one pack.
 pub const WIDTH: usize = 8;
@@ -17,7 +17,7 @@ pub trait Packed {
     /// What it leaves behind.
     type Output;
     /// Does the work with one kind.
-    fn run<S: crate::real::Real>(self, pack: fn([f64; WIDTH]) -> S) -> Self::Output;
+    fn run<S: Real>(self, pack: fn([f64; WIDTH]) -> S) -> Self::Output;
 }
 
 /// What lanes are made of.
@@ -98,6 +98,88 @@ pub(crate) fn widened<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
+/// Does a task on plain numbers in the widest registers of the machine.
+#[inline(always)]
+pub(crate) fn abreast<T: Task<f64>>(task: T) -> T::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if avx512::available() {
+            return avx512::Eight::vectorised(
+                #[inline(always)]
+                || task.run::<avx512::Eight>(),
+            );
+        }
+        if avx2::available() {
+            return avx2::Eight::vectorised(
+                #[inline(always)]
+                || task.run::<avx2::Eight>(),
+            );
+        }
+    }
+    task.run::<Lanes<WIDTH>>()
+}
+
+/// One in one place, zero in all others.
+static ALONE: [[f64; WIDTH]; WIDTH] = {
+    let mut rows = [[0.0; WIDTH]; WIDTH];
+    let mut place = 0;
+    while place < WIDTH {
+        rows[place][place] = 1.0;
+        place += 1;
+    }
+    rows
+};
+
+/// Plain numbers side by side in lanes of some kind.
+macro_rules! side_by_side {
+    ($kind:ty, |$numbers:ident| $make:expr, |$value:ident| $take:expr) => {
+        impl Abreast<f64> for $kind {
+            #[inline(always)]
+            fn load(numbers: &[f64]) -> Self {
+                let mut $numbers = [0.0; WIDTH];
+                $numbers.copy_from_slice(&numbers[..WIDTH]);
+                $make
+            }
+            #[inline(always)]
+            fn store(self, numbers: &mut [f64]) {
+                let $value = self;
+                numbers[..WIDTH].copy_from_slice(&$take);
+            }
+            #[inline(always)]
+            fn everywhere(number: f64) -> Self {
+                Self::constant(number)
+            }
+            #[inline(always)]
+            fn alone(number: f64, place: usize) -> Self {
+                Self::load(&ALONE[place]) * Self::constant(number)
+            }
+            #[inline(always)]
+            fn spread(self, place: usize) -> Self {
+                Self::constant(self.lane(place))
+            }
+            #[inline(always)]
+            fn first(self) -> f64 {
+                self.lane(0)
+            }
+            #[inline(always)]
+            fn pick(numbers: &[f64], places: &[usize]) -> Self {
+                let places = &places[..WIDTH];
+                let $numbers = core::array::from_fn(
+                    #[inline(always)]
+                    |i| numbers[places[i]],
+                );
+                $make
+            }
+        }
+    };
+}
+
+side_by_side!(Lanes<WIDTH>, |numbers| Self(numbers), |value| value.0);
+#[cfg(target_arch = "x86_64")]
+side_by_side!(avx512::Eight, |numbers| Self::of(numbers), |value| value.numbers());
+#[cfg(target_arch = "x86_64")]
+side_by_side!(avx2::Eight, |numbers| Self::of(numbers), |value| value.numbers());
+
 /// Does the work with the lanes that every machine has.
 pub fn run_plain<W: Packed>(work: W) -> W::Output {
     work.run(Lanes)
@@ -128,11 +210,16 @@ macro_rules! eight {
             /// Packs numbers. Only for machines that pass `available`.
             pub fn new(numbers: [f64; WIDTH]) -> Self {
                 assert!(available(), "this machine has no such vector instructions");
+                Self::of(numbers)
+            }
+            /// The same, for code that one of them has reached.
+            #[inline(always)]
+            pub(super) fn of(numbers: [f64; WIDTH]) -> Self {
                 // SAFETY: a vector is eight numbers in memory.
                 Self(unsafe { core::mem::transmute::<[f64; WIDTH], Vector>(numbers) })
             }
             #[inline(always)]
-            fn numbers(self) -> [f64; WIDTH] {
+            pub(super) fn numbers(self) -> [f64; WIDTH] {
                 // SAFETY: a vector is eight numbers in memory.
                 unsafe { core::mem::transmute::<Vector, [f64; WIDTH]>(self.0) }
             }
@@ -230,6 +317,7 @@ macro_rules! eight {
             type Residual = ();
             const LANES: usize = WIDTH;
             const DERIVATIVES: bool = false;
+            const REGISTERS: bool = true;
 
             #[inline(always)]
             fn vectorised<R>(work: impl FnOnce() -> R) -> R {

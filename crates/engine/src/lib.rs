@@ -35,6 +35,7 @@ pub mod radiation;
 pub mod real;
 pub mod residual;
 pub(crate) mod room_block;
+mod rooms;
 mod slabs;
 pub mod solar;
 pub mod state;

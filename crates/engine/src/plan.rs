@@ -33,10 +33,13 @@ pub struct Plan {
     pub daylight: Daylight,
     /// Number of finite volumes in all walls.
     pub n_cells: usize,
-    /// The room block: for each zone face and zone air, in the order of elimination, the later ones that it meets, as
-    /// runs of neighbouring rows.
+    /// Number of the first rows of the room block: faces of walls of constant properties whose other face is in no zone,
+    /// zone by zone.
+    pub own_rows: usize,
+    /// For each zone face and zone air that comes after them, in the order of elimination, the later ones that it meets,
+    /// as runs of neighbours, all counted from the first of them.
     pub reach: Vec<Vec<Range<usize>>>,
-    /// Number of its first unknowns: the faces of walls of constant properties.
+    /// Number of the first of these: the other faces of walls of constant properties.
     pub constant_rows: usize,
 }
 
@@ -111,7 +114,8 @@ impl Plan {
             walls.push(wall);
         }
         let (mut faces, mut zones) = name_unknowns(&description);
-        let (reach, constant_rows) = order_unknowns(&description, &walls, &mut faces, &mut zones);
+        let Order { own_rows, reach, constant_rows } =
+            order_unknowns(&description, &walls, &mut faces, &mut zones);
         let conditioned = |zone: &crate::description::Zone| zone.heating.is_some() || zone.cooling.is_some();
         let plants = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();
         let windows: Vec<usize> = (0..walls.len()).filter(|&w| walls[w].glass.is_some()).collect();
@@ -130,6 +134,7 @@ impl Plan {
             windows,
             daylight,
             n_cells: first_cell,
+            own_rows,
             reach,
             constant_rows,
         })
@@ -154,6 +159,12 @@ impl Plan {
             FaceRole::Zone { row, .. } => row,
             FaceRole::Local => unreachable!("face {face} is in no zone"),
         }
+    }
+
+    /// Number of rows of the room block.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.own_rows + self.reach.len()
     }
 
     /// Number of channels that the forcing must have.
@@ -255,29 +266,45 @@ fn name_unknowns(description: &Description) -> (Vec<FacePlan>, Vec<ZonePlan>) {
     (faces, zones)
 }
 
-/// Renumbers the unknowns of the room block in an order of elimination that keeps it sparse, always the one with the
+/// The order of elimination, see [`Plan`].
+struct Order {
+    own_rows: usize,
+    reach: Vec<Vec<Range<usize>>>,
+    constant_rows: usize,
+}
+
+/// Renumbers the unknowns of the room block: zone by zone the faces that only their zone and the other face of a wall of
+/// constant properties see; then the others in an order of elimination that keeps them sparse, always the one with the
 /// fewest neighbours next (minimum degree), but faces of walls of constant properties first: they need not be eliminated
-/// again where only the others change. Faces of different zones meet only through the walls between them. Returns the
-/// later ones that each meets, and the number of the former.
+/// again where only the others change. Faces of different zones meet only through the walls between them.
 fn order_unknowns(
     description: &Description,
     walls: &[WallPlan],
     faces: &mut [FacePlan],
     zones: &mut [ZonePlan],
-) -> (Vec<Vec<Range<usize>>>, usize) {
+) -> Order {
     let mut meets = neighbours(description, faces, zones);
     let n = meets.len();
-    let mut changing = vec![true; n];
-    for face in faces.iter() {
-        if let FaceRole::Zone { row, .. } = face.role {
-            changing[row] = walls[face.surface].nonlinear;
+    // Rank of an unknown, and the zone of those that come first.
+    let mut rank = vec![(2, 0); n];
+    for pair in faces.chunks_exact(2) {
+        let shared = pair.iter().all(|face| matches!(face.role, FaceRole::Zone { .. }));
+        for face in pair {
+            if let FaceRole::Zone { zone, row } = face.role
+                && !walls[face.surface].nonlinear
+            {
+                rank[row] = if shared { (1, 0) } else { (0, zone) };
+            }
         }
     }
+    let ranked = |wanted: usize| rank.iter().filter(|(rank, _)| *rank == wanted).count();
+    let (own_rows, constant_rows) = (ranked(0), ranked(1));
     let mut position = vec![usize::MAX; n];
     let mut reach = Vec::with_capacity(n);
     for next in 0..n {
         let waiting = (0..n).filter(|&k| position[k] == usize::MAX);
-        let Some(chosen) = waiting.min_by_key(|&k| (changing[k], meets[k].len())) else { break };
+        let degree = |k: usize| if rank[k].0 == 0 { 0 } else { meets[k].len() };
+        let Some(chosen) = waiting.min_by_key(|&k| (rank[k], degree(k))) else { break };
         position[chosen] = next;
         let met = core::mem::take(&mut meets[chosen]);
         // Elimination makes all that it meets meet each other.
@@ -296,8 +323,9 @@ fn order_unknowns(
         zone.air_row = position[zone.air_row];
         zone.face_rows = zone.face_rows.iter().map(|&row| position[row]).collect();
     }
-    let reach = reach.into_iter().map(|met| runs(met.into_iter().map(|k| position[k]).collect())).collect();
-    (reach, changing.iter().filter(|&&changing| !changing).count())
+    let later = reach.into_iter().skip(own_rows);
+    let reach = later.map(|met| runs(met.into_iter().map(|k| position[k] - own_rows).collect())).collect();
+    Order { own_rows, reach, constant_rows }
 }
 
 /// Numbers gathered into runs of neighbours.

@@ -81,6 +81,16 @@ pub trait Real:
     type Residual: Residual<Self>;
     /// True when the number carries derivatives (Newton then adds one iteration, so that they converge too).
     const DERIVATIVES: bool;
+    /// How many of them that stand side by side in memory are computed with together, see [`Abreast`].
+    const SIDE: usize = 1;
+    /// Whether it lies in a register or two, so that a row of numbers may stay there.
+    const REGISTERS: bool = false;
+
+    /// Does a task with as many numbers at once as the machine has room for.
+    #[inline(always)]
+    fn abreast<T: Task<Self>>(task: T) -> T::Output {
+        task.run::<Self>()
+    }
 
     /// The same constant in every lane.
     fn constant(value: f64) -> Self;
@@ -198,6 +208,65 @@ pub trait Real:
 /// Whether two numbers have the same bits in all lanes; of slopes nothing is known.
 pub(crate) fn same<S: Real>(a: S, b: S) -> bool {
     !S::DERIVATIVES && (0..S::LANES).all(|lane| a.lane(lane).to_bits() == b.lane(lane).to_bits())
+}
+
+/// [`Real::SIDE`] numbers that stand side by side in memory, computed with together: of a plain number as many as fit a
+/// register, of all others one. Each gets the bits that it would get alone.
+pub trait Abreast<S: Real>: Real {
+    /// The first numbers of a slice.
+    fn load(numbers: &[S]) -> Self;
+    /// To the first places of a slice.
+    fn store(self, numbers: &mut [S]);
+    /// The same number in all places.
+    fn everywhere(number: S) -> Self;
+    /// A number in one place and zero in all others.
+    fn alone(number: S, place: usize) -> Self;
+    /// What stands in one place, in all of them.
+    #[must_use]
+    fn spread(self, place: usize) -> Self;
+    /// What stands in the first place.
+    fn first(self) -> S;
+    /// Numbers by their places in a slice.
+    fn pick(numbers: &[S], places: &[usize]) -> Self;
+}
+
+impl<S: Real> Abreast<S> for S {
+    #[inline(always)]
+    fn load(numbers: &[S]) -> Self {
+        numbers[0]
+    }
+    #[inline(always)]
+    fn store(self, numbers: &mut [S]) {
+        numbers[0] = self;
+    }
+    #[inline(always)]
+    fn everywhere(number: S) -> Self {
+        number
+    }
+    #[inline(always)]
+    fn alone(number: S, _place: usize) -> Self {
+        number
+    }
+    #[inline(always)]
+    fn spread(self, _place: usize) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn first(self) -> S {
+        self
+    }
+    #[inline(always)]
+    fn pick(numbers: &[S], places: &[usize]) -> Self {
+        numbers[places[0]]
+    }
+}
+
+/// Work on numbers side by side.
+pub trait Task<S: Real> {
+    /// What it leaves behind.
+    type Output;
+    /// Does the work with registers of one kind.
+    fn run<V: Abreast<S>>(self) -> Self::Output;
 }
 
 // ---------------------------------------------------------------- elementary functions
@@ -385,6 +454,13 @@ impl Real for f64 {
     type Residual = ();
     const LANES: usize = 1;
     const DERIVATIVES: bool = false;
+    const SIDE: usize = crate::dispatch::WIDTH;
+    const REGISTERS: bool = true;
+
+    #[inline(always)]
+    fn abreast<T: Task<Self>>(task: T) -> T::Output {
+        crate::dispatch::abreast(task)
+    }
 
     #[inline(always)]
     fn constant(value: f64) -> Self {
@@ -553,15 +629,18 @@ impl<const N: usize> Real for Lanes<N> {
     fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }
-    #[inline(always)]
+    // Not inlined, for the compiler's sake.
+    #[inline(never)]
     fn exp(self) -> Self {
         exp(self)
     }
-    #[inline(always)]
+    // Not inlined, for the compiler's sake.
+    #[inline(never)]
     fn ln(self) -> Self {
         ln(self)
     }
-    #[inline(always)]
+    // Not inlined, for the compiler's sake.
+    #[inline(never)]
     fn inverse_cbrt(self) -> Self {
         inverse_cbrt(self)
     }

@@ -1,4 +1,4 @@
-//! The linear system of zone faces and airs, which the walls are eliminated onto.
+//! The linear system of airs and of the faces that zones share, which walls and zones are eliminated onto.
 
 use core::ops::Range;
 
@@ -12,9 +12,12 @@ use crate::real::Real;
 pub(crate) struct RoomBlock<'a, S> {
     /// For each row the later ones that it meets, see [`Plan::reach`](crate::plan::Plan::reach).
     reach: &'a [Vec<Range<usize>>],
+    /// Number of rows before all of them, see [`Plan::own_rows`](crate::plan::Plan::own_rows).
+    before: usize,
     /// Number of the first unknowns, see [`Plan::constant_rows`](crate::plan::Plan::constant_rows).
     first: usize,
     matrix: Vec<S>,
+    /// Right-hand sides, then the solution, of all rows.
     pub(crate) right: Vec<S>,
     /// What eliminating the first unknowns leaves of the others' matrix, and all right-hand sides.
     kept: Vec<S>,
@@ -22,10 +25,11 @@ pub(crate) struct RoomBlock<'a, S> {
 }
 
 impl<'a, S: Real> RoomBlock<'a, S> {
-    pub(crate) fn new(reach: &'a [Vec<Range<usize>>], first: usize) -> Self {
+    pub(crate) fn new(reach: &'a [Vec<Range<usize>>], before: usize, first: usize) -> Self {
         let size = reach.len();
         let (all, line) = (vec![S::zero(); size * size], vec![S::zero(); size]);
-        Self { reach, first, kept: all.clone(), matrix: all, kept_right: line.clone(), right: line }
+        let right = vec![S::zero(); before + size];
+        Self { reach, before, first, kept: all.clone(), matrix: all, kept_right: line, right }
     }
 
     #[inline(always)]
@@ -35,18 +39,12 @@ impl<'a, S: Real> RoomBlock<'a, S> {
 
     #[inline(always)]
     pub(crate) fn clear_right(&mut self) {
-        self.right.fill(S::zero());
-    }
-
-    #[inline(always)]
-    pub(crate) fn row(&mut self, row: usize) -> &mut [S] {
-        let n = self.reach.len();
-        &mut self.matrix[row * n..(row + 1) * n]
+        self.right[self.before..].fill(S::zero());
     }
 
     #[inline(always)]
     pub(crate) fn add(&mut self, row: usize, column: usize, value: S) {
-        self.matrix[row * self.reach.len() + column] += value;
+        self.matrix[(row - self.before) * self.reach.len() + column - self.before] += value;
     }
 
     /// A conductance between two unknowns.
@@ -69,8 +67,8 @@ impl<'a, S: Real> RoomBlock<'a, S> {
     /// Eliminates them from the right-hand side.
     #[inline(always)]
     pub(crate) fn keep_right(&mut self) {
-        forward(self.reach, &self.matrix, &mut self.right, 0..self.first);
-        self.kept_right.copy_from_slice(&self.right);
+        forward(self.reach, &self.matrix, &mut self.right[self.before..], 0..self.first);
+        self.kept_right.copy_from_slice(&self.right[self.before..]);
     }
 
     /// Goes back to where the first unknowns have been eliminated and nothing else has been entered.
@@ -78,7 +76,7 @@ impl<'a, S: Real> RoomBlock<'a, S> {
     pub(crate) fn begin(&mut self) {
         let start = self.first * self.reach.len();
         self.matrix[start..].copy_from_slice(&self.kept[start..]);
-        self.right.copy_from_slice(&self.kept_right);
+        self.right[self.before..].copy_from_slice(&self.kept_right);
     }
 
     /// Solves for the other unknowns; they replace their right-hand sides.
@@ -86,20 +84,21 @@ impl<'a, S: Real> RoomBlock<'a, S> {
     pub(crate) fn solve_rest(&mut self) {
         let rest = self.first..self.reach.len();
         self.eliminate(rest.clone());
-        forward(self.reach, &self.matrix, &mut self.right, rest.clone());
-        back(self.reach, &self.matrix, &mut self.right, rest);
+        let right = &mut self.right[self.before..];
+        forward(self.reach, &self.matrix, right, rest.clone());
+        back(self.reach, &self.matrix, right, rest);
     }
 
     /// Solves for the first unknowns, once the others are known.
     #[inline(always)]
     pub(crate) fn solve_first(&mut self) {
-        back(self.reach, &self.matrix, &mut self.right, 0..self.first);
+        back(self.reach, &self.matrix, &mut self.right[self.before..], 0..self.first);
     }
 
     /// The solution for another right-hand side, with the factors in hand.
     #[inline(always)]
     pub(crate) fn solve_again(&self, right: &mut [S]) {
-        let all = 0..self.reach.len();
+        let (right, all) = (&mut right[self.before..], 0..self.reach.len());
         forward(self.reach, &self.matrix, right, all.clone());
         back(self.reach, &self.matrix, right, all);
     }
@@ -133,7 +132,7 @@ impl RoomBlock<'_, f64> {
     /// The solution for right-hand sides of another kind of number, with the factors in hand.
     #[inline(always)]
     pub(crate) fn solve_beside<R: Real>(&self, right: &mut [R]) {
-        let n = self.reach.len();
+        let (right, n) = (&mut right[self.before..], self.reach.len());
         for k in 0..n {
             let known = right[k].scale(self.matrix[k * n + k]);
             for row in self.reach[k].iter().cloned().flatten() {
@@ -153,7 +152,7 @@ impl RoomBlock<'_, f64> {
     /// The solution of the transposed system, with the factors in hand.
     #[inline(always)]
     pub(crate) fn solve_transposed(&self, right: &mut [f64]) {
-        let n = self.reach.len();
+        let (right, n) = (&mut right[self.before..], self.reach.len());
         for k in 0..n {
             let line = &self.matrix[k * n..(k + 1) * n];
             let weight = right[k] * line[k];
@@ -212,7 +211,7 @@ mod tests {
     #[test]
     fn the_rest_is_solved_again() {
         let reach = vec![vec![1..2, 3..4], vec![2..5], vec![3..5], vec![4..5], vec![]];
-        let mut block: RoomBlock<'_, f64> = RoomBlock::new(&reach, 3);
+        let mut block: RoomBlock<'_, f64> = RoomBlock::new(&reach, 0, 3);
         let couples = [(0, 1, 2.0), (0, 3, 1.0), (1, 2, 0.5), (1, 4, 3.0), (2, 4, 1.5)];
         let held = [1.0, 0.5, 2.0, 0.0, 0.1];
         let enter = |block: &mut RoomBlock<'_, f64>| {
@@ -237,12 +236,13 @@ mod tests {
             block.solve_first();
             let found = block.right.clone();
             // Residual of the whole system, entered anew.
-            let mut whole: RoomBlock<'_, f64> = RoomBlock::new(&reach, 3);
+            let mut whole: RoomBlock<'_, f64> = RoomBlock::new(&reach, 0, 3);
             enter(&mut whole);
             whole.couple(3, 4, last);
             whole.right[4] += 7.0;
             for row in 0..5 {
-                let sum: f64 = whole.row(row).iter().zip(&found).map(|(a, x)| a * x).sum();
+                let sum: f64 =
+                    whole.matrix[5 * row..5 * (row + 1)].iter().zip(&found).map(|(a, x)| a * x).sum();
                 assert!((sum - whole.right[row]).abs() < 1e-12, "row {row} at {last}");
             }
             let mut again = whole.right.clone();
@@ -268,7 +268,7 @@ mod tests {
         let reach: Vec<Vec<Range<usize>>> =
             (0..N).map(|k| Vec::from_iter((k + 1 < N).then_some(k + 1..N))).collect();
         for first in [0, 3, N] {
-            let mut block: RoomBlock<'_, f64> = RoomBlock::new(&reach, first);
+            let mut block: RoomBlock<'_, f64> = RoomBlock::new(&reach, 0, first);
             block.clear_matrix();
             block.clear_right();
             let mut whole = [[0.0; N]; N];

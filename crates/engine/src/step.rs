@@ -26,6 +26,7 @@ use crate::plant::{Plants, Response};
 use crate::radiation::{Emission, black_temperature};
 use crate::real::{Mask, Real};
 use crate::room_block::RoomBlock;
+use crate::rooms::{Front, Rooms, of_one_room};
 use crate::slabs::Slabs;
 use crate::state::{Initial, State, Unknowns, blend, copy_runs, line, squared_distance};
 use crate::zone;
@@ -131,6 +132,7 @@ pub struct Stepper<'a, S: Real> {
     /// How much they give way to heat [m2 K/W].
     inverses: Vec<S>,
     block: RoomBlock<'a, S>,
+    rooms: Rooms<S>,
     iterate: Unknowns<S>,
     solved: Unknowns<S>,
     /// Start of the step before, from which the next is guessed.
@@ -208,6 +210,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn with(plan: &'a Plan, coefficients: Coefficients<S>, numbers: &'a [S], scheme: Scheme) -> Self {
         let chains: Vec<_> = coefficients.walls.iter().map(Chain::new).collect();
         let (changing, laws) = Changing::sort(plan, &coefficients);
+        let rooms = Rooms::new(plan, &coefficients, &laws);
         let foresight = coefficients
             .walls
             .iter()
@@ -244,14 +247,15 @@ impl<'a, S: Real> Stepper<'a, S> {
             other_drive: drive.clone(),
             drive,
             load: zeros(plan.zones.len()),
-            plants: Plants::new(&plan.plants, &unknowns, plan.reach.len(), scheme.weights().len()),
+            plants: Plants::new(&plan.plants, &unknowns, plan.rows(), scheme.weights().len()),
             sun: means,
             gap_convection,
             stage: 0,
             sources: vec![[S::zero(); 2]; plan.walls.len()],
             locals: vec![LocalFaces::None; plan.walls.len()],
             inverses: zeros(plan.walls.len()),
-            block: RoomBlock::new(&plan.reach, plan.constant_rows),
+            block: RoomBlock::new(&plan.reach, plan.own_rows, plan.constant_rows),
+            rooms,
             iterate: unknowns.clone(),
             solved: unknowns,
             previous: None,
@@ -592,7 +596,9 @@ impl<'a, S: Real> Stepper<'a, S> {
             for (response, &zone) in self.plants.responses.iter_mut().zip(&self.plan.plants) {
                 response.right.fill(S::zero());
                 response.right[self.plan.zones[zone].air_row] = S::one();
+                self.rooms.forward(&mut response.right);
                 self.block.solve_again(&mut response.right);
+                self.rooms.back(&mut response.right);
                 let last = response.stages.len() - 1;
                 for (air, plan) in response.stages[last].air.iter_mut().zip(&self.plan.zones) {
                     *air = response.right[plan.air_row];
@@ -641,7 +647,9 @@ impl<'a, S: Real> Stepper<'a, S> {
             } else {
                 response.known.fill(S::zero());
             }
+            self.rooms.forward(&mut response.right);
             self.block.solve_again(&mut response.right);
+            self.rooms.back(&mut response.right);
             self.spread(response, stage);
         }
         self.plants.responses = responses;
@@ -910,7 +918,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn solve_once(&mut self, state: &State<S>, length: f64) -> S::Mask {
         self.effort.iterations += 1;
         self.linearise_walls(state, None);
-        self.linearise_faces();
+        self.linearise_faces(false);
         self.solve_linear(length);
         self.finish_stage()
     }
@@ -935,7 +943,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         for iteration in 0..MAX_ITERATIONS {
             self.effort.iterations += 1;
             self.linearise_walls(state, None);
-            self.linearise_faces();
+            self.linearise_faces(false);
             self.solve_linear(length);
             let change = self.distance(&self.iterate);
             active = active & !self.settled(change, before);
@@ -993,7 +1001,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             for _ in 0..MAX_ITERATIONS {
                 self.effort.iterations += 1;
                 self.linearise_walls(&state, Some(&outer.cells));
-                self.linearise_faces();
+                self.linearise_faces(false);
                 self.solve_linear(length);
                 let settled = self.distance(&self.iterate).lt(enough);
                 self.iterate.copy_from(&self.solved);
@@ -1042,16 +1050,17 @@ impl<'a, S: Real> Stepper<'a, S> {
         } else {
             self.slabs.second_sources(&mut self.sources);
         }
-        self.blow();
+        self.rooms.begin(&self.drive, &self.sources);
+        self.blow(false);
         if !self.changing.curved {
-            self.enter_constant(new);
+            self.enter_constant(new, true);
         }
     }
 
-    /// What the wind makes of films that depend on nothing else.
+    /// What the wind makes of films that depend on nothing else; those in rooms see to it, unless asked.
     #[inline(always)]
-    fn blow(&mut self) {
-        for &face in &self.changing.windy {
+    fn blow(&mut self, all: bool) {
+        for &face in &self.changing.bends(all).windy {
             let numbers = &self.coefficients.faces[face];
             self.laws[face].film.slope = self.drive.faces[face].forced[0] * numbers.area_factor;
         }
@@ -1070,6 +1079,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.chains[w].pace(&self.coefficients.walls[w], length);
             }
             self.slabs.factor(&self.chains);
+            self.rooms.respond(&self.responses);
             self.factored = length;
         }
         new
@@ -1134,10 +1144,11 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Linearises what depends on the temperatures of faces and airs.
+    /// Linearises what depends on the temperatures of faces and airs; faces in rooms only on demand.
     #[inline(always)]
-    fn linearise_faces(&mut self) {
-        for &index in &self.changing.bent {
+    fn linearise_faces(&mut self, all: bool) {
+        let bends = self.changing.bends(all);
+        for &index in &bends.bent {
             let (face, at) = (&self.coefficients.faces[index], &self.drive.faces[index]);
             let air = match self.plan.faces[index].role {
                 FaceRole::Zone { zone, .. } => self.iterate.air[zone],
@@ -1150,7 +1161,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.laws[index].film = Line::tangent(flux, slope, difference);
             }
         }
-        for &index in &self.changing.radiant {
+        for &index in &bends.radiant {
             let temperature = self.iterate.faces[index];
             let (value, slope) = Emission::Exact.at(temperature);
             self.laws[index].emission = Line::tangent(value, slope, temperature);
@@ -1167,7 +1178,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn solve_linear(&mut self, length: f64) {
         if self.changing.curved {
-            self.enter_constant(true);
+            self.enter_constant(true, true);
         }
         self.enter_changing(length);
         self.block.solve_rest();
@@ -1204,20 +1215,20 @@ impl<'a, S: Real> Stepper<'a, S> {
     }
 
     /// Enters the walls of constant properties, and films and radiation in zones, and eliminates the faces of the former;
-    /// without `matrix` only the right-hand sides.
+    /// without `matrix` only the right-hand sides; `bend`: along the tangents at the iterate, else as laws stand.
     #[inline(always)]
-    fn enter_constant(&mut self, matrix: bool) {
+    fn enter_constant(&mut self, matrix: bool, bend: bool) {
         self.block.clear_right();
         if matrix {
             self.block.clear_matrix();
         }
-        for i in 0..self.changing.constant.len() {
-            let w = self.changing.constant[i];
+        for i in 0..self.changing.shared.len() {
+            let w = self.changing.shared[i];
             self.locals[w] = self.eliminate_wall(w, matrix);
         }
-        for zone in 0..self.plan.zones.len() {
-            self.enter_faces(zone, matrix);
-        }
+        let front = if matrix { Front::Whole } else { Front::Right };
+        let iterate = bend.then_some(&self.iterate);
+        self.rooms.eliminate(iterate, front, self.changing.stays(), &mut self.block);
         if matrix {
             self.block.keep_matrix();
         }
@@ -1228,7 +1239,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     fn resolve_constant(&mut self) {
         self.block.solve_first();
-        for &w in &self.changing.constant {
+        self.rooms.resolve(self.changing.stays(), &mut self.block.right, &mut self.solved.faces);
+        for &w in &self.changing.shared {
             let faces = self.resolve_faces(w, self.locals[w]);
             self.solved.faces[2 * w..2 * w + 2].copy_from_slice(&faces);
         }
@@ -1302,48 +1314,6 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Convection and exchange between the faces of a zone; without `matrix` only right-hand sides.
-    #[inline(always)]
-    fn enter_faces(&mut self, zone: usize, matrix: bool) {
-        let plan = &self.plan.zones[zone];
-        let numbers = &self.coefficients.zones[zone];
-        let (air, n) = (plan.air_row, plan.faces.len());
-        for (i, (&index, &row)) in plan.faces.iter().zip(&plan.face_rows).enumerate() {
-            let (laws, area) = (self.laws[index], numbers.areas[i]);
-            let offset = area * laws.film.offset;
-            self.block.right[air] += offset;
-            let mut arriving = area * self.drive.faces[index].solar - offset;
-            if matrix {
-                self.block.couple(row, air, area * laws.film.slope);
-            }
-            if !numbers.exchange.is_empty() {
-                let exchange = &numbers.exchange[i * n..(i + 1) * n];
-                let sum = numbers.exchange_sums[i];
-                // The row of a face exchanges nothing with itself.
-                let others = plan.faces.iter().zip(&plan.face_rows).zip(exchange).filter(
-                    #[inline(always)]
-                    |((other, _), _)| **other != index,
-                );
-                if matrix {
-                    let line = self.block.row(row);
-                    line[row] += sum * laws.emission.slope;
-                    for ((&other, &column), &exchange) in others.clone() {
-                        line[column] = line[column] - exchange * self.laws[other].emission.slope;
-                    }
-                }
-                // In straight lines all faces emit alike: offsets cancel.
-                if matches!(numbers.emission, Emission::Exact) {
-                    arriving = arriving - sum * laws.emission.offset;
-                    for ((&other, _), &exchange) in others {
-                        arriving += exchange * self.laws[other].emission.offset;
-                    }
-                }
-            }
-            arriving += self.drive.zones[zone].radiant * numbers.radiant_shares[i];
-            self.block.right[row] += arriving;
-        }
-    }
-
     /// Storage of the air of a zone, what enters it, and the heat released into it.
     #[inline(always)]
     fn enter_air(&mut self, zone: usize, length: f64) {
@@ -1379,8 +1349,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
     }
 
-    /// Sum of the squared distances of the solution from an iterate where something is linearised, by lane [K2]. Not a number when any part of it is
-    /// not one.
+    /// Sum of the squared distances of the solution from an iterate where something is linearised, by lane [K2]. Not a
+    /// number when any part of it is not one.
     #[inline(always)]
     fn distance(&self, iterate: &Unknowns<S>) -> S {
         let mut sum = squared_distance(&self.solved.air, &iterate.air);
@@ -1447,6 +1417,12 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn finish_stage(&mut self) -> S::Mask {
         if !self.changing.curved {
             self.resolve_constant();
+        }
+        if !self.changing.stays() {
+            self.rooms.tell_laws(&mut self.laws);
+        }
+        if !self.plan.plants.is_empty() {
+            self.rooms.tell_locals(&mut self.locals, &mut self.inverses);
         }
         let mut sum = S::zero();
         for &w in &self.changing.loose {
@@ -1618,24 +1594,32 @@ impl<'a, S: Real> Stepper<'a, S> {
 /// What changes when, and what stays: found from the plan, never from a number.
 #[derive(Debug, Clone)]
 struct Changing {
-    /// Walls of constant properties, and the others with their cells.
+    /// Walls of constant properties, those of them that are in no single room, and the others with their cells.
     constant: Vec<usize>,
+    shared: Vec<usize>,
     walls: Vec<usize>,
     cells: Vec<Range<usize>>,
-    /// Those of the former that touch no zone, and their faces in zones.
+    /// Walls of constant properties that touch no zone, and the faces in zones of all of them.
     loose: Vec<usize>,
     inner: Vec<FaceId>,
-    /// Faces whose films depend on the wind alone, faces whose films depend on temperature, and faces that radiate with
-    /// the fourth power of it.
-    windy: Vec<FaceId>,
-    bent: Vec<FaceId>,
-    radiant: Vec<FaceId>,
-    /// Faces at which something is linearised: the last two, and the faces of walls that change.
+    /// Faces whose laws change: all of them, and those in no room.
+    bending: Bends,
+    apart: Bends,
+    /// Faces at which something is linearised: where films or radiation bend, and the faces of walls that change.
     watched: Vec<FaceId>,
     /// Whether the balance of a face of a constant wall is more than a straight line of its temperature.
     curved: bool,
     /// Whether the wind changes its slope.
     by_wind: bool,
+}
+
+/// Faces whose films depend on the wind alone, faces whose films depend on temperature, and faces that radiate with the
+/// fourth power of it.
+#[derive(Debug, Clone, Default)]
+struct Bends {
+    windy: Vec<FaceId>,
+    bent: Vec<FaceId>,
+    radiant: Vec<FaceId>,
 }
 
 impl Changing {
@@ -1645,30 +1629,51 @@ impl Changing {
             (0..plan.walls.len()).partition(|&wall| plan.walls[wall].nonlinear);
         let local = |face: FaceId| plan.faces[face].role == FaceRole::Local;
         let loose = constant.iter().copied().filter(|&wall| local(2 * wall) && local(2 * wall + 1)).collect();
+        let shared = constant.iter().copied().filter(|&wall| !of_one_room(plan, wall)).collect();
         let faces = constant.iter().flat_map(|&wall| [2 * wall, 2 * wall + 1]);
         let inner = faces.filter(|&face| !local(face)).collect();
         let cells = walls.iter().map(|&wall| &plan.walls[wall]);
         let cells = cells.map(|wall| wall.first_cell..wall.first_cell + wall.len()).collect();
-        let (windy, bent, radiant, watched) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut all = Self {
             constant,
+            shared,
             walls,
             cells,
             loose,
             inner,
-            windy,
-            bent,
-            radiant,
-            watched,
+            bending: Bends::default(),
+            apart: Bends::default(),
+            watched: Vec::new(),
             curved: false,
             by_wind: false,
         };
         let laws = (0..plan.faces.len()).map(|face| all.enter(plan, numbers, face)).collect();
+        let bending = &all.bending;
         let linearised = |face: &FaceId| {
-            plan.walls[face / 2].nonlinear || all.bent.contains(face) || all.radiant.contains(face)
+            plan.walls[face / 2].nonlinear || bending.bent.contains(face) || bending.radiant.contains(face)
         };
         all.watched = (0..plan.faces.len()).filter(linearised).collect();
+        let apart = |faces: &[FaceId]| {
+            faces.iter().copied().filter(|&face| local(face) && !of_one_room(plan, face / 2)).collect()
+        };
+        all.apart = Bends {
+            windy: apart(&bending.windy),
+            bent: apart(&bending.bent),
+            radiant: apart(&bending.radiant),
+        };
         (all, laws)
+    }
+
+    /// Faces whose laws change: all of them, or those in no room.
+    #[inline(always)]
+    fn bends(&self, all: bool) -> &Bends {
+        if all { &self.bending } else { &self.apart }
+    }
+
+    /// Whether no slope of the faces of constant walls ever changes.
+    #[inline(always)]
+    fn stays(&self) -> bool {
+        !self.curved && !self.by_wind
     }
 
     fn enter<S: Real>(&mut self, plan: &Plan, numbers: &Coefficients<S>, index: FaceId) -> FaceLaws<S> {
@@ -1676,14 +1681,15 @@ impl Changing {
         let mut laws = FaceLaws { film: Line::zero(), emission: Line::zero() };
         // What happens at the free face of a wall that changes is entered with the wall.
         let entered = matches!(role, FaceRole::Zone { .. }) || !plan.walls[index / 2].nonlinear;
-        if let Some(film) = &face.film {
+        let adiabatic = matches!(face.boundary, Boundary::Adiabatic);
+        if let Some(film) = face.film.as_ref().filter(|_| !adiabatic) {
             if let Some(coefficient) = film.constant() {
                 laws.film.slope = coefficient * face.area_factor;
             } else if film.straight() {
-                self.windy.push(index);
+                self.bending.windy.push(index);
                 self.by_wind |= entered;
             } else {
-                self.bent.push(index);
+                self.bending.bent.push(index);
                 self.curved |= entered;
             }
         }
@@ -1694,7 +1700,7 @@ impl Changing {
         };
         match emission {
             Some(Emission::Exact) => {
-                self.radiant.push(index);
+                self.bending.radiant.push(index);
                 self.curved |= entered;
             }
             Some(Emission::Linearised(_)) => {

@@ -244,8 +244,8 @@ impl<S: Real> Stepper<'_, S> {
         for i in 0..self.changing.walls.len() {
             self.linearise_wall(self.changing.walls[i], state, None);
         }
-        self.blow();
-        self.linearise_faces();
+        self.blow(true);
+        self.linearise_faces(true);
     }
 
     /// Cells of all walls: heat held and heat that flows between them and into the faces.

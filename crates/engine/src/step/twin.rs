@@ -29,7 +29,9 @@ impl Stepper<'_, f64> {
             *mine = theirs.lane(0);
         }
         if self.changing.curved || self.changing.by_wind || new {
-            self.enter_constant(true);
+            self.rooms.adopt(&self.laws);
+            self.enter_constant(true, false);
+            self.rooms.tell_locals(&mut self.locals, &mut self.inverses);
         }
         for i in 0..self.changing.walls.len() {
             let w = self.changing.walls[i];
@@ -78,7 +80,7 @@ impl Stepper<'_, f64> {
         let (cells, rest) = rows.split_at_mut(self.plan.n_cells);
         let (faces, air) = rest.split_at_mut(self.plan.faces.len());
         block.clear();
-        block.resize(self.plan.reach.len(), R::zero());
+        block.resize(self.plan.rows(), R::zero());
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let heat = self.chains[w].forward(&mut cells[wall.first_cell..wall.first_cell + wall.len()]);
             for e in 0..2 {
@@ -105,7 +107,9 @@ impl Stepper<'_, f64> {
         for (zone, &air) in self.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
+        self.rooms.forward_beside(block);
         self.block.solve_beside(block);
+        self.rooms.back_beside(block);
         for (zone, air) in self.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }
@@ -129,7 +133,7 @@ impl Stepper<'_, f64> {
         let (cells, rest) = rows.split_at_mut(self.plan.n_cells);
         let (faces, air) = rest.split_at_mut(self.plan.faces.len());
         block.clear();
-        block.resize(self.plan.reach.len(), 0.0);
+        block.resize(self.plan.rows(), 0.0);
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
             let weights = self.chains[w].back_transposed(own);
@@ -158,7 +162,9 @@ impl Stepper<'_, f64> {
         for (zone, &air) in self.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
+        self.rooms.back_transposed(block);
         self.block.solve_transposed(block);
+        self.rooms.forward_transposed(block);
         for (zone, air) in self.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }
