@@ -62,7 +62,7 @@ fn main() {
         println!(
             "{name}: one run {:.1} ms, {} iterations, closure {:.1e}",
             1e3 * start.elapsed().as_secs_f64(),
-            run.effort.iterations,
+            run.counters.iterations,
             run.ledger.closure()
         );
         let mut all = Vec::new();

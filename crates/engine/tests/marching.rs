@@ -30,7 +30,7 @@ fn energy_closes() {
             let closure = result.ledger.closure();
             assert!(closure < 1e-10, "closure {closure} with {scheme:?}, gamma {gamma}, steps of {dt} s");
             let sum: f64 = result.ledger.into.iter().sum();
-            assert!((sum - result.ledger.stored).abs() < 1e-10 * result.ledger.turnover);
+            assert!((sum - result.ledger.stored).abs() < 1e-10 * result.ledger.total_exchanged);
         }
     }
 }
@@ -108,7 +108,7 @@ fn lanes_are_scalars() {
                 );
             }
             assert_eq!(alone.ledger.closure().to_bits(), together.closure[member].to_bits());
-            iterations.push(alone.effort.iterations);
+            iterations.push(alone.counters.iterations);
             cycles.push(alone.cycles);
         }
         iterations.sort_unstable();
@@ -282,7 +282,7 @@ fn solver_counters() {
     let mut options = options(Scheme::Sdirk2, STEP, cell_probes());
     options.warmup = Some(warmup(STEP));
     let result = run(&plan, &rows, &options);
-    assert_eq!((result.cycles, result.effort.iterations), (3, 5375));
+    assert_eq!((result.cycles, result.counters.iterations), (3, 5375));
 }
 
 /// The cell with constant films inside, films linear in the wind outside and linearised radiation: nothing but the
@@ -367,8 +367,9 @@ fn a_start_may_be_given_cell_by_cell() {
     let rows = forcing(&plan, Scheme::Sdirk2, 96, STEP, cell_weather);
     let mut options = options(Scheme::Sdirk2, STEP, cell_probes());
     let everywhere = run(&plan, &rows, &options);
-    let (faces, zones) = (plan.faces.len(), plan.zones.len());
-    let given = |cells: Vec<f64>| Initial::Given { cells, faces: vec![20.0; faces], air: vec![20.0; zones] };
+    let (surfaces, zones) = (plan.surfaces.len(), plan.zones.len());
+    let given =
+        |cells: Vec<f64>| Initial::Given { cells, surfaces: vec![20.0; surfaces], air: vec![20.0; zones] };
     options.initial = given(vec![20.0; plan.n_cells]);
     let one_by_one = run(&plan, &rows, &options);
     for (a, b) in everywhere.records.iter().zip(&one_by_one.records) {

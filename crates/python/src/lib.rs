@@ -124,7 +124,7 @@ impl From<GivenInitial> for Initial {
     fn from(given: GivenInitial) -> Self {
         match given {
             GivenInitial::Everywhere(temperature) => Self::Everywhere(temperature),
-            GivenInitial::Given { cells, faces, air } => Self::Given { cells, faces, air },
+            GivenInitial::Given { cells, faces, air } => Self::Given { cells, surfaces: faces, air },
         }
     }
 }
@@ -355,14 +355,14 @@ fn describe_run<'py>(py: Python<'py>, run: &Run<f64>, records: [usize; 2]) -> Py
         result.set_item(flow.name(), run.ledger.into[flow as usize])?;
     }
     result.set_item("stored", run.ledger.stored)?;
-    result.set_item("turnover", run.ledger.turnover)?;
+    result.set_item("turnover", run.ledger.total_exchanged)?;
     result.set_item("closure", run.ledger.closure())?;
     result.set_item("cycles", run.cycles)?;
     result.set_item("settled", run.settled)?;
-    result.set_item("iterations", run.effort.iterations)?;
-    result.set_item("nested", run.effort.nested)?;
-    result.set_item("halvings", run.effort.halvings)?;
-    result.set_item("reversals", run.effort.reversals)?;
+    result.set_item("iterations", run.counters.iterations)?;
+    result.set_item("nested", run.counters.nested)?;
+    result.set_item("halvings", run.counters.halvings)?;
+    result.set_item("reversals", run.counters.reversals)?;
     Ok(result)
 }
 

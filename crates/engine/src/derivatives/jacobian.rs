@@ -4,14 +4,14 @@ use core::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use crate::drive::Weather;
+use crate::building::plan::Plan;
 use crate::error::EngineError;
-use crate::forcing::Forcing;
-use crate::march::{Options, Watch, check, march_seen};
-use crate::plan::Plan;
-use crate::real::{Dual, Real};
-use crate::state::State;
+use crate::input::forcing::Forcing;
+use crate::number::real::{Dual, Real};
+use crate::run::march::{Options, Watch, check, march_seen};
 use crate::step::Stepper;
+use crate::step::state::State;
+use crate::weather::conditions::Weather;
 
 /// Records of a run and their slopes.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ pub struct Jacobian {
 /// Runs a plan and the slopes of all its records by the parameters `which`, on as many threads as there are.
 ///
 /// # Errors
-/// As [`march`](crate::march::march); [`EngineError::Input`] also for a parameter that does not exist.
+/// As [`march`](crate::run::march::march); [`EngineError::Input`] also for a parameter that does not exist.
 pub fn jacobian(
     plan: &Plan,
     numbers: &[f64],

@@ -6,16 +6,16 @@
 //! tape from the start to the end. Where all of this would take too much memory, only every n-th state is kept and the
 //! steps between are run again.
 
-use super::tape::{Tape, Taped};
-use crate::drive::Weather;
+use crate::balance::ledger::Ledger;
+use crate::building::plan::Plan;
 use crate::error::EngineError;
-use crate::forcing::Forcing;
-use crate::known::{Solution, read_solution};
-use crate::ledger::Ledger;
-use crate::march::{Move, Options, Run, Watch, check, march_seen};
-use crate::plan::Plan;
-use crate::state::{State, Unknowns};
+use crate::input::forcing::Forcing;
+use crate::number::tape::{Tape, Taped};
+use crate::run::march::{Move, Options, Run, Watch, check, march_seen};
 use crate::step::Stepper;
+use crate::step::stage_solutions::{Solution, read_solution};
+use crate::step::state::{State, Unknowns};
+use crate::weather::conditions::Weather;
 
 /// A run, and what is needed to go back along it.
 #[derive(Debug)]
@@ -65,7 +65,7 @@ impl Trajectory {
     /// Runs a plan, keeping about as many bytes as given.
     ///
     /// # Errors
-    /// As [`march`](crate::march::march).
+    /// As [`march`](crate::run::march::march).
     pub fn new(
         plan: &Plan,
         numbers: &[f64],

@@ -2,17 +2,17 @@
 //!
 //! At a known solution nothing is to be iterated and nothing to be eliminated with derivatives: the equations of a stage
 //! are gathered term by term, the laws in them linearised at the solution as ever, and a plain twin of the stepper, which
-//! takes over the values of that linearisation, solves for all slopes (see [`crate::residual`]).
+//! takes over the values of that linearisation, solves for all slopes (see [`crate::number::equations`]).
 
-use crate::balance::Line;
-use crate::coefficients::{Boundary, Matter};
-use crate::drive::{Instant, Weather};
-use crate::known::Solution;
-use crate::plan::{FaceId, FaceRole};
-use crate::radiation::Emission;
-use crate::real::{Mask, Real};
-use crate::residual::Residual;
-use crate::state::{State, Unknowns};
+use crate::building::coefficients::{Boundary, Matter};
+use crate::building::plan::{SurfaceId, SurfaceRole};
+use crate::linear::surface_balance::Line;
+use crate::number::equations::Residual;
+use crate::number::real::{Mask, Real};
+use crate::physics::longwave::Emission;
+use crate::step::stage_solutions::Solution;
+use crate::step::state::{State, Unknowns};
+use crate::weather::conditions::{Instant, Weather};
 
 use super::{INSTANT, Part, Stepper, outdoor_emission};
 
@@ -25,7 +25,7 @@ pub(super) struct Following<'a, S: Real> {
     carries: Carries,
     /// Of the cells of constant walls [J/(m2 K)].
     capacity: Vec<S>,
-    /// The solution of the stage in hand: cells, faces, airs [degC].
+    /// The solution of the stage in hand: cells, surfaces, airs [degC].
     at: Vec<f64>,
     /// How air and walls answer to a watt of a plant.
     answers: Vec<Vec<f64>>,
@@ -38,7 +38,7 @@ struct Carries {
     /// By wall: conductances, heat capacities.
     links: Vec<bool>,
     capacity: Vec<bool>,
-    /// By zone: exchange between its faces.
+    /// By zone: exchange between its surfaces.
     exchange: Vec<bool>,
 }
 
@@ -51,8 +51,12 @@ impl<'a, S: Real> Following<'a, S> {
     pub(super) fn new(stepper: &Stepper<'a, S>) -> Self {
         let plan = stepper.plan;
         let plain: Vec<f64> = stepper.numbers.iter().map(|number| number.lane(0)).collect();
-        let twin =
-            Stepper::with(plan, crate::coefficients::Coefficients::new(plan, &plain), &[], stepper.scheme);
+        let twin = Stepper::with(
+            plan,
+            crate::building::coefficients::Coefficients::new(plan, &plain),
+            &[],
+            stepper.scheme,
+        );
         let mut capacity = vec![S::zero(); plan.n_cells];
         for (wall, numbers) in plan.walls.iter().zip(&stepper.coefficients.walls) {
             for (capacity, cell) in capacity[wall.first_cell..].iter_mut().zip(&numbers.cells) {
@@ -62,7 +66,7 @@ impl<'a, S: Real> Following<'a, S> {
             }
         }
         let zones = &stepper.coefficients.zones;
-        let unknowns = plan.n_cells + plan.faces.len() + plan.zones.len();
+        let unknowns = plan.n_cells + plan.surfaces.len() + plan.zones.len();
         Self {
             twins: vec![twin; stepper.scheme.weights().len()],
             equations: S::Residual::default(),
@@ -81,7 +85,7 @@ impl<'a, S: Real> Following<'a, S> {
             },
             capacity,
             at: vec![0.0; unknowns],
-            answers: vec![vec![0.0; unknowns]; plan.plants.len()],
+            answers: vec![vec![0.0; unknowns]; plan.ideal_loads.len()],
             block: Vec::new(),
         }
     }
@@ -113,7 +117,8 @@ impl<S: Real> Stepper<'_, S> {
             #[inline(always)]
             || {
                 self.set_off(state);
-                let asked = !self.plan.plants.is_empty() && self.ask_plants(weather, step, solution);
+                let asked =
+                    !self.plan.ideal_loads.is_empty() && self.ask_ideal_loads(weather, step, solution);
                 // Responses leave out what a load does to the convection expected in gaps: with windows its slope is
                 // found in a round more.
                 let rounds = if !asked {
@@ -127,7 +132,12 @@ impl<S: Real> Stepper<'_, S> {
                     self.follow_stages(state, weather, (step, dt), solution);
                     if round < rounds {
                         self.answer();
-                        self.plants.correct(&self.solved.air, &mut self.load, S::Mask::splat(true), true);
+                        self.ideal_loads.correct(
+                            &self.solved.air,
+                            &mut self.load,
+                            S::Mask::splat(true),
+                            true,
+                        );
                     }
                 }
                 self.arrive(state);
@@ -135,18 +145,18 @@ impl<S: Real> Stepper<'_, S> {
         );
     }
 
-    /// Brings the faces of a state into balance with the weather along the solution.
+    /// Brings the surfaces of a state into balance with the weather along the solution.
     pub(crate) fn follow_balance(&mut self, state: &mut State<S>, now: &Instant<'_>, solution: Solution<'_>) {
         S::vectorised(
             #[inline(always)]
             || {
                 self.set_off(state);
-                self.drive.update(self.plan, &self.coefficients, &self.facade, self.numbers, now);
+                self.conditions.update(self.plan, &self.coefficients, &self.weather_index, self.numbers, now);
                 let place = Place { stage: 0, length: INSTANT, ratio: 0.0 };
                 self.follow_stage(state, place, &solution.stages[0]);
-                state.faces.copy_from_slice(&self.solved.faces);
+                state.surfaces.copy_from_slice(&self.solved.surfaces);
                 self.sun.restart();
-                self.sun.add(&self.drive, 1.0);
+                self.sun.add(&self.conditions, 1.0);
             },
         );
     }
@@ -179,7 +189,7 @@ impl<S: Real> Stepper<'_, S> {
             if stage > 0 {
                 self.carry(state);
             }
-            self.drive_at(weather, part, stage);
+            self.conditions_at(weather, part, stage);
             let ratio = if stage > 0 { (1.0 - diagonal) / diagonal } else { 0.0 };
             self.follow_stage(state, Place { stage, length: diagonal * dt, ratio }, known);
         }
@@ -200,8 +210,8 @@ impl<S: Real> Stepper<'_, S> {
         self.gather_walls(state, place, &mut following);
         self.gather_zones(state, place, &mut following);
         let Following { equations, twins, at, .. } = &mut *following;
-        let Unknowns { cells, faces, air } = &mut self.solved;
-        equations.solve(place.stage, &twins[place.stage], at, [cells, faces, air]);
+        let Unknowns { cells, surfaces, air } = &mut self.solved;
+        equations.solve(place.stage, &twins[place.stage], at, [cells, surfaces, air]);
         for &w in &self.changing.walls {
             let wall = &self.plan.walls[w];
             self.chains[w].arrive(&self.solved.cells[wall.first_cell..wall.first_cell + wall.len()]);
@@ -220,8 +230,8 @@ impl<S: Real> Stepper<'_, S> {
         at: &mut [f64],
     ) {
         let (cells, rest) = at.split_at_mut(self.plan.n_cells);
-        let (faces, air) = rest.split_at_mut(self.plan.faces.len());
-        faces.copy_from_slice(&known.faces);
+        let (surfaces, air) = rest.split_at_mut(self.plan.surfaces.len());
+        surfaces.copy_from_slice(&known.surfaces);
         air.copy_from_slice(&known.air);
         cells.copy_from_slice(&known.cells);
         for &w in &self.changing.constant {
@@ -234,7 +244,7 @@ impl<S: Real> Stepper<'_, S> {
                 *cell = chain.rate[i] * chain.storage[i].capacity * held;
             }
             chain.forward(own);
-            chain.back([known.faces[2 * w], known.faces[2 * w + 1]], own);
+            chain.back([known.surfaces[2 * w], known.surfaces[2 * w + 1]], own);
         }
     }
 
@@ -245,10 +255,10 @@ impl<S: Real> Stepper<'_, S> {
             self.linearise_wall(self.changing.walls[i], state, None);
         }
         self.blow(true);
-        self.linearise_faces(true);
+        self.linearise_surfaces(true);
     }
 
-    /// Cells of all walls: heat held and heat that flows between them and into the faces.
+    /// Cells of all walls: heat held and heat that flows between them and into the surfaces.
     #[inline(always)]
     fn gather_walls(&self, state: &State<S>, place: Place, following: &mut Following<'_, S>) {
         let Following { equations, capacity, at, twins, carries, .. } = following;
@@ -256,8 +266,8 @@ impl<S: Real> Stepper<'_, S> {
         let per_second = 1.0 / place.length;
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let (chain, first, n) = (&self.chains[w], wall.first_cell, wall.len());
-            let faces = [2 * w, 2 * w + 1].map(|face| self.plan.n_cells + face);
-            let shares = [2 * w, 2 * w + 1].map(|face| twin.takes(face));
+            let surfaces = [2 * w, 2 * w + 1].map(|surface| self.plan.n_cells + surface);
+            let shares = [2 * w, 2 * w + 1].map(|surface| twin.takes(surface));
             if wall.nonlinear {
                 self.gather_storage(state, place, w, (&mut *equations, at));
             } else {
@@ -277,12 +287,15 @@ impl<S: Real> Stepper<'_, S> {
             for (j, link) in chain.links.iter().enumerate() {
                 let above = |i: usize| at[first + i] - chain.storage[i].place.lane(0);
                 let (outer, left, gives) = if j == 0 {
-                    (faces[0], at[faces[0]], shares[0])
+                    (surfaces[0], at[surfaces[0]], shares[0])
                 } else {
                     (first + j - 1, above(j - 1), 1.0)
                 };
-                let (inner, right, takes) =
-                    if j == n { (faces[1], at[faces[1]], shares[1]) } else { (first + j, above(j), 1.0) };
+                let (inner, right, takes) = if j == n {
+                    (surfaces[1], at[surfaces[1]], shares[1])
+                } else {
+                    (first + j, above(j), 1.0)
+                };
                 if wall.nonlinear {
                     for (row, share) in [(outer, -gives), (inner, takes)] {
                         equations.add(row, link.offset, share);
@@ -298,20 +311,22 @@ impl<S: Real> Stepper<'_, S> {
             let ends = [(0, -1.0), (n, 1.0)].map(|(j, sign)| {
                 let link = &chain.links[j];
                 let left = if j == 0 {
-                    at[faces[0]]
+                    at[surfaces[0]]
                 } else {
                     at[first + j - 1] - chain.storage[j - 1].place.lane(0)
                 };
                 let right =
-                    if j == n { at[faces[1]] } else { at[first + j] - chain.storage[j].place.lane(0) };
+                    if j == n { at[surfaces[1]] } else { at[first + j] - chain.storage[j].place.lane(0) };
                 sign * (link.offset.lane(0) + link.left.lane(0) * left - link.right.lane(0) * right)
             });
             for (e, heat) in ends.into_iter().enumerate() {
-                match self.plan.faces[2 * w + e].role {
+                match self.plan.surfaces[2 * w + e].role {
                     // What enters by its area beside the heat from the wall is added with the zone.
-                    FaceRole::Zone { .. } => equations.add(faces[e], self.coefficients.walls[w].area, heat),
-                    FaceRole::Local => {
-                        self.gather_local(2 * w + e, at[faces[e]], (&mut *equations, faces[e]));
+                    SurfaceRole::Zone { .. } => {
+                        equations.add(surfaces[e], self.coefficients.walls[w].area, heat)
+                    }
+                    SurfaceRole::Exterior => {
+                        self.gather_local(2 * w + e, at[surfaces[e]], (&mut *equations, surfaces[e]));
                     }
                 }
             }
@@ -343,28 +358,30 @@ impl<S: Real> Stepper<'_, S> {
             let reached = storage.offset.lane(0) + storage.capacity.lane(0) * above;
             equations.add(k, cell.thickness, (held - reached) / place.length);
         }
-        let gains = self.plan.windows.iter().zip(&self.drive.windows).find(|(window, _)| **window == w);
+        let gains = self.plan.windows.iter().zip(&self.conditions.windows).find(|(window, _)| **window == w);
         for (i, &gain) in gains.iter().flat_map(|(_, at)| &at.cells).enumerate() {
             equations.add(wall.first_cell + i, gain, 1.0);
         }
     }
 
-    /// What a face outside the zones takes from there.
+    /// What a surface outside the zones takes from there.
     #[inline(always)]
-    fn gather_local(&self, index: FaceId, at: f64, (equations, row): (&mut S::Residual, usize)) {
-        let face = &self.coefficients.faces[index];
-        let (drive, laws) = (&self.drive.faces[index], &self.laws[index]);
-        match face.boundary {
-            Boundary::Imposed(_) if face.film.is_none() => equations.add(row, drive.temperature, 1.0),
-            Boundary::Adiabatic => equations.add(row, drive.solar, 1.0),
+    fn gather_local(&self, index: SurfaceId, at: f64, (equations, row): (&mut S::Residual, usize)) {
+        let surface = &self.coefficients.surfaces[index];
+        let (conditions, laws) = (&self.conditions.surfaces[index], &self.laws[index]);
+        match surface.boundary {
+            Boundary::Imposed(_) if surface.convection.is_none() => {
+                equations.add(row, conditions.temperature, 1.0)
+            }
+            Boundary::Adiabatic => equations.add(row, conditions.solar, 1.0),
             _ => {
-                equations.add(row, drive.solar, 1.0);
-                equations.add(row, drive.longwave, 1.0);
-                equations.add(row, laws.film.offset, -1.0);
-                equations.add(row, laws.film.slope, drive.temperature.lane(0) - at);
-                equations.add(row, drive.temperature, laws.film.slope.lane(0));
-                if outdoor_emission(face).is_some() {
-                    let (emissivity, emission) = (face.emissivity, Line::of(&laws.emission));
+                equations.add(row, conditions.solar, 1.0);
+                equations.add(row, conditions.longwave, 1.0);
+                equations.add(row, laws.convection.offset, -1.0);
+                equations.add(row, laws.convection.slope, conditions.temperature.lane(0) - at);
+                equations.add(row, conditions.temperature, laws.convection.slope.lane(0));
+                if outdoor_emission(surface).is_some() {
+                    let (emissivity, emission) = (surface.emissivity, Line::of(&laws.emission));
                     equations.add(row, emissivity, -emission.at(at));
                     equations.add(row, laws.emission.offset, -emissivity.lane(0));
                     equations.add(row, laws.emission.slope, -emissivity.lane(0) * at);
@@ -373,31 +390,31 @@ impl<S: Real> Stepper<'_, S> {
         }
     }
 
-    /// Faces and airs of the zones.
+    /// Surfaces and airs of the zones.
     #[inline(always)]
     fn gather_zones(&self, state: &State<S>, place: Place, following: &mut Following<'_, S>) {
         let Following { equations, at, carries, .. } = following;
-        let first_air = self.plan.n_cells + self.plan.faces.len();
+        let first_air = self.plan.n_cells + self.plan.surfaces.len();
         for (z, (zone, numbers)) in self.plan.zones.iter().zip(&self.coefficients.zones).enumerate() {
-            let (row, drive) = (first_air + z, &self.drive.zones[z]);
+            let (row, conditions) = (first_air + z, &self.conditions.zones[z]);
             let air = at[row];
-            for (i, &index) in zone.faces.iter().enumerate() {
-                let (face, film) = (self.plan.n_cells + index, &self.laws[index].film);
+            for (i, &index) in zone.surfaces.iter().enumerate() {
+                let (surface, convection) = (self.plan.n_cells + index, &self.laws[index].convection);
                 let (area, above, solar) = (
                     numbers.areas[i].lane(0),
                     at[self.plan.n_cells + index] - air,
-                    self.drive.faces[index].solar,
+                    self.conditions.surfaces[index].solar,
                 );
-                for (row, area) in [(face, -area), (row, area)] {
-                    equations.add(row, film.offset, area);
-                    equations.add(row, film.slope, area * above);
+                for (row, area) in [(surface, -area), (row, area)] {
+                    equations.add(row, convection.offset, area);
+                    equations.add(row, convection.slope, area * above);
                 }
-                let flux = Line::of(film).at(above);
+                let flux = Line::of(convection).at(above);
                 equations.add(row, numbers.areas[i], flux);
-                equations.add(face, numbers.areas[i], solar.lane(0) - flux);
-                equations.add(face, solar, area);
-                equations.add(face, drive.radiant, numbers.radiant_shares[i].lane(0));
-                equations.add(face, numbers.radiant_shares[i], drive.radiant.lane(0));
+                equations.add(surface, numbers.areas[i], solar.lane(0) - flux);
+                equations.add(surface, solar, area);
+                equations.add(surface, conditions.radiant, numbers.radiant_shares[i].lane(0));
+                equations.add(surface, numbers.radiant_shares[i], conditions.radiant.lane(0));
             }
             self.gather_exchange(z, carries.exchange[z], (&mut *equations, at));
             let held = if place.stage > 0 {
@@ -408,43 +425,44 @@ impl<S: Real> Stepper<'_, S> {
             };
             equations.add(row, state.air[z], numbers.capacity.lane(0) / place.length * (1.0 - place.ratio));
             equations.add(row, numbers.capacity, (held - air) / place.length);
-            let below = self.drive.outdoor_air.lane(0) - air;
+            let below = self.conditions.outdoor_air.lane(0) - air;
             for entering in [&self.inflow[z], &self.airing[z]] {
                 equations.add(row, entering.offset, 1.0);
                 equations.add(row, entering.slope, below);
             }
-            equations.add(row, drive.convective, 1.0);
+            equations.add(row, conditions.convective, 1.0);
             equations.add(row, self.load[z], 1.0);
         }
-        for (path, &conductance) in self.coefficients.paths.iter().zip(&self.drive.paths) {
+        for (path, &conductance) in self.coefficients.paths.iter().zip(&self.conditions.paths) {
             let [a, b] = path.between.map(|zone| first_air + zone);
             equations.add(a, conductance, at[b] - at[a]);
             equations.add(b, conductance, at[a] - at[b]);
         }
     }
 
-    /// Long-wave exchange between the faces of a zone.
+    /// Long-wave exchange between the surfaces of a zone.
     #[inline(always)]
     fn gather_exchange(&self, z: usize, carries: bool, (equations, at): (&mut S::Residual, &[f64])) {
-        let (faces, numbers) = (&self.plan.zones[z].faces, &self.coefficients.zones[z]);
+        let (surfaces, numbers) = (&self.plan.zones[z].surfaces, &self.coefficients.zones[z]);
         if numbers.exchange.is_empty() {
             return;
         }
-        let n = faces.len();
+        let n = surfaces.len();
         let linear =
-            self.laws[faces[0]].emission.slope.carries() && !matches!(numbers.emission, Emission::Exact);
+            self.laws[surfaces[0]].emission.slope.carries() && !matches!(numbers.emission, Emission::Exact);
         if !carries && !linear {
             return;
         }
-        for (i, &index) in faces.iter().enumerate() {
+        for (i, &index) in surfaces.iter().enumerate() {
             let row = self.plan.n_cells + index;
-            let emission =
-                |face: FaceId| Line::of(&self.laws[face].emission).at(at[self.plan.n_cells + face]);
+            let emission = |surface: SurfaceId| {
+                Line::of(&self.laws[surface].emission).at(at[self.plan.n_cells + surface])
+            };
             let own = emission(index);
             let mut by_slope = 0.0;
-            for (&other, &exchange) in faces.iter().zip(&numbers.exchange[i * n..(i + 1) * n]) {
+            for (&other, &exchange) in surfaces.iter().zip(&numbers.exchange[i * n..(i + 1) * n]) {
                 if other != index {
-                    // All that a face sends out comes back to it from the others, as far as they are alike.
+                    // All that a surface sends out comes back to it from the others, as far as they are alike.
                     equations.add(row, exchange, emission(other) - own);
                     by_slope += exchange.lane(0) * (at[self.plan.n_cells + other] - at[row]);
                 }
@@ -477,22 +495,22 @@ impl<S: Real> Stepper<'_, S> {
     fn arrive(&mut self, state: &mut State<S>) {
         self.accept_changing(state);
         state.cells.copy_from_slice(&self.solved.cells);
-        state.faces.copy_from_slice(&self.solved.faces);
+        state.surfaces.copy_from_slice(&self.solved.surfaces);
         state.air.copy_from_slice(&self.solved.air);
         state.load.copy_from_slice(&self.load);
     }
 
     /// Sets the loads of plants to those of the solution. False where none is asked for any.
     #[inline(always)]
-    fn ask_plants(&mut self, weather: &Weather<'_>, step: usize, solution: Solution<'_>) -> bool {
+    fn ask_ideal_loads(&mut self, weather: &Weather<'_>, step: usize, solution: Solution<'_>) -> bool {
         let (last, all) = (self.scheme.weights().len() - 1, S::Mask::splat(true));
-        self.plants.begin(&self.coefficients.zones, weather.row(step, last), &mut self.load, false);
+        self.ideal_loads.begin(&self.coefficients.zones, weather.row(step, last), &mut self.load, false);
         for (load, &known) in self.load.iter_mut().zip(solution.load) {
             *load = S::constant(known);
         }
         let reached = &solution.stages[last].air;
-        self.plants.ask(&self.load, |zone| S::constant(reached[zone]));
-        self.plants.answering(0, all)
+        self.ideal_loads.ask(&self.load, |zone| S::constant(reached[zone]));
+        self.ideal_loads.answering(0, all)
     }
 
     /// How the airs at the end of the step answer to a watt of each plant, with the factors of the twins.
@@ -501,9 +519,9 @@ impl<S: Real> Stepper<'_, S> {
         let Some(mut following) = self.following.take() else { return };
         let diagonal = self.scheme.diagonal();
         let ratio = (1.0 - diagonal) / diagonal;
-        let first_air = self.plan.n_cells + self.plan.faces.len();
+        let first_air = self.plan.n_cells + self.plan.surfaces.len();
         let Following { twins, answers, block, .. } = &mut *following;
-        for (p, (&zone, rows)) in self.plan.plants.iter().zip(answers).enumerate() {
+        for (p, (&zone, rows)) in self.plan.ideal_loads.iter().zip(answers).enumerate() {
             rows.fill(0.0);
             for (stage, twin) in twins.iter().enumerate() {
                 if stage > 0 {
@@ -512,7 +530,7 @@ impl<S: Real> Stepper<'_, S> {
                 rows[first_air + zone] += 1.0;
                 twin.solve_beside(rows, block);
             }
-            if let Some(answer) = self.plants.responses[p].stages.last_mut() {
+            if let Some(answer) = self.ideal_loads.responses[p].stages.last_mut() {
                 for (air, &row) in answer.air.iter_mut().zip(&rows[first_air..]) {
                     *air = S::constant(row);
                 }

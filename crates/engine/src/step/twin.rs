@@ -1,13 +1,13 @@
 //! The plain twin of a stepper that carries derivatives: the matrix of a stage as a run has it, and solving with it.
 //!
-//! Unknowns and equations are those of all cells, all faces and all airs, in this order. Heat released in cells and at
-//! faces outside the zones counts per square metre, at faces and airs of zones whole; the equation of a face that is held
+//! Unknowns and equations are those of all cells, all surfaces and all airs, in this order. Heat released in cells and at
+//! surfaces outside the zones counts per square metre, at surfaces and airs of zones whole; the equation of a surface that is held
 //! at a temperature is that temperature.
 
-use crate::balance::{FaceLaws, Line, LocalFaces};
-use crate::coefficients::Boundary;
-use crate::plan::{FaceId, FaceRole};
-use crate::real::Real;
+use crate::building::coefficients::Boundary;
+use crate::building::plan::{SurfaceId, SurfaceRole};
+use crate::linear::surface_balance::{ExteriorSurfaces, Line, SurfaceLaws};
+use crate::number::real::Real;
 
 use super::Stepper;
 
@@ -16,7 +16,10 @@ impl Stepper<'_, f64> {
     #[inline(always)]
     pub(super) fn adopt<S: Real>(&mut self, other: &Stepper<'_, S>, length: f64, new: bool) {
         for (mine, theirs) in self.laws.iter_mut().zip(&other.laws) {
-            *mine = FaceLaws { film: Line::of(&theirs.film), emission: Line::of(&theirs.emission) };
+            *mine = SurfaceLaws {
+                convection: Line::of(&theirs.convection),
+                emission: Line::of(&theirs.emission),
+            };
         }
         let enter = |mine: &mut [Line<f64>], theirs: &[Line<S>]| {
             for (mine, theirs) in mine.iter_mut().zip(theirs) {
@@ -25,13 +28,13 @@ impl Stepper<'_, f64> {
         };
         enter(&mut self.inflow, &other.inflow);
         enter(&mut self.airing, &other.airing);
-        for (mine, theirs) in self.drive.paths.iter_mut().zip(&other.drive.paths) {
+        for (mine, theirs) in self.conditions.paths.iter_mut().zip(&other.conditions.paths) {
             *mine = theirs.lane(0);
         }
         if self.changing.curved || self.changing.by_wind || new {
-            self.rooms.adopt(&self.laws);
+            self.zone_fronts.adopt(&self.laws);
             self.enter_constant(true, false);
-            self.rooms.tell_locals(&mut self.locals, &mut self.inverses);
+            self.zone_fronts.tell_locals(&mut self.locals, &mut self.inverses);
         }
         for i in 0..self.changing.walls.len() {
             let w = self.changing.walls[i];
@@ -42,27 +45,27 @@ impl Stepper<'_, f64> {
         self.block.solve_rest();
     }
 
-    /// What of the heat that a wall sends into a face enters the equation of that face [-], in zones [m2].
+    /// What of the heat that a wall sends into a surface enters the equation of that surface [-], in zones [m2].
     #[inline(always)]
-    pub(super) fn takes(&self, face: FaceId) -> f64 {
-        match self.plan.faces[face].role {
-            FaceRole::Zone { .. } => self.coefficients.walls[face / 2].area,
-            FaceRole::Local if self.held_at(face) => 0.0,
-            FaceRole::Local => 1.0,
+    pub(super) fn takes(&self, surface: SurfaceId) -> f64 {
+        match self.plan.surfaces[surface].role {
+            SurfaceRole::Zone { .. } => self.coefficients.walls[surface / 2].area,
+            SurfaceRole::Exterior if self.held_at(surface) => 0.0,
+            SurfaceRole::Exterior => 1.0,
         }
     }
 
-    /// Whether a local face is held at a temperature.
+    /// Whether a local surface is held at a temperature.
     #[inline(always)]
-    fn held_at(&self, face: FaceId) -> bool {
-        let numbers = &self.coefficients.faces[face];
-        numbers.film.is_none() && matches!(numbers.boundary, Boundary::Imposed(_))
+    fn held_at(&self, surface: SurfaceId) -> bool {
+        let numbers = &self.coefficients.surfaces[surface];
+        numbers.convection.is_none() && matches!(numbers.boundary, Boundary::Imposed(_))
     }
 
-    /// How much a local face gives way, the other face of its wall held.
+    /// How much a local surface gives way, the other surface of its wall held.
     #[inline(always)]
-    fn yields(&self, face: FaceId) -> f64 {
-        if self.held_at(face) { 1.0 } else { self.inverses[face / 2] }
+    fn yields(&self, surface: SurfaceId) -> f64 {
+        if self.held_at(surface) { 1.0 } else { self.inverses[surface / 2] }
     }
 
     /// The matrix of a wall that touches no zone, and one over its determinant.
@@ -74,112 +77,113 @@ impl Stepper<'_, f64> {
         ([[a, b], [c, d]], 1.0 / (a * d - b * c))
     }
 
-    /// Replaces the right-hand sides of all equations (cells, faces, airs) by their solution.
+    /// Replaces the right-hand sides of all equations (cells, surfaces, airs) by their solution.
     #[inline(always)]
     pub(crate) fn solve_beside<R: Real>(&self, rows: &mut [R], block: &mut Vec<R>) {
         let (cells, rest) = rows.split_at_mut(self.plan.n_cells);
-        let (faces, air) = rest.split_at_mut(self.plan.faces.len());
+        let (surfaces, air) = rest.split_at_mut(self.plan.surfaces.len());
         block.clear();
         block.resize(self.plan.rows(), R::zero());
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let heat = self.chains[w].forward(&mut cells[wall.first_cell..wall.first_cell + wall.len()]);
             for e in 0..2 {
-                faces[2 * w + e] += heat[e].scale(self.takes(2 * w + e));
-                if let FaceRole::Zone { row, .. } = self.plan.faces[2 * w + e].role {
-                    block[row] += faces[2 * w + e];
+                surfaces[2 * w + e] += heat[e].scale(self.takes(2 * w + e));
+                if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[2 * w + e].role {
+                    block[row] += surfaces[2 * w + e];
                 }
             }
             match self.locals[w] {
-                LocalFaces::None => {}
-                LocalFaces::One { side, .. } => {
+                ExteriorSurfaces::None => {}
+                ExteriorSurfaces::One { side, .. } => {
                     let (local, zone) = (2 * w + side, 2 * w + 1 - side);
-                    faces[local] = faces[local].scale(self.yields(local));
+                    surfaces[local] = surfaces[local].scale(self.yields(local));
                     let gain = self.coefficients.walls[w].area * self.responses[w][1 - side][side];
-                    block[self.plan.row(zone)] += faces[local].scale(gain);
+                    block[self.plan.row(zone)] += surfaces[local].scale(gain);
                 }
-                LocalFaces::Both(_) => {
+                ExteriorSurfaces::Both(_) => {
                     let ([[a, b], [c, d]], inverse) = self.pair(w);
-                    let [f, g] = [faces[2 * w].scale(inverse), faces[2 * w + 1].scale(inverse)];
-                    (faces[2 * w], faces[2 * w + 1]) = (f.scale(d) - g.scale(b), g.scale(a) - f.scale(c));
+                    let [f, g] = [surfaces[2 * w].scale(inverse), surfaces[2 * w + 1].scale(inverse)];
+                    (surfaces[2 * w], surfaces[2 * w + 1]) =
+                        (f.scale(d) - g.scale(b), g.scale(a) - f.scale(c));
                 }
             }
         }
         for (zone, &air) in self.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
-        self.rooms.forward_beside(block);
+        self.zone_fronts.forward_beside(block);
         self.block.solve_beside(block);
-        self.rooms.back_beside(block);
+        self.zone_fronts.back_beside(block);
         for (zone, air) in self.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }
         for (w, wall) in self.plan.walls.iter().enumerate() {
-            for face in [2 * w, 2 * w + 1] {
-                if let FaceRole::Zone { row, .. } = self.plan.faces[face].role {
-                    faces[face] = block[row];
+            for surface in [2 * w, 2 * w + 1] {
+                if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[surface].role {
+                    surfaces[surface] = block[row];
                 }
             }
-            if let LocalFaces::One { side, line } = self.locals[w] {
-                let zone = faces[2 * w + 1 - side].scale(line.slope);
-                faces[2 * w + side] += zone;
+            if let ExteriorSurfaces::One { side, line } = self.locals[w] {
+                let zone = surfaces[2 * w + 1 - side].scale(line.slope);
+                surfaces[2 * w + side] += zone;
             }
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
-            self.chains[w].back([faces[2 * w], faces[2 * w + 1]], own);
+            self.chains[w].back([surfaces[2 * w], surfaces[2 * w + 1]], own);
         }
     }
 
     /// Replaces weights on all unknowns by weights on their equations: the transpose of [`Self::solve_beside`].
     pub(super) fn solve_transposed(&self, rows: &mut [f64], block: &mut Vec<f64>) {
         let (cells, rest) = rows.split_at_mut(self.plan.n_cells);
-        let (faces, air) = rest.split_at_mut(self.plan.faces.len());
+        let (surfaces, air) = rest.split_at_mut(self.plan.surfaces.len());
         block.clear();
         block.resize(self.plan.rows(), 0.0);
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
             let weights = self.chains[w].back_transposed(own);
             for e in 0..2 {
-                faces[2 * w + e] += weights[e];
+                surfaces[2 * w + e] += weights[e];
             }
             match self.locals[w] {
-                LocalFaces::None => {}
-                LocalFaces::One { side, line } => {
+                ExteriorSurfaces::None => {}
+                ExteriorSurfaces::One { side, line } => {
                     let local = 2 * w + side;
-                    faces[2 * w + 1 - side] += line.slope * faces[local];
-                    faces[local] *= self.yields(local);
+                    surfaces[2 * w + 1 - side] += line.slope * surfaces[local];
+                    surfaces[local] *= self.yields(local);
                 }
-                LocalFaces::Both(_) => {
+                ExteriorSurfaces::Both(_) => {
                     let ([[a, b], [c, d]], inverse) = self.pair(w);
-                    let [f, g] = [faces[2 * w] * inverse, faces[2 * w + 1] * inverse];
-                    (faces[2 * w], faces[2 * w + 1]) = (f * d - g * c, g * a - f * b);
+                    let [f, g] = [surfaces[2 * w] * inverse, surfaces[2 * w + 1] * inverse];
+                    (surfaces[2 * w], surfaces[2 * w + 1]) = (f * d - g * c, g * a - f * b);
                 }
             }
-            for face in [2 * w, 2 * w + 1] {
-                if let FaceRole::Zone { row, .. } = self.plan.faces[face].role {
-                    block[row] += faces[face];
+            for surface in [2 * w, 2 * w + 1] {
+                if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[surface].role {
+                    block[row] += surfaces[surface];
                 }
             }
         }
         for (zone, &air) in self.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
-        self.rooms.back_transposed(block);
+        self.zone_fronts.back_transposed(block);
         self.block.solve_transposed(block);
-        self.rooms.forward_transposed(block);
+        self.zone_fronts.forward_transposed(block);
         for (zone, air) in self.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }
         for (w, wall) in self.plan.walls.iter().enumerate() {
-            for face in [2 * w, 2 * w + 1] {
-                if let FaceRole::Zone { row, .. } = self.plan.faces[face].role {
-                    faces[face] = block[row];
+            for surface in [2 * w, 2 * w + 1] {
+                if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[surface].role {
+                    surfaces[surface] = block[row];
                 }
             }
-            if let LocalFaces::One { side, .. } = self.locals[w] {
+            if let ExteriorSurfaces::One { side, .. } = self.locals[w] {
                 let (local, zone) = (2 * w + side, 2 * w + 1 - side);
                 let gain = self.coefficients.walls[w].area * self.responses[w][1 - side][side];
-                faces[local] += self.yields(local) * gain * faces[zone];
+                surfaces[local] += self.yields(local) * gain * surfaces[zone];
             }
-            let heat = [0, 1].map(|e| self.takes(2 * w + e) * faces[2 * w + e]);
+            let heat = [0, 1].map(|e| self.takes(2 * w + e) * surfaces[2 * w + e]);
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
             self.chains[w].forward_transposed(heat, own);
         }
@@ -188,8 +192,8 @@ impl Stepper<'_, f64> {
     /// What changes of the first stage's solution do to the equations of the second, in place.
     pub(super) fn hand_on(&self, rows: &mut [f64], ratio: f64) {
         let (cells, rest) = rows.split_at_mut(self.plan.n_cells);
-        let (faces, air) = rest.split_at_mut(self.plan.faces.len());
-        faces.fill(0.0);
+        let (surfaces, air) = rest.split_at_mut(self.plan.surfaces.len());
+        surfaces.fill(0.0);
         for (wall, chain) in self.plan.walls.iter().zip(&self.chains) {
             for (i, cell) in cells[wall.first_cell..wall.first_cell + wall.len()].iter_mut().enumerate() {
                 *cell *= ratio * chain.rate[i] * chain.storage[i].capacity;

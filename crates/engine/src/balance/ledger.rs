@@ -1,0 +1,158 @@
+//! The energy ledger: where heat came from, and whether the books close.
+
+use crate::balance::flow_index::Sum;
+use crate::number::real::Real;
+
+/// The ways in which heat enters a building.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flow {
+    /// Short-wave radiation absorbed.
+    Solar,
+    /// Convection from outdoor air.
+    Convection,
+    /// Long-wave exchange with sky, outdoor air and ground.
+    Longwave,
+    /// Imposed temperatures: ground and measured.
+    Boundary,
+    /// Outdoor air entering zones.
+    Infiltration,
+    /// Outdoor air let in by ventilation and openings.
+    Ventilation,
+    /// Air exchanged between zones: nothing in sum, but it turns over.
+    Interzone,
+    /// People, light and machines.
+    Gains,
+    /// Heat that plants give.
+    Heating,
+    /// Heat that plants take, as a negative number.
+    Cooling,
+    /// Sun through windows that the zones keep, without what the glass takes up.
+    Transmitted,
+    /// Sun absorbed in glass, from both sides.
+    Glass,
+}
+
+impl Flow {
+    /// All flows, in the order of the ledger's arrays.
+    pub const ALL: [Self; 12] = [
+        Self::Solar,
+        Self::Convection,
+        Self::Longwave,
+        Self::Boundary,
+        Self::Infiltration,
+        Self::Ventilation,
+        Self::Interzone,
+        Self::Gains,
+        Self::Heating,
+        Self::Cooling,
+        Self::Transmitted,
+        Self::Glass,
+    ];
+
+    /// Name in results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solar => "solar",
+            Self::Convection => "convection",
+            Self::Longwave => "longwave",
+            Self::Boundary => "boundary",
+            Self::Infiltration => "infiltration",
+            Self::Ventilation => "ventilation",
+            Self::Interzone => "interzone",
+            Self::Gains => "gains",
+            Self::Heating => "heating",
+            Self::Cooling => "cooling",
+            Self::Transmitted => "transmitted",
+            Self::Glass => "glass",
+        }
+    }
+}
+
+/// Heat of one stage [W], or of a step [J].
+#[derive(Debug, Clone, Copy)]
+pub struct Power<S> {
+    /// Net heat into the building by flow.
+    pub into: [S; Flow::ALL.len()],
+    /// Sum of magnitudes over surfaces and flows.
+    pub total_exchanged: S,
+}
+
+impl<S: Real> Power<S> {
+    /// No heat.
+    #[must_use]
+    #[inline(always)]
+    pub fn none() -> Self {
+        Self { into: [S::zero(); Flow::ALL.len()], total_exchanged: S::zero() }
+    }
+
+    /// FlowIndex a flow.
+    #[inline(always)]
+    pub fn book(&mut self, flow: Flow, power: S) {
+        self.into[flow as usize] += power;
+        self.total_exchanged += power.abs();
+    }
+
+    /// FlowIndex a flow through several surfaces.
+    #[inline(always)]
+    pub(crate) fn book_sum(&mut self, flow: Flow, sum: &Sum<S>) {
+        self.into[flow as usize] += sum.net;
+        self.total_exchanged += sum.magnitude;
+    }
+
+    /// Adds another one that acts for a time.
+    #[inline(always)]
+    pub fn add_for(&mut self, duration: f64, power: &Self) {
+        for (sum, part) in self.into.iter_mut().zip(power.into) {
+            *sum += part.scale(duration);
+        }
+        self.total_exchanged += power.total_exchanged.scale(duration);
+    }
+}
+
+/// Heat of a run [J].
+#[derive(Debug, Clone, Copy)]
+pub struct Ledger<S> {
+    /// Net heat into the building by flow.
+    pub into: [S; Flow::ALL.len()],
+    /// Rise of the heat stored in walls and air.
+    pub stored: S,
+    /// Sum of magnitudes of all flows.
+    pub total_exchanged: S,
+    /// Sum over steps of |stored - into|.
+    pub imbalance: S,
+}
+
+impl<S: Real> Ledger<S> {
+    /// An empty book.
+    #[must_use]
+    pub fn new() -> Self {
+        let zero = S::zero();
+        Self { into: [zero; Flow::ALL.len()], stored: zero, total_exchanged: zero, imbalance: zero }
+    }
+
+    /// FlowIndex a step: heat into the building and its magnitude over the step [J], and what was stored.
+    #[inline(always)]
+    pub fn book(&mut self, energy: &Power<S>, stored: S) {
+        let mut total = S::zero();
+        for (sum, part) in self.into.iter_mut().zip(energy.into) {
+            *sum += part;
+            total += part;
+        }
+        self.stored += stored;
+        self.total_exchanged += energy.total_exchanged;
+        self.imbalance += (stored - total).abs();
+    }
+
+    /// Imbalance over turnover [-], summed over steps so that opposite errors do not cancel.
+    #[must_use]
+    pub fn closure(&self) -> S {
+        self.imbalance / self.total_exchanged.max(S::constant(1e-300))
+    }
+}
+
+impl<S: Real> Default for Ledger<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,4 @@
+//! Heat balances and the energy ledger.
+
+pub mod flow_index;
+pub mod ledger;

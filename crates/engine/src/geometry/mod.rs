@@ -1,0 +1,3 @@
+//! Polygons, shading and sunlit patches.
+
+pub mod daylight;

@@ -1,0 +1,292 @@
+//! Rate-independent hysteresis: one curve for melting, another for freezing, and what lies between.
+//!
+//! Within a step the liquid fraction is a function of temperature alone, given what the cell remembers of the step's
+//! start; that function never falls. Sources: Barz et al. (2019), J. Build. Perf. Simul. 12(6),
+//! doi:10.1080/19401493.2019.1657953; Barz et al. (2021), J. Energy Storage 34, doi:10.1016/j.est.2020.101907.
+
+use super::curve::{Curve, land, passes};
+use crate::input::description::{HysteresisModel, MeltingCurve};
+use crate::input::values::Values;
+use crate::number::real::{Mask, Real};
+
+/// A temperature beyond all others, for what is not known [degC].
+const FAR: f64 = 1e100;
+
+/// How many numbers a memory has.
+pub(crate) const REMEMBERED: usize = 4;
+
+/// What a phase-change cell remembers between steps. Changes once per accepted step;
+/// both stages of a step read the memory as it stood at the step's start.
+#[derive(Debug, Clone, Copy)]
+pub struct PcmMemory<S> {
+    /// Liquid fraction at the end of the last accepted step [-].
+    pub liquid_fraction: S,
+    /// Temperature there [degC].
+    pub temperature: S,
+    /// What the model of hysteresis needs beside; zeros without one.
+    ///
+    /// `curve_track`: 1 on the freezing curve, else 0. `curve_switch`: the temperatures at which the freezing and the
+    /// melting curve have the present fraction. `curve_scale`: the solid over that of the melting curve, the liquid
+    /// over that of the freezing curve.
+    pub marks: [S; 2],
+}
+
+impl<S: Real> PcmMemory<S> {
+    /// A memory of nothing but a point.
+    #[inline(always)]
+    pub fn new(liquid_fraction: S, temperature: S) -> Self {
+        Self { liquid_fraction, temperature, marks: [S::zero(); 2] }
+    }
+
+    /// All its numbers.
+    pub(crate) fn numbers(&self) -> [S; REMEMBERED] {
+        [self.liquid_fraction, self.temperature, self.marks[0], self.marks[1]]
+    }
+
+    /// Changes each number by one of others, in the order of [`Self::numbers`].
+    #[inline(always)]
+    pub(crate) fn read<T>(&mut self, numbers: [T; REMEMBERED], change: &mut impl FnMut(&mut S, T)) {
+        let [fraction, temperature, first, second] = numbers;
+        change(&mut self.liquid_fraction, fraction);
+        change(&mut self.temperature, temperature);
+        change(&mut self.marks[0], first);
+        change(&mut self.marks[1], second);
+    }
+
+    /// Takes over the lanes of another one where the mask is true.
+    #[inline(always)]
+    pub fn take(&mut self, mask: S::Mask, other: &Self) {
+        let blend = |a: &mut S, b: S| *a = S::select(mask, b, *a);
+        blend(&mut self.liquid_fraction, other.liquid_fraction);
+        blend(&mut self.temperature, other.temperature);
+        blend(&mut self.marks[0], other.marks[0]);
+        blend(&mut self.marks[1], other.marks[1]);
+    }
+}
+
+/// Two curves and a model.
+#[derive(Debug, Clone)]
+pub(super) struct Hysteresis<S> {
+    model: HysteresisModel,
+    heating: Curve<S>,
+    cooling: Curve<S>,
+}
+
+impl<S: Real> Hysteresis<S> {
+    pub(super) fn new(
+        values: &Values<'_, S>,
+        model: HysteresisModel,
+        heating: &MeltingCurve,
+        cooling: &MeltingCurve,
+    ) -> Self {
+        Self { model, heating: Curve::new(values, heating), cooling: Curve::new(values, cooling) }
+    }
+
+    /// Fraction and slope of the melting and of the freezing curve. Where parameters vary so far that the curves cross,
+    /// the freezing curve is the melting curve.
+    #[inline(always)]
+    fn curves(&self, temperature: S) -> [(S, S); 2] {
+        let melting = self.heating.compact(temperature);
+        let freezing = self.cooling.compact(temperature);
+        let crossed = freezing.0.lt(melting.0);
+        let (fraction, slope) =
+            (S::select(crossed, melting.0, freezing.0), S::select(crossed, melting.1, freezing.1));
+        [melting, (fraction, slope)]
+    }
+
+    /// The memory of a cell that came from below.
+    pub(super) fn begin(&self, temperature: S) -> PcmMemory<S> {
+        let fraction = self.heating.compact(temperature).0;
+        let memory = PcmMemory::new(fraction, temperature);
+        let known = match self.model {
+            HysteresisModel::CurveSwitch => [-S::constant(FAR), S::constant(FAR)],
+            HysteresisModel::CurveTrack | HysteresisModel::CurveScale => [S::zero(); 2],
+        };
+        self.next(&PcmMemory { marks: known, ..memory }, temperature, fraction)
+    }
+
+    /// Liquid fraction and its slope [1/K]. Where the slope jumps it is the larger one.
+    #[inline(always)]
+    pub(super) fn at(&self, temperature: S, memory: &PcmMemory<S>) -> (S, S) {
+        let [(melting, melting_slope), (freezing, freezing_slope)] = self.curves(temperature);
+        let either = |mask, a: (S, S), b: (S, S)| (S::select(mask, a.0, b.0), S::select(mask, a.1, b.1));
+        let [first, second] = memory.marks;
+        match self.model {
+            HysteresisModel::CurveTrack => {
+                let cools = S::constant(0.5).lt(first);
+                either(cools, (freezing, freezing_slope), (melting, melting_slope))
+            }
+            HysteresisModel::CurveSwitch => {
+                let held = memory.liquid_fraction;
+                let (melts, freezes) = (!melting.lt(held), !held.lt(freezing));
+                let up = S::select(melts, melting_slope, S::zero());
+                let down = S::select(freezes, freezing_slope, S::zero());
+                (melting.max(freezing.min(held)), up.max(down))
+            }
+            HysteresisModel::CurveScale => {
+                let warmer = (S::one() - first * (S::one() - melting), first * melting_slope);
+                let colder = (second * freezing, second * freezing_slope);
+                let heats = memory.temperature.lt(temperature);
+                let (fraction, slope) = either(heats, warmer, colder);
+                let still = !heats & !temperature.lt(memory.temperature);
+                let fraction = S::select(still, memory.liquid_fraction, fraction);
+                (fraction, S::select(still, warmer.1.max(colder.1), slope))
+            }
+        }
+    }
+
+    /// What is remembered after a step that ended at a temperature with a fraction.
+    #[inline(never)]
+    pub(super) fn next(&self, memory: &PcmMemory<S>, temperature: S, fraction: S) -> PcmMemory<S> {
+        S::vectorised(
+            #[inline(always)]
+            || self.follow(memory, temperature, fraction),
+        )
+    }
+
+    #[inline(always)]
+    fn follow(&self, memory: &PcmMemory<S>, temperature: S, fraction: S) -> PcmMemory<S> {
+        let [first, second] = memory.marks;
+        let [(melting, _), (freezing, _)] = self.curves(temperature);
+        let marks = match self.model {
+            HysteresisModel::CurveTrack => {
+                let molten = !fraction.lt(S::one());
+                let frozen = !S::zero().lt(fraction);
+                [S::select(molten, S::one(), S::select(frozen, S::zero(), first)), S::zero()]
+            }
+            HysteresisModel::CurveSwitch => {
+                // On a curve its mark is here, and that of the other one is not yet asked for.
+                let (melts, freezes) = (!melting.lt(fraction), !fraction.lt(freezing));
+                let on = melts | freezes;
+                let far = S::constant(FAR);
+                let first = S::select(freezes, temperature, S::select(on, far, first));
+                let second = S::select(melts, temperature, S::select(on, -far, second));
+                self.marked(fraction, [first, second], !on)
+            }
+            HysteresisModel::CurveScale => {
+                let tiny = S::constant(1e-300);
+                let solid = (S::one() - melting).max(tiny);
+                let liquid = freezing.max(tiny);
+                [((S::one() - fraction) / solid).min(S::one()), (fraction / liquid).min(S::one())]
+            }
+        };
+        PcmMemory { liquid_fraction: fraction, temperature, marks }
+    }
+
+    /// Finds the marks of `curve_switch` that are asked for and not known.
+    #[inline(always)]
+    fn marked(&self, fraction: S, marks: [S; 2], asked: S::Mask) -> [S; 2] {
+        let far = S::constant(0.5 * FAR);
+        let missing = [asked & far.lt(marks[0]), asked & marks[1].lt(-far)];
+        let find = |mask: S::Mask, curve: &Curve<S>, side: usize| {
+            if mask.any() {
+                S::select(mask, curve.temperatures_of(fraction)[side], marks[side])
+            } else {
+                marks[side]
+            }
+        };
+        // Each on the side where its curve is followed: a step that lands there finds the slope that goes on.
+        [find(missing[0], &self.cooling, 0), find(missing[1], &self.heating, 1)]
+    }
+
+    /// The same memory with nothing left unknown.
+    pub(super) fn complete(&self, memory: &PcmMemory<S>) -> PcmMemory<S> {
+        match self.model {
+            HysteresisModel::CurveSwitch => PcmMemory {
+                marks: self.marked(memory.liquid_fraction, memory.marks, S::Mask::splat(true)),
+                ..*memory
+            },
+            HysteresisModel::CurveTrack | HysteresisModel::CurveScale => *memory,
+        }
+    }
+
+    /// Where freezing ends to go on and where melting begins, coming from the memory [degC].
+    #[inline(always)]
+    fn turns(&self, memory: &PcmMemory<S>) -> [S; 2] {
+        match self.model {
+            HysteresisModel::CurveTrack => [S::constant(FAR), -S::constant(FAR)],
+            HysteresisModel::CurveSwitch => memory.marks,
+            HysteresisModel::CurveScale => [memory.temperature; 2],
+        }
+    }
+
+    /// Where the capacity is largest on freezing and on melting [degC].
+    #[inline(always)]
+    fn peaks(&self, memory: &PcmMemory<S>) -> [S; 2] {
+        let [colder, warmer] = self.turns(memory);
+        [self.cooling.peak().min(colder), self.heating.peak().max(warmer)]
+    }
+
+    /// See [`PcmCoefficients::limit`](super::PcmCoefficients::limit).
+    #[inline(never)]
+    pub(super) fn limit(&self, from: S, to: S, memory: &PcmMemory<S>) -> (S, S::Mask) {
+        S::vectorised(
+            #[inline(always)]
+            || self.limited(from, to, memory),
+        )
+    }
+
+    #[inline(always)]
+    fn limited(&self, from: S, to: S, memory: &PcmMemory<S>) -> (S, S::Mask) {
+        let [freezing, melting] = self.peaks(memory);
+        let (to, first) = land(from, to, freezing, self.cooling.width());
+        let (to, second) = land(from, to, melting, self.heating.width());
+        let [colder, warmer] = self.turns(memory);
+        let mut unforeseen = first | second | passes(from, to, colder) | passes(from, to, warmer);
+        for curve in [&self.heating, &self.cooling] {
+            if let Some([low, high]) = curve.kinks() {
+                unforeseen = unforeseen | passes(from, to, low) | passes(from, to, high);
+            }
+        }
+        (to, unforeseen)
+    }
+
+    /// Half-width of the narrower curve [K].
+    pub(super) fn width(&self) -> S {
+        self.heating.width().min(self.cooling.width())
+    }
+
+    /// The part of the fraction whose slope never falls, and that slope: each curve up to its peak, then straight on.
+    /// The memory must be complete.
+    pub(super) fn rising(&self, temperature: S, memory: &PcmMemory<S>) -> (S, S) {
+        let [first, second] = memory.marks;
+        let [_, warmer] = self.turns(memory);
+        let [freezing_peak, melting_peak] = self.peaks(memory);
+        let along = |curve: &Curve<S>, peak: S, from: S| {
+            let place = temperature.max(from).min(peak);
+            let (fraction, slope) = curve.compact(place);
+            (fraction + slope * (temperature - place), slope)
+        };
+        let nothing = -S::constant(FAR);
+        let freezing = along(&self.cooling, freezing_peak, nothing);
+        let scaled = |share: S, (fraction, slope): (S, S)| (share * fraction, share * slope);
+        match self.model {
+            HysteresisModel::CurveTrack => {
+                let melting = along(&self.heating, melting_peak, nothing);
+                let cools = S::constant(0.5).lt(first);
+                (S::select(cools, freezing.0, melting.0), S::select(cools, freezing.1, melting.1))
+            }
+            HysteresisModel::CurveSwitch | HysteresisModel::CurveScale => {
+                let scale = self.model == HysteresisModel::CurveScale;
+                let (solid, liquid) = if scale { (first, second) } else { (S::one(), S::one()) };
+                let melting = scaled(solid, along(&self.heating, melting_peak, warmer));
+                let begun = solid * self.heating.compact(warmer).0;
+                let (frozen, frozen_slope) = scaled(liquid, freezing);
+                let melts = !temperature.lt(warmer);
+                (
+                    frozen + S::select(melts, melting.0 - begun, S::zero()),
+                    frozen_slope + S::select(melts, melting.1, S::zero()),
+                )
+            }
+        }
+    }
+}
+
+/// Whether a fraction went one way in the first part of a step and back in the second.
+#[inline(always)]
+pub fn reversed<S: Real>(start: S, midway: S, end: S) -> S::Mask {
+    // Less than this is round-off.
+    let real = S::constant(1e-12);
+    let (before, after) = (midway - start, end - midway);
+    (before * after).lt(S::zero()) & real.lt(before.abs()) & real.lt(after.abs())
+}

@@ -1,0 +1,391 @@
+//! Phase change: volumetric enthalpy, capacity, liquid fraction and conductivity at a temperature.
+//!
+//! A law gives the enthalpy itself and its exact derivative, so that the step can
+//! conserve heat; the "apparent capacity" of the paper is that derivative.
+//!
+//! Mass stays: a cell is a fixed mass, its volume that of the solid it was built with. Heat is counted per volume as
+//! built, `H(T, xi) = rho_s c_s (T - Tr) + xi [rho_s L + rho_s (c_l - c_s)(T - Tr)]`; the liquid, thicker by
+//! `rho_s/rho_l`, conducts `k_l rho_l/rho_s` over the thickness as built. With one density this is the paper's eq. 2.
+
+mod curve;
+mod hysteresis;
+mod normal;
+mod segments;
+mod table;
+
+use crate::input::description::{ParamId, PcmLaw};
+use crate::input::values::Values;
+use crate::number::real::{Mask, Real};
+use curve::{Curve, CurvePoint, land, passes};
+use hysteresis::Hysteresis;
+use table::Table;
+
+pub use curve::CUT;
+pub(crate) use hysteresis::REMEMBERED;
+pub use hysteresis::{PcmMemory, reversed};
+
+/// State of a phase-change material at one temperature, per unit volume of layer.
+#[derive(Debug, Clone, Copy)]
+pub struct PcmPoint<S> {
+    /// Enthalpy above the law's reference [J/m3].
+    pub enthalpy: S,
+    /// Slope of the enthalpy [J/(m3 K)]; the paper's apparent capacity.
+    pub capacity: S,
+    /// Liquid fraction [-].
+    pub liquid_fraction: S,
+    /// Its slope [1/K].
+    pub fraction_slope: S,
+    /// Conductivity [W/(m K)].
+    pub conductivity: S,
+    /// Slope of the conductivity [W/(m K2)].
+    pub conductivity_slope: S,
+    /// Integral of the conductivity over temperature [W/m], from a temperature of the law's own; zero where the law
+    /// has none, see [`PcmCoefficients::integrable`].
+    pub potential: S,
+}
+
+impl<S: Real> PcmPoint<S> {
+    /// A point not yet evaluated.
+    pub fn zero() -> Self {
+        let zero = S::zero();
+        Self {
+            enthalpy: zero,
+            capacity: zero,
+            liquid_fraction: zero,
+            fraction_slope: zero,
+            conductivity: zero,
+            conductivity_slope: zero,
+            potential: zero,
+        }
+    }
+}
+
+/// A phase-change law with its numbers.
+#[derive(Debug, Clone)]
+pub struct PcmCoefficients<S> {
+    /// Of solid and liquid over the thickness as built [W/(m K)].
+    conductivity: [S; 2],
+    /// Sensible, of solid and liquid per volume as built [J/(m3 K)].
+    volumetric_heat: [S; 2],
+    law: Law<S>,
+}
+
+#[derive(Debug, Clone)]
+enum Law<S> {
+    Melting(Latent<S>, Curve<S>),
+    Hysteresis(Latent<S>, Box<Hysteresis<S>>),
+    Table(Table<S>),
+}
+
+/// Heat of melting per volume as built, at a temperature.
+#[derive(Debug, Clone, Copy)]
+struct Latent<S> {
+    heat: S,
+    reference: S,
+}
+
+impl<S: Real> PcmCoefficients<S> {
+    /// Reads the numbers of a law.
+    pub fn new(
+        values: &Values<'_, S>,
+        conductivity: [ParamId; 2],
+        density: [ParamId; 2],
+        specific_heat: [ParamId; 2],
+        law: &PcmLaw,
+    ) -> Self {
+        let [solid, liquid] = density.map(|id| values.get(id));
+        let conductivity = conductivity.map(|id| values.get(id));
+        let latent = |heat: ParamId, curve: &Curve<S>| Latent {
+            heat: solid * values.get(heat),
+            reference: curve.reference(),
+        };
+        let law = match law {
+            PcmLaw::Melting { latent_heat, curve } => {
+                let curve = Curve::new(values, curve);
+                Law::Melting(latent(*latent_heat, &curve), curve)
+            }
+            PcmLaw::Hysteresis { latent_heat, model, heating, cooling } => {
+                let latent = latent(*latent_heat, &Curve::new(values, heating));
+                Law::Hysteresis(latent, Box::new(Hysteresis::new(values, *model, heating, cooling)))
+            }
+            PcmLaw::Tabulated { temperatures, points, melting_range, temperature_shift, enthalpy_scale } => {
+                let factor = solid * values.get(*enthalpy_scale);
+                let shift = values.get(*temperature_shift);
+                Law::Table(Table::new(temperatures, points, *melting_range, shift, factor))
+            }
+        };
+        Self {
+            conductivity: [conductivity[0], conductivity[1] * (liquid / solid)],
+            volumetric_heat: specific_heat.map(|id| solid * values.get(id)),
+            law,
+        }
+    }
+
+    /// Properties at a temperature [degC].
+    pub fn at(&self, temperature: S, memory: &PcmMemory<S>) -> PcmPoint<S> {
+        let mut point = PcmPoint::zero();
+        self.at_all(&[temperature], &[*memory], core::slice::from_mut(&mut point));
+        point
+    }
+
+    /// Properties at several temperatures [degC]; a law that remembers takes a memory for each.
+    // Not inlined: all laws at every place where a cell is looked at would be a lot of code.
+    #[inline(never)]
+    pub fn at_all(&self, temperatures: &[S], memory: &[PcmMemory<S>], points: &mut [PcmPoint<S>]) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let places = points.iter_mut().zip(temperatures);
+                match &self.law {
+                    Law::Melting(latent, curve) => {
+                        // The usual curve by itself, so that its loop holds nothing else.
+                        if let Some(tanh) = curve.tanh() {
+                            for (point, &temperature) in places {
+                                *point = self.melt(*latent, temperature, tanh.at(temperature));
+                            }
+                        } else {
+                            for (point, &temperature) in places {
+                                *point = self.melt(*latent, temperature, curve.at(temperature));
+                            }
+                        }
+                    }
+                    Law::Hysteresis(latent, hysteresis) => {
+                        for ((point, &temperature), memory) in places.zip(memory) {
+                            *point = self.turn(*latent, hysteresis, temperature, memory);
+                        }
+                    }
+                    Law::Table(table) => {
+                        for (point, &temperature) in places {
+                            *point = self.read(table, temperature);
+                        }
+                    }
+                }
+            },
+        );
+    }
+
+    #[inline(always)]
+    fn melt(&self, latent: Latent<S>, temperature: S, point: CurvePoint<S>) -> PcmPoint<S> {
+        let CurvePoint { fraction, slope, molten } = point;
+        let (enthalpy, capacity) = self.heat(latent, temperature, fraction, slope);
+        self.point(temperature, [enthalpy, capacity], [fraction, slope], molten)
+    }
+
+    #[inline(always)]
+    fn turn(
+        &self,
+        latent: Latent<S>,
+        hysteresis: &Hysteresis<S>,
+        temperature: S,
+        memory: &PcmMemory<S>,
+    ) -> PcmPoint<S> {
+        let (fraction, slope) = hysteresis.at(temperature, memory);
+        let (enthalpy, capacity) = self.heat(latent, temperature, fraction, slope);
+        self.point(temperature, [enthalpy, capacity], [fraction, slope], S::zero())
+    }
+
+    #[inline(always)]
+    fn read(&self, table: &Table<S>, temperature: S) -> PcmPoint<S> {
+        let (enthalpy, capacity, fraction, slope) = table.at(temperature, self.volumetric_heat);
+        self.point(temperature, [enthalpy, capacity], [fraction, slope], table.molten(temperature))
+    }
+
+    #[inline(always)]
+    fn point(
+        &self,
+        temperature: S,
+        [enthalpy, capacity]: [S; 2],
+        [fraction, slope]: [S; 2],
+        molten: S,
+    ) -> PcmPoint<S> {
+        let spread = self.conductivity[1] - self.conductivity[0];
+        PcmPoint {
+            enthalpy,
+            capacity,
+            liquid_fraction: fraction,
+            fraction_slope: slope,
+            conductivity: self.conductivity[0] + fraction * spread,
+            conductivity_slope: spread * slope,
+            potential: self.conductivity[0] * temperature + spread * molten,
+        }
+    }
+
+    /// Enthalpy [J/m3] of a temperature and a liquid fraction, and its slope when the fraction has that slope: the
+    /// enthalpy whose derivative is the apparent capacity of the paper's eq. 2, relative to the melting temperature.
+    #[inline(always)]
+    fn heat(&self, latent: Latent<S>, temperature: S, fraction: S, slope: S) -> (S, S) {
+        let excess = temperature - latent.reference;
+        let step = self.volumetric_heat[1] - self.volumetric_heat[0];
+        let jump = latent.heat + step * excess;
+        let enthalpy = self.volumetric_heat[0] * excess + fraction * jump;
+        (enthalpy, self.volumetric_heat[0] + step * fraction + slope * jump)
+    }
+
+    /// Whether a point holds the integral of the conductivity.
+    pub fn integrable(&self) -> bool {
+        match &self.law {
+            Law::Melting(_, curve) => curve.integrable(),
+            Law::Hysteresis(..) => false,
+            Law::Table(_) => true,
+        }
+    }
+
+    /// Whether the enthalpy depends on the way taken.
+    pub fn remembers(&self) -> bool {
+        matches!(self.law, Law::Hysteresis(..))
+    }
+
+    /// The memory of a cell that came to a temperature from below.
+    pub fn begin(&self, temperature: S) -> PcmMemory<S> {
+        if let Law::Hysteresis(_, hysteresis) = &self.law {
+            return hysteresis.begin(temperature);
+        }
+        let nothing = PcmMemory::new(S::zero(), temperature);
+        PcmMemory::new(self.at(temperature, &nothing).liquid_fraction, temperature)
+    }
+
+    /// The memory after a step that ended at a temperature with a liquid fraction.
+    #[inline(always)]
+    pub fn next(&self, memory: &PcmMemory<S>, temperature: S, fraction: S) -> PcmMemory<S> {
+        match &self.law {
+            Law::Hysteresis(_, hysteresis) => hysteresis.next(memory, temperature, fraction),
+            Law::Melting(..) | Law::Table(_) => PcmMemory::new(fraction, temperature),
+        }
+    }
+
+    /// The same memory with all that [`Self::rising`] needs.
+    pub fn complete(&self, memory: &PcmMemory<S>) -> PcmMemory<S> {
+        match &self.law {
+            Law::Hysteresis(_, hysteresis) => hysteresis.complete(memory),
+            Law::Melting(..) | Law::Table(_) => *memory,
+        }
+    }
+
+    /// Keeps a Newton step from leaping over the steep part of the enthalpy curve: a step that crosses its
+    /// inflection from beyond one half-width lands on the inflection, from where Newton converges monotonically.
+    /// True where the next change cannot be foreseen from this one: it was kept, or the slope jumps on the way.
+    #[inline(always)]
+    pub fn limit(&self, from: S, to: S, memory: &PcmMemory<S>) -> (S, S::Mask) {
+        let (peak, width, kinks) = match &self.law {
+            Law::Melting(_, curve) => (curve.peak(), curve.width(), curve.kinks()),
+            Law::Table(table) => (table.peak(), table.width(), Some(table.ends())),
+            Law::Hysteresis(_, hysteresis) => return hysteresis.limit(from, to, memory),
+        };
+        let (to, leaps) = land(from, to, peak, width);
+        let jumps =
+            kinks.map_or(S::Mask::splat(false), |[low, high]| passes(from, to, low) | passes(from, to, high));
+        (to, leaps | jumps)
+    }
+
+    /// Half-width of the melting range [K].
+    pub fn width(&self) -> S {
+        match &self.law {
+            Law::Melting(_, curve) => curve.width(),
+            Law::Hysteresis(_, hysteresis) => hysteresis.width(),
+            Law::Table(table) => table.width(),
+        }
+    }
+
+    /// The convex part of the enthalpy, `H = H1 - H2` with slopes that never fall, and its slope: the split of Brugnano
+    /// & Casulli (2009) and Casulli & Zanolli (2010), SIAM J. Sci. Comput. 32(4), doi:10.1137/100786320. The memory
+    /// must be complete.
+    pub fn rising(&self, temperature: S, memory: &PcmMemory<S>) -> (S, S) {
+        let (latent, (fraction, slope)) = match &self.law {
+            Law::Melting(latent, curve) => {
+                let place = temperature.min(curve.peak());
+                let (fraction, slope) = curve.whole(place);
+                (latent, (fraction + slope * (temperature - place), slope))
+            }
+            Law::Hysteresis(latent, hysteresis) => (latent, hysteresis.rising(temperature, memory)),
+            Law::Table(table) => {
+                let place = temperature.min(table.peak());
+                let PcmPoint { enthalpy, capacity, .. } = self.at(place, memory);
+                return (enthalpy + capacity * (temperature - place), capacity);
+            }
+        };
+        self.heat(*latent, temperature, fraction, slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::description::{MeltingCurve, ParamId, TablePoints};
+    use crate::number::real::Dual;
+
+    type D = Dual<1>;
+
+    fn ids<const N: usize>(first: u32) -> [ParamId; N] {
+        core::array::from_fn(|i| ParamId(first + u32::try_from(i).unwrap()))
+    }
+
+    fn check_slopes(law: &PcmLaw, numbers: &[f64]) {
+        let numbers: Vec<D> = numbers.iter().map(|&v| D::constant(v)).collect();
+        let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), law);
+        let memory = PcmMemory::new(D::zero(), D::zero());
+        let mut last = f64::NEG_INFINITY;
+        for i in 0..400 {
+            let t = 10.0 + 0.083 * f64::from(i);
+            let point = pcm.at(D::variable(t, 0), &memory);
+            assert!((point.enthalpy.slope[0] / point.capacity.value - 1.0).abs() < 1e-9, "capacity at {t}");
+            let slope = point.conductivity.slope[0] - point.conductivity_slope.value;
+            assert!(slope.abs() < 1e-12, "conductivity at {t}");
+            let slope = point.potential.slope[0] - point.conductivity.value;
+            assert!(slope.abs() < 1e-12, "potential at {t}");
+            assert!(point.enthalpy.value > last);
+            last = point.enthalpy.value;
+        }
+    }
+
+    /// Energain, reference/paper Table 2.
+    const ENERGAIN: [f64; 6] = [0.22, 0.18, 855.0, 855.0, 3134.0, 2833.0];
+
+    #[test]
+    fn capacity_is_the_derivative_of_enthalpy() {
+        let [latent_heat, melting_temperature, gamma, delta_t] = ids(6);
+        let curve = MeltingCurve::TanhGamma { melting_temperature, gamma, delta_t };
+        let law = PcmLaw::Melting { latent_heat, curve };
+        check_slopes(&law, &[&ENERGAIN[..], &[71e3, 23.4, 0.04, 0.01]].concat());
+        let [temperature_shift, enthalpy_scale] = ids(6);
+        let law = PcmLaw::Tabulated {
+            temperatures: vec![15.0, 20.0, 22.0, 23.0, 25.0, 30.0],
+            points: TablePoints::Enthalpies(vec![0.0, 16e3, 40e3, 70e3, 90e3, 104e3]),
+            melting_range: [18.0, 25.0],
+            temperature_shift,
+            enthalpy_scale,
+        };
+        check_slopes(&law, &[&ENERGAIN[..], &[0.4, 1.1]].concat());
+    }
+
+    #[test]
+    fn melting_takes_up_the_latent_heat() {
+        let [latent_heat, melting_temperature, width] = ids(6);
+        let law =
+            PcmLaw::Melting { latent_heat, curve: MeltingCurve::TanhWidth { melting_temperature, width } };
+        let numbers = [&ENERGAIN[..], &[71e3, 23.4, 1.0]].concat();
+        let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), &law);
+        let memory = PcmMemory::new(0.0, 0.0);
+        let rise = pcm.at(33.4, &memory).enthalpy - pcm.at(13.4, &memory).enthalpy;
+        let expected = 855.0 * (71e3 + 10.0 * 3134.0 + 10.0 * 2833.0);
+        assert!((rise / expected - 1.0).abs() < 1e-7);
+    }
+
+    #[test]
+    fn table_passes_through_its_points() {
+        let [temperature_shift, enthalpy_scale] = ids(6);
+        let (temperatures, enthalpies) = (vec![10.0, 20.0, 24.0, 40.0], vec![0.0, 20e3, 90e3, 130e3]);
+        let law = PcmLaw::Tabulated {
+            temperatures: temperatures.clone(),
+            points: TablePoints::Enthalpies(enthalpies.clone()),
+            melting_range: [20.0, 24.0],
+            temperature_shift,
+            enthalpy_scale,
+        };
+        let numbers = [&ENERGAIN[..], &[0.0, 1.0]].concat();
+        let pcm = PcmCoefficients::new(&Values::new(&numbers), ids(0), ids(2), ids(4), &law);
+        let memory = PcmMemory::new(0.0, 0.0);
+        for (t, h) in temperatures.iter().zip(&enthalpies) {
+            assert!((pcm.at(*t, &memory).enthalpy - 855.0 * h).abs() < 1e-6 * 855.0 * 130e3);
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Ensembles: members in lanes, packs of members on threads.
+//!
+//! A member's bits do not depend on its neighbours, the lane width or the number of threads.
+
+use core::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use crate::building::plan::Plan;
+use crate::error::EngineError;
+use crate::input::forcing::Forcing;
+use crate::number::real::{Mask, Real};
+use crate::number::simd::{Level, Packed, WIDTH, run};
+use crate::run::march::{Options, Watch, check, march_in};
+use crate::weather::conditions::Weather;
+
+/// What an ensemble leaves behind, by member.
+#[derive(Debug)]
+pub struct Ensemble {
+    /// Members x rows x probes; NaN for a member that failed.
+    pub records: Vec<f64>,
+    /// Energy closure of each member; NaN for one that failed.
+    pub closure: Vec<f64>,
+    /// Members that failed, with the reason.
+    pub failures: Vec<(usize, EngineError)>,
+}
+
+/// Runs members given as rows of `numbers` (members x parameters).
+///
+/// # Errors
+/// [`EngineError::Interrupted`] and [`EngineError::Input`]; failures of single members are reported in the result.
+pub fn ensemble(
+    plan: &Plan,
+    numbers: &[f64],
+    forcing: &Forcing<'_>,
+    options: &Options,
+    watch: &Watch,
+) -> Result<Ensemble, EngineError> {
+    let width = plan.description.parameters.len();
+    if width == 0 || !numbers.len().is_multiple_of(width) {
+        return Err(EngineError::Input(format!("member rows must hold {width} parameters")));
+    }
+    check(plan, width, forcing, options)?;
+    let level = Level::widest()?;
+    let weather = Weather::new(plan, forcing);
+    let members = numbers.len() / width;
+    let row = options.rows(forcing.steps()) * options.probes.len();
+    let mut result = Ensemble {
+        records: vec![f64::NAN; members * row],
+        closure: vec![f64::NAN; members],
+        failures: Vec::new(),
+    };
+    let packs = result.records.par_chunks_mut(row.max(1) * WIDTH).zip(result.closure.par_chunks_mut(WIDTH));
+    let failures: Result<Vec<_>, EngineError> = packs
+        .enumerate()
+        .map(|(pack, (records, closure))| {
+            let first = pack * WIDTH;
+            let members = &numbers[first * width..(first + closure.len()) * width];
+            let mut target = Target { records, closure, row };
+            let failed = run_pack(level, plan, members, &weather, options, watch, &mut target)?;
+            Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
+        })
+        .collect();
+    result.failures = failures?.into_iter().flatten().collect();
+    Ok(result)
+}
+
+/// Where a pack writes.
+struct Target<'a> {
+    records: &'a mut [f64],
+    closure: &'a mut [f64],
+    row: usize,
+}
+
+/// A pack on its way into lanes.
+struct Pack<'a> {
+    plan: &'a Plan,
+    numbers: &'a [f64],
+    members: usize,
+    weather: &'a Weather<'a>,
+    options: &'a Options,
+    watch: &'a Watch,
+}
+
+impl Packed for Pack<'_> {
+    /// Records and closure of each member; none for one whose iteration failed.
+    type Output = Result<Vec<Option<(Vec<f64>, f64)>>, EngineError>;
+
+    fn run<S: Real>(self, pack: fn([f64; WIDTH]) -> S) -> Self::Output {
+        let width = self.plan.description.parameters.len();
+        let lanes: Vec<S> = (0..width)
+            // A short pack repeats its last member.
+            .map(|p| pack(core::array::from_fn(|lane| self.numbers[lane.min(self.members - 1) * width + p])))
+            .collect();
+        let run = march_in(self.plan, &lanes, self.weather, self.options, self.watch)?;
+        let closure = run.ledger.closure();
+        let of = |member| (run.records.iter().map(|r| r.lane(member)).collect(), closure.lane(member));
+        Ok((0..self.members).map(|member| (!run.failed.lane(member)).then(|| of(member))).collect())
+    }
+}
+
+/// Runs a pack in lanes, and alone those of its members whose iteration failed there.
+fn run_pack(
+    level: Level,
+    plan: &Plan,
+    numbers: &[f64],
+    weather: &Weather<'_>,
+    options: &Options,
+    watch: &Watch,
+    target: &mut Target<'_>,
+) -> Result<Vec<(usize, EngineError)>, EngineError> {
+    let width = plan.description.parameters.len();
+    let members = target.closure.len();
+    let mut failures = Vec::new();
+    let results = match run(level, Pack { plan, numbers, members, weather, options, watch }) {
+        Err(EngineError::NotConverged { .. } | EngineError::NotSettled { .. }) => vec![None; members],
+        other => other?,
+    };
+    for (member, result) in results.into_iter().enumerate() {
+        let alone = || {
+            let numbers = &numbers[member * width..(member + 1) * width];
+            march_in(plan, numbers, weather, options, watch).map(|run| (run.records, run.ledger.closure()))
+        };
+        match result.map_or_else(alone, Ok) {
+            Ok((records, closure)) => {
+                target.records[member * target.row..(member + 1) * target.row].copy_from_slice(&records);
+                target.closure[member] = closure;
+            }
+            Err(EngineError::Interrupted) => return Err(EngineError::Interrupted),
+            Err(error) => failures.push((member, error)),
+        }
+    }
+    watch.done.fetch_add(members, Ordering::Relaxed);
+    Ok(failures)
+}

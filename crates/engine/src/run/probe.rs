@@ -1,0 +1,301 @@
+//! What a run records: readings of the state at the end of a step.
+
+use serde::Deserialize;
+
+use crate::building::coefficients::{Matter, WallCoefficients};
+use crate::building::plan::{Plan, SurfaceId};
+use crate::error::EngineError;
+use crate::number::real::Real;
+use crate::step::Stepper;
+use crate::step::state::State;
+
+/// A quantity to record.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Probe {
+    /// Air temperature of a zone [degC].
+    AirTemperature {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Area-weighted mean temperature of a zone's faces [degC].
+    MeanRadiantTemperature {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Temperature of a face [degC]; side 0 outside, 1 inside.
+    FaceTemperature {
+        /// Index of the surface.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
+    /// Conduction through a face [W/m2], positive towards the inside.
+    FaceFlux {
+        /// Index of the surface.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
+    /// Temperature between layer `interface - 1` and `interface`, counted from outside [degC].
+    InterfaceTemperature {
+        /// Index of the surface.
+        surface: usize,
+        /// Layers before it.
+        interface: usize,
+    },
+    /// Conduction through the middle of a layer [W/m2], positive towards the inside.
+    LayerFlux {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the layer, counted from outside.
+        layer: usize,
+    },
+    /// Mean temperature of a layer over its volume [degC].
+    LayerTemperature {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the layer, counted from outside.
+        layer: usize,
+    },
+    /// Mean liquid fraction of a layer [-].
+    LiquidFraction {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the layer, counted from outside.
+        layer: usize,
+    },
+    /// Mean enthalpy of a layer above its law's reference [J/m3].
+    LayerEnthalpy {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the layer, counted from outside.
+        layer: usize,
+    },
+    /// Heat that the plant of a zone gave over the step [W].
+    HeatingLoad {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Heat that the plant of a zone took over the step [W].
+    CoolingLoad {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Outdoor air entering a zone: infiltration, ventilation and openings [1/h].
+    AirChanges {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Short-wave radiation on the outside face, after shading, mean over the step [W/m2].
+    IncidentSolar {
+        /// Index of the surface.
+        surface: usize,
+    },
+    /// Sun that a window lets in, mean over the step [W].
+    TransmittedSolar {
+        /// Index of the surface.
+        surface: usize,
+    },
+    /// Sun that the windows of a zone let in, mean over the step [W].
+    ZoneTransmittedSolar {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Sun that leaves a zone through its windows again, mean over the step [W].
+    ZoneLostSolar {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Temperature of the sky as a black body [degC].
+    SkyTemperature,
+    /// Temperature at a sensor [degC].
+    Sensor {
+        /// Index of the sensor.
+        sensor: usize,
+    },
+}
+
+impl Probe {
+    /// Checks that what is asked for exists.
+    ///
+    /// # Errors
+    /// [`EngineError::Input`].
+    pub fn check(&self, plan: &Plan) -> Result<(), EngineError> {
+        let description = &plan.description;
+        let layers = |surface: usize| {
+            let construction = description.surfaces.get(surface).map(|s| s.construction);
+            construction.map_or(0, |index| description.constructions[index].layers.len())
+        };
+        let known = match *self {
+            Self::AirTemperature { zone }
+            | Self::MeanRadiantTemperature { zone }
+            | Self::HeatingLoad { zone }
+            | Self::CoolingLoad { zone }
+            | Self::AirChanges { zone }
+            | Self::ZoneTransmittedSolar { zone }
+            | Self::ZoneLostSolar { zone } => zone < plan.zones.len(),
+            Self::IncidentSolar { surface } => surface < plan.walls.len(),
+            Self::TransmittedSolar { surface } => plan.windows.contains(&surface),
+            Self::SkyTemperature => true,
+            Self::FaceTemperature { surface, side } | Self::FaceFlux { surface, side } => {
+                surface < plan.walls.len() && side < 2
+            }
+            Self::InterfaceTemperature { surface, interface } => interface > 0 && interface < layers(surface),
+            Self::LayerFlux { surface, layer } => layer < layers(surface),
+            Self::LayerTemperature { surface, layer }
+            | Self::LiquidFraction { surface, layer }
+            | Self::LayerEnthalpy { surface, layer } => {
+                layer < layers(surface)
+                    && plan.walls[surface].layer_cells[layer].1 > plan.walls[surface].layer_cells[layer].0
+            }
+            Self::Sensor { sensor } => sensor < description.sensors.len(),
+        };
+        if known {
+            Ok(())
+        } else {
+            Err(EngineError::Input(format!("there is nothing to record for {self:?}")))
+        }
+    }
+
+    /// Reads the quantity after a step.
+    pub fn read<S: Real>(&self, plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>) -> S {
+        match *self {
+            Self::AirTemperature { zone } => state.air[zone],
+            Self::MeanRadiantTemperature { zone } => mean_radiant(plan, stepper, state, zone),
+            Self::HeatingLoad { zone } => state.load[zone].max(S::zero()),
+            Self::CoolingLoad { zone } => (-state.load[zone]).max(S::zero()),
+            Self::AirChanges { zone } => stepper.air_changes(zone, state.air[zone]),
+            Self::FaceTemperature { surface, side } => state.surfaces[2 * surface + side],
+            Self::FaceFlux { surface, side } => {
+                stepper.link_flux(state, surface, side * plan.walls[surface].len())
+            }
+            Self::InterfaceTemperature { surface, interface } => {
+                interface_temperature(plan, stepper, state, surface, interface)
+            }
+            Self::LayerFlux { surface, layer } => layer_flux(plan, stepper, state, surface, layer),
+            Self::LayerTemperature { surface, layer } => layer_mean(plan, surface, layer, |k| state.cells[k]),
+            Self::LiquidFraction { surface, layer } => {
+                layer_mean(plan, surface, layer, |k| state.memory[k].liquid_fraction)
+            }
+            Self::LayerEnthalpy { surface, layer } => {
+                layer_mean(plan, surface, layer, |k| stepper.enthalpy(state, surface, k))
+            }
+            Self::IncidentSolar { surface } => stepper.incident(2 * surface),
+            Self::TransmittedSolar { surface } => {
+                let window = plan.windows.iter().position(|&w| w == surface);
+                window.map_or_else(S::zero, |window| stepper.sun.windows[window])
+            }
+            Self::ZoneTransmittedSolar { zone } => stepper.sun.zones[zone],
+            Self::ZoneLostSolar { zone } => stepper.sun.lost[zone],
+            Self::SkyTemperature => stepper.sky_temperature(),
+            Self::Sensor { sensor } => {
+                let surface = plan.description.sensors[sensor].surface;
+                let depth = stepper.coefficients.sensor_depths[sensor];
+                profile_at(&profile(plan, stepper, state, surface), depth)
+            }
+        }
+    }
+}
+
+fn mean_radiant<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, zone: usize) -> S {
+    let areas = &stepper.coefficients.zones[zone].areas;
+    let (mut sum, mut total) = (S::zero(), S::zero());
+    for (&face, &area) in plan.zones[zone].surfaces.iter().zip(areas) {
+        sum += area * state.surfaces[face];
+        total += area;
+    }
+    sum / total
+}
+
+#[allow(clippy::cast_precision_loss, reason = "cell counts are small")]
+fn layer_mean<S: Real>(plan: &Plan, surface: usize, layer: usize, value: impl Fn(usize) -> S) -> S {
+    let wall = &plan.walls[surface];
+    let (start, end) = wall.layer_cells[layer];
+    let sum = (start..end).fold(S::zero(), |sum, i| sum + value(wall.first_cell + i));
+    sum.scale(1.0 / (end - start) as f64)
+}
+
+/// Flux at the middle of a layer: along the middle link, or the mean of the two about the middle cell.
+fn layer_flux<S: Real>(
+    plan: &Plan,
+    stepper: &Stepper<'_, S>,
+    state: &State<S>,
+    surface: usize,
+    layer: usize,
+) -> S {
+    let (start, end) = plan.walls[surface].layer_cells[layer];
+    let (first, last) = (usize::midpoint(start, end), (start + end).div_ceil(2));
+    (stepper.link_flux(state, surface, first) + stepper.link_flux(state, surface, last)).scale(0.5)
+}
+
+/// Half of a cell's resistance at its present state [m2 K/W].
+fn half_resistance<S: Real>(wall: &WallCoefficients<S>, state: &State<S>, first_cell: usize, i: usize) -> S {
+    let half = wall.cells[i].thickness.scale(0.5);
+    match wall.cells[i].matter {
+        Matter::Solid { conductivity, .. } => half / conductivity,
+        Matter::Pcm(law) => {
+            let k = first_cell + i;
+            half / wall.pcm[law].at(state.cells[k], &state.memory[k]).conductivity
+        }
+    }
+}
+
+/// Temperature on the inner side of the layers before `interface`, from the flux that crosses it.
+fn interface_temperature<S: Real>(
+    plan: &Plan,
+    stepper: &Stepper<'_, S>,
+    state: &State<S>,
+    surface: usize,
+    interface: usize,
+) -> S {
+    let (wall, numbers) = (&plan.walls[surface], &stepper.coefficients.walls[surface]);
+    // The link that holds the interface follows the cells of all layers before it.
+    let link = wall.layer_cells[interface - 1].1;
+    let flux = stepper.link_flux(state, surface, link);
+    let (mut temperature, mut resistance) = if link == 0 {
+        (state.surfaces[2 * surface], S::zero())
+    } else {
+        let half = half_resistance(numbers, state, wall.first_cell, link - 1);
+        (state.cells[wall.first_cell + link - 1], half)
+    };
+    for &layer in wall.link_layers[link].iter().filter(|&&layer| layer < interface) {
+        resistance += numbers.layer_resistance[layer];
+    }
+    temperature = temperature - flux * resistance;
+    temperature
+}
+
+/// Temperatures and depths of the faces, cell centres and interfaces of a wall, outside to inside.
+fn profile<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, surface: usize) -> Vec<(S, S)> {
+    let (wall, numbers) = (&plan.walls[surface], &stepper.coefficients.walls[surface]);
+    let face = |face: SurfaceId| state.surfaces[face];
+    let mut depth = S::zero();
+    let mut points = vec![(depth, face(2 * surface))];
+    for (layer, &(start, end)) in wall.layer_cells.iter().enumerate() {
+        if layer > 0 {
+            points.push((depth, interface_temperature(plan, stepper, state, surface, layer)));
+        }
+        for i in start..end {
+            let half = numbers.cells[i].thickness.scale(0.5);
+            points.push((depth + half, state.cells[wall.first_cell + i]));
+            depth += numbers.cells[i].thickness;
+        }
+    }
+    points.push((depth, face(2 * surface + 1)));
+    points
+}
+
+/// Piecewise linear reading of a profile, without a branch on the depth (it may differ between lanes).
+fn profile_at<S: Real>(points: &[(S, S)], depth: S) -> S {
+    let mut temperature = points[0].1;
+    for pair in points.windows(2) {
+        let ((x0, t0), (x1, t1)) = (pair[0], pair[1]);
+        let length = x1 - x0;
+        let thin = length.lt(S::constant(1e-12));
+        let inside = ((depth - x0) / length.max(S::constant(1e-12))).max(S::zero()).min(S::one());
+        let beyond = S::select(x0.lt(depth), S::one(), S::zero());
+        temperature += S::select(thin, beyond, inside) * (t1 - t0);
+    }
+    temperature
+}

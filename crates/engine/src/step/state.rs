@@ -1,0 +1,303 @@
+//! What passes from step to step, and the temperatures of one iterate.
+
+use core::ops::Range;
+
+use crate::building::coefficients::{Coefficients, Matter};
+use crate::building::plan::{Plan, SurfaceId};
+use crate::error::EngineError;
+use crate::number::real::Real;
+use crate::physics::pcm::{PcmMemory, REMEMBERED};
+
+/// Temperatures that a run starts from [degC], the same for all members; what melts has come to them from below.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Initial {
+    /// One temperature everywhere.
+    Everywhere(f64),
+    /// One for each cell, surface and air.
+    Given {
+        /// Of the cells of all walls.
+        cells: Vec<f64>,
+        /// Of the surfaces: where the search for their balance begins.
+        surfaces: Vec<f64>,
+        /// Of the airs of the zones.
+        air: Vec<f64>,
+    },
+}
+
+impl Initial {
+    /// Checks that it fits a plan.
+    pub(crate) fn check(&self, plan: &Plan) -> Result<(), EngineError> {
+        let Self::Given { cells, surfaces, air } = self else { return Ok(()) };
+        let expected = [
+            ("cells", cells, plan.n_cells),
+            ("faces", surfaces, plan.surfaces.len()),
+            ("airs", air, plan.zones.len()),
+        ];
+        for (what, given, count) in expected {
+            if given.len() != count || given.iter().any(|temperature| !temperature.is_finite()) {
+                return Err(EngineError::Input(format!(
+                    "the start gives temperatures for {} {what}, expected {count} finite ones",
+                    given.len()
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Everything that passes from step to step.
+#[derive(Debug, Clone)]
+pub struct State<S> {
+    /// Cell temperatures of all walls [degC].
+    pub cells: Vec<S>,
+    /// Enthalpies of the cells of walls that change [J/m3]; those of others are the capacity times the temperature.
+    pub enthalpy: Vec<S>,
+    /// What the cells remember.
+    pub memory: Vec<PcmMemory<S>>,
+    /// Surface temperatures [degC].
+    pub surfaces: Vec<S>,
+    /// Zone air temperatures [degC].
+    pub air: Vec<S>,
+    /// Heat from the plant of each zone over the step that ended here [W]; cooling is negative.
+    pub load: Vec<S>,
+}
+
+impl<S: Real> State<S> {
+    #[inline(always)]
+    pub(crate) fn view(&self) -> Temperatures<'_, S> {
+        Temperatures { cells: &self.cells, surfaces: &self.surfaces, air: &self.air }
+    }
+
+    /// All its numbers, one after the other.
+    pub(crate) fn write(&self, numbers: &mut Vec<S>) {
+        for values in [&self.cells, &self.enthalpy, &self.surfaces, &self.air, &self.load] {
+            numbers.extend_from_slice(values);
+        }
+        for memory in &self.memory {
+            numbers.extend_from_slice(&memory.numbers());
+        }
+    }
+
+    /// Changes each number by one of others, in the order of [`Self::write`].
+    #[inline(always)]
+    pub(crate) fn read<T: Copy>(&mut self, mut numbers: &[T], mut change: impl FnMut(&mut S, T)) {
+        let Self { cells, enthalpy, memory, surfaces, air, load } = self;
+        for values in [cells, enthalpy, surfaces, air, load] {
+            let (own, rest) = numbers.split_at(values.len());
+            numbers = rest;
+            for (mine, &theirs) in values.iter_mut().zip(own) {
+                change(mine, theirs);
+            }
+        }
+        let (all, _) = numbers.as_chunks::<REMEMBERED>();
+        for (memory, numbers) in memory.iter_mut().zip(all) {
+            memory.read(*numbers, &mut change);
+        }
+    }
+
+    /// Shows each number with one of others, in the order of [`Self::write`].
+    #[inline(always)]
+    pub(crate) fn beside<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
+        for values in [&self.cells, &self.enthalpy, &self.surfaces, &self.air, &self.load] {
+            let (own, rest) = numbers.split_at(values.len());
+            numbers = rest;
+            for (&mine, &theirs) in values.iter().zip(own) {
+                see(mine, theirs);
+            }
+        }
+        let (all, _) = numbers.as_chunks::<REMEMBERED>();
+        for (memory, numbers) in self.memory.iter().zip(all) {
+            for (mine, &theirs) in memory.numbers().into_iter().zip(numbers) {
+                see(mine, theirs);
+            }
+        }
+    }
+
+    /// Takes over another state.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.cells.copy_from_slice(&other.cells);
+        self.enthalpy.copy_from_slice(&other.enthalpy);
+        self.surfaces.copy_from_slice(&other.surfaces);
+        self.air.copy_from_slice(&other.air);
+        self.load.copy_from_slice(&other.load);
+        self.memory.copy_from_slice(&other.memory);
+    }
+
+    /// How many numbers it has.
+    pub(crate) fn count(&self) -> usize {
+        let plain = [&self.cells, &self.enthalpy, &self.surfaces, &self.air, &self.load];
+        plain.into_iter().map(Vec::len).sum::<usize>() + REMEMBERED * self.memory.len()
+    }
+
+    /// Changes each number by the one at its place in another state.
+    pub(crate) fn meet<T: Real>(&mut self, other: &State<T>, mut change: impl FnMut(&mut S, T)) {
+        let plain = [
+            (&mut self.cells, &other.cells),
+            (&mut self.enthalpy, &other.enthalpy),
+            (&mut self.surfaces, &other.surfaces),
+            (&mut self.air, &other.air),
+            (&mut self.load, &other.load),
+        ];
+        for (mine, theirs) in plain {
+            for (mine, &theirs) in mine.iter_mut().zip(theirs) {
+                change(mine, theirs);
+            }
+        }
+        for (mine, theirs) in self.memory.iter_mut().zip(&other.memory) {
+            mine.read(theirs.numbers(), &mut change);
+        }
+    }
+
+    /// Takes over the lanes of `other` where the mask is true.
+    #[inline(always)]
+    pub fn take(&mut self, mask: S::Mask, other: &Self) {
+        blend(mask, &mut self.cells, &other.cells);
+        blend(mask, &mut self.enthalpy, &other.enthalpy);
+        blend(mask, &mut self.surfaces, &other.surfaces);
+        blend(mask, &mut self.air, &other.air);
+        blend(mask, &mut self.load, &other.load);
+        for (a, b) in self.memory.iter_mut().zip(&other.memory) {
+            a.take(mask, b);
+        }
+    }
+
+    /// Largest change of a cell or an air against another state [K].
+    #[inline(always)]
+    pub fn distance(&self, other: &Self) -> S {
+        let pairs = self.cells.iter().zip(&other.cells).chain(self.air.iter().zip(&other.air));
+        pairs.fold(S::zero(), |largest, (a, b)| largest.max((*a - *b).abs()))
+    }
+}
+
+/// Takes over `theirs` where the mask is true.
+#[inline(always)]
+pub(crate) fn blend<S: Real>(mask: S::Mask, mine: &mut [S], theirs: &[S]) {
+    for (a, &b) in mine.iter_mut().zip(theirs) {
+        *a = S::select(mask, b, *a);
+    }
+}
+
+/// Copies some runs of numbers.
+#[inline(always)]
+pub(crate) fn copy_runs<S: Real>(runs: &[Range<usize>], mine: &mut [S], theirs: &[S]) {
+    for run in runs {
+        mine[run.clone()].copy_from_slice(&theirs[run.clone()]);
+    }
+}
+
+/// Sum of squared differences.
+#[inline(always)]
+pub(crate) fn squared_distance<S: Real>(new: &[S], old: &[S]) -> S {
+    let mut sum = S::zero();
+    for (&a, &b) in new.iter().zip(old) {
+        sum += (a - b) * (a - b);
+    }
+    sum
+}
+
+/// `from + ratio (to - from)`.
+#[inline(always)]
+pub(crate) fn line<S: Real>(from: S, to: S, ratio: f64) -> S {
+    from + (to - from).scale(ratio)
+}
+
+/// Temperatures of an iterate or a state, to read.
+pub(crate) struct Temperatures<'a, S> {
+    pub(crate) cells: &'a [S],
+    pub(crate) surfaces: &'a [S],
+    pub(crate) air: &'a [S],
+}
+
+/// Temperatures of one iterate.
+#[derive(Debug, Clone)]
+pub(crate) struct Unknowns<S> {
+    pub(crate) cells: Vec<S>,
+    pub(crate) surfaces: Vec<S>,
+    pub(crate) air: Vec<S>,
+}
+
+impl<S: Real> Unknowns<S> {
+    #[inline(always)]
+    pub(crate) fn view(&self) -> Temperatures<'_, S> {
+        Temperatures { cells: &self.cells, surfaces: &self.surfaces, air: &self.air }
+    }
+
+    /// The values alone.
+    pub(crate) fn plain(&self) -> Unknowns<f64> {
+        let values = |numbers: &[S]| numbers.iter().map(|number| number.lane(0)).collect();
+        Unknowns { cells: values(&self.cells), surfaces: values(&self.surfaces), air: values(&self.air) }
+    }
+
+    /// Takes over plain temperatures.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, plain: &Unknowns<f64>) {
+        let pairs = [
+            (&mut self.cells, &plain.cells),
+            (&mut self.surfaces, &plain.surfaces),
+            (&mut self.air, &plain.air),
+        ];
+        for (mine, plain) in pairs {
+            for (a, &b) in mine.iter_mut().zip(plain) {
+                *a = S::constant(b);
+            }
+        }
+    }
+
+    /// Takes over other temperatures.
+    #[inline(always)]
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.cells.copy_from_slice(&other.cells);
+        self.surfaces.copy_from_slice(&other.surfaces);
+        self.air.copy_from_slice(&other.air);
+    }
+
+    /// Airs, and some surfaces, as far from others as two that are known from each other: a way once gone, gone again.
+    #[inline(always)]
+    pub(crate) fn go_on(
+        &mut self,
+        surfaces: &[SurfaceId],
+        from: &Temperatures<'_, S>,
+        way: &[Temperatures<'_, S>; 2],
+    ) {
+        let [start, end] = way;
+        for (zone, air) in self.air.iter_mut().enumerate() {
+            *air = from.air[zone] + (end.air[zone] - start.air[zone]);
+        }
+        for &surface in surfaces {
+            self.surfaces[surface] =
+                from.surfaces[surface] + (end.surfaces[surface] - start.surfaces[surface]);
+        }
+    }
+
+    /// `from + ratio (to - from)` at some surfaces, all airs and the cells of some walls, without leaping over a melting
+    /// range.
+    #[inline(always)]
+    pub(crate) fn extrapolate(
+        &mut self,
+        plan: &Plan,
+        coefficients: &Coefficients<S>,
+        (surfaces, walls): (&[SurfaceId], &[usize]),
+        [from, to]: &[Temperatures<'_, S>; 2],
+        ratio: f64,
+        memory: &[PcmMemory<S>],
+    ) {
+        for &surface in surfaces {
+            self.surfaces[surface] = line(from.surfaces[surface], to.surfaces[surface], ratio);
+        }
+        for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
+            *guess = line(from, to, ratio);
+        }
+        for &w in walls {
+            let (wall, numbers) = (&plan.walls[w], &coefficients.walls[w]);
+            let cells = wall.first_cell..wall.first_cell + wall.len();
+            let ends = from.cells[cells.clone()].iter().zip(&to.cells[cells.clone()]);
+            let laws = numbers.cells.iter().zip(&memory[cells.clone()]);
+            for ((guess, (&from, &to)), (cell, memory)) in self.cells[cells].iter_mut().zip(ends).zip(laws) {
+                *guess = line(from, to, ratio);
+                if let Matter::Pcm(law) = cell.matter {
+                    *guess = numbers.pcm[law].limit(to, *guess, memory).0;
+                }
+            }
+        }
+    }
+}

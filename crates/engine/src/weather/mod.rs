@@ -1,0 +1,4 @@
+//! The conditions that act on a building at an instant.
+
+pub mod conditions;
+pub mod index;
