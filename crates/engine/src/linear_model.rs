@@ -4,6 +4,7 @@
 //! linear and constant have such a form; the first law that is not is named.
 
 use crate::building::coefficients::{Boundary, Coefficients, SurfaceCoefficients};
+use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::description::{Infiltration, Material};
@@ -48,7 +49,7 @@ pub fn state_space(plan: &Plan, numbers: &[f64]) -> Result<StateSpace, EngineErr
     for wall in 0..plan.walls.len() {
         network.add_wall(wall);
     }
-    for surface in 0..plan.surfaces.len() {
+    for surface in plan.surfaces.ids() {
         network.add_boundary(surface);
     }
     for zone in 0..plan.zones.len() {
@@ -73,7 +74,7 @@ fn require_linear(plan: &Plan, numbers: &[f64], coefficients: &Coefficients<f64>
         let name = &plan.description.surfaces[window].name;
         return refuse(format!("window {name}"), "replace it by a wall of a resistance");
     }
-    for (index, surface) in coefficients.surfaces.iter().enumerate() {
+    for (index, surface) in coefficients.surfaces.entries() {
         let name = plan.surface_name(index);
         if surface.convection.as_ref().is_some_and(|convection| convection.constant().is_none()) {
             return refuse(format!("convection at {name}"), "use a constant coefficient");
@@ -155,8 +156,8 @@ impl<'a> Network<'a> {
         }
     }
 
-    fn surface(&self, index: usize) -> usize {
-        self.n_states + index
+    fn surface(&self, surface: SurfaceId) -> usize {
+        self.n_states + surface.index()
     }
 
     fn add(&mut self, row: usize, column: usize, value: f64) {
@@ -187,8 +188,8 @@ impl<'a> Network<'a> {
         let chain = Chain::new(wall);
         let n = wall.cells.len();
         let node = |i: usize, network: &Self| match i {
-            0 => network.surface(2 * index),
-            i if i == n + 1 => network.surface(2 * index + 1),
+            0 => network.surface(SurfaceId::outside(index)),
+            i if i == n + 1 => network.surface(SurfaceId::inside(index)),
             i => first + i - 1,
         };
         for (i, link) in chain.links.iter().enumerate() {
@@ -200,12 +201,12 @@ impl<'a> Network<'a> {
         }
     }
 
-    fn add_boundary(&mut self, index: usize) {
+    fn add_boundary(&mut self, index: SurfaceId) {
         let surface = &self.coefficients.surfaces[index];
-        let area = self.coefficients.walls[index / 2].area;
+        let area = self.coefficients.walls[index.wall()].area;
         let node = self.surface(index);
-        let wall = &self.plan.description.surfaces[index / 2].name;
-        let side = if index.is_multiple_of(2) { "outside" } else { "inside" };
+        let wall = &self.plan.description.surfaces[index.wall()].name;
+        let side = if index.is_outside() { "outside" } else { "inside" };
         let convection = convection_coefficient(surface) * area;
         if surface.irradiance.is_some() || matches!(surface.boundary, Boundary::Outdoors(_)) {
             self.drive(node, &format!("{wall}.{side}_irradiance"), area * surface.absorptance);

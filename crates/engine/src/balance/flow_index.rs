@@ -2,7 +2,8 @@
 
 use crate::balance::ledger::{Flow, Power};
 use crate::building::coefficients::{Boundary, Coefficients};
-use crate::building::plan::{Plan, SurfaceId};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::plan::Plan;
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::real::Real;
 use crate::weather::conditions::Conditions;
@@ -35,9 +36,9 @@ pub(crate) struct FlowIndex<S> {
 impl<S: Real> FlowIndex<S> {
     pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>) -> Self {
         let (mut outdoors, mut lit, mut imposed) = (Vec::new(), Vec::new(), Vec::new());
-        for (index, surface) in numbers.surfaces.iter().enumerate() {
-            let area = numbers.walls[index / 2].area;
-            let opaque = plan.walls[index / 2].glass.is_none();
+        for (index, surface) in numbers.surfaces.entries() {
+            let area = numbers.walls[index.wall()].area;
+            let opaque = plan.walls[index.wall()].glass.is_none();
             if let Boundary::Outdoors(at) = &surface.boundary {
                 let (emissivity, radiates) = (surface.emissivity, at.emission.is_some());
                 outdoors.push(Outside { surface: index, area, emissivity, opaque, radiates });
@@ -65,8 +66,8 @@ impl<S: Real> FlowIndex<S> {
     pub(crate) fn surfaces(
         &self,
         conditions: &Conditions<S>,
-        laws: &[SurfaceLaws<S>],
-        temperatures: &[S],
+        laws: &BySurface<SurfaceLaws<S>>,
+        temperatures: &BySurface<S>,
         power: &mut Power<S>,
     ) {
         let (mut solar, mut convection, mut longwave) = (Sum::none(), Sum::none(), Sum::none());

@@ -1,6 +1,7 @@
 //! A plan with the numbers of one run (or of a pack of members in lanes).
 
-use crate::building::plan::{Plan, SurfaceId, WallPlan};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::plan::{Plan, WallPlan};
 use crate::building::sun_distribution::{Inside, Landing};
 use crate::input::description::{
     Exposure as Reach, Facing, Infiltration, Material, OutdoorLongwave, ParamId, Side, Surface, ZoneLongwave,
@@ -31,7 +32,7 @@ pub struct Coefficients<S> {
     /// One per surface.
     pub walls: Vec<WallCoefficients<S>>,
     /// Two per surface.
-    pub surfaces: Vec<SurfaceCoefficients<S>>,
+    pub surfaces: BySurface<SurfaceCoefficients<S>>,
     /// Zones.
     pub zones: Vec<ZoneCoefficients<S>>,
     /// Air exchanged between zones.
@@ -141,7 +142,7 @@ pub struct SurfaceCoefficients<S> {
     pub absorptance: S,
     /// Forcing channel of a measured irradiance on the plane.
     pub irradiance: Option<usize>,
-    /// What it surfaces.
+    /// What it borders on.
     pub boundary: Boundary<S>,
     /// What of the weather reaches it.
     pub exposure: Reach,
@@ -187,8 +188,8 @@ impl<S: Real> Coefficients<S> {
         let values = Values::new(numbers);
         let description = &plan.description;
         let walls: Vec<_> = (0..plan.walls.len()).map(|i| WallCoefficients::new(plan, i, &values)).collect();
-        let surfaces: Vec<_> =
-            (0..plan.surfaces.len()).map(|i| SurfaceCoefficients::new(plan, i, &values)).collect();
+        let surfaces: BySurface<_> =
+            plan.surfaces.ids().map(|i| SurfaceCoefficients::new(plan, i, &values)).collect();
         let site = &description.site;
         let density = air_density(plan, &values);
         let zones = (0..plan.zones.len())
@@ -290,11 +291,11 @@ fn resistance<S: Real>(plan: &Plan, material: usize, values: &Values<'_, S>) -> 
 
 impl<S: Real> SurfaceCoefficients<S> {
     fn new(plan: &Plan, index: SurfaceId, values: &Values<'_, S>) -> Self {
-        let wall = &plan.description.surfaces[index / 2];
+        let wall = &plan.description.surfaces[index.wall()];
         let side = plan.side(index);
         let degrees = values.get(wall.tilt);
         let tilt = radians(degrees);
-        let outward = if index.is_multiple_of(2) { S::one() } else { -S::one() };
+        let outward = if index.is_outside() { S::one() } else { -S::one() };
         let exposure = Exposure {
             area: own_area(wall, values),
             upward: outward * tilt.cos(),
@@ -331,10 +332,10 @@ fn boundary<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values
 
 /// The plane of a surface that looks outdoors, and its azimuth vector (north, east).
 pub(crate) fn plane<S: Real>(plan: &Plan, index: SurfaceId, values: &Values<'_, S>) -> (Plane<S>, [S; 2]) {
-    let (wall, side) = (&plan.description.surfaces[index / 2], plan.side(index));
+    let (wall, side) = (&plan.description.surfaces[index.wall()], plan.side(index));
     let (tilt, azimuth) = (radians(values.get(wall.tilt)), radians(values.get(wall.azimuth)));
     // The inside surface of a surface that looks outdoors looks the other way.
-    let outward = if index.is_multiple_of(2) { S::one() } else { -S::one() };
+    let outward = if index.is_outside() { S::one() } else { -S::one() };
     let (sin_tilt, cos_tilt) = (tilt.sin(), tilt.cos() * outward);
     let heading = [azimuth.cos() * outward, azimuth.sin() * outward];
     let sky_view = side.sky_view.map_or_else(|| (S::one() + cos_tilt).scale(0.5), |id| values.get(id));
@@ -378,12 +379,12 @@ impl<S: Real> ZoneCoefficients<S> {
         index: usize,
         values: &Values<'_, S>,
         walls: &[WallCoefficients<S>],
-        surfaces: &[SurfaceCoefficients<S>],
+        surfaces: &BySurface<SurfaceCoefficients<S>>,
         density: S,
     ) -> Self {
         let definition = &plan.description.zones[index];
         let zone_surfaces = &plan.zones[index].surfaces;
-        let areas: Vec<S> = zone_surfaces.iter().map(|&surface| walls[surface / 2].area).collect();
+        let areas: Vec<S> = zone_surfaces.iter().map(|&surface| walls[surface.wall()].area).collect();
         let emissivities: Vec<S> =
             zone_surfaces.iter().map(|&surface| surfaces[surface].emissivity).collect();
         let emission = match definition.longwave {
@@ -470,10 +471,10 @@ fn view_weights<S: Real>(plan: &Plan, index: usize, areas: &[S]) -> Vec<S> {
 /// True when two surfaces of a zone look the same way at their nominal tilt and azimuth: parts of one plane.
 fn same_plane(plan: &Plan, a: SurfaceId, b: SurfaceId) -> bool {
     let normal = |surface: SurfaceId| {
-        let wall = &plan.description.surfaces[surface / 2];
+        let wall = &plan.description.surfaces[surface.wall()];
         let value = |id: ParamId| plan.description.parameters[id.0 as usize].value.to_radians();
         let (tilt, azimuth) = (value(wall.tilt), value(wall.azimuth));
-        let sign = if surface.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let sign = if surface.is_outside() { 1.0 } else { -1.0 };
         [azimuth.sin() * tilt.sin() * sign, azimuth.cos() * tilt.sin() * sign, tilt.cos() * sign]
     };
     let dot: f64 = normal(a).iter().zip(normal(b)).map(|(x, y)| x * y).sum();

@@ -3,6 +3,7 @@
 use core::ops::Range;
 use std::collections::BTreeSet;
 
+use super::ids::{BySurface, SurfaceId};
 use crate::error::EngineError;
 use crate::geometry::daylight::Daylight;
 use crate::input::description::{
@@ -10,9 +11,6 @@ use crate::input::description::{
 };
 use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::physics::glazing::GlassPlan;
-
-/// A surface is addressed by `2 * surface + side`, side 0 outside, 1 inside.
-pub type SurfaceId = usize;
 
 /// A compiled description.
 #[derive(Debug, Clone)]
@@ -22,7 +20,7 @@ pub struct Plan {
     /// One wall per surface.
     pub walls: Vec<WallPlan>,
     /// Two surfaces per surface.
-    pub surfaces: Vec<SurfacePlan>,
+    pub surfaces: BySurface<SurfacePlan>,
     /// Zones.
     pub zones: Vec<ZonePlan>,
     /// Zones with ideal heating or cooling.
@@ -120,7 +118,7 @@ impl Plan {
         let ideal_loads = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();
         let windows: Vec<usize> = (0..walls.len()).filter(|&w| walls[w].glass.is_some()).collect();
         for zone in &mut zones {
-            let place = |w: usize| zone.surfaces.iter().position(|&surface| surface == 2 * w + 1);
+            let place = |w: usize| zone.surfaces.iter().position(|&surface| surface == SurfaceId::inside(w));
             zone.windows =
                 windows.iter().enumerate().filter_map(|(k, &w)| place(w).map(|at| (k, at))).collect();
         }
@@ -128,7 +126,7 @@ impl Plan {
         Ok(Self {
             description,
             walls,
-            surfaces,
+            surfaces: surfaces.into(),
             zones,
             ideal_loads,
             windows,
@@ -144,8 +142,8 @@ impl Plan {
     #[must_use]
     #[inline(always)]
     pub fn side(&self, surface: SurfaceId) -> &Side {
-        let wall = &self.description.surfaces[surface / 2];
-        if surface.is_multiple_of(2) { &wall.outside } else { &wall.inside }
+        let wall = &self.description.surfaces[surface.wall()];
+        if surface.is_outside() { &wall.outside } else { &wall.inside }
     }
 
     /// Row of a zone surface in the room block.
@@ -157,7 +155,7 @@ impl Plan {
     pub fn row(&self, surface: SurfaceId) -> usize {
         match self.surfaces[surface].role {
             SurfaceRole::Zone { row, .. } => row,
-            SurfaceRole::Exterior => unreachable!("surface {surface} is in no zone"),
+            SurfaceRole::Exterior => unreachable!("{} is in no zone", self.surface_name(surface)),
         }
     }
 
@@ -176,8 +174,8 @@ impl Plan {
     /// Name of a surface for messages.
     #[must_use]
     pub fn surface_name(&self, surface: SurfaceId) -> String {
-        let side = if surface.is_multiple_of(2) { "outside" } else { "inside" };
-        format!("surface {} ({side} face)", self.description.surfaces[surface / 2].name)
+        let side = if surface.is_outside() { "outside" } else { "inside" };
+        format!("surface {} ({side} face)", self.description.surfaces[surface.wall()].name)
     }
 }
 
@@ -249,7 +247,7 @@ fn name_unknowns(description: &Description) -> (Vec<SurfacePlan>, Vec<ZonePlan>)
     for (wall, definition) in description.surfaces.iter().enumerate() {
         for (side, part) in [&definition.outside, &definition.inside].into_iter().enumerate() {
             let role = if let Facing::Zone { zone } = part.facing {
-                zones[zone].surfaces.push(2 * wall + side);
+                zones[zone].surfaces.push(SurfaceId::new(wall, side));
                 zones[zone].surface_rows.push(row);
                 row += 1;
                 SurfaceRole::Zone { zone, row: row - 1 }
@@ -346,7 +344,7 @@ fn neighbours(
     surfaces: &[SurfacePlan],
     zones: &[ZonePlan],
 ) -> Vec<BTreeSet<usize>> {
-    let row = |surface: SurfaceId| match surfaces[surface].role {
+    let row = |surface: SurfaceId| match surfaces[surface.index()].role {
         SurfaceRole::Zone { row, .. } => Some(row),
         SurfaceRole::Exterior => None,
     };
@@ -366,7 +364,7 @@ fn neighbours(
         }
     }
     for wall in 0..description.surfaces.len() {
-        if let (Some(a), Some(b)) = (row(2 * wall), row(2 * wall + 1)) {
+        if let (Some(a), Some(b)) = (row(SurfaceId::outside(wall)), row(SurfaceId::inside(wall))) {
             meet(a, b);
         }
     }

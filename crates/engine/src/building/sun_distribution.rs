@@ -9,7 +9,7 @@
 //! radiosity of its surfaces, solved once per run.
 
 use crate::building::coefficients::{SurfaceCoefficients, WallCoefficients};
-use crate::building::plan::SurfaceId;
+use crate::building::ids::{BySurface, SurfaceId};
 use crate::input::description::ZoneSun;
 use crate::input::values::Values;
 use crate::number::real::Real;
@@ -26,7 +26,7 @@ pub struct Inside<'a, S> {
     /// All walls.
     pub walls: &'a [WallCoefficients<S>],
     /// All surfaces.
-    pub surfaces: &'a [SurfaceCoefficients<S>],
+    pub surfaces: &'a BySurface<SurfaceCoefficients<S>>,
 }
 
 /// View factors and reflections of a zone in which the sun is followed.
@@ -62,7 +62,7 @@ impl<S: Real> Landing<S> {
         exchange: impl FnOnce() -> Vec<S>,
     ) -> Option<Self> {
         let Inside { zone_surfaces, areas, walls, surfaces } = *inside;
-        let glass = |surface: SurfaceId| walls[surface / 2].glass.as_ref().map(|glass| &glass.optics.back);
+        let glass = |surface: SurfaceId| walls[surface.wall()].glass.as_ref().map(|glass| &glass.optics.back);
         if zone_surfaces.iter().all(|&surface| glass(surface).is_none()) {
             return None;
         }

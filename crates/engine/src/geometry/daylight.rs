@@ -16,7 +16,8 @@
 
 use std::borrow::Cow;
 
-use crate::building::plan::{SurfaceId, ZonePlan};
+use crate::building::ids::SurfaceId;
+use crate::building::plan::ZonePlan;
 use crate::input::description::{Description, Facing, ZoneSun};
 use crate::physics::solar::{Open, Sunlight};
 
@@ -453,11 +454,11 @@ impl Daylight {
         let tracers = windows
             .iter()
             .map(|&w| {
-                let zone = zones.iter().position(|zone| zone.surfaces.contains(&(2 * w + 1)))?;
+                let zone = zones.iter().position(|zone| zone.surfaces.contains(&(SurfaceId::inside(w))))?;
                 let shape = net[w].clone().filter(|_| traced(zone))?;
                 let surfaces = zones[zone].surfaces.iter().map(|&surface| {
                     // A frame shares the outline of its glass, on which the rays end.
-                    let frame = surfaces[surface / 2].frame.as_ref().is_some_and(|frame| frame.is_frame);
+                    let frame = surfaces[surface.wall()].frame.as_ref().is_some_and(|frame| frame.is_frame);
                     if frame { ([0.0; 3], Vec::new()) } else { seen(&shape, &net, surface) }
                 });
                 let surfaces: Vec<_> = surfaces.collect();
@@ -517,8 +518,8 @@ impl Daylight {
 
 /// A surface of a zone from a window.
 fn seen(window: &Shape, net: &[Option<Shape>], surface: SurfaceId) -> (Vertex, Vec<Vec<Vertex>>) {
-    let Some(shape) = &net[surface / 2] else { return ([0.0; 3], Vec::new()) };
-    let sign = if surface.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let Some(shape) = &net[surface.wall()] else { return ([0.0; 3], Vec::new()) };
+    let sign = if surface.is_outside() { 1.0 } else { -1.0 };
     let local = |piece: &Vec<Vertex>| piece.iter().map(|&vertex| window.frame.local(vertex)).collect();
     (shape.frame.normal().map(|x| sign * x), shape.corners().iter().map(local).collect())
 }
@@ -659,7 +660,8 @@ mod tests {
         let north = [[8.0, 6.0, 0.0], [0.0, 6.0, 0.0], [0.0, 6.0, 2.7], [8.0, 6.0, 2.7]];
         let window = Shape::of(&WINDOW);
         let net = [Some(Shape::of(&floor)), Some(Shape::of(&north))];
-        let surfaces = vec![seen(&window, &net, 1), seen(&window, &net, 3)];
+        let surfaces =
+            vec![seen(&window, &net, SurfaceId::inside(0)), seen(&window, &net, SurfaceId::inside(1))];
         let tracer = Tracer { window: Receiver::new(window, &[]), surfaces };
         let mut shares = [0.0; 2];
         tracer.trace(sun(180.0, 45.0), &mut shares);

@@ -12,7 +12,8 @@
 //! Numbers stand by their place in the front, so that neighbours are computed together: [`Abreast`].
 
 use crate::building::coefficients::{Boundary, Coefficients};
-use crate::building::plan::{Plan, SurfaceId, SurfaceRole};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::plan::{Plan, SurfaceRole};
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::{ExteriorSurfaces, Line, SurfaceLaws};
 use crate::number::real::{Abreast, Real, Task};
@@ -53,8 +54,8 @@ struct Group<S> {
 /// The laws of surfaces.
 #[derive(Debug, Clone)]
 struct Laws<S> {
-    /// The surfaces, and as many more as fill the last register.
-    surfaces: Vec<SurfaceId>,
+    /// Indices of the surfaces, and as many more as fill the last register.
+    places: Vec<usize>,
     count: usize,
     /// Convection off each surface, of its difference to the air, and black emission, of its temperature: offset and slope.
     convection: [Vec<S>; 2],
@@ -143,11 +144,11 @@ pub(crate) enum Front {
 }
 
 impl<S: Real> Laws<S> {
-    fn new(surfaces: &[SurfaceId], stride: usize, laws: &[SurfaceLaws<S>]) -> Self {
+    fn new(surfaces: &[SurfaceId], stride: usize, laws: &BySurface<SurfaceLaws<S>>) -> Self {
         let zeros = || vec![S::zero(); stride];
         let count = surfaces.len();
         let mut all = Self {
-            surfaces: surfaces.to_vec(),
+            places: surfaces.iter().map(|surface| surface.index()).collect(),
             count,
             convection: [zeros(), zeros()],
             emission: [zeros(), zeros()],
@@ -163,8 +164,17 @@ impl<S: Real> Laws<S> {
             [all.emission[0][i], all.emission[1][i]] =
                 [laws[surface].emission.offset, laws[surface].emission.slope];
         }
-        all.surfaces.resize(count.next_multiple_of(S::SIDE), surfaces.first().copied().unwrap_or(0));
+        all.places.resize(count.next_multiple_of(S::SIDE), all.places.first().copied().unwrap_or(0));
         all
+    }
+
+    /// The surfaces, without those that fill the last register.
+    #[inline(always)]
+    fn surfaces(&self) -> impl Iterator<Item = SurfaceId> + '_ {
+        self.places[..self.count].iter().map(
+            #[inline(always)]
+            |&place| SurfaceId::from_index(place),
+        )
     }
 
     /// Sorts the films that change, and the surfaces that radiate with the fourth power. A surface has no law where none acts.
@@ -176,7 +186,8 @@ impl<S: Real> Laws<S> {
     ) {
         let convection =
             |surface: SurfaceId| numbers.surfaces[surface].convection.as_ref().filter(|_| acts(surface));
-        for (i, &surface) in self.surfaces[..self.count].iter().enumerate() {
+        for i in 0..self.count {
+            let surface = SurfaceId::from_index(self.places[i]);
             if convection(surface)
                 .is_some_and(|convection| convection.constant().is_none() && convection.straight())
             {
@@ -193,7 +204,8 @@ impl<S: Real> Laws<S> {
             places.map(|(i, &surface)| flag(start + i < self.count && member(surface))).collect()
         };
         let (mut groups, mut radiant) = (Vec::new(), Vec::new());
-        for (chunk, surfaces) in self.surfaces.chunks(S::SIDE).enumerate() {
+        let padded: Vec<_> = self.places.iter().map(|&place| SurfaceId::from_index(place)).collect();
+        for (chunk, surfaces) in padded.chunks(S::SIDE).enumerate() {
             let start = chunk * S::SIDE;
             let mut kinds: Vec<&SurfaceConvection<S>> = Vec::new();
             for &surface in surfaces {
@@ -230,8 +242,8 @@ impl<S: Real> Laws<S> {
     #[inline(always)]
     fn blow(&mut self, conditions: &Conditions<S>) {
         let [first, second] = &mut self.forced;
-        for ((&surface, first), second) in self.surfaces[..self.count].iter().zip(first).zip(second) {
-            [*first, *second] = conditions.surfaces[surface].forced;
+        for ((&place, first), second) in self.places[..self.count].iter().zip(first).zip(second) {
+            [*first, *second] = conditions.surfaces[SurfaceId::from_index(place)].forced;
         }
         for &(i, factor) in &self.windy {
             self.convection[1][i] = self.forced[0][i] * factor;
@@ -244,7 +256,7 @@ impl<S: Real> Laws<S> {
         let half = V::constant(0.5);
         for group in &self.bent {
             let start = group.start;
-            let temperature = V::pick(temperatures, &self.surfaces[start..start + S::SIDE]);
+            let temperature = V::pick(temperatures, &self.places[start..start + S::SIDE]);
             let difference = temperature - part!(self.air, start);
             let forced = [part!(self.forced[0], start), part!(self.forced[1], start)];
             let flux = group.convection.flux_of(
@@ -259,7 +271,7 @@ impl<S: Real> Laws<S> {
             line.store(members, &mut self.convection, start);
         }
         for (start, members) in &self.radiant {
-            let temperature = V::pick(temperatures, &self.surfaces[*start..*start + S::SIDE]);
+            let temperature = V::pick(temperatures, &self.places[*start..*start + S::SIDE]);
             let (value, slope) = Emission::Exact.at(temperature);
             let line = Line::tangent(value, slope, temperature);
             line.store(half.lt(V::load(members)), &mut self.emission, *start);
@@ -284,7 +296,7 @@ impl<V: Real> Line<V> {
 }
 
 impl<S: Real> ZoneFront<S> {
-    fn new(plan: &Plan, numbers: &Coefficients<S>, laws: &[SurfaceLaws<S>], zone: usize) -> Self {
+    fn new(plan: &Plan, numbers: &Coefficients<S>, laws: &BySurface<SurfaceLaws<S>>, zone: usize) -> Self {
         let (of_plan, of_zone) = (&plan.zones[zone], &numbers.zones[zone]);
         let mut order: Vec<usize> = (0..of_plan.surfaces.len()).collect();
         order.sort_by_key(|&i| of_plan.surface_rows[i]);
@@ -300,7 +312,7 @@ impl<S: Real> ZoneFront<S> {
             inner.emission[1].fill(S::one());
         }
         inner.emission[1][surfaces.len()..].fill(S::one());
-        let outside: Vec<SurfaceId> = surfaces[..own].iter().map(|surface| surface ^ 1).collect();
+        let outside: Vec<SurfaceId> = surfaces[..own].iter().map(|surface| surface.opposite()).collect();
         let mut outer = Laws::new(&outside, stride, laws);
         let of = |surface: SurfaceId| &numbers.surfaces[surface];
         outer.sort(
@@ -318,14 +330,14 @@ impl<S: Real> ZoneFront<S> {
         room.first_row = order.first().map_or(0, |&i| of_plan.surface_rows[i]);
         room.shared =
             order[own..].iter().map(|&i| of_plan.surface_rows[i]).chain([of_plan.air_row]).collect();
-        room.walls = surfaces[..own].iter().map(|&surface| (surface / 2, surface % 2)).collect();
+        room.walls = surfaces[..own].iter().map(|&surface| (surface.wall(), surface.side())).collect();
         room.fixed = outside.iter().map(fixed).collect();
         for (i, &k) in order.iter().enumerate() {
             (room.area[i], room.share[i]) = (of_zone.areas[k], of_zone.radiant_shares[k]);
         }
         for (i, &surface) in outside.iter().enumerate() {
             (room.wall_area[i], room.emissivity[i]) =
-                (numbers.walls[surface / 2].area, of(surface).emissivity);
+                (numbers.walls[surface.wall()].area, of(surface).emissivity);
         }
         if exact {
             // What bends has no slope yet.
@@ -410,12 +422,12 @@ impl<S: Real> ZoneFront<S> {
     fn begin(&mut self, conditions: &Conditions<S>, radiant: S, sources: &[[S; 2]]) {
         self.inner.blow(conditions);
         self.outer.blow(conditions);
-        let surfaces = self.inner.surfaces[..self.inner.count].iter().zip(&self.area).zip(&self.share);
-        for (base, ((&surface, &area), &share)) in self.base.iter_mut().zip(surfaces) {
+        let surfaces = self.inner.surfaces().zip(&self.area).zip(&self.share);
+        for (base, ((surface, &area), &share)) in self.base.iter_mut().zip(surfaces) {
             *base = area * conditions.surfaces[surface].solar + radiant * share;
         }
-        for (i, (&(w, e), &surface)) in self.walls.iter().zip(&self.outer.surfaces).enumerate() {
-            let at = &conditions.surfaces[surface];
+        for (i, (&(w, e), &place)) in self.walls.iter().zip(&self.outer.places).enumerate() {
+            let at = &conditions.surfaces[SurfaceId::from_index(place)];
             self.base[i] += self.wall_area[i] * sources[w][e];
             self.enters[i] = sources[w][1 - e] + (at.solar + at.longwave);
             self.outer.air[i] = at.temperature;
@@ -773,7 +785,8 @@ impl<S: Real> ZoneFront<S> {
             other.store(&mut self.answer[places]);
         }
         for ((&(w, e), &own), &other) in self.walls.iter().zip(&self.right).zip(&self.answer) {
-            (solved[2 * w + e], solved[2 * w + 1 - e]) = (own, other);
+            let surface = SurfaceId::new(w, e);
+            (solved[surface.index()], solved[surface.opposite().index()]) = (own, other);
         }
     }
 }
@@ -866,7 +879,7 @@ impl<S: Real> Task<S> for Resolve<'_, S> {
 }
 
 impl<S: Real> ZoneFronts<S> {
-    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, laws: &[SurfaceLaws<S>]) -> Self {
+    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, laws: &BySurface<SurfaceLaws<S>>) -> Self {
         Self {
             zone_fronts: (0..plan.zones.len())
                 .map(|zone| ZoneFront::new(plan, numbers, laws, zone))
@@ -959,10 +972,11 @@ impl<S: Real> ZoneFronts<S> {
     }
 
     /// Takes over laws as they stand.
-    pub(crate) fn adopt(&mut self, laws: &[SurfaceLaws<S>]) {
+    pub(crate) fn adopt(&mut self, laws: &BySurface<SurfaceLaws<S>>) {
         for room in &mut self.zone_fronts {
             for side in [&mut room.inner, &mut room.outer] {
-                for (i, &surface) in side.surfaces[..side.count].iter().enumerate() {
+                for i in 0..side.count {
+                    let surface = SurfaceId::from_index(side.places[i]);
                     (side.convection[0][i], side.convection[1][i]) =
                         (laws[surface].convection.offset, laws[surface].convection.slope);
                     if !side.radiant.is_empty() {
@@ -976,13 +990,11 @@ impl<S: Real> ZoneFronts<S> {
 
     /// The laws of the other surfaces, which are booked.
     #[inline(never)]
-    pub(crate) fn tell_laws(&self, laws: &mut [SurfaceLaws<S>]) {
+    pub(crate) fn tell_laws(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
         for outer in self.zone_fronts.iter().map(|room| &room.outer) {
             let convections = outer.convection[0].iter().zip(&outer.convection[1]);
             let emissions = outer.emission[0].iter().zip(&outer.emission[1]);
-            for ((&surface, convection), emission) in
-                outer.surfaces[..outer.count].iter().zip(convections).zip(emissions)
-            {
+            for ((surface, convection), emission) in outer.surfaces().zip(convections).zip(emissions) {
                 laws[surface] = SurfaceLaws {
                     convection: Line { offset: *convection.0, slope: *convection.1 },
                     emission: Line { offset: *emission.0, slope: *emission.1 },
@@ -1085,7 +1097,7 @@ impl ZoneFronts<f64> {
 
 /// Whether a wall of constant properties has one surface in a zone and the other in none.
 pub(crate) fn of_one_room(plan: &Plan, wall: usize) -> bool {
-    let roles = [plan.surfaces[2 * wall].role, plan.surfaces[2 * wall + 1].role];
+    let roles = SurfaceId::pair(wall).map(|surface| plan.surfaces[surface].role);
     let inside = roles.iter().filter(|role| matches!(role, SurfaceRole::Zone { .. })).count();
     !plan.walls[wall].nonlinear && inside == 1
 }

@@ -3,7 +3,8 @@
 use serde::Deserialize;
 
 use crate::building::coefficients::{Matter, WallCoefficients};
-use crate::building::plan::{Plan, SurfaceId};
+use crate::building::ids::SurfaceId;
+use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::Real;
 use crate::step::Stepper;
@@ -166,7 +167,7 @@ impl Probe {
             Self::HeatingLoad { zone } => state.load[zone].max(S::zero()),
             Self::CoolingLoad { zone } => (-state.load[zone]).max(S::zero()),
             Self::AirChanges { zone } => stepper.air_changes(zone, state.air[zone]),
-            Self::FaceTemperature { surface, side } => state.surfaces[2 * surface + side],
+            Self::FaceTemperature { surface, side } => state.surfaces[SurfaceId::new(surface, side)],
             Self::FaceFlux { surface, side } => {
                 stepper.link_flux(state, surface, side * plan.walls[surface].len())
             }
@@ -181,7 +182,7 @@ impl Probe {
             Self::LayerEnthalpy { surface, layer } => {
                 layer_mean(plan, surface, layer, |k| stepper.enthalpy(state, surface, k))
             }
-            Self::IncidentSolar { surface } => stepper.incident(2 * surface),
+            Self::IncidentSolar { surface } => stepper.incident(SurfaceId::outside(surface)),
             Self::TransmittedSolar { surface } => {
                 let window = plan.windows.iter().position(|&w| w == surface);
                 window.map_or_else(S::zero, |window| stepper.sun.windows[window])
@@ -254,7 +255,7 @@ fn interface_temperature<S: Real>(
     let link = wall.layer_cells[interface - 1].1;
     let flux = stepper.link_flux(state, surface, link);
     let (mut temperature, mut resistance) = if link == 0 {
-        (state.surfaces[2 * surface], S::zero())
+        (state.surfaces[SurfaceId::outside(surface)], S::zero())
     } else {
         let half = half_resistance(numbers, state, wall.first_cell, link - 1);
         (state.cells[wall.first_cell + link - 1], half)
@@ -271,7 +272,7 @@ fn profile<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, sur
     let (wall, numbers) = (&plan.walls[surface], &stepper.coefficients.walls[surface]);
     let face = |face: SurfaceId| state.surfaces[face];
     let mut depth = S::zero();
-    let mut points = vec![(depth, face(2 * surface))];
+    let mut points = vec![(depth, face(SurfaceId::outside(surface)))];
     for (layer, &(start, end)) in wall.layer_cells.iter().enumerate() {
         if layer > 0 {
             points.push((depth, interface_temperature(plan, stepper, state, surface, layer)));
@@ -282,7 +283,7 @@ fn profile<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, sur
             depth += numbers.cells[i].thickness;
         }
     }
-    points.push((depth, face(2 * surface + 1)));
+    points.push((depth, face(SurfaceId::inside(surface))));
     points
 }
 

@@ -5,7 +5,8 @@
 //! takes over the values of that linearisation, solves for all slopes (see [`crate::number::equations`]).
 
 use crate::building::coefficients::{Boundary, Matter};
-use crate::building::plan::{SurfaceId, SurfaceRole};
+use crate::building::ids::SurfaceId;
+use crate::building::plan::SurfaceRole;
 use crate::linear::surface_balance::Line;
 use crate::number::equations::Residual;
 use crate::number::real::{Mask, Real};
@@ -244,7 +245,7 @@ impl<S: Real> Stepper<'_, S> {
                 *cell = chain.rate[i] * chain.storage[i].capacity * held;
             }
             chain.forward(own);
-            chain.back([known.surfaces[2 * w], known.surfaces[2 * w + 1]], own);
+            chain.back(known.surfaces.pair(w), own);
         }
     }
 
@@ -266,8 +267,8 @@ impl<S: Real> Stepper<'_, S> {
         let per_second = 1.0 / place.length;
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let (chain, first, n) = (&self.chains[w], wall.first_cell, wall.len());
-            let surfaces = [2 * w, 2 * w + 1].map(|surface| self.plan.n_cells + surface);
-            let shares = [2 * w, 2 * w + 1].map(|surface| twin.takes(surface));
+            let surfaces = SurfaceId::pair(w).map(|surface| self.plan.n_cells + surface.index());
+            let shares = SurfaceId::pair(w).map(|surface| twin.takes(surface));
             if wall.nonlinear {
                 self.gather_storage(state, place, w, (&mut *equations, at));
             } else {
@@ -320,13 +321,17 @@ impl<S: Real> Stepper<'_, S> {
                 sign * (link.offset.lane(0) + link.left.lane(0) * left - link.right.lane(0) * right)
             });
             for (e, heat) in ends.into_iter().enumerate() {
-                match self.plan.surfaces[2 * w + e].role {
+                match self.plan.surfaces[SurfaceId::new(w, e)].role {
                     // What enters by its area beside the heat from the wall is added with the zone.
                     SurfaceRole::Zone { .. } => {
                         equations.add(surfaces[e], self.coefficients.walls[w].area, heat)
                     }
                     SurfaceRole::Exterior => {
-                        self.gather_local(2 * w + e, at[surfaces[e]], (&mut *equations, surfaces[e]));
+                        self.gather_local(
+                            SurfaceId::new(w, e),
+                            at[surfaces[e]],
+                            (&mut *equations, surfaces[e]),
+                        );
                     }
                 }
             }
@@ -399,10 +404,10 @@ impl<S: Real> Stepper<'_, S> {
             let (row, conditions) = (first_air + z, &self.conditions.zones[z]);
             let air = at[row];
             for (i, &index) in zone.surfaces.iter().enumerate() {
-                let (surface, convection) = (self.plan.n_cells + index, &self.laws[index].convection);
+                let (surface, convection) = (self.plan.n_cells + index.index(), &self.laws[index].convection);
                 let (area, above, solar) = (
                     numbers.areas[i].lane(0),
-                    at[self.plan.n_cells + index] - air,
+                    at[self.plan.n_cells + index.index()] - air,
                     self.conditions.surfaces[index].solar,
                 );
                 for (row, area) in [(surface, -area), (row, area)] {
@@ -454,9 +459,9 @@ impl<S: Real> Stepper<'_, S> {
             return;
         }
         for (i, &index) in surfaces.iter().enumerate() {
-            let row = self.plan.n_cells + index;
+            let row = self.plan.n_cells + index.index();
             let emission = |surface: SurfaceId| {
-                Line::of(&self.laws[surface].emission).at(at[self.plan.n_cells + surface])
+                Line::of(&self.laws[surface].emission).at(at[self.plan.n_cells + surface.index()])
             };
             let own = emission(index);
             let mut by_slope = 0.0;
@@ -464,7 +469,7 @@ impl<S: Real> Stepper<'_, S> {
                 if other != index {
                     // All that a surface sends out comes back to it from the others, as far as they are alike.
                     equations.add(row, exchange, emission(other) - own);
-                    by_slope += exchange.lane(0) * (at[self.plan.n_cells + other] - at[row]);
+                    by_slope += exchange.lane(0) * (at[self.plan.n_cells + other.index()] - at[row]);
                 }
             }
             // The slope of a straight law is a number of the building; an exact one depends on the solution alone.

@@ -16,7 +16,8 @@ use core::ops::Range;
 use crate::balance::flow_index::FlowIndex;
 use crate::balance::ledger::{Flow, Ledger, Power};
 use crate::building::coefficients::{Boundary, Coefficients, Matter, SurfaceCoefficients};
-use crate::building::plan::{Plan, SurfaceId, SurfaceRole};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::plan::{Plan, SurfaceRole};
 use crate::error::EngineError;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::step_maps::StepMaps;
@@ -109,7 +110,7 @@ pub struct Stepper<'a, S: Real> {
     responses: Vec<[[S; 2]; 2]>,
     /// Effective stage length of the factors in hand [s]; NaN: none.
     factored: f64,
-    laws: Vec<SurfaceLaws<S>>,
+    laws: BySurface<SurfaceLaws<S>>,
     /// Air entering each zone unasked: heat, of `T_outdoor - T_air` [W].
     inflow: Vec<Line<S>>,
     /// Outdoor air let into each zone, likewise.
@@ -223,7 +224,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let zeros = |n: usize| vec![S::zero(); n];
         let unknowns = Unknowns {
             cells: zeros(plan.n_cells),
-            surfaces: zeros(plan.surfaces.len()),
+            surfaces: zeros(plan.surfaces.len()).into(),
             air: zeros(plan.zones.len()),
         };
         let weather_index = WeatherIndex::new(plan, &coefficients);
@@ -292,7 +293,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             enthalpy: vec![S::zero(); plan.n_cells],
             load: vec![S::zero(); plan.zones.len()],
             cells,
-            surfaces,
+            surfaces: surfaces.into(),
             air,
         };
         self.settle(&mut state);
@@ -630,7 +631,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let surfaces = self.resolve_surfaces(w, self.locals[w]);
-            self.solved.surfaces[2 * w..2 * w + 2].copy_from_slice(&surfaces);
+            self.solved.surfaces.set_pair(w, surfaces);
             if wall.nonlinear {
                 let cells = wall.first_cell..wall.first_cell + wall.len();
                 self.chains[w].temperatures(surfaces, &mut self.solved.cells[cells]);
@@ -669,7 +670,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             response.right[plan.air_row] += storage * first.air[zone];
         }
         for (w, carried) in self.step_maps.carried() {
-            let [outside, inside] = [first.surfaces[2 * w], first.surfaces[2 * w + 1]];
+            let [outside, inside] = first.surfaces.pair(w);
             response.sources[w] = carried.map(|[a, b]| a * outside + b * inside);
         }
         for (w, wall) in self.plan.walls.iter().enumerate() {
@@ -681,7 +682,9 @@ impl<'a, S: Real> Stepper<'a, S> {
             let source = response.sources[w];
             let area = self.coefficients.walls[w].area;
             for e in 0..2 {
-                let SurfaceRole::Zone { row, .. } = self.plan.surfaces[2 * w + e].role else { continue };
+                let SurfaceRole::Zone { row, .. } = self.plan.surfaces[SurfaceId::new(w, e)].role else {
+                    continue;
+                };
                 let mut heat = source[e];
                 if let ExteriorSurfaces::One { side, .. } = self.locals[w] {
                     heat += self.responses[w][e][side] * self.free_answer(w, side, source[side]);
@@ -694,7 +697,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Rise of a local surface with the heat that its wall sends into it, the other surface held [K].
     #[inline(always)]
     fn free_answer(&self, w: usize, side: usize, source: S) -> S {
-        match self.local_balance(2 * w + side) {
+        match self.local_balance(SurfaceId::new(w, side)) {
             ExteriorBalance::Fixed(_) => S::zero(),
             ExteriorBalance::Gain(_) => source * self.inverses[w],
         }
@@ -713,7 +716,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let mut surfaces = [S::zero(); 2];
             for (e, surface) in surfaces.iter_mut().enumerate() {
-                if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[2 * w + e].role {
+                if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[SurfaceId::new(w, e)].role {
                     *surface = right[row];
                 }
             }
@@ -721,7 +724,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 let source = if stage > 0 { sources[w][side] } else { S::zero() };
                 surfaces[side] = line.slope * surfaces[1 - side] + self.free_answer(w, side, source);
             }
-            answer.surfaces[2 * w..2 * w + 2].copy_from_slice(&surfaces);
+            answer.surfaces.set_pair(w, surfaces);
             if !wall.nonlinear {
                 continue;
             }
@@ -1129,7 +1132,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let numbers = &self.coefficients.walls[w];
         let at = Iterate {
             cells: &self.iterate.cells[cells.clone()],
-            surfaces: [self.iterate.surfaces[2 * w], self.iterate.surfaces[2 * w + 1]],
+            surfaces: self.iterate.surfaces.pair(w),
             outer: outer.map(
                 #[inline(always)]
                 |outer| &outer[cells.clone()],
@@ -1193,7 +1196,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         for &w in &self.changing.walls {
             let wall = &self.plan.walls[w];
             let surfaces = self.resolve_surfaces(w, self.locals[w]);
-            self.solved.surfaces[2 * w..2 * w + 2].copy_from_slice(&surfaces);
+            self.solved.surfaces.set_pair(w, surfaces);
             let cells = wall.first_cell..wall.first_cell + wall.len();
             self.chains[w].temperatures(surfaces, &mut self.solved.cells[cells]);
         }
@@ -1247,7 +1250,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.zone_fronts.resolve(self.changing.stays(), &mut self.block.right, &mut self.solved.surfaces);
         for &w in &self.changing.shared {
             let surfaces = self.resolve_surfaces(w, self.locals[w]);
-            self.solved.surfaces[2 * w..2 * w + 2].copy_from_slice(&surfaces);
+            self.solved.surfaces.set_pair(w, surfaces);
         }
     }
 
@@ -1256,10 +1259,12 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn eliminate_wall(&mut self, w: usize, matrix: bool) -> ExteriorSurfaces<S> {
         let (source, response) = (self.sources[w], self.responses[w]);
         let area = self.coefficients.walls[w].area;
-        let roles = [self.plan.surfaces[2 * w].role, self.plan.surfaces[2 * w + 1].role];
+        let roles =
+            [self.plan.surfaces[SurfaceId::outside(w)].role, self.plan.surfaces[SurfaceId::inside(w)].role];
         match roles {
             [SurfaceRole::Exterior, SurfaceRole::Exterior] => {
-                let (outer, inner) = (self.local_balance(2 * w), self.local_balance(2 * w + 1));
+                let (outer, inner) =
+                    (self.local_balance(SurfaceId::outside(w)), self.local_balance(SurfaceId::inside(w)));
                 ExteriorSurfaces::Both(solve_pair(outer, inner, source, response))
             }
             [SurfaceRole::Zone { row: outer, .. }, SurfaceRole::Zone { row: inner, .. }] => {
@@ -1282,7 +1287,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn eliminate_one(&mut self, w: usize, e: usize, row: usize, matrix: bool) -> ExteriorSurfaces<S> {
         let source = self.sources[w];
         let (response, area, o) = (self.responses[w], self.coefficients.walls[w].area, 1 - e);
-        let balance = self.local_balance(2 * w + o);
+        let balance = self.local_balance(SurfaceId::new(w, o));
         let slope = match (balance, self.locals[w]) {
             (ExteriorBalance::Fixed(_), _) => S::zero(),
             (ExteriorBalance::Gain(_), ExteriorSurfaces::One { line, .. }) if !matrix => line.slope,
@@ -1342,13 +1347,15 @@ impl<'a, S: Real> Stepper<'a, S> {
     fn resolve_surfaces(&self, w: usize, local: ExteriorSurfaces<S>) -> [S; 2] {
         match local {
             ExteriorSurfaces::Both(surfaces) => surfaces,
-            ExteriorSurfaces::None => [self.zone_surface(2 * w), self.zone_surface(2 * w + 1)],
+            ExteriorSurfaces::None => {
+                [self.zone_surface(SurfaceId::outside(w)), self.zone_surface(SurfaceId::inside(w))]
+            }
             ExteriorSurfaces::One { side: 0, line } => {
-                let inner = self.zone_surface(2 * w + 1);
+                let inner = self.zone_surface(SurfaceId::inside(w));
                 [line.at(inner), inner]
             }
             ExteriorSurfaces::One { line, .. } => {
-                let outer = self.zone_surface(2 * w);
+                let outer = self.zone_surface(SurfaceId::outside(w));
                 [outer, line.at(outer)]
             }
         }
@@ -1431,7 +1438,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         }
         let mut sum = S::zero();
         for &w in &self.changing.loose {
-            sum += self.solved.surfaces[2 * w] + self.solved.surfaces[2 * w + 1];
+            sum += self.solved.surfaces[SurfaceId::outside(w)] + self.solved.surfaces[SurfaceId::inside(w)];
         }
         sum.abs().lt(S::constant(f64::MAX))
     }
@@ -1505,7 +1512,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             return -self.laws[index].convection.at(self.solved.surfaces[index] - at.temperature);
         }
         let flux = self.surface_flux(index);
-        if index.is_multiple_of(2) { flux } else { -flux }
+        if index.is_outside() { flux } else { -flux }
     }
 
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
@@ -1522,8 +1529,8 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Conduction through a surface at the end of the last stage [W/m2], positive towards the inside.
     #[inline(always)]
     fn surface_flux(&self, index: SurfaceId) -> S {
-        let (w, e) = (index / 2, index % 2);
-        let surfaces = [self.solved.surfaces[2 * w], self.solved.surfaces[2 * w + 1]];
+        let (w, e) = (index.wall(), index.side());
+        let surfaces = self.solved.surfaces.pair(w);
         if self.plan.walls[w].nonlinear {
             return self.chains[w].link_flux(e * self.plan.walls[w].len(), surfaces);
         }
@@ -1547,7 +1554,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[inline(always)]
     pub fn link_flux(&self, state: &State<S>, w: usize, link: usize) -> S {
         let wall = &self.plan.walls[w];
-        let surfaces = [self.solved.surfaces[2 * w], self.solved.surfaces[2 * w + 1]];
+        let surfaces = self.solved.surfaces.pair(w);
         if wall.nonlinear {
             return self.chains[w].link_flux(link, surfaces);
         }
@@ -1632,13 +1639,17 @@ struct NonlinearSurfaces {
 
 impl Changing {
     /// Sorts walls and surfaces; also the laws that never change.
-    fn sort<S: Real>(plan: &Plan, numbers: &Coefficients<S>) -> (Self, Vec<SurfaceLaws<S>>) {
+    fn sort<S: Real>(plan: &Plan, numbers: &Coefficients<S>) -> (Self, BySurface<SurfaceLaws<S>>) {
         let (walls, constant): (Vec<_>, Vec<_>) =
             (0..plan.walls.len()).partition(|&wall| plan.walls[wall].nonlinear);
         let local = |surface: SurfaceId| plan.surfaces[surface].role == SurfaceRole::Exterior;
-        let loose = constant.iter().copied().filter(|&wall| local(2 * wall) && local(2 * wall + 1)).collect();
+        let loose = constant
+            .iter()
+            .copied()
+            .filter(|&wall| local(SurfaceId::outside(wall)) && local(SurfaceId::inside(wall)))
+            .collect();
         let shared = constant.iter().copied().filter(|&wall| !of_one_room(plan, wall)).collect();
-        let surfaces = constant.iter().flat_map(|&wall| [2 * wall, 2 * wall + 1]);
+        let surfaces = constant.iter().flat_map(|&wall| SurfaceId::pair(wall));
         let inner = surfaces.filter(|&surface| !local(surface)).collect();
         let cells = walls.iter().map(|&wall| &plan.walls[wall]);
         let cells = cells.map(|wall| wall.first_cell..wall.first_cell + wall.len()).collect();
@@ -1655,19 +1666,19 @@ impl Changing {
             curved: false,
             by_wind: false,
         };
-        let laws = (0..plan.surfaces.len()).map(|surface| all.enter(plan, numbers, surface)).collect();
+        let laws = plan.surfaces.ids().map(|surface| all.enter(plan, numbers, surface)).collect();
         let bending = &all.bending;
         let linearised = |surface: &SurfaceId| {
-            plan.walls[surface / 2].nonlinear
+            plan.walls[surface.wall()].nonlinear
                 || bending.bent.contains(surface)
                 || bending.radiant.contains(surface)
         };
-        all.watched = (0..plan.surfaces.len()).filter(linearised).collect();
+        all.watched = plan.surfaces.ids().filter(linearised).collect();
         let apart = |surfaces: &[SurfaceId]| {
             surfaces
                 .iter()
                 .copied()
-                .filter(|&surface| local(surface) && !of_one_room(plan, surface / 2))
+                .filter(|&surface| local(surface) && !of_one_room(plan, surface.wall()))
                 .collect()
         };
         all.apart = NonlinearSurfaces {
@@ -1694,7 +1705,7 @@ impl Changing {
         let (surface, role) = (&numbers.surfaces[index], plan.surfaces[index].role);
         let mut laws = SurfaceLaws { convection: Line::zero(), emission: Line::zero() };
         // What happens at the free surface of a wall that changes is entered with the wall.
-        let entered = matches!(role, SurfaceRole::Zone { .. }) || !plan.walls[index / 2].nonlinear;
+        let entered = matches!(role, SurfaceRole::Zone { .. }) || !plan.walls[index.wall()].nonlinear;
         let adiabatic = matches!(surface.boundary, Boundary::Adiabatic);
         if let Some(convection) = surface.convection.as_ref().filter(|_| !adiabatic) {
             if let Some(coefficient) = convection.constant() {

@@ -3,7 +3,8 @@
 use core::ops::Range;
 
 use crate::building::coefficients::{Coefficients, Matter};
-use crate::building::plan::{Plan, SurfaceId};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::Real;
 use crate::physics::pcm::{PcmMemory, REMEMBERED};
@@ -55,7 +56,7 @@ pub struct State<S> {
     /// What the cells remember.
     pub memory: Vec<PcmMemory<S>>,
     /// Surface temperatures [degC].
-    pub surfaces: Vec<S>,
+    pub surfaces: BySurface<S>,
     /// Zone air temperatures [degC].
     pub air: Vec<S>,
     /// Heat from the plant of each zone over the step that ended here [W]; cooling is negative.
@@ -70,7 +71,7 @@ impl<S: Real> State<S> {
 
     /// All its numbers, one after the other.
     pub(crate) fn write(&self, numbers: &mut Vec<S>) {
-        for values in [&self.cells, &self.enthalpy, &self.surfaces, &self.air, &self.load] {
+        for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load] {
             numbers.extend_from_slice(values);
         }
         for memory in &self.memory {
@@ -82,7 +83,7 @@ impl<S: Real> State<S> {
     #[inline(always)]
     pub(crate) fn read<T: Copy>(&mut self, mut numbers: &[T], mut change: impl FnMut(&mut S, T)) {
         let Self { cells, enthalpy, memory, surfaces, air, load } = self;
-        for values in [cells, enthalpy, surfaces, air, load] {
+        for values in [&mut cells[..], enthalpy, surfaces, air, load] {
             let (own, rest) = numbers.split_at(values.len());
             numbers = rest;
             for (mine, &theirs) in values.iter_mut().zip(own) {
@@ -98,7 +99,7 @@ impl<S: Real> State<S> {
     /// Shows each number with one of others, in the order of [`Self::write`].
     #[inline(always)]
     pub(crate) fn beside<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
-        for values in [&self.cells, &self.enthalpy, &self.surfaces, &self.air, &self.load] {
+        for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load] {
             let (own, rest) = numbers.split_at(values.len());
             numbers = rest;
             for (&mine, &theirs) in values.iter().zip(own) {
@@ -125,14 +126,14 @@ impl<S: Real> State<S> {
 
     /// How many numbers it has.
     pub(crate) fn count(&self) -> usize {
-        let plain = [&self.cells, &self.enthalpy, &self.surfaces, &self.air, &self.load];
-        plain.into_iter().map(Vec::len).sum::<usize>() + REMEMBERED * self.memory.len()
+        let plain = [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load];
+        plain.into_iter().map(<[S]>::len).sum::<usize>() + REMEMBERED * self.memory.len()
     }
 
     /// Changes each number by the one at its place in another state.
     pub(crate) fn meet<T: Real>(&mut self, other: &State<T>, mut change: impl FnMut(&mut S, T)) {
         let plain = [
-            (&mut self.cells, &other.cells),
+            (&mut self.cells[..], &other.cells[..]),
             (&mut self.enthalpy, &other.enthalpy),
             (&mut self.surfaces, &other.surfaces),
             (&mut self.air, &other.air),
@@ -204,7 +205,7 @@ pub(crate) fn line<S: Real>(from: S, to: S, ratio: f64) -> S {
 /// Temperatures of an iterate or a state, to read.
 pub(crate) struct Temperatures<'a, S> {
     pub(crate) cells: &'a [S],
-    pub(crate) surfaces: &'a [S],
+    pub(crate) surfaces: &'a BySurface<S>,
     pub(crate) air: &'a [S],
 }
 
@@ -212,7 +213,7 @@ pub(crate) struct Temperatures<'a, S> {
 #[derive(Debug, Clone)]
 pub(crate) struct Unknowns<S> {
     pub(crate) cells: Vec<S>,
-    pub(crate) surfaces: Vec<S>,
+    pub(crate) surfaces: BySurface<S>,
     pub(crate) air: Vec<S>,
 }
 
@@ -224,15 +225,19 @@ impl<S: Real> Unknowns<S> {
 
     /// The values alone.
     pub(crate) fn plain(&self) -> Unknowns<f64> {
-        let values = |numbers: &[S]| numbers.iter().map(|number| number.lane(0)).collect();
-        Unknowns { cells: values(&self.cells), surfaces: values(&self.surfaces), air: values(&self.air) }
+        let values = |numbers: &[S]| -> Vec<f64> { numbers.iter().map(|number| number.lane(0)).collect() };
+        Unknowns {
+            cells: values(&self.cells),
+            surfaces: values(&self.surfaces).into(),
+            air: values(&self.air),
+        }
     }
 
     /// Takes over plain temperatures.
     #[inline(always)]
     pub(crate) fn set(&mut self, plain: &Unknowns<f64>) {
         let pairs = [
-            (&mut self.cells, &plain.cells),
+            (&mut self.cells[..], &plain.cells[..]),
             (&mut self.surfaces, &plain.surfaces),
             (&mut self.air, &plain.air),
         ];

@@ -5,7 +5,8 @@
 //! at a temperature is that temperature.
 
 use crate::building::coefficients::Boundary;
-use crate::building::plan::{SurfaceId, SurfaceRole};
+use crate::building::ids::SurfaceId;
+use crate::building::plan::SurfaceRole;
 use crate::linear::surface_balance::{ExteriorSurfaces, Line, SurfaceLaws};
 use crate::number::real::Real;
 
@@ -49,7 +50,7 @@ impl Stepper<'_, f64> {
     #[inline(always)]
     pub(super) fn takes(&self, surface: SurfaceId) -> f64 {
         match self.plan.surfaces[surface].role {
-            SurfaceRole::Zone { .. } => self.coefficients.walls[surface / 2].area,
+            SurfaceRole::Zone { .. } => self.coefficients.walls[surface.wall()].area,
             SurfaceRole::Exterior if self.held_at(surface) => 0.0,
             SurfaceRole::Exterior => 1.0,
         }
@@ -65,15 +66,15 @@ impl Stepper<'_, f64> {
     /// How much a local surface gives way, the other surface of its wall held.
     #[inline(always)]
     fn yields(&self, surface: SurfaceId) -> f64 {
-        if self.held_at(surface) { 1.0 } else { self.inverses[surface / 2] }
+        if self.held_at(surface) { 1.0 } else { self.inverses[surface.wall()] }
     }
 
     /// The matrix of a wall that touches no zone, and one over its determinant.
     #[inline(always)]
     fn pair(&self, w: usize) -> ([[f64; 2]; 2], f64) {
         let response = self.responses[w];
-        let ([a, b], _) = self.local_balance(2 * w).equation(0, [0.0; 2], response);
-        let ([d, c], _) = self.local_balance(2 * w + 1).equation(1, [0.0; 2], response);
+        let ([a, b], _) = self.local_balance(SurfaceId::outside(w)).equation(0, [0.0; 2], response);
+        let ([d, c], _) = self.local_balance(SurfaceId::inside(w)).equation(1, [0.0; 2], response);
         ([[a, b], [c, d]], 1.0 / (a * d - b * c))
     }
 
@@ -87,23 +88,26 @@ impl Stepper<'_, f64> {
         for (w, wall) in self.plan.walls.iter().enumerate() {
             let heat = self.chains[w].forward(&mut cells[wall.first_cell..wall.first_cell + wall.len()]);
             for e in 0..2 {
-                surfaces[2 * w + e] += heat[e].scale(self.takes(2 * w + e));
-                if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[2 * w + e].role {
-                    block[row] += surfaces[2 * w + e];
+                surfaces[SurfaceId::new(w, e).index()] += heat[e].scale(self.takes(SurfaceId::new(w, e)));
+                if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[SurfaceId::new(w, e)].role {
+                    block[row] += surfaces[SurfaceId::new(w, e).index()];
                 }
             }
             match self.locals[w] {
                 ExteriorSurfaces::None => {}
                 ExteriorSurfaces::One { side, .. } => {
-                    let (local, zone) = (2 * w + side, 2 * w + 1 - side);
-                    surfaces[local] = surfaces[local].scale(self.yields(local));
+                    let (local, zone) = (SurfaceId::new(w, side), SurfaceId::new(w, 1 - side));
+                    surfaces[local.index()] = surfaces[local.index()].scale(self.yields(local));
                     let gain = self.coefficients.walls[w].area * self.responses[w][1 - side][side];
-                    block[self.plan.row(zone)] += surfaces[local].scale(gain);
+                    block[self.plan.row(zone)] += surfaces[local.index()].scale(gain);
                 }
                 ExteriorSurfaces::Both(_) => {
                     let ([[a, b], [c, d]], inverse) = self.pair(w);
-                    let [f, g] = [surfaces[2 * w].scale(inverse), surfaces[2 * w + 1].scale(inverse)];
-                    (surfaces[2 * w], surfaces[2 * w + 1]) =
+                    let [f, g] = [
+                        surfaces[SurfaceId::outside(w).index()].scale(inverse),
+                        surfaces[SurfaceId::inside(w).index()].scale(inverse),
+                    ];
+                    (surfaces[SurfaceId::outside(w).index()], surfaces[SurfaceId::inside(w).index()]) =
                         (f.scale(d) - g.scale(b), g.scale(a) - f.scale(c));
                 }
             }
@@ -118,17 +122,17 @@ impl Stepper<'_, f64> {
             *air = block[zone.air_row];
         }
         for (w, wall) in self.plan.walls.iter().enumerate() {
-            for surface in [2 * w, 2 * w + 1] {
+            for surface in SurfaceId::pair(w) {
                 if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[surface].role {
-                    surfaces[surface] = block[row];
+                    surfaces[surface.index()] = block[row];
                 }
             }
             if let ExteriorSurfaces::One { side, line } = self.locals[w] {
-                let zone = surfaces[2 * w + 1 - side].scale(line.slope);
-                surfaces[2 * w + side] += zone;
+                let zone = surfaces[SurfaceId::new(w, 1 - side).index()].scale(line.slope);
+                surfaces[SurfaceId::new(w, side).index()] += zone;
             }
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
-            self.chains[w].back([surfaces[2 * w], surfaces[2 * w + 1]], own);
+            self.chains[w].back(SurfaceId::pair(w).map(|surface| surfaces[surface.index()]), own);
         }
     }
 
@@ -142,24 +146,28 @@ impl Stepper<'_, f64> {
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
             let weights = self.chains[w].back_transposed(own);
             for e in 0..2 {
-                surfaces[2 * w + e] += weights[e];
+                surfaces[SurfaceId::new(w, e).index()] += weights[e];
             }
             match self.locals[w] {
                 ExteriorSurfaces::None => {}
                 ExteriorSurfaces::One { side, line } => {
-                    let local = 2 * w + side;
-                    surfaces[2 * w + 1 - side] += line.slope * surfaces[local];
-                    surfaces[local] *= self.yields(local);
+                    let local = SurfaceId::new(w, side);
+                    surfaces[local.opposite().index()] += line.slope * surfaces[local.index()];
+                    surfaces[local.index()] *= self.yields(local);
                 }
                 ExteriorSurfaces::Both(_) => {
                     let ([[a, b], [c, d]], inverse) = self.pair(w);
-                    let [f, g] = [surfaces[2 * w] * inverse, surfaces[2 * w + 1] * inverse];
-                    (surfaces[2 * w], surfaces[2 * w + 1]) = (f * d - g * c, g * a - f * b);
+                    let [f, g] = [
+                        surfaces[SurfaceId::outside(w).index()] * inverse,
+                        surfaces[SurfaceId::inside(w).index()] * inverse,
+                    ];
+                    (surfaces[SurfaceId::outside(w).index()], surfaces[SurfaceId::inside(w).index()]) =
+                        (f * d - g * c, g * a - f * b);
                 }
             }
-            for surface in [2 * w, 2 * w + 1] {
+            for surface in SurfaceId::pair(w) {
                 if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[surface].role {
-                    block[row] += surfaces[surface];
+                    block[row] += surfaces[surface.index()];
                 }
             }
         }
@@ -173,17 +181,18 @@ impl Stepper<'_, f64> {
             *air = block[zone.air_row];
         }
         for (w, wall) in self.plan.walls.iter().enumerate() {
-            for surface in [2 * w, 2 * w + 1] {
+            for surface in SurfaceId::pair(w) {
                 if let SurfaceRole::Zone { row, .. } = self.plan.surfaces[surface].role {
-                    surfaces[surface] = block[row];
+                    surfaces[surface.index()] = block[row];
                 }
             }
             if let ExteriorSurfaces::One { side, .. } = self.locals[w] {
-                let (local, zone) = (2 * w + side, 2 * w + 1 - side);
+                let (local, zone) = (SurfaceId::new(w, side), SurfaceId::new(w, 1 - side));
                 let gain = self.coefficients.walls[w].area * self.responses[w][1 - side][side];
-                surfaces[local] += self.yields(local) * gain * surfaces[zone];
+                surfaces[local.index()] += self.yields(local) * gain * surfaces[zone.index()];
             }
-            let heat = [0, 1].map(|e| self.takes(2 * w + e) * surfaces[2 * w + e]);
+            let heat =
+                [0, 1].map(|e| self.takes(SurfaceId::new(w, e)) * surfaces[SurfaceId::new(w, e).index()]);
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
             self.chains[w].forward_transposed(heat, own);
         }

@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 use crate::building::coefficients::{Boundary, Coefficients, Imposed, PER_DAY};
-use crate::building::plan::{Plan, SurfaceId, SurfaceRole};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::plan::{Plan, SurfaceRole};
 use crate::building::sun_distribution::Traced;
 use crate::input::description::Facing;
 use crate::input::forcing::{Forcing, channel};
@@ -59,7 +60,7 @@ impl<'a> Instant<'a> {
 impl Instant<'_> {
     /// What shades leave a surface of sun and sky: they stand outside.
     fn open(&self, plan: &Plan, surface: SurfaceId) -> Open {
-        if surface.is_multiple_of(2) { plan.daylight.open(surface / 2, &self.geometry) } else { Open::ALL }
+        if surface.is_outside() { plan.daylight.open(surface.wall(), &self.geometry) } else { Open::ALL }
     }
 }
 
@@ -94,7 +95,7 @@ impl<'a> Weather<'a> {
     }
 
     fn passing(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
-        let sides = || (0..plan.surfaces.len()).map(|surface| plan.side(surface));
+        let sides = || plan.surfaces.ids().map(|surface| plan.side(surface));
         let asked = Asked::by(sides().filter_map(|side| side.convection.as_ref()));
         let ground = sides().any(|side| matches!(side.facing, Facing::Ground { .. }));
         Self { plan, forcing: *forcing, asked, ground, kept: Vec::new() }
@@ -167,7 +168,7 @@ pub struct ZoneLight<S> {
 #[derive(Debug, Clone)]
 pub struct Conditions<S: Real> {
     /// Per surface.
-    pub surfaces: Vec<SurfaceConditions<S>>,
+    pub surfaces: BySurface<SurfaceConditions<S>>,
     /// Per zone.
     pub zones: Vec<ZoneConditions<S>>,
     /// Heat carried between two zones, per path [W/K].
@@ -366,14 +367,14 @@ impl<S: Real> Conditions<S> {
             at.directed = S::zero();
             at.panes.fill(S::zero());
             let (Some(glass), Boundary::Outdoors(outdoors)) =
-                (&wall.glass, &coefficients.surfaces[2 * w].boundary)
+                (&wall.glass, &coefficients.surfaces[SurfaceId::outside(w)].boundary)
             else {
                 continue;
             };
             if now.sunlight.dark() {
                 continue;
             }
-            let open = now.open(plan, 2 * w);
+            let open = now.open(plan, SurfaceId::outside(w));
             let light = now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open);
             let (directed, scattered) = (light.directed(), light.scattered());
             let (front, level) = (&glass.optics.front, &glass.horizon);
@@ -385,7 +386,7 @@ impl<S: Real> Conditions<S> {
             at.directed = wall.area * through * directed;
             let spread = front.transmittance * scattered + level.transmittance * light.horizon;
             at.transmitted = at.directed + wall.area * spread;
-            if let SurfaceRole::Zone { zone, .. } = plan.surfaces[2 * w + 1].role {
+            if let SurfaceRole::Zone { zone, .. } = plan.surfaces[SurfaceId::inside(w)].role {
                 self.light[zone].transmitted += at.transmitted;
             }
         }
@@ -410,7 +411,7 @@ impl<S: Real> Conditions<S> {
                 for (i, &surface) in zone.surfaces.iter().enumerate() {
                     let on = traced.irradiance(i, &self.first[z]);
                     self.surfaces[surface].solar = coefficients.surfaces[surface].absorptance * on;
-                    if let Some(glass) = &coefficients.walls[surface / 2].glass {
+                    if let Some(glass) = &coefficients.walls[surface.wall()].glass {
                         let (power, back) = (numbers.areas[i] * on, &glass.optics.back);
                         lost += power * back.transmittance;
                         in_glass += power * (back.admitted() - back.transmittance);
@@ -481,8 +482,8 @@ impl<S: Real> Conditions<S> {
                     }
                 }
             }
-            self.surfaces[2 * w].solar = surfaces[0];
-            self.surfaces[2 * w + 1].solar += surfaces[1];
+            self.surfaces[SurfaceId::outside(w)].solar = surfaces[0];
+            self.surfaces[SurfaceId::inside(w)].solar += surfaces[1];
         }
     }
 }

@@ -1,7 +1,8 @@
 //! What of the weather acts on which surface, sorted once: the same for several surfaces is reckoned once.
 
 use crate::building::coefficients::{Boundary, Coefficients};
-use crate::building::plan::{Plan, SurfaceId};
+use crate::building::ids::SurfaceId;
+use crate::building::plan::Plan;
 use crate::number::real::{Real, same};
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::Emission;
@@ -58,7 +59,7 @@ impl<S: Real> WeatherIndex<S> {
             imposed: Vec::new(),
             lit: Vec::new(),
         };
-        for (index, surface) in numbers.surfaces.iter().enumerate() {
+        for (index, surface) in numbers.surfaces.entries() {
             let sun = all.sun_of(plan, numbers, index);
             match (&surface.boundary, sun) {
                 (Boundary::Outdoors(outdoors), _) => {
@@ -105,7 +106,7 @@ impl<S: Real> WeatherIndex<S> {
             }
             _ => return None,
         };
-        let shaded = |surface: SurfaceId| surface.is_multiple_of(2) && plan.daylight.shaded(surface / 2);
+        let shaded = |surface: SurfaceId| surface.is_outside() && plan.daylight.shaded(surface.wall());
         let alike = |a: SurfaceId, b: SurfaceId| !shaded(a) && !shaded(b);
         let known = self.suns.iter().position(|known| match (known, &sun) {
             (Sun::Measured(mine), Sun::Measured(theirs)) => mine == theirs,

@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use super::{Eliminate, Front, Laws, Resolve, ZoneFront};
+use crate::building::ids::SurfaceId;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::{Line, SurfaceLaws};
 use crate::number::real::Real;
@@ -25,18 +26,18 @@ impl Numbers {
 /// A zone of some surfaces, the first of them its own; their emission bends or not.
 fn room<S: Real>(surfaces: usize, own: usize, bends: bool) -> ZoneFront<S> {
     let mut numbers = Numbers(7 + 31 * surfaces as u64 + own as u64);
-    let ids: Vec<usize> = (0..surfaces).collect();
+    let ids: Vec<_> = (0..surfaces).map(SurfaceId::from_index).collect();
     let stride = (surfaces + 2).next_multiple_of(S::SIDE);
     let mut line = |offset: f64| Line { offset: numbers.next::<S>().scale(offset), slope: numbers.next() };
     let laws: Vec<_> = (0..2 * surfaces)
         .map(|_| SurfaceLaws { convection: line(3.0), emission: line(if bends { 300.0 } else { 0.0 }) })
         .collect();
-    let mut inner = Laws::new(&ids, stride, &laws);
+    let mut inner = Laws::new(&ids, stride, &laws[..surfaces].to_vec().into());
     inner.emission[1][surfaces..].fill(S::one());
     if bends {
         inner.radiant.push((0, Box::default()));
     }
-    let outer = Laws::new(&ids[..own], stride, &laws[surfaces..]);
+    let outer = Laws::new(&ids[..own], stride, &laws[surfaces..].to_vec().into());
     let mut room = ZoneFront::blank(inner, outer, stride);
     room.shared = (own..=surfaces).collect();
     for i in 0..surfaces {
