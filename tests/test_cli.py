@@ -9,8 +9,8 @@ import warnings
 
 import pytest
 
-from mascarin import __version__, cli
-from mascarin.errors import CriterionFailed, InputError, SolverError
+from mascarin import __version__, _engine, cli
+from mascarin.errors import CriterionFailed, InputError, MascarinError, SolverError
 
 COMMANDS = [command for group in cli.GROUPS.values() for command in group]
 
@@ -118,6 +118,18 @@ def test_a_defect_is_never_an_answer(
     assert "ZeroDivisionError: division by zero" in err
     assert "report" in err
     assert ("Traceback" in err) is traced
+
+
+def test_a_panic_of_the_engine_is_a_defect(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(_engine.EngineDefect, match="internal fault: index 7 of 3") as found:
+        _engine._panic("index 7 of 3")
+    # Not among the errors that are shown as they stand: a defect is never an answer.
+    assert not isinstance(found.value, MascarinError)
+    raising(monkeypatch, found.value)
+    assert cli.main(["x"]) == cli.EXIT_DEFECT == 70
+    assert "index 7 of 3" in capsys.readouterr().err
 
 
 def test_debug_by_environment(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

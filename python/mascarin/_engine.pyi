@@ -6,7 +6,14 @@ from typing import Any, Final, final
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CLIMATE_CHANNELS", "EngineInputError", "EngineSolverError", "Plan", "Trajectory"]
+__all__ = [
+    "CLIMATE_CHANNELS",
+    "EngineDefect",
+    "EngineInputError",
+    "EngineSolverError",
+    "Plan",
+    "Trajectory",
+]
 
 _Array = npt.NDArray[np.float64]
 
@@ -18,6 +25,12 @@ class EngineInputError(Exception):
 
 class EngineSolverError(Exception):
     """A step or a warm-up that did not converge."""
+
+class EngineDefect(Exception):
+    """A defect of the engine itself: it stopped on a panic."""
+
+def _panic(message: str) -> None:
+    """Panic on purpose, so that tests can see what becomes of a defect of the engine."""
 
 @final
 class Plan:
@@ -65,7 +78,7 @@ class Plan:
 
 @final
 class Trajectory:
-    """A run, and what is needed to go back along it."""
+    """A run that keeps what its derivatives in reverse need."""
 
     def __new__(
         cls, plan: Plan, values: _Array, forcing: _Array, options: dict[str, Any], memory: int

@@ -1,0 +1,102 @@
+//! Errors of the engine as Python exceptions; interruption, progress and panics of a running call.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::time::Duration;
+
+use mascarin_engine::error::EngineError;
+use mascarin_engine::march::Watch;
+use pyo3::create_exception;
+use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
+use pyo3::prelude::*;
+
+create_exception!(
+    _engine,
+    EngineInputError,
+    PyException,
+    "Arrays, options or descriptions the engine refuses."
+);
+create_exception!(_engine, EngineSolverError, PyException, "A step or a warm-up that did not converge.");
+create_exception!(
+    _engine,
+    EngineDefect,
+    PyException,
+    "A defect of the engine itself: it stopped on a panic."
+);
+
+/// How often a waiting call checks for Ctrl-C and reports progress.
+const PULSE: Duration = Duration::from_millis(50);
+
+/// The Python exception of an engine error.
+pub fn to_python(error: &EngineError) -> PyErr {
+    let text = error.to_string();
+    match error {
+        EngineError::Description(_) | EngineError::Input(_) => EngineInputError::new_err(text),
+        EngineError::NotConverged { .. } | EngineError::NotSettled { .. } => EngineSolverError::new_err(text),
+        EngineError::Interrupted => PyKeyboardInterrupt::new_err(text),
+    }
+}
+
+/// The Python exception of a panic.
+fn defect(panic: &(dyn std::any::Any + Send)) -> PyErr {
+    let text = panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message");
+    EngineDefect::new_err(format!("the engine stopped on an internal fault: {text}"))
+}
+
+/// Calls the engine on this thread; an engine error or a panic becomes a Python exception.
+pub fn guarded<T>(work: impl FnOnce() -> Result<T, EngineError>) -> PyResult<T> {
+    // What `work` was changing is dropped with it: nothing half-changed is seen afterwards.
+    match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(result) => result.map_err(|error| to_python(&error)),
+        Err(panic) => Err(defect(&*panic)),
+    }
+}
+
+/// Runs `work` on another thread with the GIL released, passing Ctrl-C on to it and progress to `report`.
+pub fn attended<T: Send>(
+    py: Python<'_>,
+    report: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Watch) -> Result<T, EngineError> + Send,
+) -> PyResult<T> {
+    let watch = Watch::default();
+    let (sender, receiver) = sync_channel(1);
+    let receiver = Mutex::new(receiver);
+    let wait = || receiver.lock().map_or(Err(RecvTimeoutError::Disconnected), |end| end.recv_timeout(PULSE));
+    let mut interruption = None;
+    let result = std::thread::scope(|scope| {
+        let watch = &watch;
+        let worker = scope.spawn(move || {
+            let result = work(watch);
+            // The receiver lives until the worker is joined.
+            let _ = sender.send(());
+            result
+        });
+        let mut reported = 0;
+        while let Err(RecvTimeoutError::Timeout) = py.detach(wait) {
+            let done = watch.done.load(Ordering::Relaxed);
+            let mut attend = py.check_signals();
+            if let (Ok(()), Some(report), true) = (&attend, report, done != reported) {
+                reported = done;
+                attend = report.call1((done,)).map(drop);
+            }
+            if let Err(error) = attend {
+                watch.stop.store(true, Ordering::Relaxed);
+                interruption = Some(error);
+                break;
+            }
+        }
+        py.detach(|| worker.join())
+    });
+    match (result, interruption) {
+        (_, Some(interruption)) => Err(interruption),
+        (Ok(Ok(value)), None) => Ok(value),
+        (Ok(Err(error)), None) => Err(to_python(&error)),
+        (Err(panic), None) => Err(defect(&*panic)),
+    }
+}

@@ -1,0 +1,78 @@
+//! Options of a run as they come from Python.
+
+use mascarin_engine::march::{Options, Warmup};
+use mascarin_engine::probe::Probe;
+use mascarin_engine::state::Initial;
+use mascarin_engine::step::Scheme;
+use pyo3::prelude::*;
+
+use crate::errors::EngineInputError;
+
+fn scheme_named(name: &str) -> PyResult<Scheme> {
+    match name {
+        "sdirk2" => Ok(Scheme::Sdirk2),
+        "backward-euler" => Ok(Scheme::BackwardEuler),
+        "apparent-capacity" => Ok(Scheme::ApparentCapacity),
+        _ => Err(EngineInputError::new_err(format!(
+            "unknown scheme '{name}'; expected sdirk2, backward-euler or apparent-capacity"
+        ))),
+    }
+}
+
+/// Initial temperatures as they come from Python: one, or a dictionary with those of cells, faces and airs.
+#[derive(FromPyObject)]
+enum GivenInitial {
+    Everywhere(f64),
+    #[pyo3(from_item_all)]
+    Given {
+        cells: Vec<f64>,
+        faces: Vec<f64>,
+        air: Vec<f64>,
+    },
+}
+
+impl From<GivenInitial> for Initial {
+    fn from(given: GivenInitial) -> Self {
+        match given {
+            GivenInitial::Everywhere(temperature) => Self::Everywhere(temperature),
+            GivenInitial::Given { cells, faces, air } => Self::Given { cells, surfaces: faces, air },
+        }
+    }
+}
+
+/// Options as they come from Python.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct RunOptions {
+    dt: f64,
+    scheme: String,
+    initial: GivenInitial,
+    warmup_steps: usize,
+    warmup_tolerance: f64,
+    warmup_max_cycles: usize,
+    probes: String,
+    record_from: usize,
+    record_every: usize,
+}
+
+impl RunOptions {
+    /// The options as the engine takes them.
+    pub fn read(self) -> PyResult<Options> {
+        let probes: Vec<Probe> = serde_json::from_str(&self.probes)
+            .map_err(|error| EngineInputError::new_err(format!("unreadable probes: {error}")))?;
+        let warmup = (self.warmup_steps > 0).then_some(Warmup {
+            steps: self.warmup_steps,
+            tolerance: self.warmup_tolerance,
+            max_cycles: self.warmup_max_cycles,
+        });
+        Ok(Options {
+            dt: self.dt,
+            scheme: scheme_named(&self.scheme)?,
+            initial: self.initial.into(),
+            warmup,
+            probes,
+            record_from: self.record_from,
+            record_every: self.record_every,
+        })
+    }
+}

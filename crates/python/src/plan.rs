@@ -1,0 +1,170 @@
+//! A compiled building and its runs.
+
+use mascarin_engine::derivatives::jacobian::jacobian;
+use mascarin_engine::description::Description;
+use mascarin_engine::forcing::Forcing;
+use mascarin_engine::ledger::Flow;
+use mascarin_engine::march::{Run, march};
+use mascarin_engine::plan::Plan as EnginePlan;
+use mascarin_engine::{batch, state_space};
+use numpy::{
+    PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::errors::{EngineInputError, attended, guarded, to_python};
+use crate::options::RunOptions;
+
+/// A building compiled for the engine.
+#[pyclass(frozen, module = "mascarin._engine")]
+pub struct Plan {
+    pub plan: EnginePlan,
+}
+
+/// Records, closures and failures of an ensemble.
+type EnsembleArrays<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyList>);
+
+/// Records and their slopes.
+type JacobianArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>);
+
+#[pymethods]
+#[allow(clippy::needless_pass_by_value, reason = "the binding hands arrays over by value")]
+impl Plan {
+    #[new]
+    fn new(description: &str) -> PyResult<Self> {
+        let description: Description = serde_json::from_str(description)
+            .map_err(|error| EngineInputError::new_err(format!("unreadable description: {error}")))?;
+        let plan = guarded(|| EnginePlan::new(description))?;
+        Ok(Self { plan })
+    }
+
+    #[getter]
+    fn n_parameters(&self) -> usize {
+        self.plan.description.parameters.len()
+    }
+
+    #[getter]
+    fn n_channels(&self) -> usize {
+        self.plan.n_channels()
+    }
+
+    #[getter]
+    fn n_cells(&self) -> usize {
+        self.plan.n_cells
+    }
+
+    /// One run: a dictionary of records, ledger and counters.
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+        forcing: PyReadonlyArray3<'py, f64>,
+        options: RunOptions,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let options = options.read()?;
+        let (values, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
+        let drive =
+            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+        let plan = &self.plan;
+        let run = attended(py, None, |watch| march(plan, values, &drive, &options, watch))?;
+        describe_run(py, &run, [options.rows(drive.steps()), options.probes.len()])
+    }
+
+    /// Members (rows of `values`): records (members x rows x probes), closures, failures.
+    #[pyo3(signature = (values, forcing, options, report=None))]
+    fn ensemble<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray2<'py, f64>,
+        forcing: PyReadonlyArray3<'py, f64>,
+        options: RunOptions,
+        report: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<EnsembleArrays<'py>> {
+        let options = options.read()?;
+        let members = values.as_array().dim().0;
+        let (numbers, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
+        let drive =
+            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+        let plan = &self.plan;
+        let result = attended(py, report, |watch| batch::ensemble(plan, numbers, &drive, &options, watch))?;
+        let rows = options.rows(drive.steps());
+        let records =
+            PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;
+        let failures = result.failures.iter().map(|(member, error)| (*member, error.to_string()));
+        Ok((records, PyArray1::from_vec(py, result.closure), PyList::new(py, failures)?))
+    }
+
+    /// Records (rows x probes) and their slopes (parameters x rows x probes) by some parameters.
+    #[pyo3(signature = (values, which, forcing, options, report=None))]
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+        which: Vec<usize>,
+        forcing: PyReadonlyArray3<'py, f64>,
+        options: RunOptions,
+        report: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<JacobianArrays<'py>> {
+        let options = options.read()?;
+        let (numbers, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
+        let drive =
+            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+        let plan = &self.plan;
+        let result = attended(py, report, |watch| jacobian(plan, numbers, &which, &drive, &options, watch))?;
+        let (rows, probes) = (options.rows(drive.steps()), options.probes.len());
+        let records = PyArray1::from_vec(py, result.records).reshape([rows, probes])?;
+        Ok((records, PyArray1::from_vec(py, result.slopes).reshape([which.len(), rows, probes])?))
+    }
+
+    /// A, B, C, D and the names of states, inputs and outputs of a linear building.
+    fn state_space<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let values = contiguous(values.as_slice())?;
+        let system = guarded(|| state_space::state_space(&self.plan, values))?;
+        let (n, m, p) = (system.states.len(), system.inputs.len(), system.outputs.len());
+        let result = PyDict::new(py);
+        let matrix = |values: &[f64], shape: [usize; 2]| -> PyResult<Bound<'py, PyArray2<f64>>> {
+            PyArray1::from_slice(py, values).reshape(shape)
+        };
+        result.set_item("a", matrix(&system.a, [n, n])?)?;
+        result.set_item("b", matrix(&system.b, [n, m])?)?;
+        result.set_item("c", matrix(&system.c, [p, n])?)?;
+        result.set_item("d", matrix(&system.d, [p, m])?)?;
+        result.set_item("states", system.states)?;
+        result.set_item("inputs", system.inputs)?;
+        result.set_item("outputs", system.outputs)?;
+        Ok(result)
+    }
+}
+
+/// The numbers of an array, if they stand one after the other.
+pub fn contiguous<T>(slice: Result<&[T], numpy::AsSliceError>) -> PyResult<&[T]> {
+    slice.map_err(|_| EngineInputError::new_err("arrays must be C-contiguous float64"))
+}
+
+/// Records (rows x probes), ledger and counters of a run.
+pub fn describe_run<'py>(
+    py: Python<'py>,
+    run: &Run<f64>,
+    records: [usize; 2],
+) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    result.set_item("records", PyArray1::from_slice(py, &run.records).reshape(records)?)?;
+    for flow in Flow::ALL {
+        result.set_item(flow.name(), run.ledger.into[flow as usize])?;
+    }
+    result.set_item("stored", run.ledger.stored)?;
+    result.set_item("turnover", run.ledger.total_exchanged)?;
+    result.set_item("closure", run.ledger.closure())?;
+    result.set_item("cycles", run.cycles)?;
+    result.set_item("settled", run.settled)?;
+    result.set_item("iterations", run.counters.iterations)?;
+    result.set_item("nested", run.counters.nested)?;
+    result.set_item("halvings", run.counters.halvings)?;
+    result.set_item("reversals", run.counters.reversals)?;
+    Ok(result)
+}
