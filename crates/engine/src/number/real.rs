@@ -11,7 +11,7 @@
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::number::equations::{Residual, Slopes};
+use crate::number::equations::{EquationSlopes, Equations};
 
 /// A truth value per lane.
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
@@ -77,8 +77,8 @@ pub trait Real:
     type Mask: Mask;
     /// Number of ensemble members carried.
     const LANES: usize;
-    /// What becomes of the derivatives of equations.
-    type Residual: Residual<Self>;
+    /// What the number needs to know of equations that it is solved from.
+    type Equations: Equations<Self>;
     /// True when the number carries derivatives (Newton then adds one iteration, so that they converge too).
     const DERIVATIVES: bool;
     /// How many of them that stand side by side in memory are computed with together, see [`Abreast`].
@@ -451,7 +451,7 @@ impl Bits for f64 {
 
 impl Real for f64 {
     type Mask = bool;
-    type Residual = ();
+    type Equations = ();
     const LANES: usize = 1;
     const DERIVATIVES: bool = false;
     const SIDE: usize = crate::number::simd::WIDTH;
@@ -613,7 +613,7 @@ impl<const N: usize> Mask for LaneMask<N> {
 
 impl<const N: usize> Real for Lanes<N> {
     type Mask = LaneMask<N>;
-    type Residual = ();
+    type Equations = ();
     const LANES: usize = N;
     const DERIVATIVES: bool = false;
 
@@ -771,7 +771,7 @@ impl<const K: usize> AddAssign for Dual<K> {
 
 impl<const K: usize> Real for Dual<K> {
     type Mask = bool;
-    type Residual = Slopes<K>;
+    type Equations = EquationSlopes<K>;
     const LANES: usize = 1;
     const DERIVATIVES: bool = true;
 

@@ -314,7 +314,7 @@ macro_rules! eight {
         }
         impl Real for Eight {
             type Mask = EightMask;
-            type Residual = ();
+            type Equations = ();
             const LANES: usize = WIDTH;
             const DERIVATIVES: bool = false;
             const REGISTERS: bool = true;
