@@ -10,8 +10,7 @@ use core::cell::RefCell;
 use core::mem::ManuallyDrop;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Range, Sub};
 
-use crate::number::equations::{Equations, LinearSystem};
-use crate::number::real::{Logistic, Real};
+use crate::number::real::{Equations, LinearSystem, Logistic, Real};
 
 thread_local! {
     // Cleared after each use; what is never dropped is reached faster.

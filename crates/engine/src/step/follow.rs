@@ -2,14 +2,13 @@
 //!
 //! At a known solution nothing is to be iterated and nothing to be eliminated with derivatives: the equations of a stage
 //! are gathered term by term, the laws in them linearised at the solution as ever, and a plain twin of the stepper, which
-//! takes over the values of that linearisation, solves for all slopes (see [`crate::number::equations`]).
+//! takes over the values of that linearisation, solves for all slopes (see [`crate::number::real::Equations`]).
 
 use crate::building::coefficients::{Boundary, Matter};
 use crate::building::ids::SurfaceId;
 use crate::building::plan::SurfaceRole;
-use crate::linear::surface_balance::Line;
-use crate::number::equations::Equations;
-use crate::number::real::{Mask, Real};
+use crate::number::line::Line;
+use crate::number::real::{Equations, Mask, Real};
 use crate::physics::longwave::Emission;
 use crate::step::stage_solutions::Solution;
 use crate::step::state::{State, Unknowns};

@@ -7,9 +7,9 @@
 use crate::building::coefficients::Boundary;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::SurfaceRole;
-use crate::linear::surface_balance::{ExteriorSurfaces, Line, SurfaceLaws};
-use crate::number::equations::LinearSystem;
-use crate::number::real::Real;
+use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
+use crate::number::line::Line;
+use crate::number::real::{LinearSystem, Real};
 
 use super::Stepper;
 
