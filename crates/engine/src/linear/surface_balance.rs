@@ -1,39 +1,7 @@
 //! Heat balances of surfaces as straight lines.
 
+use crate::number::line::Line;
 use crate::number::real::Real;
-
-/// A straight line `offset + slope T`.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Line<S> {
-    pub(crate) offset: S,
-    pub(crate) slope: S,
-}
-
-impl<S: Real> Line<S> {
-    #[inline(always)]
-    pub(crate) fn zero() -> Self {
-        Self { offset: S::zero(), slope: S::zero() }
-    }
-    /// The tangent of a function with a value and a slope at a point. What derivatives do to the slope does not matter:
-    /// it counts only away from that point, where no solution lies.
-    #[inline(always)]
-    pub(crate) fn tangent(value: S, slope: S, at: S) -> Self {
-        let slope = slope.fixed();
-        Self { offset: value - slope * at, slope }
-    }
-    #[inline(always)]
-    pub(crate) fn at(&self, x: S) -> S {
-        self.offset + self.slope * x
-    }
-}
-
-impl Line<f64> {
-    /// The values of another line.
-    #[inline(always)]
-    pub(crate) fn of<S: Real>(other: &Line<S>) -> Self {
-        Self { offset: other.offset.lane(0), slope: other.slope.lane(0) }
-    }
-}
 
 /// The linearised laws of a surface in one Newton iteration [W/m2].
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,8 @@
 #![allow(unsafe_code, reason = "vector instructions are unsafe to call where the machine may not have them")]
 
 use crate::error::EngineError;
-use crate::number::real::{Abreast, Lanes, Real, Task};
+use crate::number::lanes::Lanes;
+use crate::number::real::{Abreast, Real, Task};
 
 /// Members in one pack.
 pub const WIDTH: usize = 8;
@@ -190,10 +191,10 @@ pub fn run_plain<W: Packed>(work: W) -> W::Output {
 macro_rules! eight {
     ($features:tt) => {
         use super::WIDTH;
-        use crate::number::real::{
-            Bits, EXPONENT_BIAS, INVERSE_CBRT, Logistic, Mask, Real, SPLIT, THIRD, TWO_52, exp, inverse_cbrt,
-            ln, logistic,
+        use crate::number::elementary::{
+            Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, exp, inverse_cbrt, ln, logistic,
         };
+        use crate::number::real::{Logistic, Mask, Real};
         use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
         /// Eight members.
@@ -314,7 +315,7 @@ macro_rules! eight {
         }
         impl Real for Eight {
             type Mask = EightMask;
-            type Residual = ();
+            type Equations = ();
             const LANES: usize = WIDTH;
             const DERIVATIVES: bool = false;
             const REGISTERS: bool = true;

@@ -10,9 +10,7 @@ use core::cell::RefCell;
 use core::mem::ManuallyDrop;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Range, Sub};
 
-use crate::number::equations::Residual;
-use crate::number::real::{Logistic, Real};
-use crate::step::Stepper;
+use crate::number::real::{Equations, LinearSystem, Logistic, Real};
 
 thread_local! {
     // Cleared after each use; what is never dropped is reached faster.
@@ -132,12 +130,12 @@ impl Tape {
 
 /// The terms of equations until they are solved.
 #[derive(Debug, Clone, Default)]
-pub struct Terms {
+pub struct EquationTerms {
     terms: Vec<Term>,
     equations: usize,
 }
 
-impl Residual<Taped> for Terms {
+impl Equations<Taped> for EquationTerms {
     #[inline(always)]
     fn begin(&mut self, equations: usize) {
         self.terms.clear();
@@ -152,7 +150,7 @@ impl Residual<Taped> for Terms {
         }
     }
 
-    fn solve(&mut self, stage: usize, _twin: &Stepper<'_, f64>, at: &[f64], solution: [&mut [Taped]; 3]) {
+    fn solve<L: LinearSystem>(&mut self, stage: usize, _system: &L, at: &[f64], solution: [&mut [Taped]; 3]) {
         with_tape(|tape| {
             let (first, terms) = (tape.entries.len(), tape.terms.len());
             tape.entries.resize(first + self.equations, Entry { of: [NOWHERE; 2], slope: [0.0; 2] });
@@ -282,7 +280,7 @@ impl AddAssign for Taped {
 
 impl Real for Taped {
     type Mask = bool;
-    type Residual = Terms;
+    type Equations = EquationTerms;
     const LANES: usize = 1;
     const DERIVATIVES: bool = true;
 

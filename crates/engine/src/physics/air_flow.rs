@@ -4,7 +4,7 @@ use crate::building::coefficients::ZoneCoefficients;
 use crate::input::description;
 use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::input::values::Values;
-use crate::linear::surface_balance::Line;
+use crate::number::line::Line;
 use crate::number::real::Real;
 
 /// Acceleration of free fall [m/s2].

@@ -2,14 +2,13 @@
 //!
 //! At a known solution nothing is to be iterated and nothing to be eliminated with derivatives: the equations of a stage
 //! are gathered term by term, the laws in them linearised at the solution as ever, and a plain twin of the stepper, which
-//! takes over the values of that linearisation, solves for all slopes (see [`crate::number::equations`]).
+//! takes over the values of that linearisation, solves for all slopes (see [`crate::number::real::Equations`]).
 
 use crate::building::coefficients::{Boundary, Matter};
 use crate::building::ids::SurfaceId;
 use crate::building::plan::SurfaceRole;
-use crate::linear::surface_balance::Line;
-use crate::number::equations::Residual;
-use crate::number::real::{Mask, Real};
+use crate::number::line::Line;
+use crate::number::real::{Equations, Mask, Real};
 use crate::physics::longwave::Emission;
 use crate::step::stage_solutions::Solution;
 use crate::step::state::{State, Unknowns};
@@ -22,7 +21,7 @@ use super::{INSTANT, Part, Stepper, outdoor_emission};
 pub(super) struct Following<'a, S: Real> {
     /// One for each stage, with its linearisation at the solution.
     twins: Vec<Stepper<'a, f64>>,
-    equations: S::Residual,
+    equations: S::Equations,
     carries: Carries,
     /// Of the cells of constant walls [J/(m2 K)].
     capacity: Vec<S>,
@@ -70,7 +69,7 @@ impl<'a, S: Real> Following<'a, S> {
         let unknowns = plan.n_cells + plan.surfaces.len() + plan.zones.len();
         Self {
             twins: vec![twin; stepper.scheme.weights().len()],
-            equations: S::Residual::default(),
+            equations: S::Equations::default(),
             carries: Carries {
                 links: stepper
                     .chains
@@ -345,7 +344,7 @@ impl<S: Real> Stepper<'_, S> {
         state: &State<S>,
         place: Place,
         w: usize,
-        (equations, at): (&mut S::Residual, &[f64]),
+        (equations, at): (&mut S::Equations, &[f64]),
     ) {
         let (wall, chain, numbers) = (&self.plan.walls[w], &self.chains[w], &self.coefficients.walls[w]);
         for (i, (storage, cell)) in chain.storage.iter().zip(&numbers.cells).enumerate() {
@@ -371,7 +370,7 @@ impl<S: Real> Stepper<'_, S> {
 
     /// What a surface outside the zones takes from there.
     #[inline(always)]
-    fn gather_local(&self, index: SurfaceId, at: f64, (equations, row): (&mut S::Residual, usize)) {
+    fn gather_local(&self, index: SurfaceId, at: f64, (equations, row): (&mut S::Equations, usize)) {
         let surface = &self.coefficients.surfaces[index];
         let (conditions, laws) = (&self.conditions.surfaces[index], &self.laws[index]);
         match surface.boundary {
@@ -447,7 +446,7 @@ impl<S: Real> Stepper<'_, S> {
 
     /// Long-wave exchange between the surfaces of a zone.
     #[inline(always)]
-    fn gather_exchange(&self, z: usize, carries: bool, (equations, at): (&mut S::Residual, &[f64])) {
+    fn gather_exchange(&self, z: usize, carries: bool, (equations, at): (&mut S::Equations, &[f64])) {
         let (surfaces, numbers) = (&self.plan.zones[z].surfaces, &self.coefficients.zones[z]);
         if numbers.exchange.is_empty() {
             return;

@@ -7,10 +7,18 @@
 use crate::building::coefficients::Boundary;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::SurfaceRole;
-use crate::linear::surface_balance::{ExteriorSurfaces, Line, SurfaceLaws};
-use crate::number::real::Real;
+use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
+use crate::number::line::Line;
+use crate::number::real::{LinearSystem, Real};
 
 use super::Stepper;
+
+impl LinearSystem for Stepper<'_, f64> {
+    #[inline(always)]
+    fn solve<R: Real>(&self, rows: &mut [R], scratch: &mut Vec<R>) {
+        self.solve_beside(rows, scratch);
+    }
+}
 
 impl Stepper<'_, f64> {
     /// Takes over the values of a linearisation and factors its matrix.

@@ -5,7 +5,8 @@ use core::ops::Range;
 use super::{Eliminate, Front, Laws, Resolve, ZoneFront};
 use crate::building::ids::SurfaceId;
 use crate::linear::coupled::CoupledSystem;
-use crate::linear::surface_balance::{Line, SurfaceLaws};
+use crate::linear::surface_balance::SurfaceLaws;
+use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::number::simd::{Level, Packed, WIDTH, run};
 

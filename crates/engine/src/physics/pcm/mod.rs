@@ -311,7 +311,7 @@ impl<S: Real> PcmCoefficients<S> {
 mod tests {
     use super::*;
     use crate::input::description::{MeltingCurve, ParamId, TablePoints};
-    use crate::number::real::Dual;
+    use crate::number::dual::Dual;
 
     type D = Dual<1>;
 
