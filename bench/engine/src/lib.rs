@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use mascarin_engine::derivatives::jacobian::jacobian;
+use mascarin_engine::derivatives::trajectory::Trajectory;
 use mascarin_engine::description::Description;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
@@ -16,6 +18,12 @@ use serde::Deserialize;
 
 /// Stages of a step of the scheme that all cases use.
 pub const STAGES: usize = 2;
+
+/// Parameters that [`Case::jacobian`] takes slopes by.
+pub const SLOPES: usize = 7;
+
+/// What [`Case::gradient`] may keep, as through Python [B].
+const MEMORY: usize = 256 << 20;
 
 /// What stands in the JSON file of a case; nothing is repeated before it. The weather is beside it, in plain numbers.
 #[derive(Deserialize)]
@@ -115,6 +123,39 @@ impl Case {
             batch::ensemble(&self.plan, &self.members, &self.forcing(steps), &options, &Watch::default())?;
         assert!(done.failures.is_empty(), "{:?}", done.failures);
         assert_eq!(done.closure.len(), dispatch::WIDTH);
+        Ok(())
+    }
+
+    /// A run with the slopes of its records by seven parameters, spread evenly over the list.
+    ///
+    /// # Errors
+    /// As the engine's.
+    ///
+    /// # Panics
+    /// When a slope is not finite.
+    pub fn jacobian(&self, steps: Option<usize>) -> Result<(), EngineError> {
+        let count = self.values.len();
+        let which: Vec<usize> = (0..SLOPES).map(|k| k * count / SLOPES).collect();
+        let forcing = self.forcing(steps);
+        let done = jacobian(&self.plan, &self.values, &which, &forcing, &self.options, &Watch::default())?;
+        assert_eq!(done.slopes.len(), SLOPES * done.records.len());
+        assert!(done.slopes.iter().all(|slope| slope.is_finite()), "slopes are finite");
+        Ok(())
+    }
+
+    /// A run, and the slopes of the sum of all its records by all parameters.
+    ///
+    /// # Errors
+    /// As the engine's.
+    ///
+    /// # Panics
+    /// When a slope is not finite.
+    pub fn gradient(&self, steps: Option<usize>) -> Result<(), EngineError> {
+        let (forcing, watch) = (self.forcing(steps), Watch::default());
+        let way = Trajectory::new(&self.plan, &self.values, &forcing, &self.options, &watch, MEMORY)?;
+        let weights = vec![1.0; way.run.records.len()];
+        let slopes = way.pull(&self.plan, &self.values, &forcing, &self.options, &watch, &weights)?;
+        assert!(slopes.iter().all(|slope| slope.is_finite()), "slopes are finite");
         Ok(())
     }
 }

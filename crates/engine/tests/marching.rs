@@ -2,13 +2,13 @@
 
 mod common;
 
+use common::melting::{ceiling, ceiling_weather};
+use common::straight::straight_cell;
 use common::{
-    SCHEMES, cell, cell_probes, cell_weather, forcing, options, position, run, try_run, values, warmup,
+    SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, position, run, try_run, values,
+    warmup,
 };
 use mascarin_engine::batch::ensemble;
-use mascarin_engine::description::{
-    Convection, Description, Facing, OutdoorLongwave, ParamId, Parameter, PowerLaw, ZoneLongwave,
-};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
@@ -53,28 +53,6 @@ fn apparent_capacity_loses_heat() {
     assert!(last > 0.1, "closure {last} at gamma 100");
 }
 
-/// Members with other numbers (sharp and blunt melting, other films, other warm-ups) side by side.
-fn members(plan: &Plan, count: usize) -> Vec<f64> {
-    let nominal = values(plan);
-    let gamma = position(plan, "materials.energain.law.gamma");
-    let melting = position(plan, "materials.energain.melting_temperature");
-    let foam = position(plan, "materials.foam.conductivity");
-    let concrete = position(plan, "materials.concrete.density");
-    let tilt = position(plan, "surfaces.roof.tilt");
-    let mut all = Vec::new();
-    for member in 0..count {
-        let x = member as f64;
-        let mut numbers = nominal.clone();
-        numbers[gamma] = [0.01, 0.04, 0.5, 20.0][member % 4];
-        numbers[melting] += 0.7 * (1.3 * x).sin();
-        numbers[foam] *= 1.0 + 0.4 * (0.7 * x).cos();
-        numbers[concrete] *= 1.0 + 0.5 * (2.1 * x).sin();
-        numbers[tilt] += 3.0 * x;
-        all.extend(numbers);
-    }
-    all
-}
-
 /// A member's bits do not depend on whether it runs alone, in a pack, on where, or on how many threads.
 #[test]
 fn lanes_are_scalars() {
@@ -85,7 +63,7 @@ fn lanes_are_scalars() {
         let mut options = options(scheme, STEP, cell_probes());
         options.warmup = Some(warmup(STEP));
         let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
-        let numbers = members(&plan, 19);
+        let numbers = cell_members(&plan, 19);
         let watch = Watch::default();
         let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();
         let row = together.records.len() / 19;
@@ -208,31 +186,6 @@ fn order_of_surfaces_does_not_matter() {
     }
 }
 
-/// A phase-change ceiling between a hot gap and a room, everything else imposed.
-fn ceiling(gamma: f64) -> Description {
-    use common::{Builder, facing};
-    use mascarin_engine::description::{Facing, ZoneLongwave};
-    let mut b = Builder::new();
-    let board = b.solid("board", 0.16, 800.0, 1090.0);
-    let energain = b.energain(gamma);
-    let construction = b.construction("ceiling", &[(energain, 0.00526, 4), (board, 0.0125, 2)]);
-    let room = b.zone("room", 27.0, 0.5, ZoneLongwave::None);
-    let above = b.channel("above");
-    let (film_out, film_in) = (b.film(4.0), b.film(6.0));
-    let inside = b.inside(room, film_in, 0.9);
-    let outside = facing(Facing::Measured { channel: above }, Some(film_out));
-    b.surface("ceiling", construction, [9.0, 0.0, 0.0], outside, inside);
-    b.describe()
-}
-
-/// Swings that cross the melting range every day, with some jumps.
-fn ceiling_weather(time: f64, row: &mut [f64]) {
-    cell_weather(time, row);
-    let day = time / 86400.0;
-    let jump = if (3.0 * day).fract() < 0.1 { 6.0 } else { 0.0 };
-    common::set(row, 0, 24.0 + 9.0 * (core::f64::consts::TAU * day).sin() + jump);
-}
-
 /// No step fails for any sharpness and step length.
 #[test]
 fn melting_never_stops_a_run() {
@@ -285,39 +238,6 @@ fn solver_counters() {
     assert_eq!((result.cycles, result.counters.iterations), (3, 5375));
 }
 
-/// The cell with constant films inside, films linear in the wind outside and linearised radiation: nothing but the
-/// ceiling is more than a straight line. `bent`: one constant film is written as a power of the temperature difference
-/// with no gain.
-fn straight_cell(bent: bool) -> Description {
-    let mut description = cell(0.04);
-    let mut number = |value: f64| {
-        let path = format!("straight.{}", description.parameters.len());
-        description.parameters.push(Parameter { path, value });
-        ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
-    };
-    for (index, surface) in description.surfaces.iter_mut().enumerate() {
-        for side in [&mut surface.outside, &mut surface.inside] {
-            side.longwave = OutdoorLongwave::Linearised { reference: number(25.0) };
-            side.convection = match side.facing {
-                Facing::Zone { .. } if bent && index == 1 => {
-                    let [a, b, n, c, m] = [3.0, 0.0, 0.5, 0.0, 1.0].map(&mut number);
-                    let law = PowerLaw { a, b, n, c, m };
-                    Some(Convection::Power { upward: law.clone(), downward: law })
-                }
-                Facing::Zone { .. } => Some(Convection::Constant { coefficient: number(3.0) }),
-                Facing::Outdoors => {
-                    Some(Convection::LinearWind { constant: number(11.4), wind: number(5.7) })
-                }
-                _ => side.convection.take(),
-            };
-        }
-    }
-    for zone in &mut description.zones {
-        zone.longwave = ZoneLongwave::Linearised { reference: number(27.0) };
-    }
-    description
-}
-
 /// What is eliminated once, because nothing in it changes, is what would be found if it were eliminated every time.
 #[test]
 fn straight_lines_are_eliminated_once() {
@@ -345,7 +265,7 @@ fn straight_lanes_are_scalars() {
     let rows = forcing(&plan, Scheme::Sdirk2, 3 * 96, STEP, cell_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let options = options(Scheme::Sdirk2, STEP, cell_probes());
-    let mut numbers = members(&plan, 11);
+    let mut numbers = cell_members(&plan, 11);
     numbers[4 * width + position(&plan, "materials.foam.density")] = f64::NAN;
     let watch = Watch::default();
     let together = ensemble(&plan, &numbers, &drive, &options, &watch).unwrap();

@@ -2,13 +2,10 @@
 
 mod common;
 
-use common::{Builder, cell, cell_probes, cell_weather, facing, forcing, options, position, relative, run};
-use common::{set, try_run, values, warmup};
+use common::conditioned::{conditioned, conditioned_probes, conditioned_weather, number, plant};
+use common::{Builder, facing, forcing, options, position, relative, run, try_run, values, warmup};
 use mascarin_engine::batch::ensemble;
-use mascarin_engine::description::{
-    AirPath, Description, Facing, Gain, Opening, ParamId, Parameter, Plant, SetPoint, Ventilation,
-    ZoneLongwave,
-};
+use mascarin_engine::description::{AirPath, Facing, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::march::{Watch, march};
@@ -20,89 +17,18 @@ use mascarin_engine::step::Scheme;
 const STEP: f64 = 900.0;
 const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
 
-fn number(description: &mut Description, path: &str, value: f64) -> ParamId {
-    description.parameters.push(Parameter { path: path.to_owned(), value });
-    ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
-}
-
-fn plant(description: &mut Description, path: &str, set_point: f64, capacity: f64) -> Plant {
-    Plant {
-        setpoint: SetPoint::Constant {
-            temperature: number(description, &format!("{path}.setpoint"), set_point),
-        },
-        capacity: Some(number(description, &format!("{path}.capacity"), capacity)),
-        schedule: None,
-    }
-}
-
-/// The cell with everything that can act on the air of its zones: channel 1 opens and shuts.
-fn conditioned(gamma: f64) -> Description {
-    let mut d = cell(gamma);
-    d.channels.push("fan".to_owned());
-    d.zones[0].heating = Some(plant(&mut d, "room.heating", 22.0, 300.0));
-    d.zones[0].cooling = Some(plant(&mut d, "room.cooling", 24.0, 80.0));
-    d.zones[1].heating = Some(plant(&mut d, "gap.heating", 21.0, 1000.0));
-    let gain = Gain {
-        name: "people".to_owned(),
-        power: number(&mut d, "gain.power", 100.0),
-        radiative: number(&mut d, "gain.radiative", 0.6),
-        schedule: Some(1),
-    };
-    d.zones[0].gains.push(gain);
-    let fan = Ventilation {
-        name: "fan".to_owned(),
-        air_changes: Some(number(&mut d, "fan.air_changes", 2.0)),
-        flow: None,
-        schedule: Some(1),
-    };
-    d.zones[0].ventilation.push(fan);
-    let path = AirPath {
-        name: "hatch".to_owned(),
-        between: [1, 0],
-        flow: number(&mut d, "hatch.flow", 0.003),
-        schedule: None,
-    };
-    d.air_paths.push(path);
-    let opening = Opening {
-        name: "slot".to_owned(),
-        zone: 1,
-        area: number(&mut d, "slot.area", 0.01),
-        height: number(&mut d, "slot.height", 0.2),
-        discharge: number(&mut d, "slot.discharge", 0.6),
-        wind_coefficient: number(&mut d, "slot.wind_coefficient", 0.25),
-        schedule: None,
-    };
-    d.openings.push(opening);
-    d
-}
-
-fn conditioned_weather(time: f64, row: &mut [f64]) {
-    cell_weather(time, row);
-    set(row, 1, if (time / 3600.0).rem_euclid(24.0) < 9.0 { 1.0 } else { 0.25 });
-}
-
-fn probes() -> Vec<Probe> {
-    let mut probes = cell_probes();
-    for zone in 0..2 {
-        probes.push(Probe::HeatingLoad { zone });
-        probes.push(Probe::CoolingLoad { zone });
-        probes.push(Probe::AirChanges { zone });
-    }
-    probes
-}
-
 /// The books close, the paths between zones cancel, and all modes of a plant are seen.
 #[test]
 fn energy_closes_with_plants() {
     let plan = Plan::new(conditioned(0.04)).unwrap();
     for scheme in SCHEMES {
         let rows = forcing(&plan, scheme, 480, STEP, conditioned_weather);
-        let result = run(&plan, &rows, &options(scheme, STEP, probes()));
+        let result = run(&plan, &rows, &options(scheme, STEP, conditioned_probes()));
         assert!(result.ledger.closure() < 1e-12, "closure {} with {scheme:?}", result.ledger.closure());
         let into = |flow: Flow| result.ledger.into[flow as usize];
         assert!(into(Flow::Interzone).abs() < 1e-12 * result.ledger.total_exchanged);
         assert!(into(Flow::Heating) > 0.0 && into(Flow::Cooling) < 0.0 && into(Flow::Gains) > 0.0);
-        let width = probes().len();
+        let width = conditioned_probes().len();
         let (mut held, mut full, mut off, mut cooled) = (0, 0, 0, 0);
         for record in result.records.chunks(width).skip(1) {
             let (air, heating, cooling) = (record[0], record[10], record[11]);
@@ -151,7 +77,7 @@ fn lanes_are_scalars_with_plants() {
     }
     for scheme in SCHEMES {
         let rows = forcing(&plan, scheme, 2 * 96, STEP, conditioned_weather);
-        let mut options = options(scheme, STEP, probes());
+        let mut options = options(scheme, STEP, conditioned_probes());
         options.warmup = Some(warmup(STEP));
         let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
         let watch = Watch::default();
@@ -178,9 +104,9 @@ fn duals_are_differences_with_plants() {
     let plan = Plan::new(conditioned(0.04)).unwrap();
     let numbers = values(&plan);
     let rows = forcing(&plan, Scheme::Sdirk2, 40, STEP, conditioned_weather);
-    let options = options(Scheme::Sdirk2, STEP, probes());
+    let options = options(Scheme::Sdirk2, STEP, conditioned_probes());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
-    let size = probes().len();
+    let size = conditioned_probes().len();
     let scale = |i: usize| {
         if i % size >= 10 && (i % size - 10) % 3 < 2 { 0.01 } else { f64::from(u8::from(i % size != 8)) }
     };

@@ -2,6 +2,12 @@
 
 #![allow(dead_code, reason = "every test program uses its own part")]
 
+pub mod assorted;
+pub mod conditioned;
+pub mod glazed;
+pub mod melting;
+pub mod straight;
+
 use mascarin_engine::description::{
     Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer, Material,
     MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky, Surface,
@@ -467,4 +473,26 @@ pub fn cell_probes() -> Vec<Probe> {
         Probe::LayerEnthalpy { surface: 5, layer: 0 },
         Probe::Sensor { sensor: 0 },
     ]
+}
+
+/// Members with other numbers (sharp and blunt melting, other films, other warm-ups) side by side.
+pub fn cell_members(plan: &Plan, count: usize) -> Vec<f64> {
+    let nominal = values(plan);
+    let gamma = position(plan, "materials.energain.law.gamma");
+    let melting = position(plan, "materials.energain.melting_temperature");
+    let foam = position(plan, "materials.foam.conductivity");
+    let concrete = position(plan, "materials.concrete.density");
+    let tilt = position(plan, "surfaces.roof.tilt");
+    let mut all = Vec::new();
+    for member in 0..count {
+        let x = member as f64;
+        let mut numbers = nominal.clone();
+        numbers[gamma] = [0.01, 0.04, 0.5, 20.0][member % 4];
+        numbers[melting] += 0.7 * (1.3 * x).sin();
+        numbers[foam] *= 1.0 + 0.4 * (0.7 * x).cos();
+        numbers[concrete] *= 1.0 + 0.5 * (2.1 * x).sin();
+        numbers[tilt] += 3.0 * x;
+        all.extend(numbers);
+    }
+    all
 }

@@ -1,0 +1,80 @@
+//! Cells without curved films and radiation.
+
+use mascarin_engine::description::{
+    AirPath, Convection, Description, Facing, Gain, Material, OutdoorLongwave, ParamId, Parameter, PowerLaw,
+    Ventilation, ZoneLongwave,
+};
+
+use super::cell;
+use super::conditioned::number;
+
+/// The cell with constant films inside, films linear in the wind outside and linearised radiation: nothing but the
+/// ceiling is more than a straight line. `bent`: one constant film is written as a power of the temperature difference
+/// with no gain.
+pub fn straight_cell(bent: bool) -> Description {
+    let mut description = cell(0.04);
+    let mut number = |value: f64| {
+        let path = format!("straight.{}", description.parameters.len());
+        description.parameters.push(Parameter { path, value });
+        ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
+    };
+    for (index, surface) in description.surfaces.iter_mut().enumerate() {
+        for side in [&mut surface.outside, &mut surface.inside] {
+            side.longwave = OutdoorLongwave::Linearised { reference: number(25.0) };
+            side.convection = match side.facing {
+                Facing::Zone { .. } if bent && index == 1 => {
+                    let [a, b, n, c, m] = [3.0, 0.0, 0.5, 0.0, 1.0].map(&mut number);
+                    let law = PowerLaw { a, b, n, c, m };
+                    Some(Convection::Power { upward: law.clone(), downward: law })
+                }
+                Facing::Zone { .. } => Some(Convection::Constant { coefficient: number(3.0) }),
+                Facing::Outdoors => {
+                    Some(Convection::LinearWind { constant: number(11.4), wind: number(5.7) })
+                }
+                _ => side.convection.take(),
+            };
+        }
+    }
+    for zone in &mut description.zones {
+        zone.longwave = ZoneLongwave::Linearised { reference: number(27.0) };
+    }
+    description
+}
+
+/// The straight cell with a solid in the place of what melts and constant films outside, with a gain, ventilation and an
+/// air path that never change: all of it is linear and constant.
+pub fn linear_cell() -> Description {
+    let mut d = straight_cell(false);
+    for index in 0..d.materials.len() {
+        if matches!(d.materials[index], Material::Pcm { .. }) {
+            d.materials[index] = Material::Solid {
+                conductivity: number(&mut d, "linear.conductivity", 0.2),
+                density: number(&mut d, "linear.density", 855.0),
+                specific_heat: number(&mut d, "linear.specific_heat", 3000.0),
+            };
+        }
+    }
+    let film = number(&mut d, "linear.film", 18.0);
+    for surface in &mut d.surfaces {
+        if surface.outside.facing == Facing::Outdoors {
+            surface.outside.convection = Some(Convection::Constant { coefficient: film });
+        }
+    }
+    let gain = Gain {
+        name: "lamp".to_owned(),
+        power: number(&mut d, "lamp.power", 40.0),
+        radiative: number(&mut d, "lamp.radiative", 0.5),
+        schedule: None,
+    };
+    d.zones[0].gains.push(gain);
+    let fan = Ventilation {
+        name: "fan".to_owned(),
+        air_changes: None,
+        flow: Some(number(&mut d, "fan.flow", 0.004)),
+        schedule: None,
+    };
+    d.zones[1].ventilation.push(fan);
+    let flow = number(&mut d, "hatch.flow", 0.003);
+    d.air_paths.push(AirPath { name: "hatch".to_owned(), between: [0, 1], flow, schedule: None });
+    d
+}

@@ -1,0 +1,719 @@
+//! Hashes of whole runs: a change of the code that keeps every bit keeps all of them.
+//!
+//! A row of a table has the name of a case and two hashes. The first is of its answers: records, ledger, slopes, matrices,
+//! and how often the first period was repeated. The second is of the rest: the state at the end, the counters of the
+//! solver and the members that failed. Where answers change on purpose, run the tests and put the tables that they print
+//! in the place of the old ones.
+
+mod common;
+
+use core::fmt::Write as _;
+use std::process::Command;
+
+use common::assorted::{assorted_cell, assorted_weather, assorted_windows};
+use common::conditioned::{conditioned, conditioned_probes, conditioned_weather, plant};
+use common::glazed::{glazed_probes, glazed_rooms};
+use common::melting::{ceiling_weather, fine_ceiling, melting, melting_weather};
+use common::straight::{linear_cell, straight_cell};
+use common::{SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, values, weather};
+use mascarin_engine::batch::ensemble;
+use mascarin_engine::derivatives::jacobian::jacobian;
+use mascarin_engine::derivatives::trajectory::Trajectory;
+use mascarin_engine::description::{Description, HysteresisModel};
+use mascarin_engine::dispatch::Level;
+use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::{Options, Run, Warmup, Watch, march};
+use mascarin_engine::plan::Plan;
+use mascarin_engine::probe::Probe;
+use mascarin_engine::real::{Dual, Lanes, Mask, Real};
+use mascarin_engine::state::Initial;
+use mascarin_engine::state_space::state_space;
+use mascarin_engine::step::Scheme;
+use rayon::prelude::*;
+
+#[rustfmt::skip]
+const RUNS: &[(&str, [u64; 2])] = &[
+    ("cell, Sdirk2, 1 slope", [0xdc870a0c876b8065, 0x8787c340a0fb5847]),
+    ("cell, Sdirk2, 8 slopes", [0xd7275c61eb259f40, 0x7bd8a54ec0fc5548]),
+    ("cell, Sdirk2, jacobian", [0x3994c2643c83a0a6, 0x0000000000000000]),
+    ("cell, Sdirk2, gradient, all kept", [0x101716bc4caa4571, 0x352e8630a609ea93]),
+    ("cell, Sdirk2, gradient, some kept", [0x3dd4202c5d20a48e, 0x352e8630a609ea93]),
+    ("cell, ApparentCapacity, 1 slope", [0x144c012c1b8522c4, 0xd3e4fdb33ca64e24]),
+    ("cell, ApparentCapacity, 8 slopes", [0xa8c023bd71618d87, 0xd49aec420db1f968]),
+    ("cell, ApparentCapacity, jacobian", [0xd9fd025b497d1e31, 0x0000000000000000]),
+    ("cell, ApparentCapacity, gradient, all kept", [0x0daafb596e027be5, 0x78c7a8aad316f722]),
+    ("cell, ApparentCapacity, gradient, some kept", [0x5b65ae145397c883, 0x78c7a8aad316f722]),
+    ("straight cell, BackwardEuler, 1 slope", [0xc81ca0fbe6c18f76, 0x2a81490a8ddf14f5]),
+    ("straight cell, BackwardEuler, 8 slopes", [0x39337b12c9532291, 0x998cbc2a0215f566]),
+    ("straight cell, BackwardEuler, jacobian", [0x0cf6a548f41c1964, 0x0000000000000000]),
+    ("straight cell, BackwardEuler, gradient, all kept", [0xb6c3b41f3273ce8a, 0x03fbe4ebc4c3e66c]),
+    ("straight cell, BackwardEuler, gradient, some kept", [0x004a8d879a2656f3, 0x03fbe4ebc4c3e66c]),
+    ("conditioned cell, Sdirk2, 1 slope", [0xb0ed1d0fb4b6b571, 0x8e14b578256f6895]),
+    ("conditioned cell, Sdirk2, 8 slopes", [0xf1aa5a5654790524, 0x652f7b4dddb339af]),
+    ("conditioned cell, Sdirk2, jacobian", [0x5ff9aab9c1e75d29, 0x0000000000000000]),
+    ("conditioned cell, Sdirk2, gradient, all kept", [0x6d7e97650005e86e, 0xc7e19af43e112e2e]),
+    ("conditioned cell, Sdirk2, gradient, some kept", [0xaab9463b8127d04f, 0xc7e19af43e112e2e]),
+    ("conditioned cell, BackwardEuler, 1 slope", [0x0c71f8a587f375df, 0x82a09e3b755a7928]),
+    ("conditioned cell, BackwardEuler, 8 slopes", [0x774191d9f06d38a4, 0x9d9057dbae975b70]),
+    ("conditioned cell, BackwardEuler, jacobian", [0xa3bf8d1be893c38b, 0x0000000000000000]),
+    ("conditioned cell, BackwardEuler, gradient, all kept", [0x4d95f296fc7663f7, 0xad781420bf518624]),
+    ("conditioned cell, BackwardEuler, gradient, some kept", [0xf1e88337ce1a78d6, 0xad781420bf518624]),
+    ("glazed room, sun by area, Sdirk2, 1 slope", [0xea0525d6dad8f2f4, 0x9047e09f0d0577a3]),
+    ("glazed room, sun by area, Sdirk2, 8 slopes", [0x57eff7ab3872a2a4, 0xf2b6ab9ba5c983f3]),
+    ("glazed room, sun by area, Sdirk2, jacobian", [0xfde4454ec6461e41, 0x0000000000000000]),
+    ("glazed room, sun by area, Sdirk2, gradient, all kept", [0x65f498df74fc1854, 0x291748c7ac22fa4a]),
+    ("glazed room, sun by area, Sdirk2, gradient, some kept", [0xe0bf6e16649e75bb, 0x291748c7ac22fa4a]),
+    ("glazed room, sun by geometry, BackwardEuler, 1 slope", [0x544c6f22305dcfe8, 0x39c0b918b50afa38]),
+    ("glazed room, sun by geometry, BackwardEuler, 8 slopes", [0x5b1a2becc98fe55c, 0x735d323468c6da79]),
+    ("glazed room, sun by geometry, BackwardEuler, jacobian", [0x6081d5cefd34cb33, 0x0000000000000000]),
+    ("glazed room, sun by geometry, BackwardEuler, gradient, all kept", [0x28977dab4b9d9e10, 0x76d336da163f1f95]),
+    ("glazed room, sun by geometry, BackwardEuler, gradient, some kept", [0xa5378cf066bcaa44, 0x76d336da163f1f95]),
+    ("curve track, BackwardEuler, 1 slope", [0xbf10b7441780ec9e, 0x5125d5936ed4f920]),
+    ("curve track, BackwardEuler, jacobian", [0xb9db52a78a575e00, 0x0000000000000000]),
+    ("curve track, BackwardEuler, gradient, all kept", [0x05cc16dc62ace3b2, 0xa26a525e5fbf90c6]),
+    ("curve track, BackwardEuler, gradient, some kept", [0x485f3abf716cfef1, 0xa26a525e5fbf90c6]),
+    ("curve switch, Sdirk2, 1 slope", [0x3b12b4457a75f847, 0x0a9ba4e24778d5af]),
+    ("curve switch, Sdirk2, jacobian", [0x48581a90381fc25d, 0x0000000000000000]),
+    ("curve switch, Sdirk2, gradient, all kept", [0x0e30e3893f3202b3, 0x2824b38432d129d7]),
+    ("curve switch, Sdirk2, gradient, some kept", [0x360ecec92f24319a, 0x2824b38432d129d7]),
+    ("curve scale, Sdirk2, 1 slope", [0x964f399d31bba00c, 0x2edb93aafffd94b6]),
+    ("curve scale, Sdirk2, jacobian", [0x1c0234c4b0cebf06, 0x0000000000000000]),
+    ("curve scale, Sdirk2, gradient, all kept", [0xb453d8274681bdfd, 0xdf843cf0fcc01c26]),
+    ("curve scale, Sdirk2, gradient, some kept", [0x3685517500d01a25, 0xdf843cf0fcc01c26]),
+    ("assorted cell, measured sky, Sdirk2, 1 slope", [0x73eebc66ad72031c, 0xb367fb267f64fe6b]),
+    ("assorted cell, measured sky, Sdirk2, 8 slopes", [0x4d2e68648d2cd9f9, 0x1889e8bc557aa847]),
+    ("assorted cell, measured sky, Sdirk2, jacobian", [0xcb90983697e3ac23, 0x0000000000000000]),
+    ("assorted cell, measured sky, Sdirk2, gradient, all kept", [0xe58782ebca4557ec, 0x707cd5228fdea6ee]),
+    ("assorted cell, measured sky, Sdirk2, gradient, some kept", [0xff58241003c87fd2, 0x707cd5228fdea6ee]),
+    ("assorted windows, Sdirk2, 1 slope", [0x44b8d4a6e23df2cb, 0x6809d682449320b6]),
+    ("assorted windows, Sdirk2, 8 slopes", [0xa28d223b572a7f32, 0x263b219ba989bff8]),
+    ("assorted windows, Sdirk2, jacobian", [0xd2499da386eba7f2, 0x0000000000000000]),
+    ("assorted windows, Sdirk2, gradient, all kept", [0x355da2a9dcbe20a3, 0x0ccea590ab3ac436]),
+    ("assorted windows, Sdirk2, gradient, some kept", [0x5d7f1bfc6d7d4951, 0x0ccea590ab3ac436]),
+    ("ceiling of gamma 1000 in 10 nodes, BackwardEuler, 1 slope", [0xd94bea9e6f662a83, 0x6f46cc982be2c97f]),
+    ("ceiling of gamma 1000 in 10 nodes, BackwardEuler, 8 slopes", [0x876e96cd81bffe02, 0x383b4b9b5605d0a5]),
+    ("ceiling of gamma 1000 in 10 nodes, BackwardEuler, jacobian", [0x55105763371454db, 0x0000000000000000]),
+    ("ceiling of gamma 1000 in 10 nodes, BackwardEuler, gradient, all kept", [0x5047121e98a895ec, 0x8dd2193d61fcafa6]),
+    ("ceiling of gamma 1000 in 10 nodes, BackwardEuler, gradient, some kept", [0x8e021c0cf43e9b23, 0x8dd2193d61fcafa6]),
+    ("ceiling of gamma 300 in 20 nodes, BackwardEuler, 1 slope", [0xb5283f3ed15aa419, 0xc922e190d0c7af76]),
+    ("ceiling of gamma 300 in 20 nodes, BackwardEuler, 8 slopes", [0x4a45ad28d7a2d025, 0x34c42477382e2283]),
+    ("ceiling of gamma 300 in 20 nodes, BackwardEuler, jacobian", [0x23994ea569adf2ad, 0x0000000000000000]),
+    ("ceiling of gamma 300 in 20 nodes, BackwardEuler, gradient, all kept", [0x33ad41bef8f98e3a, 0x1b875c17017cb44e]),
+    ("ceiling of gamma 300 in 20 nodes, BackwardEuler, gradient, some kept", [0x22708087cff82564, 0x1b875c17017cb44e]),
+    ("ceiling of gamma 1000 in 40 nodes, Sdirk2, 1 slope", [0x5b69c1b368bdbfee, 0x25a46959b078c4da]),
+    ("ceiling of gamma 1000 in 40 nodes, Sdirk2, jacobian", [0x68b90b472fc6a74c, 0x0000000000000000]),
+    ("ceiling of gamma 1000 in 40 nodes, Sdirk2, gradient, all kept", [0x1260b3d50edf53db, 0x7e26d1e74a64d8f2]),
+    ("ceiling of gamma 1000 in 40 nodes, Sdirk2, gradient, some kept", [0x1c8cb10b731a26a4, 0x7e26d1e74a64d8f2]),
+    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, 1 slope", [0xb02b8e6fb2025919, 0xa1e6658113e4f8ed]),
+    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, 8 slopes", [0xe66fc0af1c70819f, 0x3d70bd3f8194b3df]),
+    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, jacobian", [0x7b002a2368f824d9, 0x0000000000000000]),
+    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, gradient, all kept", [0xb19d7315a3171943, 0x77198229a4e37e21]),
+    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, gradient, some kept", [0xf1e4593756fa21d2, 0x77198229a4e37e21]),
+    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2, 1 slope", [0x2134927e5d30e2c1, 0x8a796f8f4b8cde60]),
+    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2, jacobian", [0xc8ea1632f340f718, 0x0000000000000000]),
+    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2, gradient, all kept", [0x64f60c0371c5db48, 0x77c872a781ca9bb3]),
+    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2, gradient, some kept", [0x8179cce0afb1bd62, 0x77c872a781ca9bb3]),
+    ("linear cell, matrices", [0xcddde2ca0eb94a16, 0x7ad8fdbd070e8ad0]),
+    ("cell, BackwardEuler, 4 lanes", [0xbe5af7835646e27b, 0x5e38e8bff91aa55e]),
+    ("cell, Sdirk2, 8 lanes", [0x0c18ba44fa232ba3, 0x13d9e683375a0725]),
+    ("cell, ApparentCapacity, 8 lanes", [0x6d5dd5e834e3e6e3, 0x7549eb8489008c28]),
+    ("straight cell, Sdirk2, 4 lanes", [0x4e3780b19a76cb77, 0xa8e458f882f9bfa2]),
+    ("straight cell, BackwardEuler, 8 lanes", [0x9ad5a9055bc22ec9, 0x52448cd530b1f25b]),
+    ("conditioned cell, Sdirk2, 4 lanes", [0x3c99700a2a6417f4, 0xc5c5dc2b0c860c25]),
+    ("conditioned cell, BackwardEuler, 8 lanes", [0xf00d64b8ea000622, 0x9f122fa6a7d463a4]),
+    ("glazed room, sun by geometry, Sdirk2, 4 lanes", [0x5844a368a30f7b53, 0xe4ac7f113230deb8]),
+    ("glazed room, sun by geometry, BackwardEuler, 8 lanes", [0x23be30769b6e8611, 0x4c76567fdc7fe555]),
+    ("curve scale, Sdirk2, 4 lanes", [0x3524fe128056977f, 0xd7f999cba1fe8479]),
+    ("curve scale, BackwardEuler, 8 lanes", [0xe10c325e4108312c, 0x482eb0b851cea21d]),
+    ("cell, Sdirk2", [0x006858d411de8a9c, 0x32f2b7f15e373666]),
+    ("cell, BackwardEuler", [0x2f46274616f8a82f, 0x5b0aaaaa14134963]),
+    ("cell, ApparentCapacity", [0x29bf724cb1667bb6, 0xc95a8f4cdce3c85f]),
+    ("straight cell, Sdirk2", [0xb77de27ea6dc6ee4, 0x7c6cadf3af5b27bf]),
+    ("straight cell, BackwardEuler", [0x424d0ad9f2d96ad8, 0x21a5d3201e209f03]),
+    ("straight cell, ApparentCapacity", [0x22bc8232c3a42ed0, 0x47e9e83f72e4afff]),
+    ("linear cell, Sdirk2", [0x7f6f4de3cdea25ab, 0xcb28cc1ceb7d23ba]),
+    ("linear cell, BackwardEuler", [0x2942d531dc44fda2, 0x04d54a1ab75ab264]),
+    ("linear cell, ApparentCapacity", [0x2942d531dc44fda2, 0x04d54a1ab75ab264]),
+    ("conditioned cell, Sdirk2", [0x665bd6876f8be3aa, 0x31caf51970d3e382]),
+    ("conditioned cell, BackwardEuler", [0x539e128413e2e37d, 0x23d2467a061135d2]),
+    ("conditioned cell, ApparentCapacity", [0x6b8cd3b23a57054e, 0x0699039a5e48f14d]),
+    ("glazed room, sun by area, Sdirk2", [0xf60bc4ed39c03247, 0x8c116c3bbf7121e8]),
+    ("glazed room, sun by area, BackwardEuler", [0x254a3e258f5a13ed, 0x4d464f8f291f10d2]),
+    ("glazed room, sun by area, ApparentCapacity", [0x254a3e258f5a13ed, 0x4d464f8f291f10d2]),
+    ("glazed room, sun by shares, Sdirk2", [0x1348645e852ea8b2, 0xe1096f9d649db621]),
+    ("glazed room, sun by shares, BackwardEuler", [0xf37b010d6523aefd, 0x11c944f9bc922e4d]),
+    ("glazed room, sun by shares, ApparentCapacity", [0xf37b010d6523aefd, 0x11c944f9bc922e4d]),
+    ("glazed room, sun by geometry, Sdirk2", [0xa3b130174a32b4c3, 0xa9b24b652c568dac]),
+    ("glazed room, sun by geometry, BackwardEuler", [0x7d9eb6b2306ade2c, 0xbe015c45a68739a2]),
+    ("glazed room, sun by geometry, ApparentCapacity", [0x7d9eb6b2306ade2c, 0xbe015c45a68739a2]),
+    ("melting, Sdirk2", [0x6428a2b3f01e1570, 0xcac3be9455d5a49b]),
+    ("melting, BackwardEuler", [0x73791a2c8f88caae, 0x41ad09577dc8cc25]),
+    ("melting, ApparentCapacity", [0xf0b977c3b3f8a3a4, 0x41628266ebd7fae1]),
+    ("curve track, Sdirk2", [0x075e03401407d195, 0x52a392f42dbda1c0]),
+    ("curve track, BackwardEuler", [0xa3714ff46d0002b4, 0x37f156249253fcea]),
+    ("curve track, ApparentCapacity", [0x79e805bb63e27b38, 0x1a700fc31a3881ae]),
+    ("curve switch, Sdirk2", [0xafddd27e7764d998, 0x33160ed9d8525593]),
+    ("curve switch, BackwardEuler", [0xe126c420bf1f5d69, 0xbdfdae56af8daea1]),
+    ("curve switch, ApparentCapacity", [0x8ea4a99c5356b310, 0x34e8c339cf38d5a5]),
+    ("curve scale, Sdirk2", [0x1041423148adccf2, 0x5e386e0f3ab92588]),
+    ("curve scale, BackwardEuler", [0xa24259601e90c2f3, 0x8ed44053192cb0e3]),
+    ("curve scale, ApparentCapacity", [0xc9d1186e61734681, 0xde411d5746fb7327]),
+    ("assorted cell, measured sky, Sdirk2", [0x0fe141ae9b7dd5ce, 0x21cf0ae081459242]),
+    ("assorted cell, measured sky, BackwardEuler", [0xaf4fcc7736c17332, 0xa0dd2167d96839d9]),
+    ("assorted cell, measured sky, ApparentCapacity", [0xe4f49f3adb29190d, 0xf8859dc2089b6b50]),
+    ("assorted cell, Clark and Allen, Sdirk2", [0xbb731b50c7a2e421, 0xfc54672e0df263da]),
+    ("assorted cell, Clark and Allen, BackwardEuler", [0x7f9b3b14479f9e7a, 0x1469b08ba9ac1f93]),
+    ("assorted cell, Clark and Allen, ApparentCapacity", [0x4328adc54a34590c, 0xe4765ffea29edeff]),
+    ("assorted cell, Brunt, Sdirk2", [0x705a3418b9d7e563, 0x289ef4f1d9b2ee6a]),
+    ("assorted cell, Brunt, BackwardEuler", [0xc95799940aadf57d, 0x24e7a14235d1427c]),
+    ("assorted cell, Brunt, ApparentCapacity", [0x2529ddd37ac6dbf2, 0xb439d287a42d9b54]),
+    ("assorted cell, offset, Sdirk2", [0xa3ab80be8eaa23d7, 0x61f26af86fee3534]),
+    ("assorted cell, offset, BackwardEuler", [0x6c77dc929b58204a, 0x14184c02c8782eb7]),
+    ("assorted cell, offset, ApparentCapacity", [0x00718f07a749ce9a, 0xed5ad6fd51605103]),
+    ("assorted windows, Sdirk2", [0x40691939477ef4bf, 0xaa847a7ab945ed59]),
+    ("assorted windows, BackwardEuler", [0x443ac22962de6065, 0xa9d241ade3de2b1d]),
+    ("assorted windows, ApparentCapacity", [0x443ac22962de6065, 0xa9d241ade3de2b1d]),
+    ("ceiling of gamma 1000 in 10 nodes, BackwardEuler", [0x6a7a67e3a3733db4, 0x8dd2193d61fcafa6]),
+    ("ceiling of gamma 300 in 20 nodes, BackwardEuler", [0xad3ded4b40b284cd, 0x1b875c17017cb44e]),
+    ("ceiling of gamma 1000 in 40 nodes, Sdirk2", [0x4d36eaf9aa39bee8, 0x7e26d1e74a64d8f2]),
+    ("ceiling of gamma 100 in 40 nodes, Sdirk2", [0x7c78d7268a5cd8c8, 0x0af777a122c6bcc8]),
+    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler", [0x4eff420e57a04396, 0xe61d5aedfe6aed90]),
+    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2", [0xaf8360826f382181, 0x00ef6cb6fbc76b84]),
+    ("ceiling of gamma 1000 in 80 nodes over plants, BackwardEuler", [0x74c1d5dd698bee9b, 0xe84fad09ea3edfa1]),
+    ("cell from given temperatures", [0x0ad4e14bd3f15a12, 0x3e5111eea25d6168]),
+];
+
+#[rustfmt::skip]
+const ENSEMBLES: &[(&str, [u64; 2])] = &[
+    ("cell, Sdirk2, ensemble", [0x1d0856ada9a8a191, 0x2cdcdc0dfc5d1141]),
+    ("straight cell, Sdirk2, ensemble", [0xc97fb5c46c123965, 0x2cdcdc0dfc5d1141]),
+    ("conditioned cell, Sdirk2, ensemble", [0xbf88173cadb31fe4, 0x2cdcdc0dfc5d1141]),
+    ("glazed room, sun by geometry, Sdirk2, ensemble", [0x938e25ddbf5fb2aa, 0x2cdcdc0dfc5d1141]),
+    ("curve scale, Sdirk2, ensemble", [0x0623d81f1108c0e2, 0x2cdcdc0dfc5d1141]),
+    ("cell, BackwardEuler, ensemble", [0x664b502cde70495c, 0xcbf29ce484222325]),
+    ("ceiling of gamma 1000 in 10 nodes, BackwardEuler, ensemble", [0x4207c2e5462c71d5, 0xcbf29ce484222325]),
+    ("ceiling of gamma 300 in 20 nodes, BackwardEuler, ensemble", [0xa661acfe090dc0ed, 0xcbf29ce484222325]),
+    ("ceiling of gamma 100 in 40 nodes, Sdirk2, ensemble", [0xb82397575084a9cb, 0xcbf29ce484222325]),
+    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, ensemble", [0xaa82259ecf9d6991, 0xcbf29ce484222325]),
+    ("ceiling of gamma 1000 in 80 nodes over plants, BackwardEuler, ensemble", [0x0f6044aab1e33eae, 0xcbf29ce484222325]),
+];
+
+const STEP: f64 = 900.0;
+const HOUR: f64 = 3600.0;
+
+// ---------------------------------------------------------------- hashes
+
+/// FNV-1a of 64 bits (Fowler, Noll, Vo; RFC 9923).
+#[derive(Clone, Copy)]
+struct Hash(u64);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0xcbf29ce484222325)
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100000001b3);
+        }
+    }
+
+    fn count(&mut self, count: usize) {
+        self.bytes(&(count as u64).to_le_bytes());
+    }
+
+    /// The bits of a number; what is not a number has no bits of its own.
+    fn number(&mut self, number: f64) {
+        let number = if number.is_nan() { f64::NAN } else { number };
+        self.bytes(&number.to_bits().to_le_bytes());
+    }
+
+    /// The count of some numbers and their bits.
+    fn numbers(&mut self, numbers: &[f64]) {
+        self.count(numbers.len());
+        numbers.iter().for_each(|&number| self.number(number));
+    }
+
+    /// The count of some numbers, and the values and slopes of all lanes that have not failed.
+    fn lanes<S: Sloped>(&mut self, numbers: &[S], failed: S::Mask) {
+        self.count(numbers.len());
+        for number in numbers {
+            for lane in (0..S::LANES).filter(|&lane| !failed.lane(lane)) {
+                self.number(number.lane(lane));
+            }
+            number.slopes().iter().for_each(|&slope| self.number(slope));
+        }
+    }
+}
+
+/// A kind of numbers, and what it carries beside the value.
+trait Sloped: Real {
+    fn slopes(&self) -> &[f64] {
+        &[]
+    }
+}
+impl Sloped for f64 {}
+impl<const N: usize> Sloped for Lanes<N> {}
+impl<const K: usize> Sloped for Dual<K> {
+    fn slopes(&self) -> &[f64] {
+        &self.slope
+    }
+}
+
+/// Name of a case, and the hashes of its answers and of the rest.
+struct Row(String, [u64; 2]);
+
+/// The hashes of a run.
+fn hashed<S: Sloped>(name: &str, run: &Run<S>) -> Row {
+    let failed = run.failed;
+    let (mut answers, mut rest) = (Hash::new(), Hash::new());
+    answers.lanes(&run.records, failed);
+    answers.lanes(&run.ledger.into, failed);
+    answers.lanes(&[run.ledger.stored, run.ledger.total_exchanged, run.ledger.imbalance], failed);
+    answers.count(run.cycles);
+    for numbers in
+        [&run.state.cells[..], &run.state.enthalpy, &run.state.surfaces, &run.state.air, &run.state.load]
+    {
+        rest.lanes(numbers, failed);
+    }
+    for memory in &run.state.memory {
+        let [first, second] = memory.marks;
+        rest.lanes(&[memory.liquid_fraction, memory.temperature, first, second], failed);
+    }
+    rest.lanes(&[run.settled, run.counters.reversals], failed);
+    for count in [run.counters.iterations, run.counters.nested, run.counters.halvings] {
+        rest.count(count);
+    }
+    (0..S::LANES).for_each(|lane| rest.count(usize::from(failed.lane(lane))));
+    Row(name.to_owned(), [answers.0, rest.0])
+}
+
+// ---------------------------------------------------------------- cases
+
+/// A building, its weather, and what is read of it.
+struct Sample {
+    name: String,
+    plan: Plan,
+    weather: fn(f64, &mut [f64]),
+    /// Time of the weather at the start [h].
+    start: f64,
+    steps: usize,
+    probes: Vec<Probe>,
+    /// Whether the first hours are repeated until they settle.
+    settle: bool,
+}
+
+impl Sample {
+    /// From the morning to the evening.
+    fn new(name: &str, description: Description, weather: fn(f64, &mut [f64]), probes: Vec<Probe>) -> Self {
+        let plan = Plan::new(description).unwrap();
+        Self { name: name.to_owned(), plan, weather, start: 7.0, steps: 40, probes, settle: false }
+    }
+
+    fn cell() -> Self {
+        Self { settle: true, ..Self::new("cell", cell(0.04), cell_weather, every(cell_probes())) }
+    }
+
+    fn straight() -> Self {
+        Self::new("straight cell", straight_cell(false), cell_weather, cell_probes())
+    }
+
+    fn linear() -> Self {
+        let probes = [0, 1].map(|zone| Probe::AirTemperature { zone }).to_vec();
+        Self::new("linear cell", linear_cell(), cell_weather, probes)
+    }
+
+    /// From the night to the afternoon: heating and cooling both run.
+    fn conditioned() -> Self {
+        let sample =
+            Self::new("conditioned cell", conditioned(0.04), conditioned_weather, conditioned_probes());
+        Self { start: 2.0, steps: 56, ..sample }
+    }
+
+    /// The room with windows, by each law of where the sun lands.
+    fn glazed() -> [Self; 3] {
+        let names = ["sun by area", "sun by shares", "sun by geometry"];
+        let mut rooms = glazed_rooms().into_iter();
+        names.map(|name| {
+            Self::new(&format!("glazed room, {name}"), rooms.next().unwrap(), weather, glazed_probes())
+        })
+    }
+
+    /// All shapes of melting curves, without hysteresis and with each model of it.
+    fn melting() -> [Self; 4] {
+        [
+            ("melting", None),
+            ("curve track", Some(HysteresisModel::CurveTrack)),
+            ("curve switch", Some(HysteresisModel::CurveSwitch)),
+            ("curve scale", Some(HysteresisModel::CurveScale)),
+        ]
+        .map(|(name, model)| {
+            let description = melting(model);
+            let mut probes = vec![Probe::AirTemperature { zone: 0 }];
+            for surface in 0..description.surfaces.len() {
+                probes.push(Probe::LiquidFraction { surface, layer: 0 });
+                probes.push(Probe::LayerEnthalpy { surface, layer: 0 });
+            }
+            Self { start: 0.0, steps: 48, ..Self::new(name, description, melting_weather, probes) }
+        })
+    }
+
+    /// Sharp melting in a number of nodes under a film [W/(m2 K)], with or without plants in the room. From this hour on
+    /// Newton's iteration fails within so many steps, but for the last four.
+    fn sharp([gamma, film, start]: [f64; 3], nodes: usize, plants: bool, steps: usize) -> Self {
+        let mut d = fine_ceiling(gamma, nodes, film);
+        if plants {
+            d.zones[0].heating = Some(plant(&mut d, "room.heating", 22.0, 300.0));
+            d.zones[0].cooling = Some(plant(&mut d, "room.cooling", 24.0, 80.0));
+        }
+        let probes = vec![
+            Probe::AirTemperature { zone: 0 },
+            Probe::LiquidFraction { surface: 0, layer: 0 },
+            Probe::FaceFlux { surface: 0, side: 1 },
+            Probe::CoolingLoad { zone: 0 },
+        ];
+        let below = if plants { " over plants" } else { "" };
+        let name = format!("ceiling of gamma {gamma} in {nodes} nodes{below}");
+        Self { start, steps, ..Self::new(&name, d, ceiling_weather, probes) }
+    }
+
+    fn assorted() -> [Self; 5] {
+        let cell = |sky: &str, which| {
+            let name = format!("assorted cell, {sky}");
+            Self::new(&name, assorted_cell(which), assorted_weather, every(conditioned_probes()))
+        };
+        [
+            cell("measured sky", 0),
+            cell("Clark and Allen", 1),
+            cell("Brunt", 2),
+            cell("offset", 3),
+            Self::new("assorted windows", assorted_windows(), weather, glazed_probes()),
+        ]
+    }
+
+    fn options(&self, scheme: Scheme) -> Options {
+        let warmup = self.settle.then_some(Warmup { steps: 12, tolerance: 0.2, max_cycles: 200 });
+        Options { warmup, ..options(scheme, STEP, self.probes.clone()) }
+    }
+
+    fn rows(&self, scheme: Scheme) -> Vec<f64> {
+        let weather = |time, row: &mut [f64]| (self.weather)(self.start * HOUR + time, row);
+        forcing(&self.plan, scheme, self.steps, STEP, weather)
+    }
+
+    fn drive<'a>(&self, rows: &'a [f64], scheme: Scheme) -> Forcing<'a> {
+        Forcing::new(rows, scheme.weights().len(), self.plan.n_channels()).unwrap()
+    }
+
+    /// A run with any kind of numbers.
+    fn run<S: Sloped>(&self, numbers: &[S], options: &Options) -> Run<S> {
+        let rows = self.rows(options.scheme);
+        let drive = self.drive(&rows, options.scheme);
+        march(&self.plan, numbers, &drive, options, &Watch::default()).unwrap()
+    }
+
+    /// Whether it is small enough for what takes long.
+    fn small(&self) -> bool {
+        self.plan.n_cells < 40
+    }
+
+    /// Members that differ in their materials, films and powers.
+    fn members(&self, count: usize) -> Vec<Vec<f64>> {
+        let varied = ["conductivity", "density", "latent_heat", "coefficient", "power", "width", "factor"];
+        let parameters = self.plan.description.parameters.iter();
+        let varied: Vec<bool> = parameters
+            .map(|parameter| varied.iter().any(|leaf| parameter.path.split('.').any(|part| part == *leaf)))
+            .collect();
+        (0..count)
+            .map(|member| {
+                let number = |(index, value): (usize, f64)| {
+                    let by =
+                        if varied[index] { 0.1 * (1.3 * member as f64 + index as f64).sin() } else { 0.0 };
+                    value * (1.0 + by)
+                };
+                values(&self.plan).into_iter().enumerate().map(number).collect()
+            })
+            .collect()
+    }
+
+    /// Members side by side in lanes.
+    fn in_lanes<const N: usize>(&self, members: &[Vec<f64>]) -> Vec<Lanes<N>> {
+        let width = self.plan.description.parameters.len();
+        (0..width).map(|p| Lanes(core::array::from_fn(|lane| members[lane][p]))).collect()
+    }
+
+    /// Parameters spread evenly over the list.
+    fn spread(&self, count: usize) -> Vec<usize> {
+        let all = self.plan.description.parameters.len();
+        (0..count).map(|k| k * all / count + all / (2 * count)).collect()
+    }
+
+    /// The nominal values with slopes by as many parameters.
+    fn sloped<const K: usize>(&self) -> Vec<Dual<K>> {
+        let mut duals: Vec<Dual<K>> = values(&self.plan).into_iter().map(Dual::constant).collect();
+        for (which, parameter) in self.spread(K).into_iter().enumerate() {
+            duals[parameter].slope[which] = 1.0;
+        }
+        duals
+    }
+}
+
+/// Readings, and those that no other sample has.
+fn every(mut probes: Vec<Probe>) -> Vec<Probe> {
+    probes.push(Probe::LayerTemperature { surface: 4, layer: 0 });
+    probes.push(Probe::IncidentSolar { surface: 0 });
+    probes.push(Probe::SkyTemperature);
+    probes
+}
+
+// ---------------------------------------------------------------- groups of cases
+
+/// What Newton's iteration does in a sharp sample.
+#[derive(Debug, PartialEq)]
+enum Fails {
+    /// The nested iteration solves a stage.
+    Nested,
+    /// A step is halved.
+    Halved,
+}
+
+/// Samples and schemes in which Newton's iteration fails.
+fn hard() -> Vec<(Sample, Scheme, Fails)> {
+    use Fails::{Halved, Nested};
+    use Scheme::{BackwardEuler, Sdirk2};
+    vec![
+        (Sample::sharp([1000.0, 25.0, 16.0], 10, false, 36), BackwardEuler, Nested),
+        (Sample::sharp([300.0, 10.0, 18.0], 20, false, 28), BackwardEuler, Halved),
+        (Sample::sharp([1000.0, 25.0, 88.0], 40, false, 36), Sdirk2, Nested),
+        (Sample::sharp([100.0, 25.0, 40.0], 40, false, 36), Sdirk2, Halved),
+        (Sample::sharp([1000.0, 25.0, 20.0], 20, true, 20), BackwardEuler, Nested),
+        (Sample::sharp([1000.0, 25.0, 20.0], 40, true, 20), Sdirk2, Nested),
+        (Sample::sharp([1000.0, 25.0, 20.0], 80, true, 21), BackwardEuler, Halved),
+    ]
+}
+
+/// Runs of plain numbers.
+fn plain() -> Vec<Row> {
+    let mut samples = vec![Sample::cell(), Sample::straight(), Sample::linear(), Sample::conditioned()];
+    samples.extend(Sample::glazed());
+    samples.extend(Sample::melting());
+    samples.extend(Sample::assorted());
+    let with_schemes = samples.par_iter().flat_map_iter(|sample| {
+        SCHEMES.map(|scheme| {
+            let name = format!("{}, {scheme:?}", sample.name);
+            let run = sample.run(&values(&sample.plan), &sample.options(scheme));
+            assert!(!sample.settle || run.cycles > 1, "{name}: the first hours are repeated");
+            let turns = sample.name == "curve switch" && scheme == Scheme::Sdirk2;
+            assert!(!turns || run.counters.reversals > 0.0, "{name}: melting turns within a step");
+            hashed(&name, &run)
+        })
+    });
+    let mut rows: Vec<Row> = with_schemes.collect();
+    rows.par_extend(hard().into_par_iter().map(|(sample, scheme, fails)| {
+        let name = format!("{}, {scheme:?}", sample.name);
+        let run = sample.run(&values(&sample.plan), &sample.options(scheme));
+        let reached = if fails == Fails::Nested { run.counters.nested } else { run.counters.halvings };
+        assert!(reached > 0, "{name}: expected {fails:?}, found {:?}", run.counters);
+        hashed(&name, &run)
+    }));
+    let sample = Sample { settle: false, ..Sample::cell() };
+    let count = |count: usize, from: f64| (0..count).map(|k| from + 0.1 * k as f64).collect();
+    let initial = Initial::Given {
+        cells: count(sample.plan.n_cells, 20.0),
+        surfaces: count(sample.plan.surfaces.len(), 19.0),
+        air: count(sample.plan.zones.len(), 23.0),
+    };
+    let options = Options { initial, record_from: 10, record_every: 4, ..sample.options(Scheme::Sdirk2) };
+    rows.push(hashed("cell from given temperatures", &sample.run(&values(&sample.plan), &options)));
+    rows
+}
+
+/// Runs of members side by side in arrays.
+fn lanes() -> Vec<Row> {
+    fn one<const N: usize>(sample: &Sample, members: &[Vec<f64>], scheme: Scheme) -> Row {
+        let run = sample.run(&sample.in_lanes::<N>(members), &sample.options(scheme));
+        hashed(&format!("{}, {scheme:?}, {N} lanes", sample.name), &run)
+    }
+    let cell = Sample { steps: 16, ..Sample::cell() };
+    let numbers = cell_members(&cell.plan, 8);
+    let members: Vec<_> =
+        numbers.chunks(cell.plan.description.parameters.len()).map(<[f64]>::to_vec).collect();
+    let mut rows = vec![
+        one::<4>(&cell, &members, Scheme::BackwardEuler),
+        one::<8>(&cell, &members, Scheme::Sdirk2),
+        one::<8>(&cell, &members, Scheme::ApparentCapacity),
+    ];
+    let [.., glazed] = Sample::glazed();
+    let [.., scale] = Sample::melting();
+    let others = [Sample::straight(), Sample::conditioned(), glazed, scale];
+    rows.par_extend(others.into_par_iter().flat_map_iter(|sample| {
+        let sample = Sample { steps: 24, ..sample };
+        let members = sample.members(8);
+        [one::<4>(&sample, &members, Scheme::Sdirk2), one::<8>(&sample, &members, Scheme::BackwardEuler)]
+    }));
+    rows
+}
+
+/// Ensembles: a whole pack, and a part of one. A member at no number fails; those that Newton's iteration cannot solve in
+/// lanes are run alone.
+fn ensembles() -> Vec<Row> {
+    let [.., glazed] = Sample::glazed();
+    let [.., scale] = Sample::melting();
+    let samples = [Sample::cell(), Sample::straight(), Sample::conditioned(), glazed, scale];
+    let mut all: Vec<_> = samples.map(|sample| (Sample { steps: 12, ..sample }, Scheme::Sdirk2, 10)).into();
+    all.push((Sample { steps: 12, ..Sample::cell() }, Scheme::BackwardEuler, 3));
+    let hard = hard().into_iter().filter(|(sample, _, fails)| sample.small() || *fails == Fails::Halved);
+    all.extend(hard.map(|(sample, scheme, _)| (sample, scheme, 2)));
+    let rows = all.par_iter().map(|(sample, scheme, count)| {
+        let mut members = sample.members(*count);
+        members[1] = values(&sample.plan);
+        let lost = if *count > 4 { vec![4] } else { Vec::new() };
+        for &member in &lost {
+            members[member].fill(f64::NAN);
+        }
+        let drive = sample.rows(*scheme);
+        let drive = sample.drive(&drive, *scheme);
+        let options = sample.options(*scheme);
+        let done = ensemble(&sample.plan, &members.concat(), &drive, &options, &Watch::default()).unwrap();
+        let failed: Vec<usize> = done.failures.iter().map(|(member, _)| *member).collect();
+        assert_eq!(failed, lost, "{}", sample.name);
+        let (mut answers, mut rest) = (Hash::new(), Hash::new());
+        answers.numbers(&done.records);
+        answers.numbers(&done.closure);
+        failed.iter().for_each(|&member| rest.count(member));
+        Row(format!("{}, {scheme:?}, ensemble", sample.name), [answers.0, rest.0])
+    });
+    rows.collect()
+}
+
+/// Slopes of a sample: forward with the run, forward beside it, and in reverse.
+fn slopes_of(sample: &Sample, scheme: Scheme) -> Vec<Row> {
+    let name = format!("{}, {scheme:?}", sample.name);
+    let options = sample.options(scheme);
+    let mut rows = vec![hashed(&format!("{name}, 1 slope"), &sample.run(&sample.sloped::<1>(), &options))];
+    if sample.small() {
+        rows.push(hashed(&format!("{name}, 8 slopes"), &sample.run(&sample.sloped::<8>(), &options)));
+    }
+    let (numbers, watch) = (values(&sample.plan), Watch::default());
+    let drive = sample.rows(scheme);
+    let drive = sample.drive(&drive, scheme);
+
+    // Two groups of eight; the second is not full.
+    let done = jacobian(&sample.plan, &numbers, &sample.spread(11), &drive, &options, &watch).unwrap();
+    let mut answers = Hash::new();
+    answers.numbers(&done.records);
+    answers.numbers(&done.slopes);
+    rows.push(Row(format!("{name}, jacobian"), [answers.0, 0]));
+
+    // All states are kept, then only some: the steps between these are run again.
+    for (kept, bytes) in [("all", 1 << 28), ("some", 1 << 12)] {
+        let way = Trajectory::new(&sample.plan, &numbers, &drive, &options, &watch, bytes).unwrap();
+        let weights: Vec<f64> =
+            (0..way.run.records.len()).map(|i| 1.0 + 0.5 * (0.37 * i as f64).sin()).collect();
+        let slopes = way.pull(&sample.plan, &numbers, &drive, &options, &watch, &weights).unwrap();
+        let name = format!("{name}, gradient, {kept} kept");
+        let Row(_, [answers, rest]) = hashed(&name, &way.run);
+        let mut all = Hash(answers);
+        all.numbers(&slopes);
+        rows.push(Row(name, [all.0, rest]));
+    }
+    rows
+}
+
+/// Slopes of all kinds, and matrices.
+fn slopes() -> Vec<Row> {
+    let [by_area, _, by_geometry] = Sample::glazed();
+    let [_, track, switch, scale] = Sample::melting();
+    let [measured, .., windows] = Sample::assorted();
+    let mut all = vec![
+        (Sample::cell(), Scheme::Sdirk2),
+        (Sample::cell(), Scheme::ApparentCapacity),
+        (Sample::straight(), Scheme::BackwardEuler),
+        (Sample::conditioned(), Scheme::Sdirk2),
+        (Sample::conditioned(), Scheme::BackwardEuler),
+        (by_area, Scheme::Sdirk2),
+        (by_geometry, Scheme::BackwardEuler),
+        (track, Scheme::BackwardEuler),
+        (switch, Scheme::Sdirk2),
+        (scale, Scheme::Sdirk2),
+        (measured, Scheme::Sdirk2),
+        (windows, Scheme::Sdirk2),
+    ];
+    for (sample, _) in &mut all {
+        sample.steps = 16;
+    }
+    let hard = hard().into_iter().filter(|(sample, _, fails)| sample.small() || *fails == Fails::Nested);
+    all.extend(hard.map(|(sample, scheme, _)| (sample, scheme)));
+    let mut rows: Vec<Row> =
+        all.par_iter().flat_map_iter(|(sample, scheme)| slopes_of(sample, *scheme)).collect();
+    let linear = Sample::linear();
+    let matrices = state_space(&linear.plan, &values(&linear.plan)).unwrap();
+    let (mut answers, mut rest) = (Hash::new(), Hash::new());
+    for matrix in [&matrices.a, &matrices.b, &matrices.c, &matrices.d] {
+        answers.numbers(matrix);
+    }
+    for names in [&matrices.states, &matrices.inputs, &matrices.outputs] {
+        rest.count(names.len());
+        names.iter().for_each(|name| rest.bytes(name.as_bytes()));
+    }
+    rows.push(Row("linear cell, matrices".to_owned(), [answers.0, rest.0]));
+    rows
+}
+
+// ---------------------------------------------------------------- tests
+
+/// Makes rows on threads with more stack than they have by default: code that is not optimised needs it.
+fn made(rows: impl FnOnce() -> Vec<Row> + Send) -> Vec<Row> {
+    rayon::ThreadPoolBuilder::new().stack_size(1 << 25).build().unwrap().install(rows)
+}
+
+/// Compares rows with a table; where one differs, prints the table as it would be now.
+fn compare(name: &str, table: &[(&str, [u64; 2])], rows: &[Row]) {
+    let same = |row: &Row| table.contains(&(row.0.as_str(), row.1));
+    let differing: Vec<&str> = rows.iter().filter(|row| !same(row)).map(|row| row.0.as_str()).collect();
+    let gone = table.iter().filter(|(name, _)| rows.iter().all(|row| row.0 != *name)).count();
+    if differing.is_empty() && gone == 0 {
+        return;
+    }
+    let mut text = String::new();
+    for Row(name, [answers, rest]) in rows {
+        writeln!(text, "    (\"{name}\", [0x{answers:016x}, 0x{rest:016x}]),").unwrap();
+    }
+    panic!(
+        "{} of {} rows differ from {name} and {gone} of it are gone: {}\n{name} as it would be now:\n{text}",
+        differing.len(),
+        rows.len(),
+        differing.join("; ")
+    );
+}
+
+/// All runs have the bits that they had when the table was written.
+#[test]
+fn runs_keep_their_bits() {
+    let rows = made(|| {
+        let groups: [fn() -> Vec<Row>; 3] = [slopes, lanes, plain];
+        groups.into_par_iter().flat_map_iter(|group| group()).collect()
+    });
+    compare("RUNS", RUNS, &rows);
+}
+
+/// Ensembles have these bits with the lanes that the environment asks for, or the widest.
+#[test]
+fn ensembles_keep_their_bits() {
+    compare("ENSEMBLES", ENSEMBLES, &made(ensembles));
+}
+
+/// Ensembles have the same bits with narrower lanes: this program runs once more with each, by the variable that asks for
+/// them. Where the machine has no wider ones these are those of the test before.
+#[test]
+fn narrower_lanes_keep_the_bits_of_ensembles() {
+    for lanes in ["array", "avx2"] {
+        let done = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "ensembles_keep_their_bits"])
+            .env(Level::VARIABLE, lanes)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stdout);
+        assert!(done.status.success() && said.contains("1 passed"), "lanes of {lanes}:\n{said}");
+    }
+}
