@@ -26,14 +26,19 @@ _NUMBERS = {"x": 2, "y": 4, "z": 8}
 
 @dataclass(frozen=True)
 class Count:
-    """Instructions, and operations of arithmetic among them."""
+    """Instructions, operations of arithmetic among them, and instructions with those in libraries."""
 
     instructions: float
     flops: float
+    everywhere: float = 0.0
 
     def less(self, other: Count, shares: int) -> Count:
         """One of so many shares of what is more than another."""
-        return Count((self.instructions - other.instructions) / shares, (self.flops - other.flops) / shares)
+        return Count(
+            (self.instructions - other.instructions) / shares,
+            (self.flops - other.flops) / shares,
+            (self.everywhere - other.everywhere) / shares,
+        )
 
 
 def at_hand() -> bool:
@@ -77,6 +82,14 @@ def executed(profile: str, program: str) -> Counter[int]:
     return counts
 
 
+def total(profile: str) -> int:
+    """How many instructions were executed in all, libraries included, from what callgrind wrote."""
+    found = re.search(r"^totals: (\d+)", profile, flags=re.MULTILINE)
+    if found is None:
+        raise ValueError("callgrind wrote no totals: it did not end as it should")
+    return int(found[1])
+
+
 def count(program: Path, words: list[str], worth: Mapping[int, int], environment: Mapping[str, str]) -> Count:
     """Run a program under callgrind."""
     with tempfile.TemporaryDirectory() as folder:
@@ -89,6 +102,7 @@ def count(program: Path, words: list[str], worth: Mapping[int, int], environment
             check=True,
             capture_output=True,
         )
-        counts = executed(file.read_text(encoding="utf-8"), program.name)
+        profile = file.read_text(encoding="utf-8")
+    counts = executed(profile, program.name)
     flops = sum(number * worth.get(address, 0) for address, number in counts.items())
-    return Count(sum(counts.values()), flops)
+    return Count(sum(counts.values()), flops, total(profile))
