@@ -354,6 +354,7 @@ impl Real for Taped {
 }
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "compared with the functions of the standard library")]
 mod tests {
     use super::*;
 

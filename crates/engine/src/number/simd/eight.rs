@@ -12,7 +12,8 @@ macro_rules! eight {
     ($token:ty, $features:tt) => {
         use super::WIDTH;
         use crate::number::elementary::{
-            Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, exp, inverse_cbrt, ln, logistic,
+            Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, cos, exp, inverse_cbrt, ln, logistic,
+            sin,
         };
         use crate::number::real::{Logistic, Mask, Real};
         use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -205,11 +206,11 @@ macro_rules! eight {
             }
             #[inline(always)]
             fn sin(self) -> Self {
-                Self::of(self.numbers().map(f64::sin))
+                Self::of(self.numbers().map(sin))
             }
             #[inline(always)]
             fn cos(self) -> Self {
-                Self::of(self.numbers().map(f64::cos))
+                Self::of(self.numbers().map(cos))
             }
             #[inline(always)]
             fn lt(self, other: Self) -> EightMask {
