@@ -15,6 +15,7 @@ use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
+use mascarin_engine::real::Real;
 use mascarin_engine::step::Scheme;
 
 /// Six walls of foam and concrete, a roof of foam and PCM; TARP inside, `MoWiTT` outside.
@@ -67,7 +68,7 @@ fn main() {
         );
         let mut all = Vec::new();
         for member in 0..members {
-            all.extend(numbers.iter().map(|n| n * (1.0 + 1e-3 * (member as f64).sin())));
+            all.extend(numbers.iter().map(|n| n * (1.0 + 1e-3 * Real::sin(member as f64))));
         }
         let start = Instant::now();
         let result = ensemble(&plan, &all, &drive, &options, &Watch::default()).expect("an ensemble");

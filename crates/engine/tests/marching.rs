@@ -122,7 +122,7 @@ fn duals_are_differences() {
     let options = options(Scheme::Sdirk2, STEP, cell_probes());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     // One figure that all readings and times enter with different weights.
-    let weight = |row: usize| 1.0 + (0.37 * row as f64).sin();
+    let weight = |row: usize| 1.0 + Real::sin(0.37 * row as f64);
     let figure = |numbers: &[f64]| {
         let records = try_run(&plan, numbers, &rows, &options).unwrap().records;
         records.iter().enumerate().map(|(i, r)| scaled(i) * weight(i) * r).sum::<f64>() / records.len() as f64

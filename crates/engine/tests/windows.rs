@@ -85,7 +85,7 @@ fn duals_are_differences_with_windows() {
         let options = options(Scheme::Sdirk2, STEP, glazed_probes());
         let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
         let scale = |i: usize| if i % 10 < 5 { 1.0 } else { 0.01 };
-        let weight = |i: usize| scale(i) * (1.0 + (0.37 * i as f64).sin());
+        let weight = |i: usize| scale(i) * (1.0 + Real::sin(0.37 * i as f64));
         let figure = |numbers: &[f64]| -> f64 {
             let records = try_run(&plan, numbers, &rows, &options).unwrap().records;
             records.iter().enumerate().map(|(i, r)| weight(i) * r).sum()

@@ -72,7 +72,7 @@ fn lanes_are_scalars_with_plants() {
         one[heating] = 19.0 + 0.5 * x;
         one[cooling] = one[heating] + 0.3 * (member % 4) as f64;
         one[capacity] = [0.0, 60.0, 300.0, 5000.0][member % 4];
-        one[power] *= 1.0 + (1.7 * x).sin();
+        one[power] *= 1.0 + Real::sin(1.7 * x);
         numbers.extend(one);
     }
     for scheme in SCHEMES {
@@ -110,7 +110,7 @@ fn duals_are_differences_with_plants() {
     let scale = |i: usize| {
         if i % size >= 10 && (i % size - 10) % 3 < 2 { 0.01 } else { f64::from(u8::from(i % size != 8)) }
     };
-    let weight = |i: usize| scale(i) * (1.0 + (0.37 * i as f64).sin());
+    let weight = |i: usize| scale(i) * (1.0 + Real::sin(0.37 * i as f64));
     let figure = |numbers: &[f64]| -> f64 {
         let records = try_run(&plan, numbers, &rows, &options).unwrap().records;
         records.iter().enumerate().map(|(i, r)| weight(i) * r).sum()

@@ -475,7 +475,11 @@ fn same_plane(plan: &Plan, a: SurfaceId, b: SurfaceId) -> bool {
         let value = |id: ParamId| plan.description.parameters[id.0 as usize].value.to_radians();
         let (tilt, azimuth) = (value(wall.tilt), value(wall.azimuth));
         let sign = if surface.is_outside() { 1.0 } else { -1.0 };
-        [azimuth.sin() * tilt.sin() * sign, azimuth.cos() * tilt.sin() * sign, tilt.cos() * sign]
+        [
+            Real::sin(azimuth) * Real::sin(tilt) * sign,
+            Real::cos(azimuth) * Real::sin(tilt) * sign,
+            Real::cos(tilt) * sign,
+        ]
     };
     let dot: f64 = normal(a).iter().zip(normal(b)).map(|(x, y)| x * y).sum();
     dot > 1.0 - 1e-9

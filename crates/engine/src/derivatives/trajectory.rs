@@ -115,7 +115,8 @@ impl Trajectory {
             return Err(EngineError::Input(format!("{found} weights on records, expected {expected}")));
         }
         let weather = Weather::new(plan, forcing);
-        Tape::clear();
+        // Dropped last: its end releases the tape, also after an error.
+        let _recording = Tape::record();
         let leaves: Vec<_> = numbers.iter().map(|&number| Taped::variable(number)).collect();
         let mut back = Back::new(plan, &leaves, &weather, options, weights);
         let first_of_last = self.starts.len() * self.length;
@@ -125,9 +126,7 @@ impl Trajectory {
             let again = again(plan, numbers, &weather, options, start, moves)?;
             back.over(moves, &again, watch)?;
         }
-        let slopes = back.finish(&leaves);
-        Tape::clear();
-        Ok(slopes)
+        Ok(back.finish(&leaves))
     }
 }
 
@@ -197,7 +196,7 @@ impl<'a> Back<'a> {
         let fresh = Stepper::new(plan, leaves, options.scheme);
         let (stepper, made) = (fresh.clone(), Tape::len());
         let now = stepper.begin(&options.initial);
-        Tape::cut(made);
+        Tape::truncate(made);
         let state = vec![0.0; now.count()];
         let first = Tape::reserve(state.len());
         let plain = |unknowns: &Unknowns<Taped>| unknowns.plain();
@@ -230,7 +229,7 @@ impl<'a> Back<'a> {
 
     /// Goes back over a move: its weights on the state before it take the place of those on the state after it.
     fn pass(&mut self, made: Move, before: &[f64], solution: &[f64]) -> Result<(), EngineError> {
-        Tape::cut(self.base);
+        Tape::truncate(self.base);
         let (stepper, state) = (&mut self.stepper, &mut self.now);
         let mut place = self.first;
         state.read(before, |number, value| {
@@ -244,16 +243,16 @@ impl<'a> Back<'a> {
         made.follow(stepper, state, self.weather, self.options.dt, solution)?;
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
-        state.beside(&self.state, |number, weight| number.weigh(weight, weights));
+        state.beside(&self.state, |number, weight| number.add_weight(weight, weights));
         if let Some(row) = made.row(self.options) {
             let probes = &self.options.probes;
             for (probe, weight) in probes.iter().zip(&self.records[row * probes.len()..]) {
                 let record = probe.read(stepper.plan, stepper, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
-                record.weigh(*weight, &mut self.weights);
+                record.add_weight(*weight, &mut self.weights);
             }
         }
-        Tape::pull(&mut self.weights, self.base, |stage, weights| stepper.pull_stage(stage, weights));
+        Tape::propagate(&mut self.weights, self.base, |stage, weights| stepper.pull_stage(stage, weights));
         let passed = &mut self.weights[self.base - self.state.len()..self.base];
         self.state.copy_from_slice(passed);
         passed.fill(0.0);
@@ -266,12 +265,12 @@ impl<'a> Back<'a> {
 
     /// Weights on the parameters.
     fn finish(mut self, leaves: &[Taped]) -> Vec<f64> {
-        Tape::cut(self.base);
+        Tape::truncate(self.base);
         let start = self.fresh.begin(&self.options.initial);
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
-        start.beside(&self.state, |number, weight| number.weigh(weight, weights));
-        Tape::pull(&mut self.weights, leaves.len() + 1, |_, _| {});
+        start.beside(&self.state, |number, weight| number.add_weight(weight, weights));
+        Tape::propagate(&mut self.weights, leaves.len() + 1, |_, _| {});
         self.weights[1..=leaves.len()].to_vec()
     }
 }

@@ -19,6 +19,7 @@ use std::borrow::Cow;
 use crate::building::ids::SurfaceId;
 use crate::building::plan::ZonePlan;
 use crate::input::description::{Description, Facing, ZoneSun};
+use crate::number::real::Real;
 use crate::physics::solar::{Open, Sunlight};
 
 /// Lengths below this are none [m].
@@ -336,10 +337,10 @@ impl Receiver {
         let mean = |elevations: &[f64]| {
             let (mut seen, mut all) = (0.0, 0.0);
             for &elevation in elevations {
-                let (up, level) = elevation.sin_cos();
+                let (up, level) = (Real::sin(elevation), Real::cos(elevation));
                 for k in 0..sectors {
                     let azimuth = (k as f64 + 0.5) * core::f64::consts::TAU / sectors as f64;
-                    let sun = [azimuth.sin() * level, azimuth.cos() * level, up];
+                    let sun = [Real::sin(azimuth) * level, Real::cos(azimuth) * level, up];
                     let weight = dot(sun, self.shape.frame.normal()) * level;
                     if weight > GRAZING {
                         seen += weight * self.sunlit(sun);
@@ -534,7 +535,7 @@ mod tests {
 
     fn sun(azimuth: f64, elevation: f64) -> Vertex {
         let (a, e) = (azimuth.to_radians(), elevation.to_radians());
-        [a.sin() * e.cos(), a.cos() * e.cos(), e.sin()]
+        [Real::sin(a) * Real::cos(e), Real::cos(a) * Real::cos(e), Real::sin(e)]
     }
 
     fn shaded(surface: &[Vertex], shades: &[&[Vertex]]) -> Receiver {
@@ -550,7 +551,7 @@ mod tests {
         assert!((receiver.sunlit(sun(180.0, 20.0)) - 1.0).abs() < 1e-12);
         assert!(receiver.sunlit(sun(180.0, 80.0)).abs() < 1e-12);
         // From the south-east the foot of the shadow moves west, but the overhang is long enough.
-        let depth = 60.0_f64.to_radians().tan() / 45.0_f64.to_radians().cos() - 0.5;
+        let depth = 3.0_f64.sqrt() / 0.5_f64.sqrt() - 0.5;
         assert!((receiver.sunlit(sun(135.0, 60.0)) - (2.0 - depth.min(2.0)) / 2.0).abs() < 1e-12);
     }
 
@@ -666,8 +667,11 @@ mod tests {
         let mut shares = [0.0; 2];
         tracer.trace(sun(180.0, 45.0), &mut shares);
         assert!((shares[0] - 1.0).abs() < 1e-12 && shares[1] == 0.0);
-        // At tan e = 0.2 the ray from z ends on the north wall where z > 1.2: half of the window.
-        tracer.trace(sun(180.0, 0.2_f64.atan().to_degrees()), &mut shares);
+        // At tan e = 0.2, sin e = 0.2/sqrt(1.04), the ray from z ends on the north wall where z > 1.2: half of the window.
+        tracer.trace(
+            sun(180.0, 90.0 - crate::number::elementary::acos(0.2 / 1.04_f64.sqrt()).to_degrees()),
+            &mut shares,
+        );
         assert!((shares[0] - 0.5).abs() < 1e-9 && (shares[1] - 0.5).abs() < 1e-9, "{shares:?}");
     }
 }

@@ -652,7 +652,7 @@ mod tests {
     fn sweeps_solve_and_transpose() {
         const STAGE: f64 = 300.0;
         for n in [0, 1, 2, 6] {
-            let vary = |i: usize, by: f64| 1.0 + (by * (i + 1) as f64).sin().abs();
+            let vary = |i: usize, by: f64| 1.0 + Real::sin(by * (i + 1) as f64).abs();
             let cell = |i| {
                 let matter =
                     Matter::Solid { conductivity: 0.3 * vary(i, 1.3), capacity: 1.2e6 * vary(i, 0.7) };

@@ -4,7 +4,7 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use crate::number::elementary::{exp, inverse_cbrt, ln};
+use crate::number::elementary::{cos, exp, inverse_cbrt, ln, sin};
 use crate::number::lanes::Lanes;
 use crate::number::real::{Equations, LinearSystem, Logistic, Real};
 
@@ -149,11 +149,11 @@ impl<const K: usize> Real for Dual<K> {
     }
     #[inline(always)]
     fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
+        self.chain(sin(self.value), cos(self.value))
     }
     #[inline(always)]
     fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
+        self.chain(cos(self.value), -sin(self.value))
     }
     #[inline(always)]
     fn scale(self, factor: f64) -> Self {
@@ -205,6 +205,7 @@ impl<const K: usize> Equations<Dual<K>> for EquationSlopes<K> {
 }
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "compared with the functions of the standard library")]
 mod tests {
     use super::*;
 

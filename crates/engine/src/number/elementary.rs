@@ -1,9 +1,13 @@
 //! Elementary functions, written once for plain numbers and lanes.
 //!
 //! They are branch-free and built from `+ - * /` and bit operations, each correctly rounded by IEEE 754: the result has
-//! the same bits alone, in a lane and on every processor.
+//! the same bits alone, in a lane and on every processor. Those of angles are rare; they come from the crate `libm` (the
+//! functions of musl and FreeBSD in Rust), number by number, with the same bits on every processor too. Those of the
+//! standard library are the system's, which chooses among several by processor.
 
 use crate::number::real::{Logistic, Real};
+
+pub(crate) use libm::{acos, cos, sin};
 
 /// What elementary functions need to know of the bits of a number, by lane.
 pub(super) trait Bits: Real {
@@ -162,6 +166,7 @@ pub(super) const THIRD: u64 = 0x5555_5556;
 pub(super) const INVERSE_CBRT: u64 = 0x553F_0000;
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "compared with the functions of the standard library")]
 mod tests {
     use super::*;
 
@@ -198,5 +203,38 @@ mod tests {
         }
         assert!((exp(0.0) - 1.0).abs() < f64::EPSILON);
         assert!(ln(1.0).abs() < f64::EPSILON);
+    }
+
+    /// The standard library's are within about one unit in the last place; so are these.
+    #[test]
+    fn functions_of_angles_agree_with_the_standard_library() {
+        let mut x = 1e-9;
+        while x < 1e6 {
+            for x in [x, -x] {
+                close(sin(x), x.sin(), f64::EPSILON);
+                close(cos(x), x.cos(), f64::EPSILON);
+            }
+            x *= 1.0007;
+        }
+        for k in 0..=20_000 {
+            let x = f64::from(k) * 1e-4 - 1.0;
+            close(acos(x), x.acos(), f64::EPSILON);
+        }
+    }
+
+    /// Bits on any processor: a change here is a numerical change.
+    #[test]
+    fn functions_have_the_same_bits_on_all_processors() {
+        let mut all = 0_u64;
+        let mut add = |value: f64| all = all.rotate_left(7) ^ value.to_bits();
+        for k in 1..2000 {
+            let x = f64::from(k) * 0.00731;
+            [sin(x), cos(x), acos((x - 7.0) / 8.0), exp(x), ln(x), inverse_cbrt(x)]
+                .into_iter()
+                .for_each(&mut add);
+            let Logistic { rise, rest, tail } = logistic(x - 7.0);
+            [rise, rest, tail, Real::powf(x, 1.3)].into_iter().for_each(&mut add);
+        }
+        assert_eq!(all, 0xe337_9e38_b2e4_2610, "{all:#x}");
     }
 }

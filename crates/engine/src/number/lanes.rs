@@ -2,7 +2,7 @@
 
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::number::elementary::{Bits, exp, inverse_cbrt, ln, logistic};
+use crate::number::elementary::{Bits, cos, exp, inverse_cbrt, ln, logistic, sin};
 use crate::number::real::{Logistic, Mask, Real};
 
 /// `N` members side by side.
@@ -145,11 +145,11 @@ impl<const N: usize> Real for Lanes<N> {
     }
     #[inline(always)]
     fn sin(self) -> Self {
-        self.map(f64::sin)
+        self.map(sin)
     }
     #[inline(always)]
     fn cos(self) -> Self {
-        self.map(f64::cos)
+        self.map(cos)
     }
     #[inline(always)]
     fn lt(self, other: Self) -> LaneMask<N> {

@@ -1,7 +1,7 @@
 //! The plain number `f64`.
 
 use crate::number::elementary::{
-    Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, exp, inverse_cbrt, ln, logistic,
+    Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, cos, exp, inverse_cbrt, ln, logistic, sin,
 };
 use crate::number::real::{Logistic, Real, Task};
 
@@ -52,11 +52,11 @@ impl Real for f64 {
     }
     #[inline(always)]
     fn sin(self) -> Self {
-        f64::sin(self)
+        sin(self)
     }
     #[inline(always)]
     fn cos(self) -> Self {
-        f64::cos(self)
+        cos(self)
     }
     #[inline(always)]
     fn lt(self, other: Self) -> bool {

@@ -1,19 +1,24 @@
-//! A number that remembers how it was made, and the tape on which it does.
+//! Reverse derivatives: numbers that record their operations on a tape.
 //!
-//! Each thread has a tape of its own. It grows while physics runs with [`Taped`] numbers; [`Tape::pull`] then carries
-//! weights on results back to what they depend on.
+//! The tape is the list of all operations in the order in which they were computed. An entry holds the places of its
+//! operands and the partial derivatives by them. [`Tape::propagate`] goes through the list from its end and turns weights
+//! on results (the derivative of the quantity asked for by each of them) into weights on what they were computed from.
+//! Each thread has a tape of its own, which exists only while a [`Recording`] does.
 //!
-//! A number that depends on nothing takes no place, nor does one that depends on a single entry, by however many
-//! functions: it keeps its slope by that entry. Only where two of them meet an entry is made.
+//! A number that depends on nothing has no entry. Neither has one that depends on a single entry, by however many
+//! functions: it keeps its slope by that entry. Only where two entries meet a new one is made.
+//!
+//! Source: Griewank & Walther (2008), Evaluating Derivatives, 2nd ed., ch. 3 and 4, doi:10.1137/1.9780898717761.
 
 use core::cell::RefCell;
+use core::marker::PhantomData;
 use core::mem::ManuallyDrop;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Range, Sub};
 
 use crate::number::real::{Equations, LinearSystem, Logistic, Real};
 
 thread_local! {
-    // Cleared after each use; what is never dropped is reached faster.
+    // Emptied by each recording at its end; a value without a destructor is reached faster.
     static TAPE: ManuallyDrop<RefCell<Tape>> = const { ManuallyDrop::new(RefCell::new(Tape::new())) };
 }
 
@@ -22,17 +27,17 @@ fn with_tape<R>(work: impl FnOnce(&mut Tape) -> R) -> R {
     TAPE.with(|tape| work(&mut tape.borrow_mut()))
 }
 
-/// Place of what depends on nothing.
+/// Place of a number that depends on nothing: the first entry, which stands for no operation.
 const NOWHERE: u32 = 0;
 
-/// One number: the places of the two that it was made of, and its slopes by them.
+/// One operation: the places of its operands, and its partial derivatives by them.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     of: [u32; 2],
     slope: [f64; 2],
 }
 
-/// What an equation was made of, a term at a time: `slope` times the number at `of` is added to it.
+/// A term of an equation: `slope` times the number at `of` is added to it.
 #[derive(Debug, Clone, Copy)]
 struct Term {
     equation: u32,
@@ -48,7 +53,7 @@ struct Solve {
     unknowns: Range<usize>,
 }
 
-/// Everything that was computed on a thread since the tape was cleared.
+/// The operations of a thread since its recording began.
 #[derive(Debug)]
 pub(crate) struct Tape {
     entries: Vec<Entry>,
@@ -61,15 +66,16 @@ impl Tape {
         Self { entries: Vec::new(), terms: Vec::new(), solves: Vec::new() }
     }
 
-    /// Forgets everything.
-    pub(crate) fn clear() {
+    /// Begins a recording on the tape of this thread.
+    pub(crate) fn record() -> Recording {
         with_tape(|tape| {
             *tape = Self::new();
             tape.entries.push(Entry { of: [NOWHERE; 2], slope: [0.0; 2] });
         });
+        Recording(PhantomData)
     }
 
-    /// Makes entries for so many numbers that others may depend on; the place of the first.
+    /// Makes entries for so many variables; the place of the first.
     pub(crate) fn reserve(numbers: usize) -> u32 {
         with_tape(|tape| {
             let first = tape.entries.len();
@@ -83,8 +89,8 @@ impl Tape {
         with_tape(|tape| tape.entries.len())
     }
 
-    /// Forgets what follows the first `len` entries, and all equations.
-    pub(crate) fn cut(len: usize) {
+    /// Keeps the first `len` entries, and no equations.
+    pub(crate) fn truncate(len: usize) {
         with_tape(|tape| {
             tape.entries.truncate(len);
             tape.terms.clear();
@@ -92,16 +98,16 @@ impl Tape {
         });
     }
 
-    /// Carries weights back from the end of the tape to the entry `to`. Those of the entries passed become zero.
+    /// Propagates weights from the end of the tape back to the entry `to`. Those of the entries passed become zero.
     /// `transposed` turns weights on the unknowns of a stage into weights on its equations.
-    pub(crate) fn pull(weights: &mut Vec<f64>, to: usize, mut transposed: impl FnMut(usize, &mut [f64])) {
+    pub(crate) fn propagate(weights: &mut Vec<f64>, to: usize, mut transposed: impl FnMut(usize, &mut [f64])) {
         with_tape(|tape| {
             if weights.len() < tape.entries.len() {
                 weights.resize(tape.entries.len(), 0.0);
             }
             let mut end = tape.entries.len();
             for solve in tape.solves.iter().rev() {
-                tape.pull_entries(weights, solve.unknowns.end..end);
+                tape.propagate_entries(weights, solve.unknowns.end..end);
                 end = solve.unknowns.start;
                 let (before, unknowns) = weights.split_at_mut(end);
                 let unknowns = &mut unknowns[..solve.unknowns.len()];
@@ -111,11 +117,11 @@ impl Tape {
                 }
                 unknowns.fill(0.0);
             }
-            tape.pull_entries(weights, to..end);
+            tape.propagate_entries(weights, to..end);
         });
     }
 
-    fn pull_entries(&self, weights: &mut [f64], range: Range<usize>) {
+    fn propagate_entries(&self, weights: &mut [f64], range: Range<usize>) {
         let first = range.start;
         for (k, entry) in self.entries[range].iter().enumerate().rev() {
             let weight = weights[first + k];
@@ -126,6 +132,30 @@ impl Tape {
             }
         }
     }
+}
+
+/// A recording on the tape of this thread. Its end releases the memory of the tape, also after an error or a panic.
+// Not Send: it stands for the tape of one thread.
+#[derive(Debug)]
+pub(crate) struct Recording(PhantomData<*const ()>);
+
+impl Drop for Recording {
+    fn drop(&mut self) {
+        TAPE.with(|tape| {
+            if let Ok(mut tape) = tape.try_borrow_mut() {
+                *tape = Tape::new();
+            }
+        });
+    }
+}
+
+/// Memory that the tape of this thread holds [bytes]: none outside a recording.
+pub fn memory() -> usize {
+    with_tape(|tape| {
+        tape.entries.capacity() * size_of::<Entry>()
+            + tape.terms.capacity() * size_of::<Term>()
+            + tape.solves.capacity() * size_of::<Solve>()
+    })
 }
 
 /// The terms of equations until they are solved.
@@ -179,13 +209,13 @@ pub struct Taped {
 }
 
 impl Taped {
-    /// A number that others may depend on.
+    /// A variable: a number with an entry of its own.
     pub(crate) fn variable(value: f64) -> Self {
         Self::new(value, push(Entry { of: [NOWHERE; 2], slope: [0.0; 2] }))
     }
 
-    /// Adds to the weight of what this depends on.
-    pub(crate) fn weigh(self, weight: f64, weights: &mut [f64]) {
+    /// Adds to the weight on the entry that this depends on.
+    pub(crate) fn add_weight(self, weight: f64, weights: &mut [f64]) {
         if weight != 0.0 {
             weights[self.place as usize] += self.slope * weight;
         }
@@ -224,7 +254,7 @@ impl Taped {
     }
 }
 
-// Called, not inlined: physics is large enough without a copy of this for each of its operations.
+// One copy only: inlining into each operation of the physics multiplies compile time.
 #[inline(never)]
 fn push(entry: Entry) -> u32 {
     with_tape(|tape| {
@@ -356,41 +386,84 @@ impl Real for Taped {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::dual::Dual;
 
-    /// Slopes of a function of two variables.
-    fn slopes(f: impl Fn(Taped, Taped) -> Taped, at: [f64; 2]) -> [f64; 2] {
-        Tape::clear();
+    /// The value of a function of two variables and its slopes by them.
+    fn slopes(f: impl Fn(Taped, Taped) -> Taped, at: [f64; 2]) -> [f64; 3] {
+        let _recording = Tape::record();
         let [x, y] = at.map(Taped::variable);
         let result = f(x, y);
         let mut weights = vec![0.0; Tape::len()];
-        result.weigh(1.0, &mut weights);
-        Tape::pull(&mut weights, 3, |_, _| {});
-        [weights[1], weights[2]]
+        result.add_weight(1.0, &mut weights);
+        Tape::propagate(&mut weights, 3, |_, _| {});
+        [result.value, weights[1], weights[2]]
+    }
+
+    /// All operations and functions of a number, for x and y above zero.
+    fn operations<S: Real>(x: S, y: S) -> Vec<S> {
+        let [of_x, of_y] = [x, -y].map(S::logistic);
+        let mut sum = x * y;
+        sum += x / y;
+        vec![
+            sum,
+            x - y.scale(3.0),
+            (x * y).exp() / y.sqrt() - x.scale(3.0) * x.cbrt(),
+            y.ln() * x.sin() - (-y).cos(),
+            x.max(y) * x.min(y) + (x - y).abs(),
+            S::constant(2.0) * x.powf(y) - y.inverse_cbrt(),
+            of_x.rise * of_y.rest + of_y.tail / of_x.rest,
+            S::select(x.lt(y), x * x, y.pow4()) * (x - y).smooth_abs(0.3),
+            x.fixed() * y + (x - x) + S::one() - S::zero(),
+        ]
     }
 
     #[test]
-    fn every_operation_is_carried_back() {
-        let f = |x: Taped, y: Taped| {
-            let mut sum = (x * y).exp() / y.sqrt() - x.scale(3.0) * x.cbrt();
-            sum += y.ln() * x.sin() - (-y).cos() + x.max(y) + Taped::constant(2.0) * x.powf(y);
-            sum
-        };
-        let value = |x: f64, y: f64| {
-            (x * y).exp() / y.sqrt() - 3.0 * x * x.cbrt() + y.ln() * x.sin() - y.cos()
-                + x.max(y)
-                + 2.0 * x.powf(y)
-        };
-        let (x, y, h) = (1.3, 0.7, 1e-6);
-        let [by_x, by_y] = slopes(f, [x, y]);
-        assert!((by_x - (value(x + h, y) - value(x - h, y)) / (2.0 * h)).abs() < 1e-8);
-        assert!((by_y - (value(x, y + h) - value(x, y - h)) / (2.0 * h)).abs() < 1e-8);
+    fn slopes_of_all_operations_are_those_of_forward_derivatives() {
+        for at in [[1.3, 0.7], [0.4, 2.6], [7.0, 0.02]] {
+            let [x, y] = [0, 1].map(|which| Dual::<2>::variable(at[which], which));
+            for (k, forward) in operations(x, y).into_iter().enumerate() {
+                let [value, by_x, by_y] = slopes(|x, y| operations(x, y)[k], at);
+                assert_eq!(value.to_bits(), forward.value.to_bits(), "value {k} at {at:?}");
+                for (reverse, forward) in [by_x, by_y].into_iter().zip(forward.slope) {
+                    let error = (reverse - forward).abs() / forward.abs().max(1.0);
+                    assert!(error < 1e-14, "slope {k} at {at:?}: {reverse} is not {forward}");
+                }
+            }
+        }
     }
 
     #[test]
-    fn what_depends_on_nothing_takes_no_place() {
-        Tape::clear();
+    fn slopes_agree_with_their_closed_forms() {
+        // f = x^2 y + e^x / y: df/dx = 2 x y + e^x / y, df/dy = x^2 - e^x / y^2.
+        let [value, by_x, by_y] = slopes(|x, y| x * x * y + x.exp() / y, [2.0, 4.0]);
+        let exp = Real::exp(2.0);
+        assert_eq!(value, 16.0 + exp / 4.0);
+        assert!((by_x - (16.0 + exp / 4.0)).abs() < 1e-14 && (by_y - (4.0 - exp / 16.0)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn constants_have_no_entry() {
+        let _recording = Tape::record();
         let two = Taped::constant(2.0);
         let _ = (two * two).exp() + two;
         assert_eq!(Tape::len(), 1);
+        let x = Taped::variable(3.0);
+        let _ = (x * two).exp() + x;
+        assert_eq!(Tape::len(), 2, "functions of one variable need no entry more");
+    }
+
+    #[test]
+    fn the_end_of_a_recording_releases_its_memory() {
+        let record = |panics: bool| {
+            let _recording = Tape::record();
+            let x = Taped::variable(1.0);
+            (0..1000).fold(x, |sum, k| sum * Taped::variable(f64::from(k)));
+            assert!(memory() > 1000 * size_of::<Entry>());
+            assert!(!panics, "a panic on purpose");
+        };
+        record(false);
+        assert_eq!(memory(), 0);
+        assert!(std::panic::catch_unwind(|| record(true)).is_err());
+        assert_eq!(memory(), 0);
     }
 }

@@ -641,7 +641,7 @@ mod tests {
 
     /// A surface of 1 m2.
     fn convection(law: &Convection, numbers: &[f64], upward: f64) -> SurfaceConvection<f64> {
-        let inclination = upward.abs().acos().to_degrees();
+        let inclination = crate::number::elementary::acos(upward.abs()).to_degrees();
         let surface = Exposure { area: 1.0, upward, wind_factor: 1.0, inclination, density: 1.2 };
         SurfaceConvection::new(&Values::new(numbers), law, &surface)
     }
@@ -671,7 +671,7 @@ mod tests {
         assert_close(coefficient(&upright, -10.0, 3.0, true), 2.166_10);
         assert_close(coefficient(&upright, 10.0, 0.0, false), 2.166_10);
         // 1 m at 30 deg from the horizontal, cold above the room: Rac = 2.5e5 (e^21.6/0.5)^1/5 is passed at 0.208 K.
-        let sloped = convection(&law, &[1.0, 1.0], -(30f64.to_radians().cos()));
+        let sloped = convection(&law, &[1.0, 1.0], -Real::cos(30f64.to_radians()));
         assert_close(coefficient(&sloped, -10.0, 0.0, false), 3.268_40);
         assert_close(coefficient(&sloped, 10.0, 0.0, false), 2.166_10);
         // Level: 0.13 Ra^1/3 where the air rises, 0.58 Ra^1/5 where it does not.

@@ -266,7 +266,7 @@ impl<S: Real> FilledGap<S> {
             aspect,
             round: [
                 aspect.powf(S::constant(-0.272)).scale(0.242),
-                aspect.scale(f64::powf(0.242, -1.0 / 0.272)),
+                aspect.scale(Real::powf(0.242, -1.0 / 0.272)),
             ],
             tilt,
             exchange,
@@ -417,7 +417,7 @@ mod tests {
     #[test]
     fn an_upright_gap_of_air() {
         let g = gap(Gas::Air, 0.012, 90.0);
-        let radiative = g.exchange * SIGMA * 4.0 * 283.15_f64.powi(3);
+        let radiative = g.exchange * SIGMA * 4.0 * 283.15 * 283.15 * 283.15;
         let total = g.convection(2.5, 17.5) + radiative;
         assert!((5.6..6.0).contains(&total), "{total}");
     }

@@ -346,10 +346,12 @@ impl<S: Real> Curves<S> {
         let mut means = vec![S::zero(); self.count];
         for (number, pair) in self.knots.windows(2).enumerate() {
             let (from, h) = (pair[0], pair[1] - pair[0]);
+            let square = h * h;
+            let powers = [h, square, square * h, square * square, square * square * h];
             // int_0^h t^k (from + t) dt
-            let moment = |k: i32| {
-                let (m, n) = (f64::from(k + 1), f64::from(k + 2));
-                from * h.powi(k + 1) / m + h.powi(k + 2) / n
+            let moment = |k: usize| {
+                let (m, n) = ((k + 1) as f64, (k + 2) as f64);
+                from * powers[k] / m + powers[k + 1] / n
             };
             let moments = [moment(0), moment(1), moment(2), moment(3)];
             for (quantity, mean) in means.iter_mut().enumerate() {
@@ -419,7 +421,7 @@ mod tests {
 
     fn read(optics: &Optics<f64>, angle: f64) -> [f64; 3] {
         let mut read = [0.0; 3];
-        optics.beam.read(angle.to_radians().cos(), 0, &mut read);
+        optics.beam.read(Real::cos(angle.to_radians()), 0, &mut read);
         read
     }
 

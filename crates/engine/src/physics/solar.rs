@@ -10,6 +10,7 @@
 
 use crate::input::description::DiffuseSky;
 use crate::input::forcing::channel;
+use crate::number::elementary::acos;
 use crate::number::real::{Real, same};
 
 /// The sun and its radiation at one instant, independent of any plane.
@@ -78,7 +79,7 @@ impl Sunlight {
             DiffuseSky::Perez => perez_shares(up, direct_normal, diffuse, extra),
         };
         // Both models keep the sun at least 5 deg (Perez) or 1 deg above the horizon in the ratio of cosines.
-        let lowest = if model == DiffuseSky::Perez { 85.0_f64 } else { 89.0 }.to_radians().cos();
+        let lowest = Real::cos(if model == DiffuseSky::Perez { 85.0_f64 } else { 89.0 }.to_radians());
         Self {
             direction,
             direct_normal,
@@ -194,11 +195,11 @@ fn perez_shares(up: f64, direct: f64, diffuse: f64, extra: f64) -> (f64, f64) {
     if diffuse <= 0.0 || extra <= 0.0 {
         return (0.0, 0.0);
     }
-    let zenith = up.clamp(-1.0, 1.0).acos().min(core::f64::consts::FRAC_PI_2);
+    let zenith = acos(up.clamp(-1.0, 1.0)).min(core::f64::consts::FRAC_PI_2);
     let cube = 1.041 * zenith * zenith * zenith;
     let clearness = ((diffuse + direct) / diffuse + cube) / (1.0 + cube);
     let elevation = 90.0 - zenith.to_degrees();
-    let air_mass = 1.0 / (zenith.cos() + 0.50572 * (elevation + 6.07995).powf(-1.6364));
+    let air_mass = 1.0 / (Real::cos(zenith) + 0.50572 * Real::powf(elevation + 6.07995, -1.6364));
     let brightness = diffuse * air_mass / extra;
     let f = &PEREZ[PEREZ_BINS.iter().filter(|&&edge| clearness >= edge).count()];
     let circumsolar = (f[0] + f[1] * brightness + f[2] * zenith).max(0.0);

@@ -10,7 +10,7 @@ use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::real::{Mask, Real};
-use crate::number::simd::{Level, Packed, WIDTH, run};
+use crate::number::simd::{LaneTask, Level, WIDTH, run};
 use crate::run::march::{Options, Watch, check, march_in};
 use crate::weather::conditions::Weather;
 
@@ -40,8 +40,7 @@ pub fn ensemble(
     if width == 0 || !numbers.len().is_multiple_of(width) {
         return Err(EngineError::Input(format!("member rows must hold {width} parameters")));
     }
-    check(plan, width, forcing, options)?;
-    let level = Level::widest()?;
+    let level = check(plan, width, forcing, options)?;
     let weather = Weather::new(plan, forcing);
     let members = numbers.len() / width;
     let row = options.rows(forcing.steps()) * options.probes.len();
@@ -82,11 +81,11 @@ struct Pack<'a> {
     watch: &'a Watch,
 }
 
-impl Packed for Pack<'_> {
+impl LaneTask for Pack<'_> {
     /// Records and closure of each member; none for one whose iteration failed.
     type Output = Result<Vec<Option<(Vec<f64>, f64)>>, EngineError>;
 
-    fn run<S: Real>(self, pack: fn([f64; WIDTH]) -> S) -> Self::Output {
+    fn run<S: Real>(self, pack: impl Fn([f64; WIDTH]) -> S + Copy) -> Self::Output {
         let width = self.plan.description.parameters.len();
         let lanes: Vec<S> = (0..width)
             // A short pack repeats its last member.

@@ -7,6 +7,7 @@ use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::real::{Mask, Real};
+use crate::number::simd::Level;
 use crate::run::probe::Probe;
 use crate::step::stage_solutions::Solution;
 use crate::step::state::{Initial, State};
@@ -235,7 +236,7 @@ pub(crate) fn check(
     numbers: usize,
     forcing: &Forcing<'_>,
     options: &Options,
-) -> Result<(), EngineError> {
+) -> Result<Level, EngineError> {
     let fail = |text: String| Err(EngineError::Input(text));
     let stages = options.scheme.weights().len();
     if numbers != plan.description.parameters.len() {
@@ -256,5 +257,6 @@ pub(crate) fn check(
         return fail("the repeated first period is longer than the run".to_owned());
     }
     options.initial.check(plan)?;
-    options.probes.iter().try_for_each(|probe| probe.check(plan))
+    options.probes.iter().try_for_each(|probe| probe.check(plan))?;
+    Level::widest()
 }

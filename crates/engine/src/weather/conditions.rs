@@ -43,7 +43,8 @@ impl<'a> Instant<'a> {
     /// Reads a forcing row.
     #[must_use]
     pub fn new(plan: &Plan, row: &'a [f64], asked: Asked, ground: bool) -> Self {
-        let turn = |angle: f64, asked: bool| if asked { [angle.cos(), angle.sin()] } else { [0.0; 2] };
+        let turn =
+            |angle: f64, asked: bool| if asked { [Real::cos(angle), Real::sin(angle)] } else { [0.0; 2] };
         let sunlight = Sunlight::new(row, plan.description.site.diffuse);
         Self {
             row,

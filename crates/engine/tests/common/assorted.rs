@@ -5,6 +5,7 @@ use mascarin_engine::description::{
     SetPoint, Sky, ZoneSun,
 };
 use mascarin_engine::forcing::channel;
+use mascarin_engine::real::Real;
 
 use super::conditioned::{conditioned, conditioned_weather, number};
 use super::glazed::glazed;
@@ -70,9 +71,9 @@ pub fn assorted_cell(sky: usize) -> Description {
 pub fn assorted_weather(time: f64, row: &mut [f64]) {
     conditioned_weather(time, row);
     let day = time / 86400.0;
-    row[channel::INFRARED] = 380.0 + 25.0 * (5.0 * day).sin();
-    row[channel::PRESSURE] = 100_800.0 + 300.0 * (1.3 * day).cos();
-    set(row, 2, (600.0 * (6.3 * day).sin()).max(0.0));
+    row[channel::INFRARED] = 380.0 + 25.0 * Real::sin(5.0 * day);
+    row[channel::PRESSURE] = 100_800.0 + 300.0 * Real::cos(1.3 * day);
+    set(row, 2, (600.0 * Real::sin(6.3 * day)).max(0.0));
     set(row, 3, if day.fract() < 0.3 { 19.0 } else { 21.5 });
 }
 

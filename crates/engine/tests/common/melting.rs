@@ -3,6 +3,7 @@
 use mascarin_engine::description::{
     Description, Facing, HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail, ZoneLongwave,
 };
+use mascarin_engine::real::Real;
 
 use super::{Builder, cell_weather, facing, set};
 
@@ -37,7 +38,7 @@ pub fn ceiling_weather(time: f64, row: &mut [f64]) {
     cell_weather(time, row);
     let day = time / 86400.0;
     let jump = if (3.0 * day).fract() < 0.1 { 6.0 } else { 0.0 };
-    set(row, 0, 24.0 + 9.0 * (core::f64::consts::TAU * day).sin() + jump);
+    set(row, 0, 24.0 + 9.0 * Real::sin(core::f64::consts::TAU * day) + jump);
 }
 
 /// Layers that melt between an imposed temperature and a room: one for each shape of the melting curve. With a model of
@@ -89,7 +90,7 @@ pub fn melting(model: Option<HysteresisModel>) -> Description {
 pub fn melting_weather(time: f64, row: &mut [f64]) {
     ceiling_weather(time, row);
     let angle = core::f64::consts::TAU * time / 86400.0;
-    set(row, 0, 22.5 + 5.0 * (3.0 * angle).sin() + 3.0 * (7.7 * angle).sin());
+    set(row, 0, 22.5 + 5.0 * Real::sin(3.0 * angle) + 3.0 * Real::sin(7.7 * angle));
 }
 
 /// Number of shapes that [`curve`] knows.

@@ -18,6 +18,7 @@ use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
 use mascarin_engine::march::{Options, Run, Warmup, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
+use mascarin_engine::real::Real;
 use mascarin_engine::state::Initial;
 use mascarin_engine::step::Scheme;
 
@@ -316,13 +317,13 @@ pub fn weather(time: f64, row: &mut [f64]) {
     let day = hour / 24.0;
     // Solar noon falls on no stage, so that no face has the sun exactly in its plane.
     let angle = core::f64::consts::TAU * (day - 0.513);
-    row[channel::AIR_TEMPERATURE] = 22.5 + 5.0 * (angle - 0.6).cos() + (0.9 * day).sin();
-    row[channel::DEW_POINT] = 14.0 + (2.1 * day).cos();
-    row[channel::CLOUD_COVER] = 4.0 + 3.0 * (3.3 * day).sin();
-    row[channel::WIND_SPEED] = (3.0 + 2.5 * (angle + 0.3).sin() + (17.0 * day).cos()).max(0.0);
+    row[channel::AIR_TEMPERATURE] = 22.5 + 5.0 * Real::cos(angle - 0.6) + Real::sin(0.9 * day);
+    row[channel::DEW_POINT] = 14.0 + Real::cos(2.1 * day);
+    row[channel::CLOUD_COVER] = 4.0 + 3.0 * Real::sin(3.3 * day);
+    row[channel::WIND_SPEED] = (3.0 + 2.5 * Real::sin(angle + 0.3) + Real::cos(17.0 * day)).max(0.0);
     row[channel::WIND_DIRECTION] = (140.0 * day) % 360.0;
-    let elevation = 1.1 * angle.cos();
-    let sun = [-angle.sin() * elevation.cos(), 0.4, elevation.sin()];
+    let elevation = 1.1 * Real::cos(angle);
+    let sun = [-Real::sin(angle) * Real::cos(elevation), 0.4, Real::sin(elevation)];
     let length = sun.iter().map(|x| x * x).sum::<f64>().sqrt();
     row[channel::SUN_EAST] = sun[0] / length;
     row[channel::SUN_NORTH] = sun[1] / length;
@@ -456,7 +457,7 @@ pub fn cell(gamma: f64) -> Description {
 /// Soil under the cell.
 pub fn cell_weather(time: f64, row: &mut [f64]) {
     weather(time, row);
-    set(row, 0, 22.0 + 0.5 * (time / 86400.0).sin());
+    set(row, 0, 22.0 + 0.5 * Real::sin(time / 86400.0));
 }
 
 /// Readings that see every part of the cell.
@@ -488,9 +489,9 @@ pub fn cell_members(plan: &Plan, count: usize) -> Vec<f64> {
         let x = member as f64;
         let mut numbers = nominal.clone();
         numbers[gamma] = [0.01, 0.04, 0.5, 20.0][member % 4];
-        numbers[melting] += 0.7 * (1.3 * x).sin();
-        numbers[foam] *= 1.0 + 0.4 * (0.7 * x).cos();
-        numbers[concrete] *= 1.0 + 0.5 * (2.1 * x).sin();
+        numbers[melting] += 0.7 * Real::sin(1.3 * x);
+        numbers[foam] *= 1.0 + 0.4 * Real::cos(0.7 * x);
+        numbers[concrete] *= 1.0 + 0.5 * Real::sin(2.1 * x);
         numbers[tilt] += 3.0 * x;
         all.extend(numbers);
     }

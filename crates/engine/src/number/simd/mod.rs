@@ -1,0 +1,104 @@
+//! Eight numbers at once in the vector registers of the machine at hand.
+//!
+//! The only module with `unsafe` code. Each type `Eight` below holds eight numbers and computes with one set of vector
+//! instructions; a token ([`token`]) proves that the machine has them. No operation is contracted or reordered: every
+//! level gives the bits of a plain `f64`.
+//!
+//! Two kinds of work use them: [`LaneTask`] computes eight members of an ensemble, [`Task`] eight neighbouring numbers of
+//! one.
+
+#![allow(unsafe_code, reason = "vector instructions are unsafe to call where the machine may not have them")]
+
+mod array;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod eight;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+mod token;
+
+#[cfg(test)]
+mod tests;
+
+pub use token::{Avx2, Avx512, Level, Neon};
+
+use crate::number::lanes::Lanes;
+use crate::number::real::{Real, Task};
+
+/// Members in one pack.
+pub const WIDTH: usize = 8;
+
+/// Work on eight members of an ensemble, with lanes of any kind.
+pub trait LaneTask {
+    /// Its result.
+    type Output;
+    /// Does the work with one kind of lanes, which `pack` makes.
+    fn run<S: Real>(self, pack: impl Fn([f64; WIDTH]) -> S + Copy) -> Self::Output;
+}
+
+/// Does a task on eight members with the registers of a level.
+pub fn run<T: LaneTask>(level: Level, task: T) -> T::Output {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(token) => task.run(move |numbers| avx512::Eight::new(token, numbers)),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(token) => task.run(move |numbers| avx2::Eight::new(token, numbers)),
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon(token) => task.run(move |numbers| neon::Eight::new(token, numbers)),
+        _ => task.run(Lanes),
+    }
+}
+
+/// Does a task on neighbouring plain numbers with the registers of the level in use.
+#[inline(always)]
+pub(super) fn abreast<T: Task<f64>>(task: T) -> T::Output {
+    abreast_at(Level::in_use(), task)
+}
+
+#[inline(always)]
+fn abreast_at<T: Task<f64>>(level: Level, task: T) -> T::Output {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(_) => avx512::Eight::vectorised(
+            #[inline(always)]
+            || task.run::<avx512::Eight>(),
+        ),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(_) => avx2::Eight::vectorised(
+            #[inline(always)]
+            || task.run::<avx2::Eight>(),
+        ),
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon(_) => neon::Eight::vectorised(
+            #[inline(always)]
+            || task.run::<neon::Eight>(),
+        ),
+        _ => task.run::<Lanes<WIDTH>>(),
+    }
+}
+
+/// Does work on arrays of plain numbers, such as slopes, which the compiler vectorises: with AVX2 where it may be used.
+#[inline(always)]
+pub(crate) fn widened<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    {
+        /// # Safety
+        /// The machine must have AVX2.
+        #[target_feature(enable = "avx2")]
+        unsafe fn with_avx2<R>(_token: Avx2, work: impl FnOnce() -> R) -> R {
+            work()
+        }
+        let token = match Level::in_use() {
+            Level::Avx512(token) => Some(token.into()),
+            Level::Avx2(token) => Some(token),
+            _ => None,
+        };
+        if let Some(token) = token {
+            // SAFETY: the token proves that the machine has AVX2.
+            return unsafe { with_avx2(token, work) };
+        }
+    }
+    work()
+}
