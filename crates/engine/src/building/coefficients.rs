@@ -1,5 +1,6 @@
 //! A plan with the numbers of one run (or of a pack of members in lanes).
 
+use crate::building::glazing::{Glass, GlassWall, rated_resistance};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::{Plan, WallPlan};
 use crate::building::sun_distribution::{Inside, Landing};
@@ -9,19 +10,16 @@ use crate::input::description::{
 use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::input::values::Values;
 use crate::number::real::Real;
-use crate::physics::air_flow::{AirFlow, Gain, Opening, Path, Thermostat};
+use crate::physics::air_flow::{AirFlow, Opening, Path};
+use crate::physics::constants::{AIR_GAS_CONSTANT, AIR_SPECIFIC_HEAT};
 use crate::physics::convection::{Exposure, SurfaceConvection};
-use crate::physics::glazing::{Glass, GlassWall, rated_resistance};
+use crate::physics::gains::{Gain, Thermostat};
 use crate::physics::longwave::{Emission, balanced, exchange_areas, self_weight};
 use crate::physics::pcm::PcmCoefficients;
 use crate::physics::solar::Plane;
 
-/// Specific heat of dry air at room temperature [J/(kg K)] (ASHRAE Handbook of Fundamentals, ch. 1).
-pub const AIR_SPECIFIC_HEAT: f64 = 1006.0;
 /// Resistance of both films of a rated U value [m2 K/W] (ISO 6946:2017, table 7: 0.13 inside, 0.04 outside).
 const RATED_FILMS: f64 = 0.17;
-/// Gas constant of dry air [J/(kg K)].
-const AIR_GAS_CONSTANT: f64 = 287.055;
 
 /// Angle of a day in the year [rad/d].
 pub(crate) const PER_DAY: f64 = core::f64::consts::TAU / 365.0;

@@ -3,6 +3,7 @@
 use core::ops::Range;
 use std::collections::BTreeSet;
 
+use super::glazing::GlassPlan;
 use super::ids::{BySurface, SurfaceId};
 use crate::error::EngineError;
 use crate::geometry::daylight::Daylight;
@@ -10,7 +11,6 @@ use crate::input::description::{
     Construction, Convection, Description, Facing, Glazing, Material, SetPoint, Side, ZoneLongwave, ZoneSun,
 };
 use crate::input::forcing::CLIMATE_CHANNELS;
-use crate::physics::glazing::GlassPlan;
 
 /// A compiled description.
 #[derive(Debug, Clone)]

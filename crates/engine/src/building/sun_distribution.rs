@@ -12,8 +12,8 @@ use crate::building::coefficients::{SurfaceCoefficients, WallCoefficients};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::input::description::ZoneSun;
 use crate::input::values::Values;
+use crate::number::dense::solve_many;
 use crate::number::real::Real;
-use crate::physics::longwave::solve_many;
 use crate::physics::optics::Diffuse;
 
 /// The surfaces of a zone and their numbers.

@@ -3,6 +3,7 @@
 //! The climate side interpolates; the engine only reads. Channel order is part of the border.
 
 use crate::error::EngineError;
+use crate::number::real::Real;
 
 /// Number of climate channels; the description's own channels follow them.
 pub const CLIMATE_CHANNELS: usize = 15;
@@ -39,6 +40,31 @@ pub mod channel {
     pub const SUN_UP: usize = 13;
     /// Day of the year, 0 on 1 January 00:00 [d].
     pub const DAY_OF_YEAR: usize = 14;
+}
+
+/// A fraction that a channel of the description gives, or always one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Schedule(Option<usize>);
+
+impl Schedule {
+    /// From an index into [`Description::channels`](crate::input::description::Description::channels).
+    pub(crate) fn new(channel: Option<usize>) -> Self {
+        Self(channel.map(|channel| CLIMATE_CHANNELS + channel))
+    }
+
+    /// Whether it is always one.
+    pub(crate) fn is_constant(self) -> bool {
+        self.0.is_none()
+    }
+}
+
+/// A number times the fraction that its schedule gives in a forcing row.
+#[inline(always)]
+pub(crate) fn scheduled<S: Real>(whole: S, schedule: Schedule, row: &[f64]) -> S {
+    match schedule.0 {
+        Some(channel) => whole.scale(row[channel]),
+        None => whole,
+    }
 }
 
 /// Read-only view of the forcing array (steps x stages x channels).

@@ -1,5 +1,6 @@
 //! Numbers that the physics is computed with: plain, several members at once in lanes, with derivatives.
 
+pub(crate) mod dense;
 pub mod dual;
 pub(crate) mod elementary;
 pub mod lanes;

@@ -1,45 +1,49 @@
-//! What acts on the air of a zone beside its walls: gains, ventilation, openings, paths to other zones.
+//! Outdoor air that enters a zone, and air that two zones exchange.
+//!
+//! Every law gives the heat that the air carries as a function of the temperature difference that drives it, or the flow of heat
+//! capacity where there is no such dependence. Flows are counted at the density of the site.
+//!
+//! Sources:
+//! - Infiltration `n0 + n1 |d| + n2 V`: Coblentz & Achenbach (1963), ASHRAE Trans. 69, 358-365.
+//! - Openings: ASHRAE Handbook of Fundamentals 2017, ch. 16, eqs. 37 and 38.
 
-use crate::building::coefficients::ZoneCoefficients;
 use crate::input::description;
-use crate::input::forcing::CLIMATE_CHANNELS;
+use crate::input::forcing::{Schedule, scheduled};
 use crate::input::values::Values;
 use crate::number::line::Line;
 use crate::number::real::Real;
+use crate::physics::constants::{AIR_SPECIFIC_HEAT, GRAVITY, KELVIN};
 
-/// Acceleration of free fall [m/s2].
-const GRAVITY: f64 = 9.806_65;
-/// 0 degC [K].
-const FREEZING: f64 = 273.15;
 /// Temperature differences between a zone and outdoors are rounded off within this [K] where they drive an air flow.
 const ROUND_OFF: f64 = 0.01;
 
-/// A heat capacity flow, whole or by schedule.
+/// A flow of heat capacity, constant or by schedule.
 #[derive(Debug, Clone)]
 pub struct AirFlow<S> {
     /// [W/K].
     conductance: S,
-    schedule: Option<usize>,
+    schedule: Schedule,
 }
 
 impl<S: Real> AirFlow<S> {
     /// Ventilation by air changes or by volume flow.
     ///
-    /// `heat` is that of a cubic metre of air [J/(m3 K)], `air_capacity` that of the zone's [J/K].
+    /// `heat` is that of a cubic metre of air [J/(m3 K)], `air_capacity` that of the zone's air [J/K].
     #[must_use]
     pub fn new(flow: &description::Ventilation, values: &Values<'_, S>, heat: S, air_capacity: S) -> Self {
         let changes = values.get_or(flow.air_changes, 0.0).scale(1.0 / 3600.0) * air_capacity;
         let conductance = changes + values.get_or(flow.flow, 0.0) * heat;
-        Self { conductance, schedule: channel_of(flow.schedule) }
+        Self { conductance, schedule: Schedule::new(flow.schedule) }
     }
 
-    /// Heat carried per degree, without a schedule's part in it [W/K].
+    /// Heat carried per degree, where no schedule changes it [W/K].
     pub(crate) fn whole(&self) -> Option<S> {
-        self.schedule.is_none().then_some(self.conductance)
+        self.schedule.is_constant().then_some(self.conductance)
     }
 
+    /// Heat carried per degree in a forcing row [W/K].
     #[inline(always)]
-    fn at(&self, row: &[f64]) -> S {
+    pub(crate) fn at(&self, row: &[f64]) -> S {
         scheduled(self.conductance, self.schedule, row)
     }
 }
@@ -56,106 +60,37 @@ impl<S: Real> Path<S> {
     /// Evaluates a path at a parameter vector and the density of the air [kg/m3].
     #[must_use]
     pub fn new(path: &description::AirPath, values: &Values<'_, S>, density: S) -> Self {
-        let heat = density.scale(crate::building::coefficients::AIR_SPECIFIC_HEAT);
-        let flow = AirFlow { conductance: values.get(path.flow) * heat, schedule: channel_of(path.schedule) };
+        let heat = density.scale(AIR_SPECIFIC_HEAT);
+        let flow =
+            AirFlow { conductance: values.get(path.flow) * heat, schedule: Schedule::new(path.schedule) };
         Self { between: path.between, flow }
     }
 
-    /// Heat carried per degree between the airs [W/K].
+    /// Heat carried per degree between the zones [W/K].
     #[inline(always)]
     pub fn conductance(&self, row: &[f64]) -> S {
         self.flow.at(row)
     }
 
+    /// Heat carried per degree, where no schedule changes it [W/K].
     pub(crate) fn whole(&self) -> Option<S> {
         self.flow.whole()
     }
 }
 
-/// Heat from people, light and machines.
-#[derive(Debug, Clone)]
-pub struct Gain<S> {
-    /// Part given to the air [W].
-    convective: S,
-    /// Part radiated to the surfaces [W].
-    radiant: S,
-    /// Part radiated [-].
-    pub(crate) radiative: S,
-    schedule: Option<usize>,
-}
-
-impl<S: Real> Gain<S> {
-    /// Evaluates a gain at a parameter vector.
-    #[must_use]
-    pub fn new(gain: &description::Gain, values: &Values<'_, S>) -> Self {
-        let (power, radiative) = (values.get(gain.power), values.get(gain.radiative));
-        Self {
-            convective: power * (S::one() - radiative),
-            radiant: power * radiative,
-            radiative,
-            schedule: channel_of(gain.schedule),
-        }
-    }
-}
-
-/// Ideal heating or cooling.
-#[derive(Debug, Clone)]
-pub struct Thermostat<S> {
-    set_point: SetPoint<S>,
-    capacity: Option<S>,
-    schedule: Option<usize>,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum SetPoint<S> {
-    Constant(S),
-    Scheduled(usize),
-}
-
-impl<S: Real> Thermostat<S> {
-    /// A plant without capacity may give this much [W]: more than any building takes.
-    const UNLIMITED: f64 = 1e12;
-
-    /// Evaluates a plant at a parameter vector.
-    #[must_use]
-    pub fn new(ideal_load: &description::Plant, values: &Values<'_, S>) -> Self {
-        let set_point = match ideal_load.setpoint {
-            description::SetPoint::Constant { temperature } => SetPoint::Constant(values.get(temperature)),
-            description::SetPoint::Scheduled { channel } => SetPoint::Scheduled(CLIMATE_CHANNELS + channel),
-        };
-        let capacity = ideal_load.capacity.map(|id| values.get(id));
-        Self { set_point, capacity, schedule: channel_of(ideal_load.schedule) }
-    }
-
-    /// Set point [degC] and the most heat [W] in a forcing row.
-    #[inline(always)]
-    pub fn at(&self, row: &[f64]) -> (S, S) {
-        let set_point = match self.set_point {
-            SetPoint::Constant(temperature) => temperature,
-            SetPoint::Scheduled(channel) => S::constant(row[channel]),
-        };
-        let capacity = match self.capacity {
-            Some(capacity) => capacity,
-            None => S::constant(Self::UNLIMITED),
-        };
-        (set_point, scheduled(capacity, self.schedule, row))
-    }
-}
-
 /// An opening to outdoors that wind and buoyancy drive air through.
 ///
-/// `Q = A sqrt((C_w V)^2 + C_d^2 2 g h |T_o - T_i|/T)`: the two flows combined by the squares, which is by the pressures
-/// that drive them; V the wind at the mast, T the mean of both temperatures (ASHRAE Handbook of Fundamentals 2017, ch. 16,
-/// eqs. 37 and 38).
+/// `Q = A sqrt((C_w V)^2 + C_d^2 2 g h |T_o - T_i|/T)`: the two flows are added in quadrature, that is, by the pressures
+/// that drive them. V is the wind at the mast, T the mean of both temperatures [K].
 #[derive(Debug, Clone)]
 pub struct Opening<S> {
-    /// Heat capacity of the air that a square metre lets in per m/s [W s/(K m)].
+    /// Heat capacity flow of the whole opening per air speed [W s/(K m)].
     conductance: S,
     /// `C_w^2` [-].
     wind: S,
     /// `C_d^2 2 g h` [m2/s2].
     stack: S,
-    schedule: Option<usize>,
+    schedule: Schedule,
 }
 
 impl<S: Real> Opening<S> {
@@ -167,136 +102,137 @@ impl<S: Real> Opening<S> {
             conductance: heat * values.get(opening.area),
             wind: wind * wind,
             stack: discharge * discharge * values.get(opening.height).scale(2.0 * GRAVITY),
-            schedule: channel_of(opening.schedule),
+            schedule: Schedule::new(opening.schedule),
         }
+    }
+
+    /// Fraction of the area that is open in a forcing row [-].
+    #[inline(always)]
+    pub(crate) fn open_fraction(&self, row: &[f64]) -> S {
+        scheduled(S::one(), self.schedule, row)
     }
 
     /// Heat carried per degree [W/K] and its slope in `d = T_outdoor - T_air`.
     #[inline(always)]
     fn rate(&self, open: S, wind: S, outdoor: S, d: S) -> (S, S) {
         let magnitude = d.smooth_abs(ROUND_OFF);
-        let inverse = S::one() / (outdoor - d.scale(0.5) + S::constant(FREEZING));
+        let inverse = S::one() / (outdoor - d.scale(0.5) + S::constant(KELVIN));
         let buoyancy = self.stack * magnitude * inverse;
         // |d|/T with T = T_outdoor - d/2.
         let rise = self.stack * (d / magnitude + magnitude * inverse.scale(0.5)) * inverse;
-        // Closed by a height and a wind of nothing, the root must keep a slope.
+        // Without height and without wind the root would have an infinite slope.
         let speed = (self.wind * wind * wind + buoyancy).max(S::constant(1e-30)).sqrt();
         let gain = self.conductance * open;
         (gain * speed, gain * rise / speed.scale(2.0))
     }
 }
 
-/// What drives the air of a zone in one stage.
-#[derive(Debug, Clone)]
-pub struct ZoneConditions<S> {
-    /// Gains given to the air [W].
-    pub convective: S,
-    /// Gains radiated to the surfaces [W].
-    pub radiant: S,
-    /// Heat carried by ventilation per degree [W/K].
-    pub ventilation: S,
-    /// Open part of each opening [-].
-    open: Vec<S>,
+/// Outdoor air let in by ventilation and openings.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Intake<'a, S> {
+    /// Heat carried per degree by the flows that no temperature drives [W/K].
+    pub(crate) ventilation: S,
+    pub(crate) openings: &'a [Opening<S>],
+    /// Open fraction of each opening [-].
+    pub(crate) open: &'a [S],
 }
 
-impl<S: Real> ZoneConditions<S> {
-    /// A place for the numbers of a zone.
-    #[must_use]
-    pub fn new(zone: &ZoneCoefficients<S>) -> Self {
-        let zero = S::zero();
-        Self { convective: zero, radiant: zero, ventilation: zero, open: vec![zero; zone.openings.len()] }
-    }
-
-    /// Numbers on the straight line through two others; see [`Conditions::between`](crate::weather::conditions::Conditions::between).
-    pub(crate) fn between(&mut self, first: &Self, second: &Self, share: f64) {
-        let line = |a: S, b: S| a + (b - a).scale(share);
-        self.convective = line(first.convective, second.convective);
-        self.radiant = line(first.radiant, second.radiant);
-        self.ventilation = line(first.ventilation, second.ventilation).max(S::zero());
-        for (at, (&a, &b)) in self.open.iter_mut().zip(first.open.iter().zip(&second.open)) {
-            *at = line(a, b).max(S::zero()).min(S::one());
-        }
-    }
-
-    /// Reads the schedules.
+impl<S: Real> Intake<'_, S> {
+    /// Heat that it brings into a zone, as its tangent in `d = T_outdoor - T_air`; `wind` is the speed at the mast [m/s].
     #[inline(always)]
-    pub(crate) fn update(&mut self, zone: &ZoneCoefficients<S>, row: &[f64]) {
-        (self.convective, self.radiant) = (S::zero(), S::zero());
-        for gain in &zone.gains {
-            self.convective += scheduled(gain.convective, gain.schedule, row);
-            self.radiant += scheduled(gain.radiant, gain.schedule, row);
+    pub(crate) fn heat(&self, wind: S, outdoor: S, air: S) -> Line<S> {
+        let d = outdoor - air;
+        let mut line = Line { offset: S::zero(), slope: self.ventilation };
+        for (opening, &open) in self.openings.iter().zip(self.open) {
+            let (rate, rise) = opening.rate(open, wind, outdoor, d);
+            let tangent = Line::tangent(rate * d, rate + rise * d, d);
+            line = Line { offset: line.offset + tangent.offset, slope: line.slope + tangent.slope };
         }
-        self.ventilation = S::zero();
-        for flow in &zone.ventilation {
-            self.ventilation += flow.at(row);
-        }
-        for (open, opening) in self.open.iter_mut().zip(&zone.openings) {
-            *open = scheduled(S::one(), opening.schedule, row);
-        }
+        line
     }
 }
 
-/// Heat of outdoor air that is let in, by ventilation and openings, as its tangent in `T_outdoor - T_air`.
+/// Heat that infiltration brings into a zone, `C (n0 + n1 |d| + n2 V)/3600 d`, as its tangent in
+/// `d = T_outdoor - T_air`.
+///
+/// `rates`: n0 [1/h], n1 [1/(h K)], n2 [1/(h m/s)]; `air_capacity` C of the zone's air [J/K]; `wind` V at the mast [m/s].
 #[inline(always)]
-pub(crate) fn ventilation<S: Real>(
-    zone: &ZoneCoefficients<S>,
-    at: &ZoneConditions<S>,
-    wind: S,
-    outdoor: S,
-    air: S,
-) -> Line<S> {
+pub(crate) fn infiltration<S: Real>(rates: &[S; 3], air_capacity: S, wind: S, outdoor: S, air: S) -> Line<S> {
     let d = outdoor - air;
-    let mut line = Line { offset: S::zero(), slope: at.ventilation };
-    for (opening, &open) in zone.openings.iter().zip(&at.open) {
-        let (rate, rise) = opening.rate(open, wind, outdoor, d);
-        let tangent = Line::tangent(rate * d, rate + rise * d, d);
-        line = Line { offset: line.offset + tangent.offset, slope: line.slope + tangent.slope };
-    }
-    line
-}
-
-/// Heat of outdoor air that enters unasked, `C (n0 + n1 |d| + n2 V)/3600 d`, as its tangent in `d = T_outdoor - T_air`.
-#[inline(always)]
-pub(crate) fn infiltration<S: Real>(zone: &ZoneCoefficients<S>, wind: S, outdoor: S, air: S) -> Line<S> {
-    let d = outdoor - air;
-    let [_, temperature, _] = zone.infiltration;
+    let [_, temperature, _] = *rates;
     let magnitude = d.smooth_abs(ROUND_OFF);
-    let per_second = zone.air_capacity.scale(1.0 / 3600.0);
-    let rate = per_second * leakage(zone, wind, magnitude);
+    let per_second = air_capacity.scale(1.0 / 3600.0);
+    let rate = per_second * leakage(rates, wind, magnitude);
     let slope = rate + per_second * temperature * d * d / magnitude;
     Line::tangent(rate * d, slope, d)
 }
 
+/// Air changes of infiltration [1/h].
 #[inline(always)]
-fn leakage<S: Real>(zone: &ZoneCoefficients<S>, wind: S, magnitude: S) -> S {
-    let [constant, temperature, by_wind] = zone.infiltration;
+fn leakage<S: Real>(rates: &[S; 3], wind: S, magnitude: S) -> S {
+    let [constant, temperature, by_wind] = *rates;
     constant + temperature * magnitude + by_wind * wind
 }
 
-/// Outdoor air entering a zone in all ways [1/h].
+/// Outdoor air of infiltration and intake together [1/h]; arguments as in [`infiltration`].
 pub(crate) fn air_changes<S: Real>(
-    zone: &ZoneCoefficients<S>,
-    at: &ZoneConditions<S>,
+    rates: &[S; 3],
+    air_capacity: S,
+    intake: &Intake<'_, S>,
     wind: S,
     outdoor: S,
     air: S,
 ) -> S {
     let d = outdoor - air;
-    let openings = zone.openings.iter().zip(&at.open);
-    let rates = openings.map(|(opening, &open)| opening.rate(open, wind, outdoor, d).0);
-    let let_in = rates.fold(at.ventilation, |sum, rate| sum + rate);
-    leakage(zone, wind, d.smooth_abs(ROUND_OFF)) + let_in.scale(3600.0) / zone.air_capacity
+    let openings = intake.openings.iter().zip(intake.open);
+    let conductances = openings.map(|(opening, &open)| opening.rate(open, wind, outdoor, d).0);
+    let conductance = conductances.fold(intake.ventilation, |sum, conductance| sum + conductance);
+    leakage(rates, wind, d.smooth_abs(ROUND_OFF)) + conductance.scale(3600.0) / air_capacity
 }
 
-fn channel_of(schedule: Option<usize>) -> Option<usize> {
-    schedule.map(|channel| CLIMATE_CHANNELS + channel)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::description::ParamId;
 
-/// A number, or the fraction of it that a schedule's channel says.
-#[inline(always)]
-fn scheduled<S: Real>(whole: S, schedule: Option<usize>, row: &[f64]) -> S {
-    match schedule {
-        Some(channel) => whole.scale(row[channel]),
-        None => whole,
+    /// 0.5 m2, 1 m to the neutral level, Cd 0.6, Cw 0.3, 4 m/s, 10 degC outside, 20 degC inside:
+    /// `(0.3 4)^2 + 0.6^2 2 g 10/288.15 = 1.68504`, so 0.5 1.29809 m3/s.
+    #[test]
+    fn an_opening_by_hand() {
+        let id = ParamId;
+        let opening = description::Opening {
+            name: "window".to_owned(),
+            zone: 0,
+            area: id(0),
+            height: id(1),
+            discharge: id(2),
+            wind_coefficient: id(3),
+            schedule: None,
+        };
+        let openings = [Opening::new(&opening, &Values::new(&[0.5, 1.0, 0.6, 0.3]), 1.0)];
+        let intake = |open: &[f64], air: f64| {
+            let line = Intake { ventilation: 0.0, openings: &openings, open }.heat(4.0, 10.0, air);
+            (line.at(10.0 - air), line.slope)
+        };
+        let (heat, _) = intake(&[1.0], 20.0);
+        assert!((heat / -6.490_45 - 1.0).abs() < 1e-5, "{heat}");
+        // Half open it lets half as much in; the slope is that of the heat flow in `T_outdoor - T_air`.
+        let (heat, slope) = intake(&[0.5], 20.0);
+        assert!((heat / -3.245_23 - 1.0).abs() < 1e-5, "{heat}");
+        let difference = (intake(&[0.5], 20.0 - 1e-4).0 - intake(&[0.5], 20.0 + 1e-4).0) / 2e-4;
+        assert!((slope / difference - 1.0).abs() < 1e-7, "{slope} is not {difference}");
+    }
+
+    /// 3600 J/K of air, 0.5 + 0.02 10 + 0.1 3 = 1 air change per hour and -10 K: -10 W; slope 1 + 0.02 10 W/K.
+    #[test]
+    fn infiltration_by_hand() {
+        let rates = [0.5, 0.02, 0.1];
+        let line = infiltration(&rates, 3600.0, 3.0, 10.0, 20.0);
+        assert!((line.at(-10.0) + 10.0).abs() < 1e-5, "{}", line.at(-10.0));
+        assert!((line.slope - 1.2).abs() < 1e-5, "{}", line.slope);
+        // With 2 W/K of ventilation: two air changes more.
+        let intake = Intake { ventilation: 2.0, openings: &[], open: &[] };
+        let changes = air_changes(&rates, 3600.0, &intake, 3.0, 10.0, 20.0);
+        assert!((changes - 3.0).abs() < 1e-5, "{changes}");
     }
 }

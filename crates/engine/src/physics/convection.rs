@@ -14,10 +14,10 @@
 //! - ISO 15099:2003, 8.3.2.2: free convection at the room's surface of a glazing.
 //! - Guichard et al., the paper's eq. 5 as printed (a misprint of Alamdari & Hammond's; kept under its own name).
 
-use crate::building::coefficients::AIR_SPECIFIC_HEAT;
 use crate::input::description::{Convection, PowerLaw};
 use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
+use crate::physics::constants::{AIR_SPECIFIC_HEAT, GRAVITY};
 
 /// Temperature differences below this [K] are rounded off: `|d|^(1/3)` has an infinite slope at zero.
 const ROUND_OFF: f64 = 0.01;
@@ -455,8 +455,6 @@ fn mowitt_wind<S: Real>(wind_factor: S) -> [S; 2] {
 const ROOM_AIR: [f64; 2] = [0.025_621, 1.820_5e-5];
 /// 20 degC [K].
 const ROOM: f64 = 293.15;
-/// [m/s2].
-const GRAVITY: f64 = 9.806_65;
 
 impl<S> Glass<S> {
     #[inline(always)]

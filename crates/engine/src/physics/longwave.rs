@@ -12,12 +12,10 @@
 use crate::input::description::Sky;
 use crate::input::forcing::channel;
 use crate::input::values::Values;
+use crate::number::dense::solve_many;
 use crate::number::real::{Real, same};
+use crate::physics::constants::{KELVIN, SIGMA};
 
-/// Stefan-Boltzmann constant [W/(m2 K4)] (CODATA 2018).
-pub const SIGMA: f64 = 5.670_374_419e-8;
-/// 0 degC [K].
-pub const KELVIN: f64 = 273.15;
 /// Sinkhorn sweeps: each halves the imbalance or better; rooms reach round-off in about thirty.
 const SCALING_SWEEPS: usize = 200;
 
@@ -137,31 +135,6 @@ pub(crate) fn balanced<S: Real>(areas: &[S], weights: &[S]) -> Vec<S> {
         }
     }
     direct
-}
-
-/// Solves `matrix X = right` in place for `n` right-hand sides; the matrix is diagonally dominant.
-pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], n: usize) {
-    for k in 0..n {
-        let inverse = S::one() / matrix[k * n + k];
-        for i in k + 1..n {
-            let factor = matrix[i * n + k] * inverse;
-            for j in k + 1..n {
-                matrix[i * n + j] = matrix[i * n + j] - factor * matrix[k * n + j];
-            }
-            for j in 0..n {
-                right[i * n + j] = right[i * n + j] - factor * right[k * n + j];
-            }
-        }
-    }
-    for k in (0..n).rev() {
-        for j in 0..n {
-            let mut sum = right[k * n + j];
-            for i in k + 1..n {
-                sum = sum - matrix[k * n + i] * right[i * n + j];
-            }
-            right[k * n + j] = sum / matrix[k * n + k];
-        }
-    }
 }
 
 /// What models of the sky need to know of the weather.

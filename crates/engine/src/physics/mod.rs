@@ -1,9 +1,11 @@
-//! Laws of materials, surfaces, radiation, windows and air flow, without a plan.
+//! Laws of materials, surfaces, radiation, windows and air flow: functions of plain numbers, without a plan.
 
 pub mod air_flow;
+pub mod constants;
 pub mod convection;
-pub mod glazing;
+pub mod gains;
 pub mod longwave;
 pub mod optics;
 pub mod pcm;
 pub mod solar;
+pub mod window_gaps;

@@ -16,20 +16,21 @@ use core::ops::Range;
 use crate::balance::flow_index::FlowIndex;
 use crate::balance::ledger::{Flow, Ledger, Power};
 use crate::building::coefficients::{Boundary, Coefficients, Matter, SurfaceCoefficients};
+use crate::building::glazing::Glass;
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::{Plan, SurfaceRole};
 use crate::error::EngineError;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::step_maps::StepMaps;
 use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces, SurfaceLaws, solve_pair};
-use crate::linear::wall::{Chain, Iterate, Start, StorageRule};
+use crate::linear::wall::{Chain, Iterate, Link, Start, StorageRule};
 use crate::linear::zone_front::{Front, ZoneFronts, of_one_room};
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
-use crate::physics::air_flow as zone;
-use crate::physics::glazing::Glass;
+use crate::physics::air_flow;
 use crate::physics::longwave::{Emission, black_temperature};
 use crate::physics::pcm::{PcmMemory, reversed};
+use crate::physics::window_gaps::GapTangent;
 use crate::step::ideal_loads::{IdealLoads, Response};
 use crate::step::stage_solutions::StageSolutions;
 use crate::step::state::{Initial, State, Unknowns, blend, copy_runs, line, squared_distance};
@@ -1146,7 +1147,13 @@ impl<'a, S: Real> Stepper<'a, S> {
         };
         let chain = &mut self.chains[w];
         if let Some(glass) = &numbers.glass {
-            glass.linearise(at.cells, &self.gap_convection[self.stage][w], &mut chain.links);
+            let links = &mut chain.links;
+            glass.linearise(
+                at.cells,
+                &self.gap_convection[self.stage][w],
+                #[inline(always)]
+                |link, GapTangent { left, right, offset }| links[link] = Link { left, right, offset },
+            );
         } else {
             chain.linearise(numbers, &at, &start, self.scheme.storage_rule());
         }
@@ -1177,8 +1184,9 @@ impl<'a, S: Real> Stepper<'a, S> {
         for (zone, numbers) in self.coefficients.zones.iter().enumerate() {
             let (wind, outdoor, air) =
                 (self.conditions.wind, self.conditions.outdoor_air, self.iterate.air[zone]);
-            self.inflow[zone] = zone::infiltration(numbers, wind, outdoor, air);
-            self.airing[zone] = zone::ventilation(numbers, &self.conditions.zones[zone], wind, outdoor, air);
+            self.inflow[zone] =
+                air_flow::infiltration(&numbers.infiltration, numbers.air_capacity, wind, outdoor, air);
+            self.airing[zone] = self.conditions.zones[zone].outdoor_heat(numbers, wind, outdoor, air);
         }
     }
 
@@ -1503,7 +1511,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Outdoor air entering a zone at an air temperature, as the last stage was driven [1/h].
     pub(crate) fn air_changes(&self, zone: usize, air: S) -> S {
         let (conditions, numbers) = (&self.conditions, &self.coefficients.zones[zone]);
-        zone::air_changes(numbers, &conditions.zones[zone], conditions.wind, conditions.outdoor_air, air)
+        conditions.zones[zone].air_changes(numbers, conditions.wind, conditions.outdoor_air, air)
     }
 
     /// Heat from an imposed temperature into its wall [W/m2].

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::building::coefficients::{Boundary, Coefficients, Imposed, PER_DAY};
+use crate::building::glazing::{Node, Site};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::{Plan, SurfaceRole};
 use crate::building::sun_distribution::Traced;
@@ -10,12 +11,11 @@ use crate::input::description::Facing;
 use crate::input::forcing::{Forcing, channel};
 use crate::input::values::Values;
 use crate::number::real::Real;
-use crate::physics::air_flow::ZoneConditions;
 use crate::physics::convection::{Asked, Forced, SurfaceConvection, Wind};
-use crate::physics::glazing::{Node, Site};
 use crate::physics::longwave::{Heaven, sky_emission};
 use crate::physics::solar::{Open, Sunlight};
 use crate::weather::index::{Sun, WeatherIndex};
+use crate::weather::zone_conditions::ZoneConditions;
 
 /// A surface is leeward when the wind comes from behind its plane (Walton 1983 draws the line at 100 deg off the normal,
 /// where the wind blows along the surface and the windward coefficient has no ground any more).

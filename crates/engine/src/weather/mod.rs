@@ -2,3 +2,4 @@
 
 pub mod conditions;
 pub mod index;
+pub mod zone_conditions;

@@ -1,0 +1,263 @@
+//! A glazing as a wall of cells: heat through a window.
+//!
+//! The surfaces of the panes are nodes: the outermost and innermost are the surfaces of the wall, those on the gaps are cells
+//! without heat capacity. A pane with a heat capacity holds it in a cell in its middle. Sun absorbed in a pane acts in its
+//! middle, or half on each of its surfaces: both give the same flows out of the pane.
+//!
+//! The long-wave exchange between two panes is exact in T^4 and iterated with the rest. The convective conductance of a gap is
+//! computed once per stage, at temperatures predicted for it (laws in [`window_gaps`](crate::physics::window_gaps)).
+//!
+//! Sources:
+//! - Surface resistances of a rated U value: ISO 10292:1994 and EN 673.
+//! - A unit by U and g: Arasteh, Kohler & Griffith (2009), LBNL-2804E.
+
+use crate::building::coefficients::{Cell, Matter};
+use crate::input::description::{Gap, Glazing, Pane, Surface};
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::optics::{Diffuse, Optics};
+use crate::physics::window_gaps::{GapTangent, GasGap};
+
+/// What rated surface resistances leave of a frame's or a sheet's resistance is no less than this [m2 K/W].
+const LEAST_RESISTANCE: f64 = 1e-3;
+
+/// Where the sun absorbed in a pane acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Site {
+    /// In a cell in the middle of the pane.
+    Middle(usize),
+    /// Half on each surface of the pane.
+    Surfaces([Node; 2]),
+}
+
+/// A surface of a pane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Node {
+    /// The outside surface of the wall.
+    Outside,
+    /// A cell of the wall.
+    Cell(usize),
+    /// The inside surface of the wall.
+    Inside,
+}
+
+/// A glazing laid out as cells and links.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GlassPlan {
+    /// Pane that each cell belongs to.
+    pub cell_panes: Vec<usize>,
+    /// Where each pane takes up sun.
+    pub sites: Vec<Site>,
+    /// Link that stands for each gap.
+    pub gap_links: Vec<usize>,
+}
+
+impl GlassPlan {
+    /// Lays out a glazing.
+    #[must_use]
+    pub fn new(glazing: &Glazing) -> Self {
+        let panes: &[Pane] = match glazing {
+            Glazing::Panes { panes, .. } => panes,
+            Glazing::Simple { .. } => &[],
+        };
+        let mut plan = Self { cell_panes: Vec::new(), sites: Vec::new(), gap_links: Vec::new() };
+        for (k, pane) in panes.iter().enumerate() {
+            let add = |plan: &mut Self| {
+                plan.cell_panes.push(k);
+                plan.cell_panes.len() - 1
+            };
+            let front = if k == 0 { Node::Outside } else { Node::Cell(add(&mut plan)) };
+            let middle = pane.storage.map(|_| add(&mut plan));
+            let last = k + 1 == panes.len();
+            let back = if last { Node::Inside } else { Node::Cell(add(&mut plan)) };
+            plan.sites.push(middle.map_or(Site::Surfaces([front, back]), Site::Middle));
+            if let Node::Cell(cell) = back {
+                plan.gap_links.push(cell + 1);
+            }
+        }
+        if plan.sites.is_empty() {
+            plan.sites.push(Site::Surfaces([Node::Outside, Node::Inside]));
+        }
+        plan
+    }
+}
+
+/// A window's numbers.
+#[derive(Debug, Clone)]
+pub struct Glass<S> {
+    /// Solar optics.
+    pub optics: Optics<S>,
+    /// For the light of the horizon outside.
+    pub horizon: Diffuse<S>,
+    /// Gaps whose conductance depends on temperature, with their links.
+    gaps: Vec<(usize, GasGap<S>)>,
+}
+
+/// Cells and massless resistances of a glazed wall.
+pub struct GlassWall<S> {
+    /// Cells, outside to inside.
+    pub cells: Vec<Cell<S>>,
+    /// Massless resistance in each link [m2 K/W].
+    pub extra: Vec<S>,
+    /// The rest.
+    pub glass: Glass<S>,
+}
+
+impl<S: Real> GlassWall<S> {
+    /// Evaluates a glazing in a window.
+    pub fn new(values: &Values<'_, S>, glazing: &Glazing, plan: &GlassPlan, window: &Surface) -> Self {
+        let tilt = values.get(window.tilt);
+        match glazing {
+            Glazing::Panes { panes, gaps, angular } => {
+                let (cells, mut extra) = pane_cells(values, panes, plan);
+                let mut filled = Vec::new();
+                for (k, (gap, &link)) in gaps.iter().zip(&plan.gap_links).enumerate() {
+                    match gap {
+                        Gap::Given { conductance } => extra[link] = S::one() / values.get(*conductance),
+                        Gap::Filled { thickness, pressure, gas } => {
+                            let surfaces = [panes[k].emissivity[1], panes[k + 1].emissivity[0]];
+                            let sizes = [values.get(*thickness), values.get_or(window.cavity_height, 1.0)];
+                            let emissivities = surfaces.map(|id| values.get(id));
+                            let gap = GasGap::new(*gas, values.get(*pressure), sizes, tilt, emissivities);
+                            // Replaced in every iteration; a resistance above zero keeps the set-up finite.
+                            extra[link] = S::one();
+                            filled.push((link, gap));
+                        }
+                    }
+                }
+                let optics = if let Some(table) = angular {
+                    Optics::of_table(values, table)
+                } else {
+                    let panes: Vec<_> = panes.iter().filter_map(|pane| pane.optics.clone()).collect();
+                    Optics::of_panes(values, &panes)
+                };
+                Self { cells, extra, glass: Glass::new(optics, filled, tilt) }
+            }
+            Glazing::Simple { u_value, solar_heat_gain, panes, category, films } => {
+                let films = films.map(|id| values.get(id));
+                let (u, gain) = (values.get(*u_value), values.get(*solar_heat_gain));
+                let resistance = rated_resistance(u, films[0] + films[1]);
+                let [transmittance, absorptance] = split_gain(u, gain, resistance, films);
+                let optics =
+                    Optics::of_sheet(transmittance, absorptance, values.get(*panes), values.get(*category));
+                let glass = Glass::new(optics, Vec::new(), tilt);
+                Self { cells: Vec::new(), extra: vec![resistance], glass }
+            }
+        }
+    }
+}
+
+/// Surfaces of panes as cells without thickness, middles as cells of the pane's thickness.
+fn pane_cells<S: Real>(values: &Values<'_, S>, panes: &[Pane], plan: &GlassPlan) -> (Vec<Cell<S>>, Vec<S>) {
+    let mut extra = vec![S::zero(); plan.cell_panes.len() + 1];
+    let middle = |cell: usize| plan.sites.contains(&Site::Middle(cell));
+    let mut cells = Vec::with_capacity(plan.cell_panes.len());
+    for (i, &k) in plan.cell_panes.iter().enumerate() {
+        let pane = &panes[k];
+        let conductivity = values.get(pane.conductivity);
+        let (thickness, capacity) = match pane.storage {
+            Some([density, heat]) if middle(i) => {
+                (values.get(pane.thickness), values.get(density) * values.get(heat))
+            }
+            _ => (S::zero(), S::zero()),
+        };
+        cells.push(Cell { thickness, matter: Matter::Solid { conductivity, capacity } });
+    }
+    for (pane, site) in panes.iter().zip(&plan.sites) {
+        if let Site::Surfaces([front, _]) = site {
+            let link = if let Node::Cell(cell) = front { cell + 1 } else { 0 };
+            extra[link] = values.get(pane.thickness) / values.get(pane.conductivity);
+        }
+    }
+    (cells, extra)
+}
+
+/// What rated surface resistances leave of the resistance of a rated U value [m2 K/W].
+pub(crate) fn rated_resistance<S: Real>(u_value: S, films: S) -> S {
+    (S::one() / u_value - films).max(S::constant(LEAST_RESISTANCE))
+}
+
+/// Transmittance and absorptance that give a solar heat gain with the rated surface resistances [m2 K/W] (LBNL-2804E).
+fn split_gain<S: Real>(u_value: S, gain: S, resistance: S, films: [S; 2]) -> [S; 2] {
+    let cubic = |c: [f64; 3]| gain * (S::constant(c[1]) + gain.scale(c[0])) + S::constant(c[2]);
+    let single = S::select(
+        gain.lt(S::constant(0.7206)),
+        cubic([0.939_998, 0.203_32, 0.0]),
+        cubic([0.0, 1.304_15, -0.305_15]),
+    );
+    let many = S::select(
+        gain.lt(S::constant(0.15)),
+        gain.scale(0.410_40),
+        cubic([0.085_775, 0.963_954, -0.084_958]),
+    );
+    // Between the two families of glass the correlation is interpolated by U.
+    let share = ((u_value - S::constant(3.4)).scale(1.0 / 1.1)).max(S::zero()).min(S::one());
+    let transmittance = (many + share * (single - many)).max(S::zero()).min(gain);
+    let inward = (films[0] + resistance.scale(0.5)) / (films[0] + resistance + films[1]);
+    let absorptance = (gain - transmittance) / inward;
+    // No more than what is not transmitted: else T and A follow from T + A = 1 and T + N A = g.
+    let full = (S::one() - gain) / (S::one() - inward);
+    let too_much = (S::one() - transmittance).lt(absorptance);
+    [S::select(too_much, S::one() - full, transmittance), S::select(too_much, full, absorptance)]
+}
+
+impl<S: Real> Glass<S> {
+    fn new(optics: Optics<S>, gaps: Vec<(usize, GasGap<S>)>, tilt: S) -> Self {
+        let sine = tilt.scale(core::f64::consts::PI / 180.0).sin();
+        Self { horizon: optics.beam.horizon(sine), optics, gaps }
+    }
+
+    /// Number of gaps whose conductance depends on temperature.
+    pub fn filled_gaps(&self) -> usize {
+        self.gaps.len()
+    }
+
+    /// Convective conductances of the gaps at predicted temperatures [W/(m2 K)].
+    #[inline(always)]
+    pub fn expect(&self, cells: &[S], convection: &mut [S]) {
+        for ((link, gap), convection) in self.gaps.iter().zip(convection) {
+            *convection = gap.convection(cells[link - 1], cells[*link]);
+        }
+    }
+
+    /// Gives the number of each gap's link and the tangent of its heat flow at the temperatures of the cells.
+    #[inline(always)]
+    pub(crate) fn linearise(&self, cells: &[S], convection: &[S], mut set: impl FnMut(usize, GapTangent<S>)) {
+        for ((link, gap), &convection) in self.gaps.iter().zip(convection) {
+            set(*link, gap.tangent(convection, cells[link - 1], cells[*link]));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pane without capacity, and one with: cells and links.
+    #[test]
+    fn layout() {
+        use crate::input::description::ParamId;
+        let pane = |storage| Pane {
+            thickness: ParamId(0),
+            conductivity: ParamId(0),
+            storage,
+            emissivity: [ParamId(0); 2],
+            optics: None,
+        };
+        let gaps = vec![Gap::Given { conductance: ParamId(0) }];
+        let light = Glazing::Panes { panes: vec![pane(None), pane(None)], gaps: gaps.clone(), angular: None };
+        let plan = GlassPlan::new(&light);
+        assert_eq!(plan.cell_panes, [0, 1]);
+        assert_eq!(plan.gap_links, [1]);
+        assert_eq!(
+            plan.sites,
+            [Site::Surfaces([Node::Outside, Node::Cell(0)]), Site::Surfaces([Node::Cell(1), Node::Inside])]
+        );
+        let heavy = Some([ParamId(0); 2]);
+        let heavy = Glazing::Panes { panes: vec![pane(heavy), pane(heavy)], gaps, angular: None };
+        let plan = GlassPlan::new(&heavy);
+        assert_eq!(plan.cell_panes, [0, 0, 1, 1]);
+        assert_eq!(plan.gap_links, [2]);
+        assert_eq!(plan.sites, [Site::Middle(0), Site::Middle(3)]);
+    }
+}

@@ -1,0 +1,84 @@
+//! Internal gains and the settings of ideal heating and cooling.
+
+use crate::input::description;
+use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, scheduled};
+use crate::input::values::Values;
+use crate::number::real::Real;
+
+/// Heat from people, light and machines.
+#[derive(Debug, Clone)]
+pub struct Gain<S> {
+    /// Part given to the air [W].
+    convective: S,
+    /// Part radiated to the surfaces [W].
+    radiant: S,
+    /// Part radiated [-].
+    pub(crate) radiative: S,
+    schedule: Schedule,
+}
+
+impl<S: Real> Gain<S> {
+    /// Evaluates a gain at a parameter vector.
+    #[must_use]
+    pub fn new(gain: &description::Gain, values: &Values<'_, S>) -> Self {
+        let (power, radiative) = (values.get(gain.power), values.get(gain.radiative));
+        Self {
+            convective: power * (S::one() - radiative),
+            radiant: power * radiative,
+            radiative,
+            schedule: Schedule::new(gain.schedule),
+        }
+    }
+
+    /// Heat given to the air and heat radiated to the surfaces in a forcing row [W].
+    #[inline(always)]
+    pub(crate) fn at(&self, row: &[f64]) -> [S; 2] {
+        [scheduled(self.convective, self.schedule, row), scheduled(self.radiant, self.schedule, row)]
+    }
+}
+
+/// Set point and capacity of ideal heating or cooling.
+#[derive(Debug, Clone)]
+pub struct Thermostat<S> {
+    set_point: SetPoint<S>,
+    capacity: Option<S>,
+    schedule: Schedule,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum SetPoint<S> {
+    /// [degC].
+    Constant(S),
+    /// Position in a forcing row.
+    Scheduled(usize),
+}
+
+impl<S: Real> Thermostat<S> {
+    /// Capacity where none is given [W]: more than any building needs.
+    const UNLIMITED: f64 = 1e12;
+
+    /// Evaluates ideal heating or cooling at a parameter vector.
+    #[must_use]
+    pub fn new(ideal_load: &description::Plant, values: &Values<'_, S>) -> Self {
+        let set_point = match ideal_load.setpoint {
+            description::SetPoint::Constant { temperature } => SetPoint::Constant(values.get(temperature)),
+            description::SetPoint::Scheduled { channel } => SetPoint::Scheduled(CLIMATE_CHANNELS + channel),
+        };
+        let capacity = ideal_load.capacity.map(|id| values.get(id));
+        Self { set_point, capacity, schedule: Schedule::new(ideal_load.schedule) }
+    }
+
+    /// Set point [degC] and capacity [W] in a forcing row.
+    #[inline(always)]
+    pub fn at(&self, row: &[f64]) -> (S, S) {
+        let set_point = match self.set_point {
+            SetPoint::Constant(temperature) => temperature,
+            SetPoint::Scheduled(channel) => S::constant(row[channel]),
+        };
+        let capacity = match self.capacity {
+            Some(capacity) => capacity,
+            None => S::constant(Self::UNLIMITED),
+        };
+        (set_point, scheduled(capacity, self.schedule, row))
+    }
+}
