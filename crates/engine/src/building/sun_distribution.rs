@@ -94,7 +94,7 @@ impl<S: Real> Landing<S> {
                     }
                 }
             }
-            ZoneSun::Shares { faces: shares, lost } => {
+            ZoneSun::Shares { surfaces: shares, lost } => {
                 let of = |share: &Option<_>| values.get_or(*share, 0.0);
                 let sum = shares.iter().fold(of(lost), |sum, share| sum + of(share));
                 for (i, share) in shares.iter().enumerate() {

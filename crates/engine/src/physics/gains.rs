@@ -59,7 +59,7 @@ impl<S: Real> Thermostat<S> {
 
     /// Evaluates ideal heating or cooling at a parameter vector.
     #[must_use]
-    pub fn new(ideal_load: &description::Plant, values: &Values<'_, S>) -> Self {
+    pub fn new(ideal_load: &description::IdealLoad, values: &Values<'_, S>) -> Self {
         let set_point = match ideal_load.setpoint {
             description::SetPoint::Constant { temperature } => SetPoint::Constant(values.get(temperature)),
             description::SetPoint::Scheduled { channel } => SetPoint::Scheduled(CLIMATE_CHANNELS + channel),

@@ -1,7 +1,7 @@
 //! The cell with everything that can act on the air of its zones.
 
 use mascarin_engine::description::{
-    AirPath, Description, Gain, Opening, ParamId, Parameter, Plant, SetPoint, Ventilation,
+    AirPath, Description, Gain, IdealLoad, Opening, ParamId, Parameter, SetPoint, Ventilation,
 };
 use mascarin_engine::probe::Probe;
 
@@ -14,8 +14,8 @@ pub fn number(description: &mut Description, path: &str, value: f64) -> ParamId 
 }
 
 /// Heating or cooling with a constant set point [degC] and a capacity [W].
-pub fn plant(description: &mut Description, path: &str, set_point: f64, capacity: f64) -> Plant {
-    Plant {
+pub fn plant(description: &mut Description, path: &str, set_point: f64, capacity: f64) -> IdealLoad {
+    IdealLoad {
         setpoint: SetPoint::Constant {
             temperature: number(description, &format!("{path}.setpoint"), set_point),
         },

@@ -137,8 +137,8 @@ fn suns() -> [fn(&mut Description) -> ZoneSun; 3] {
         |_| ZoneSun::Area,
         |d| {
             let shares = [0.1, 0.05, 0.03, 0.03, 0.6, 0.15].map(|share| Some(number(d, "share", share)));
-            let faces = shares.into_iter().chain([None; 3]).collect();
-            ZoneSun::Shares { faces, lost: Some(number(d, "lost", 0.04)) }
+            let surfaces = shares.into_iter().chain([None; 3]).collect();
+            ZoneSun::Shares { surfaces, lost: Some(number(d, "lost", 0.04)) }
         },
         |_| ZoneSun::Geometry,
     ]

@@ -1,0 +1,96 @@
+//! Refuses descriptions that the engine cannot compute.
+//!
+//! Everything that indexing and geometry of the engine rely on is checked here, once, before a plan is made: references,
+//! parameter ids, parts that need each other, sizes of tables, and numbers that are not parameters. The description language
+//! checks the same with messages in the user's words; what is refused here is a fault of the caller.
+//!
+//! A message says where, what was found and what was expected.
+
+mod construction;
+mod numbers;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod zone;
+
+use core::fmt::Display;
+
+use super::description::Description;
+use super::parameter_walk::Walk;
+use crate::error::EngineError;
+
+/// What every check returns.
+type Checked = Result<(), EngineError>;
+
+/// Refuses a place of the description.
+fn refuse(place: impl Display, found: impl Display, expected: impl Display) -> Checked {
+    Err(EngineError::Description(format!("{place}: found {found}, expected {expected}")))
+}
+
+/// Refuses an index that is not below a count.
+fn check_index(place: impl Display, what: &str, index: usize, count: usize) -> Checked {
+    if index < count {
+        return Ok(());
+    }
+    refuse(place, format_args!("{what} {index}"), format_args!("an index below {count}"))
+}
+
+/// Refuses a schedule that is no channel.
+fn check_schedule(description: &Description, place: impl Display, schedule: Option<usize>) -> Checked {
+    schedule.map_or(Ok(()), |channel| check_index(place, "channel", channel, description.channels.len()))
+}
+
+/// Refuses what the engine cannot compute.
+///
+/// # Errors
+/// [`EngineError::Description`] with the place, what was found there and what was expected.
+pub(crate) fn check(description: &Description) -> Checked {
+    check_parameters(description)?;
+    for material in &description.materials {
+        construction::check_material(material)?;
+    }
+    for construction in &description.constructions {
+        construction::check_construction(description, construction)?;
+    }
+    for wall in &description.surfaces {
+        surface::check_surface(description, wall)?;
+    }
+    for (index, zone) in description.zones.iter().enumerate() {
+        zone::check_zone(description, index, zone)?;
+    }
+    for path in &description.air_paths {
+        zone::check_air_path(description, path)?;
+    }
+    for opening in &description.openings {
+        zone::check_opening(description, opening)?;
+    }
+    for sensor in &description.sensors {
+        let place = format_args!("sensor {}", sensor.name).to_string();
+        check_index(place, "surface", sensor.surface, description.surfaces.len())?;
+    }
+    for (index, shade) in description.shades.iter().enumerate() {
+        numbers::check_polygon(&format!("shade {index}"), shade)?;
+    }
+    Ok(())
+}
+
+/// Every parameter id has a parameter, and every nominal value is a number.
+fn check_parameters(description: &Description) -> Checked {
+    for parameter in &description.parameters {
+        if !parameter.value.is_finite() {
+            return refuse(
+                format_args!("parameter {}", parameter.path),
+                parameter.value,
+                "a finite nominal value",
+            );
+        }
+    }
+    let count = description.parameters.len();
+    let mut checked = Ok(());
+    Walk::over(description, |place, id| {
+        if checked.is_ok() {
+            checked = check_index(place, "parameter", id.0 as usize, count);
+        }
+    });
+    checked
+}

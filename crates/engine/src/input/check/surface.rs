@@ -1,0 +1,84 @@
+//! Walls, windows and their sides.
+
+use super::numbers::check_polygon;
+use super::{Checked, check_index, refuse};
+use crate::input::description::{Convection, Description, Facing, Side, Surface, ZoneLongwave};
+
+/// References, corners and both sides of a wall or window.
+pub(super) fn check_surface(description: &Description, wall: &Surface) -> Checked {
+    let place = format!("surface {}", wall.name);
+    check_index(&place, "construction", wall.construction, description.constructions.len())?;
+    if !wall.vertices.is_empty() {
+        check_polygon(&place, &wall.vertices)?;
+    }
+    let glazed = description.constructions[wall.construction].glazing.is_some();
+    for (name, side) in [("outside", &wall.outside), ("inside", &wall.inside)] {
+        check_side(description, &format!("{place}, {name}"), side, glazed)?;
+    }
+    let between = (&wall.outside.facing, &wall.inside.facing);
+    if glazed && !matches!(between, (Facing::Outdoors, Facing::Zone { .. })) {
+        return refuse(
+            place,
+            "a window elsewhere",
+            "a window between outdoors (outside) and a zone (inside)",
+        );
+    }
+    Ok(())
+}
+
+fn check_side(description: &Description, place: &str, side: &Side, glazed: bool) -> Checked {
+    let channels = description.channels.len();
+    match side.facing {
+        Facing::Zone { zone } => {
+            check_index(place, "zone", zone, description.zones.len())?;
+            let exchanges = !matches!(description.zones[zone].longwave, ZoneLongwave::None);
+            if side.convection.is_none() || (exchanges && side.emissivity.is_none()) {
+                return refuse(place, "a zone without them", "convection and emissivity");
+            }
+        }
+        Facing::Outdoors => {
+            if side.convection.is_none() || side.emissivity.is_none() {
+                return refuse(place, "outdoors without them", "convection and emissivity");
+            }
+            if side.absorptance.is_none() && side.exposure.sun && !glazed {
+                return refuse(place, "sun without it", "absorptance");
+            }
+        }
+        Facing::Measured { channel } => check_index(place, "channel", channel, channels)?,
+        Facing::Ground { .. } | Facing::Adiabatic => {}
+    }
+    if glazed && side.absorptance.is_some() {
+        return refuse(place, "absorptance of a window", "none: its panes have their own");
+    }
+    check_irradiance(place, side, channels)?;
+    check_convection(place, side)
+}
+
+fn check_irradiance(place: &str, side: &Side, channels: usize) -> Checked {
+    let Some(channel) = side.irradiance else { return Ok(()) };
+    check_index(place, "irradiance in channel", channel, channels)?;
+    if side.absorptance.is_none() {
+        return refuse(place, "a measured irradiance without it", "absorptance");
+    }
+    if side.convection.is_none() && !matches!(side.facing, Facing::Adiabatic) {
+        return refuse(place, "sun on a surface with an imposed temperature", "convection, or no irradiance");
+    }
+    Ok(())
+}
+
+/// A correlation that needs the wind stands outdoors or in a zone, and a rough surface has a perimeter.
+fn check_convection(place: &str, side: &Side) -> Checked {
+    let Some(convection) = &side.convection else { return Ok(()) };
+    if let Convection::Tarp { roughness, perimeter, .. } = convection
+        && roughness.is_some() != perimeter.is_some()
+    {
+        return refuse(place, "only one of them", "roughness and perimeter together, or none");
+    }
+    let imposed = matches!(side.facing, Facing::Measured { .. } | Facing::Ground { .. });
+    let correlation =
+        matches!(convection, Convection::Tarp { .. } | Convection::Mowitt { .. } | Convection::Doe2 { .. });
+    if imposed && correlation {
+        return refuse(place, "a correlation at an imposed temperature", "a constant coefficient");
+    }
+    Ok(())
+}

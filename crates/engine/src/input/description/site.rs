@@ -1,0 +1,94 @@
+//! The site: air, ground, wind profile and models of the sky.
+
+use serde::Deserialize;
+
+use super::ParamId;
+
+/// Site constants that act in the engine. (Latitude and longitude act through the sun's path in the forcing.)
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Site {
+    /// Altitude [m]: gives the air density where none is given.
+    pub altitude: ParamId,
+    /// Density of the air in the zones [kg/m3]; none: from the altitude.
+    #[serde(default)]
+    pub air_density: Option<ParamId>,
+    /// Solar reflectance of the ground [-].
+    pub ground_reflectance: ParamId,
+    /// Wind speed at a surface from that at the mast.
+    pub wind: WindProfile,
+    /// Model of the sky's long-wave emission.
+    pub sky: Sky,
+    /// Cubic factor of cloud cover N [tenths]: 1 + c1 N + c2 N^2 + c3 N^3 (Clark & Allen 1978).
+    pub cloud: [ParamId; 3],
+    /// Model of the sky's diffuse short-wave radiation.
+    pub diffuse: DiffuseSky,
+}
+
+/// Power-law wind profile (ASHRAE Handbook of Fundamentals, ch. 24):
+/// `V = V_mast (delta_mast/z_mast)^a_mast (z/delta)^a`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WindProfile {
+    /// Height of the anemometer [m].
+    pub mast_height: ParamId,
+    /// Exponent at the mast [-].
+    pub mast_exponent: ParamId,
+    /// Boundary layer thickness at the mast [m].
+    pub mast_layer: ParamId,
+    /// Exponent at the building [-].
+    pub exponent: ParamId,
+    /// Boundary layer thickness at the building [m].
+    pub layer: ParamId,
+}
+
+/// Sky emission models; see `physics/longwave` for equations and sources.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Sky {
+    /// Horizontal infrared of the climate [W/m2] (channel `infrared`), times a scale.
+    Measured {
+        /// Multiplies the channel [-].
+        scale: ParamId,
+    },
+    /// Emissivity `a + b ln(Tdp/273)`, Tdp in K.
+    ClarkAllen {
+        /// Constant [-].
+        a: ParamId,
+        /// Gain of the logarithm [-].
+        b: ParamId,
+    },
+    /// Emissivity `a + b (tdp/100) + c (tdp/100)^2`, tdp in degC.
+    MartinBerdahl {
+        /// Constant [-].
+        a: ParamId,
+        /// Linear gain [-].
+        b: ParamId,
+        /// Square gain [-].
+        c: ParamId,
+    },
+    /// Emissivity `a + b sqrt(pw)`, pw in hPa.
+    Brunt {
+        /// Constant [-].
+        a: ParamId,
+        /// Gain of the root [1/hPa^(1/2)].
+        b: ParamId,
+    },
+    /// Sky temperature = air temperature - depression [K].
+    Offset {
+        /// Air minus sky [K].
+        depression: ParamId,
+    },
+}
+
+/// Diffuse short-wave models on a tilted plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DiffuseSky {
+    /// Isotropic (Liu & Jordan 1963).
+    Isotropic,
+    /// Hay & Davies (1980).
+    HayDavies,
+    /// Perez et al. (1990), coefficients "all sites composite 1990".
+    Perez,
+}

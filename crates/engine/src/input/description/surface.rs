@@ -1,0 +1,163 @@
+//! Walls and windows, their two sides and what these are in contact with.
+
+use serde::Deserialize;
+
+use super::{Convection, ParamId};
+
+/// A plane wall or window between two sides. (A wall of the engine; "surfaces" of the engine are its two sides.)
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Surface {
+    /// Name in messages and outputs.
+    pub name: String,
+    /// Index into [`Description::constructions`](super::Description::constructions).
+    pub construction: usize,
+    /// Area [m2], including `openings` and the part that is `frame`.
+    pub area: ParamId,
+    /// Areas of the windows in this wall [m2].
+    #[serde(default)]
+    pub openings: Vec<ParamId>,
+    /// Which part of a window this is; none: all of it, or a wall.
+    #[serde(default)]
+    pub frame: Option<FrameShare>,
+    /// Height of the gaps of a window, for their convection [m].
+    #[serde(default)]
+    pub cavity_height: Option<ParamId>,
+    /// Corners seen from outside, counter-clockwise [m]; needed where shades or traced sun are.
+    #[serde(default)]
+    pub vertices: Vec<[f64; 3]>,
+    /// Tilt of the outside normal [deg]: 0 up, 90 vertical, 180 down.
+    pub tilt: ParamId,
+    /// Azimuth of the outside normal [deg], clockwise from north.
+    pub azimuth: ParamId,
+
+    /// The side that the construction's first layer touches.
+    pub outside: Side,
+
+    /// The side that the construction's last layer touches.
+    pub inside: Side,
+}
+
+/// The part of a window that is frame, or the part that is not.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrameShare {
+    /// Share of the frame in the window's area [-].
+    pub fraction: ParamId,
+    /// Whether this surface is the frame; else it is the glass.
+    pub is_frame: bool,
+}
+
+/// One side of a wall or window and what it is in contact with.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Side {
+    /// What it is in contact with.
+    pub facing: Facing,
+    /// Surface heat transfer coefficient (also that of a `measured` air temperature). None: the surface itself has the
+    /// imposed temperature (`ground`, `measured`), or no heat flows (`adiabatic`).
+    #[serde(default)]
+    pub convection: Option<Convection>,
+    /// Long-wave emissivity [-]. Needed for `outdoors` and `zone`.
+    #[serde(default)]
+    pub emissivity: Option<ParamId>,
+    /// Solar absorptance [-]. Needed for `outdoors` and for a `measured` irradiance.
+    #[serde(default)]
+    pub absorptance: Option<ParamId>,
+    /// Convective area over plane area [-] (corrugated sheets).
+    #[serde(default)]
+    pub area_factor: Option<ParamId>,
+    /// Fraction of the sky seen [-]; none: (1 + cos tilt)/2.
+    #[serde(default)]
+    pub sky_view: Option<ParamId>,
+    /// Height of the surface above ground for the wind profile [m]; none: mast wind is used as it is.
+    #[serde(default)]
+    pub height: Option<ParamId>,
+    /// Long-wave exchange with sky, air and ground of an `outdoors` side.
+    #[serde(default)]
+    pub longwave: OutdoorLongwave,
+    /// Index into [`Description::channels`](super::Description::channels): measured irradiance on this plane [W/m2], used as it is.
+    #[serde(default)]
+    pub irradiance: Option<usize>,
+    /// What of the weather reaches an `outdoors` side.
+    #[serde(default)]
+    pub exposure: Exposure,
+}
+
+/// What of the weather reaches an `outdoors` side, beside the temperature of the air.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Exposure {
+    /// Short-wave radiation of sun, sky and ground.
+    pub sun: bool,
+    /// The wind.
+    pub wind: bool,
+    /// The sky's long-wave radiation; without it all incident long-wave radiation is that of a black body at air temperature.
+    pub sky: bool,
+}
+
+impl Default for Exposure {
+    fn default() -> Self {
+        Self { sun: true, wind: true, sky: true }
+    }
+}
+
+/// What a side is in contact with.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Facing {
+    /// Outdoor air, sun, sky and ground.
+    Outdoors,
+    /// Index into [`Description::zones`](super::Description::zones).
+    Zone {
+        /// Index into [`Description::zones`](super::Description::zones).
+        zone: usize,
+    },
+    /// Ground temperature [degC]: `mean - amplitude cos(2 pi (day - coldest_day)/365)`.
+    Ground {
+        /// Annual mean [degC].
+        mean: ParamId,
+
+        /// Half of the annual swing [K].
+        amplitude: ParamId,
+
+        /// Day of the year with the lowest temperature [d].
+        coldest_day: ParamId,
+    },
+    /// Measured temperature: index into [`Description::channels`](super::Description::channels).
+    Measured {
+        /// Index into [`Description::channels`](super::Description::channels).
+        channel: usize,
+    },
+
+    /// Nothing: no heat flows.
+    Adiabatic,
+}
+
+/// Long-wave exchange of an `outdoors` side.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum OutdoorLongwave {
+    /// T^4 with sky, air and ground.
+    #[default]
+    Exact,
+    /// Linearised about a reference temperature [degC].
+    Linearised {
+        /// Temperature of the tangent [degC].
+        reference: ParamId,
+    },
+    /// None (the surface heat transfer coefficient includes it).
+    None,
+}
+
+/// A thermometer in a wall.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sensor {
+    /// Name in messages and outputs.
+    pub name: String,
+    /// Index into [`Description::surfaces`](super::Description::surfaces).
+    pub surface: usize,
+    /// Depth from the outside surface [m].
+    pub depth: ParamId,
+}

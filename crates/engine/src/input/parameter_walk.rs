@@ -1,0 +1,206 @@
+//! Visits every parameter id of a description.
+//!
+//! A struct is taken apart field by field, without `..`: a new field does not compile until it is named here, either among the
+//! parts that hold parameter ids or, after `plain`, among those that do not.
+
+use core::fmt::{Display, Write};
+
+use super::description::{
+    AirPath, Angular, Construction, Convection, Description, Facing, FrameShare, Gain, Gap, Glazing,
+    IdealLoad, Infiltration, Layer, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
+    ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, Surface, Ventilation, WindProfile, Zone,
+    ZoneLongwave, ZoneSun,
+};
+
+/// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
+pub(crate) struct Walk<F> {
+    place: String,
+    visit: F,
+}
+
+impl<F: FnMut(&str, ParamId)> Walk<F> {
+    /// Visits all parameter ids of a description in the order of its fields.
+    pub(crate) fn over(description: &Description, visit: F) {
+        description.parameter_ids(&mut Self { place: String::new(), visit });
+    }
+
+    /// Visits a part at a place below the present one.
+    fn below(&mut self, name: impl Display, part: &impl ParameterIds) {
+        let length = self.place.len();
+        // Writing to a string cannot fail.
+        let _ = write!(self.place, "{name}");
+        part.parameter_ids(self);
+        self.place.truncate(length);
+    }
+
+    fn field(&mut self, name: &str, part: &impl ParameterIds) {
+        let dot = if self.place.is_empty() { "" } else { "." };
+        self.below(format_args!("{dot}{name}"), part);
+    }
+}
+
+/// A part of a description that may hold parameter ids.
+trait ParameterIds {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>);
+}
+
+impl ParameterIds for ParamId {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        (walk.visit)(&walk.place, *self);
+    }
+}
+
+impl<T: ParameterIds> ParameterIds for Option<T> {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        if let Some(part) = self {
+            part.parameter_ids(walk);
+        }
+    }
+}
+
+impl<T: ParameterIds> ParameterIds for [T] {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        for (index, part) in self.iter().enumerate() {
+            walk.below(format_args!("[{index}]"), part);
+        }
+    }
+}
+
+impl<T: ParameterIds, const N: usize> ParameterIds for [T; N] {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        self.as_slice().parameter_ids(walk);
+    }
+}
+
+impl<T: ParameterIds> ParameterIds for Vec<T> {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        self.as_slice().parameter_ids(walk);
+    }
+}
+
+/// Implements the walk: fields that hold parameter ids, then, after `plain`, those that do not.
+macro_rules! walk {
+    ($name:ident { $($part:ident),* } plain { $($plain:ident),* }) => {
+        impl ParameterIds for $name {
+            fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+                let Self { $($part,)* $($plain: _,)* } = self;
+                $(walk.field(stringify!($part), $part);)*
+            }
+        }
+    };
+    ($name:ident by variant { $($variant:ident { $($part:ident),* } plain { $($plain:ident),* }),* $(,)? }) => {
+        impl ParameterIds for $name {
+            fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+                match self {
+                    $(Self::$variant { $($part,)* $($plain: _,)* } => {
+                        $(walk.field(stringify!($part), $part);)*
+                    })*
+                }
+            }
+        }
+    };
+}
+
+walk!(Description { site, materials, constructions, zones, air_paths, openings, surfaces, sensors }
+    plain { parameters, shades, channels });
+
+walk!(Site { altitude, air_density, ground_reflectance, wind, sky, cloud } plain { diffuse });
+walk!(WindProfile { mast_height, mast_exponent, mast_layer, exponent, layer } plain {});
+walk!(Sky by variant {
+    Measured { scale } plain {},
+    ClarkAllen { a, b } plain {},
+    MartinBerdahl { a, b, c } plain {},
+    Brunt { a, b } plain {},
+    Offset { depression } plain {},
+});
+
+walk!(Material by variant {
+    Solid { conductivity, density, specific_heat } plain {},
+    Resistance { resistance } plain {},
+    Rated { u_value } plain {},
+    Pcm { conductivity, density, specific_heat, law } plain {},
+});
+walk!(PcmLaw by variant {
+    Melting { latent_heat, curve } plain {},
+    Hysteresis { latent_heat, heating, cooling } plain { model },
+    Tabulated { temperature_shift, enthalpy_scale } plain { temperatures, points, melting_range },
+});
+walk!(MeltingCurve by variant {
+    TanhWidth { melting_temperature, width } plain {},
+    TanhGamma { melting_temperature, gamma, delta_t } plain {},
+    SmoothStep { melting_temperature, width } plain { continuity },
+    Gaussian { melting_temperature, width } plain {},
+    Gumbel { melting_temperature, width } plain { tail },
+    Linear { melting_temperature, width } plain {},
+    Triangle { melting_temperature, below, above } plain {},
+    Fractions { temperature_shift } plain { temperatures, fractions },
+});
+
+walk!(Construction { layers, glazing } plain { name });
+walk!(Layer { thickness } plain { name, material, nodes });
+walk!(Glazing by variant {
+    Panes { panes, gaps, angular } plain {},
+    Simple { u_value, solar_heat_gain, panes, category, films } plain {},
+});
+walk!(Pane { thickness, conductivity, storage, emissivity, optics } plain {});
+walk!(PaneOptics { transmittance, reflectance } plain { coated });
+walk!(Gap by variant {
+    Given { conductance } plain {},
+    Filled { thickness, pressure } plain { gas },
+});
+walk!(Angular { transmittance_scale, absorptance_scale }
+    plain { angles, transmittance, absorptance, diffuse_transmittance, diffuse_absorptance });
+
+walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, gains, ventilation, heating, cooling }
+    plain { name, view_weights });
+walk!(Infiltration { constant, temperature, wind } plain {});
+walk!(ZoneLongwave by variant {
+    Radiosity {} plain {},
+    Linearised { reference } plain {},
+    None {} plain {},
+});
+walk!(ZoneSun by variant {
+    Area {} plain {},
+    Shares { surfaces, lost } plain {},
+    Geometry {} plain {},
+});
+walk!(Gain { power, radiative } plain { name, schedule });
+walk!(Ventilation { air_changes, flow } plain { name, schedule });
+walk!(IdealLoad { setpoint, capacity } plain { schedule });
+walk!(SetPoint by variant {
+    Constant { temperature } plain {},
+    Scheduled {} plain { channel },
+});
+walk!(AirPath { flow } plain { name, between, schedule });
+walk!(Opening { area, height, discharge, wind_coefficient } plain { name, zone, schedule });
+
+walk!(Surface { area, openings, frame, cavity_height, tilt, azimuth, outside, inside }
+    plain { name, construction, vertices });
+walk!(FrameShare { fraction } plain { is_frame });
+walk!(Side { facing, convection, emissivity, absorptance, area_factor, sky_view, height, longwave }
+    plain { irradiance, exposure });
+walk!(Facing by variant {
+    Outdoors {} plain {},
+    Zone {} plain { zone },
+    Ground { mean, amplitude, coldest_day } plain {},
+    Measured {} plain { channel },
+    Adiabatic {} plain {},
+});
+walk!(OutdoorLongwave by variant {
+    Exact {} plain {},
+    Linearised { reference } plain {},
+    None {} plain {},
+});
+walk!(Convection by variant {
+    Constant { coefficient } plain {},
+    LinearWind { constant, wind } plain {},
+    AlamdariHammond { length, factor } plain {},
+    PaperEq5 { length, factor } plain {},
+    Tarp { factor, roughness, perimeter } plain {},
+    Mowitt { factor } plain {},
+    Doe2 { factor, roughness } plain {},
+    Iso15099 { length, factor } plain {},
+    Power { upward, downward } plain {},
+});
+walk!(PowerLaw { a, b, n, c, m } plain {});
+walk!(Sensor { depth } plain { name, surface });
