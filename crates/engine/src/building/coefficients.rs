@@ -12,7 +12,7 @@ use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::{AirFlow, Opening, Path};
 use crate::physics::constants::{AIR_GAS_CONSTANT, AIR_SPECIFIC_HEAT};
-use crate::physics::convection::{Exposure, SurfaceConvection};
+use crate::physics::convection::{Placement, SurfaceConvection};
 use crate::physics::gains::{Gain, Thermostat};
 use crate::physics::longwave::{Emission, balanced, exchange_areas, self_weight};
 use crate::physics::pcm::PcmCoefficients;
@@ -294,7 +294,7 @@ impl<S: Real> SurfaceCoefficients<S> {
         let degrees = values.get(wall.tilt);
         let tilt = radians(degrees);
         let outward = if index.is_outside() { S::one() } else { -S::one() };
-        let exposure = Exposure {
+        let placement = Placement {
             area: own_area(wall, values),
             upward: outward * tilt.cos(),
             wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
@@ -302,9 +302,9 @@ impl<S: Real> SurfaceCoefficients<S> {
             density: air_density(plan, values),
         };
         Self {
-            convection: side.convection.as_ref().map(|law| SurfaceConvection::new(values, law, &exposure)),
+            convection: side.convection.as_ref().map(|law| SurfaceConvection::new(values, law, &placement)),
             area_factor: values.get_or(side.area_factor, 1.0),
-            upward: exposure.upward,
+            upward: placement.upward,
             emissivity: values.get_or(side.emissivity, 0.0),
             absorptance: values.get_or(side.absorptance, 0.0),
             irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),

@@ -100,7 +100,11 @@ impl Tape {
 
     /// Propagates weights from the end of the tape back to the entry `to`. Those of the entries passed become zero.
     /// `transposed` turns weights on the unknowns of a stage into weights on its equations.
-    pub(crate) fn propagate(weights: &mut Vec<f64>, to: usize, mut transposed: impl FnMut(usize, &mut [f64])) {
+    pub(crate) fn propagate(
+        weights: &mut Vec<f64>,
+        to: usize,
+        mut transposed: impl FnMut(usize, &mut [f64]),
+    ) {
         with_tape(|tape| {
             if weights.len() < tape.entries.len() {
                 weights.resize(tape.entries.len(), 0.0);

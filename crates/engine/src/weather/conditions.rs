@@ -11,7 +11,7 @@ use crate::input::description::Facing;
 use crate::input::forcing::{Forcing, channel};
 use crate::input::values::Values;
 use crate::number::real::Real;
-use crate::physics::convection::{Asked, Forced, SurfaceConvection, Wind};
+use crate::physics::convection::{Forced, SurfaceConvection, Wind, WindTerms};
 use crate::physics::longwave::{Heaven, sky_emission};
 use crate::physics::solar::{Open, Sunlight};
 use crate::weather::index::{Sun, WeatherIndex};
@@ -42,17 +42,17 @@ pub struct Instant<'a> {
 impl<'a> Instant<'a> {
     /// Reads a forcing row.
     #[must_use]
-    pub fn new(plan: &Plan, row: &'a [f64], asked: Asked, ground: bool) -> Self {
+    pub fn new(plan: &Plan, row: &'a [f64], terms: WindTerms, ground: bool) -> Self {
         let turn =
-            |angle: f64, asked: bool| if asked { [Real::cos(angle), Real::sin(angle)] } else { [0.0; 2] };
+            |angle: f64, needed: bool| if needed { [Real::cos(angle), Real::sin(angle)] } else { [0.0; 2] };
         let sunlight = Sunlight::new(row, plan.description.site.diffuse);
         Self {
             row,
             geometry: plan.daylight.at(&sunlight),
             sunlight,
             heaven: Heaven::new(&plan.description.site.sky, row),
-            wind: Wind::new(row[channel::WIND_SPEED], asked),
-            wind_from: turn(row[channel::WIND_DIRECTION].to_radians(), asked.direction),
+            wind: Wind::new(row[channel::WIND_SPEED], terms),
+            wind_from: turn(row[channel::WIND_DIRECTION].to_radians(), terms.direction),
             season: turn(row[channel::DAY_OF_YEAR] * PER_DAY, ground),
         }
     }
@@ -70,7 +70,7 @@ impl Instant<'_> {
 pub struct Weather<'a> {
     plan: &'a Plan,
     forcing: Forcing<'a>,
-    asked: Asked,
+    terms: WindTerms,
     /// Whether the ground asks for the season.
     ground: bool,
     /// Empty where it is worked out when it is asked for.
@@ -97,13 +97,13 @@ impl<'a> Weather<'a> {
 
     fn passing(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
         let sides = || plan.surfaces.ids().map(|surface| plan.side(surface));
-        let asked = Asked::by(sides().filter_map(|side| side.convection.as_ref()));
+        let terms = WindTerms::of(sides().filter_map(|side| side.convection.as_ref()));
         let ground = sides().any(|side| matches!(side.facing, Facing::Ground { .. }));
-        Self { plan, forcing: *forcing, asked, ground, kept: Vec::new() }
+        Self { plan, forcing: *forcing, terms, ground, kept: Vec::new() }
     }
 
     fn reckon(&self, step: usize, stage: usize) -> Instant<'a> {
-        Instant::new(self.plan, self.forcing.at(step, stage), self.asked, self.ground)
+        Instant::new(self.plan, self.forcing.at(step, stage), self.terms, self.ground)
     }
 
     /// Number of steps.
@@ -198,7 +198,7 @@ impl<S: Real> Conditions<S> {
     pub(crate) fn new(plan: &Plan, coefficients: &Coefficients<S>, weather_index: &WeatherIndex<S>) -> Self {
         let zero = S::zero();
         let surfaces = coefficients.surfaces.iter().map(|surface| {
-            let forced = surface.convection.as_ref().map_or([zero; 2], SurfaceConvection::still);
+            let forced = surface.convection.as_ref().map_or([zero; 2], SurfaceConvection::calm);
             SurfaceConditions { solar: zero, longwave: zero, temperature: zero, forced }
         });
         let windows = plan.windows.iter().map(|&w| WindowConditions {

@@ -1,0 +1,64 @@
+//! Equation 5 of the paper on the LGI cell, as printed.
+//!
+//! Source: Guichard et al. (2016), Energies 9, 9, doi:10.3390/en9010009:
+//! `{[1.51 d^1/4/H]^6 + [1.33 d^1/3]^6}^1/6`. It is a misprint of Alamdari & Hammond's correlation for a horizontal surface and
+//! is kept under its own name, so that results of the paper can be compared. It makes no difference between heat that flows up
+//! and heat that flows down.
+
+use super::natural::{Coefficient, Difference, blend, sixth_power};
+use super::{Correlation, Forced, WindPart};
+use crate::number::real::Real;
+
+/// `factor (laminar |d|^3/2 + turbulent d^2)^1/6`.
+#[derive(Debug, Clone)]
+pub(super) struct PaperEq5<S> {
+    factor: S,
+    laminar: S,
+    turbulent: S,
+}
+
+impl<S: Real> PaperEq5<S> {
+    /// `length`: H [m].
+    pub(super) fn new(length: S, factor: S) -> Self {
+        let laminar = S::constant(sixth_power(1.51)) / sixth_power(length);
+        Self { factor, laminar, turbulent: S::constant(sixth_power(1.33)) }
+    }
+}
+
+impl<S> Correlation<S> for PaperEq5<S> {
+    type Of<T> = PaperEq5<T>;
+
+    #[inline(always)]
+    fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> PaperEq5<T> {
+        let Self { factor, laminar, turbulent } = self;
+        PaperEq5 { factor: change(factor), laminar: change(laminar), turbulent: change(turbulent) }
+    }
+
+    #[inline(always)]
+    fn coefficient<V: Real>(
+        &self,
+        number: &impl Fn(&S) -> V,
+        _upward: &S,
+        at: &Difference<V>,
+        _forced: &Forced<V>,
+    ) -> Coefficient<V> {
+        let natural = blend(number(&self.laminar), number(&self.turbulent), at);
+        let factor = number(&self.factor);
+        Coefficient { value: factor * natural.value, rise: factor * natural.rise }
+    }
+}
+
+impl<S: Real> WindPart<S> for PaperEq5<S> {}
+
+#[cfg(test)]
+mod tests {
+    use crate::input::description::Convection;
+    use crate::physics::convection::testing::{assert_close, coefficient, id, surface};
+
+    #[test]
+    fn by_hand() {
+        let law = Convection::PaperEq5 { length: id(0), factor: id(1) };
+        // 5 K, 0.28 m: the first term 1.51 5^.25 / 0.28 = 8.06419 is much larger than 1.33 5^(1/3) = 2.27427
+        assert_close(coefficient(&surface(&law, &[0.28, 1.0], 1.0), 5.0, 0.0, false), 8.064_9);
+    }
+}
