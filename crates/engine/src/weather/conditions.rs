@@ -17,9 +17,10 @@ use crate::physics::solar::{Open, Sunlight};
 use crate::weather::index::{Sun, WeatherIndex};
 use crate::weather::zone_conditions::ZoneConditions;
 
-/// A surface is leeward when the wind comes from behind its plane (Walton 1983 draws the line at 100 deg off the normal,
-/// where the wind blows along the surface and the windward coefficient has no ground any more).
-const LEEWARD_COSINE: f64 = 0.0;
+/// A surface is leeward when the cosine between its normal and the direction that the wind comes from is below this. A wind along
+/// the surface counts as windward: its cosine is zero but for round-off, so the limit lies 6e-8 deg behind the surface. (Walton
+/// 1983 takes 100 deg off the normal as the limit; the windward coefficient has no basis beyond 90 deg.)
+const LEEWARD_COSINE: f64 = -1e-9;
 /// Surfaces within about 11 deg of horizontal are always windward (Walton 1983).
 const FLAT: f64 = 0.98;
 
