@@ -14,7 +14,7 @@ use crate::physics::air_flow::{AirFlow, Opening, Path};
 use crate::physics::constants::{AIR_GAS_CONSTANT, AIR_SPECIFIC_HEAT};
 use crate::physics::convection::{Placement, SurfaceConvection};
 use crate::physics::gains::{Gain, Thermostat};
-use crate::physics::longwave::{Emission, balanced, exchange_areas, self_weight};
+use crate::physics::longwave::{Emission, direct_exchange_areas, exchange_areas, self_weight};
 use crate::physics::pcm::PcmCoefficients;
 use crate::physics::solar::Plane;
 
@@ -425,7 +425,7 @@ impl<S: Real> ZoneCoefficients<S> {
                 &definition.sun,
                 &Inside { zone_surfaces, areas: &areas, walls, surfaces },
                 values,
-                || balanced(&areas, &view_weights(plan, index, &areas)),
+                || direct_exchange_areas(&areas, &view_weights(plan, index, &areas)),
             ),
             areas,
         }

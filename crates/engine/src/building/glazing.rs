@@ -133,11 +133,11 @@ impl<S: Real> GlassWall<S> {
                 };
                 Self { cells, extra, glass: Glass::new(optics, filled, tilt) }
             }
-            Glazing::Simple { u_value, solar_heat_gain, panes, category, films } => {
-                let films = films.map(|id| values.get(id));
+            Glazing::Simple { u_value, solar_heat_gain, panes, category, surface_resistances } => {
+                let outer_inner = surface_resistances.map(|id| values.get(id));
                 let (u, gain) = (values.get(*u_value), values.get(*solar_heat_gain));
-                let resistance = rated_resistance(u, films[0] + films[1]);
-                let [transmittance, absorptance] = split_gain(u, gain, resistance, films);
+                let resistance = rated_resistance(u, outer_inner[0] + outer_inner[1]);
+                let [transmittance, absorptance] = split_gain(u, gain, resistance, outer_inner);
                 let optics =
                     Optics::of_sheet(transmittance, absorptance, values.get(*panes), values.get(*category));
                 let glass = Glass::new(optics, Vec::new(), tilt);
@@ -173,12 +173,13 @@ fn pane_cells<S: Real>(values: &Values<'_, S>, panes: &[Pane], plan: &GlassPlan)
 }
 
 /// What rated surface resistances leave of the resistance of a rated U value [m2 K/W].
-pub(crate) fn rated_resistance<S: Real>(u_value: S, films: S) -> S {
-    (S::one() / u_value - films).max(S::constant(LEAST_RESISTANCE))
+pub(crate) fn rated_resistance<S: Real>(u_value: S, surface_resistances: S) -> S {
+    (S::one() / u_value - surface_resistances).max(S::constant(LEAST_RESISTANCE))
 }
 
-/// Transmittance and absorptance that give a solar heat gain with the rated surface resistances [m2 K/W] (LBNL-2804E).
-fn split_gain<S: Real>(u_value: S, gain: S, resistance: S, films: [S; 2]) -> [S; 2] {
+/// Transmittance and absorptance that give a solar heat gain with the rated surface resistances, outer and inner [m2 K/W]
+/// (LBNL-2804E).
+fn split_gain<S: Real>(u_value: S, gain: S, resistance: S, outer_inner: [S; 2]) -> [S; 2] {
     let cubic = |c: [f64; 3]| gain * (S::constant(c[1]) + gain.scale(c[0])) + S::constant(c[2]);
     let single = S::select(
         gain.lt(S::constant(0.7206)),
@@ -193,7 +194,7 @@ fn split_gain<S: Real>(u_value: S, gain: S, resistance: S, films: [S; 2]) -> [S;
     // Between the two families of glass the correlation is interpolated by U.
     let share = ((u_value - S::constant(3.4)).scale(1.0 / 1.1)).max(S::zero()).min(S::one());
     let transmittance = (many + share * (single - many)).max(S::zero()).min(gain);
-    let inward = (films[0] + resistance.scale(0.5)) / (films[0] + resistance + films[1]);
+    let inward = (outer_inner[0] + resistance.scale(0.5)) / (outer_inner[0] + resistance + outer_inner[1]);
     let absorptance = (gain - transmittance) / inward;
     // No more than what is not transmitted: else T and A follow from T + A = 1 and T + N A = g.
     let full = (S::one() - gain) / (S::one() - inward);

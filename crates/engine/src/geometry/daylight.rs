@@ -20,7 +20,7 @@ use crate::building::ids::SurfaceId;
 use crate::building::plan::ZonePlan;
 use crate::input::description::{Description, Facing, ZoneSun};
 use crate::number::real::Real;
-use crate::physics::solar::{Open, Sunlight};
+use crate::physics::solar::{SkyVisibility, Sunlight};
 
 /// Lengths below this are none [m].
 const TOUCH: f64 = 1e-6;
@@ -286,7 +286,7 @@ pub struct Receiver {
     /// Convex pieces of shades, in the surface's coordinates.
     shades: Vec<Vec<Vertex>>,
     /// Shares that are left of the sky; `sun` is 1.
-    pub sky: Open,
+    pub sky: SkyVisibility,
 }
 
 impl Receiver {
@@ -296,7 +296,7 @@ impl Receiver {
             let local: Vec<Vertex> = piece.iter().map(|&vertex| shape.frame.local(vertex)).collect();
             in_front(&local)
         });
-        let mut receiver = Self { shades: front.collect(), shape, sky: Open::ALL };
+        let mut receiver = Self { shades: front.collect(), shape, sky: SkyVisibility::FULL };
         if !receiver.shades.is_empty() {
             receiver.sky = receiver.open_sky();
         }
@@ -330,7 +330,7 @@ impl Receiver {
     }
 
     #[allow(clippy::cast_precision_loss, reason = "counts are small")]
-    fn open_sky(&self) -> Open {
+    fn open_sky(&self) -> SkyVisibility {
         let [bands, sectors] = SKY;
         let band = core::f64::consts::FRAC_PI_2 / bands as f64;
         let centres = (0..bands).map(|k| (k as f64 + 0.5) * band);
@@ -351,7 +351,7 @@ impl Receiver {
             if all > 0.0 { seen / all } else { 1.0 }
         };
         let centres: Vec<f64> = centres.collect();
-        Open { sun: 1.0, sky: mean(&centres), horizon: mean(&[JUST_ABOVE]) }
+        SkyVisibility { sun: 1.0, sky: mean(&centres), horizon: mean(&[JUST_ABOVE]) }
     }
 }
 
@@ -500,12 +500,12 @@ impl Daylight {
 
     /// What shades leave a wall of the sky.
     #[must_use]
-    pub fn open(&self, wall: usize, numbers: &[f64]) -> Open {
+    pub fn open(&self, wall: usize, numbers: &[f64]) -> SkyVisibility {
         match &self.receivers[wall] {
             Some((slot, receiver)) => {
-                Open { sun: numbers.get(*slot).copied().unwrap_or(1.0), ..receiver.sky }
+                SkyVisibility { sun: numbers.get(*slot).copied().unwrap_or(1.0), ..receiver.sky }
             }
-            None => Open::ALL,
+            None => SkyVisibility::FULL,
         }
     }
 

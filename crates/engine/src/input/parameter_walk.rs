@@ -140,7 +140,7 @@ walk!(Construction { layers, glazing } plain { name });
 walk!(Layer { thickness } plain { name, material, nodes });
 walk!(Glazing by variant {
     Panes { panes, gaps, angular } plain {},
-    Simple { u_value, solar_heat_gain, panes, category, films } plain {},
+    Simple { u_value, solar_heat_gain, panes, category, surface_resistances } plain {},
 });
 walk!(Pane { thickness, conductivity, storage, emissivity, optics } plain {});
 walk!(PaneOptics { transmittance, reflectance } plain { coated });

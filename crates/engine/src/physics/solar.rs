@@ -1,6 +1,6 @@
 //! Short-wave radiation on a plane.
 //!
-//! The sun's direction and the horizontal radiation come with the forcing; transposition lives
+//! The sun's direction and the horizontal radiation come with the forcing; transposition is done
 //! here so that tilt, azimuth and albedo are parameters like others.
 //!
 //! Sources:
@@ -29,7 +29,7 @@ pub struct Sunlight {
     horizon: f64,
 }
 
-/// A plane as the sun sees it.
+/// Orientation of a plane and what it sees of sky and ground.
 #[derive(Debug, Clone, Copy)]
 pub struct Plane<S> {
     /// Outward normal (east, north, up).
@@ -73,10 +73,10 @@ impl Sunlight {
         let direct_normal = if up > 0.0 { row[channel::DIRECT_NORMAL] } else { 0.0 };
         let diffuse = row[channel::DIFFUSE_HORIZONTAL];
         let extra = row[channel::DIRECT_NORMAL_EXTRA];
-        let (circumsolar_share, horizon_share) = match model {
+        let (circumsolar_fraction, horizon_fraction) = match model {
             DiffuseSky::Isotropic => (0.0, 0.0),
             DiffuseSky::HayDavies => (if extra > 0.0 { (direct_normal / extra).min(1.0) } else { 0.0 }, 0.0),
-            DiffuseSky::Perez => perez_shares(up, direct_normal, diffuse, extra),
+            DiffuseSky::Perez => perez_fractions(up, direct_normal, diffuse, extra),
         };
         // Both models keep the sun at least 5 deg (Perez) or 1 deg above the horizon in the ratio of cosines.
         let lowest = Real::cos(if model == DiffuseSky::Perez { 85.0_f64 } else { 89.0 }.to_radians());
@@ -84,13 +84,13 @@ impl Sunlight {
             direction,
             direct_normal,
             global_horizontal: row[channel::GLOBAL_HORIZONTAL],
-            isotropic: diffuse * (1.0 - circumsolar_share),
-            circumsolar: diffuse * circumsolar_share / up.max(lowest),
-            horizon: diffuse * horizon_share,
+            isotropic: diffuse * (1.0 - circumsolar_fraction),
+            circumsolar: diffuse * circumsolar_fraction / up.max(lowest),
+            horizon: diffuse * horizon_fraction,
         }
     }
 
-    /// Whether no light comes from anywhere.
+    /// Whether there is no short-wave radiation at all.
     #[must_use]
     pub fn dark(&self) -> bool {
         let parts =
@@ -98,45 +98,50 @@ impl Sunlight {
         parts.iter().all(|part| *part == 0.0)
     }
 
-    /// Whether light comes from the sun's direction.
+    /// Whether there is radiation from the sun's direction.
     #[must_use]
     pub fn directed(&self) -> bool {
         self.direct_normal > 0.0 || self.circumsolar > 0.0
     }
 
-    /// Irradiance on a plane [W/m2] of which shades leave some of the sky.
+    /// Irradiance on a plane [W/m2] that sees a part of sun and sky.
     #[must_use]
     #[inline(always)]
-    pub fn on<S: Real>(&self, plane: &Plane<S>, ground_reflectance: S, open: &Open) -> Irradiance<S> {
+    pub fn on<S: Real>(
+        &self,
+        plane: &Plane<S>,
+        ground_reflectance: S,
+        visible: &SkyVisibility,
+    ) -> Irradiance<S> {
         let n = &plane.normal;
         let cosine =
             n[0].scale(self.direction[0]) + n[1].scale(self.direction[1]) + n[2].scale(self.direction[2]);
         let facing = cosine.max(S::zero());
-        let bright = facing.scale(self.circumsolar * open.sun);
-        let sky = bright + plane.sky_view.scale(self.isotropic * open.sky);
+        let bright = facing.scale(self.circumsolar * visible.sun);
+        let sky = bright + plane.sky_view.scale(self.isotropic * visible.sky);
         let ground = (ground_reflectance * plane.ground_view).scale(self.global_horizontal);
-        // What Perez takes off the horizon may be more than the rest of the sky gives.
-        let diffuse = (sky + plane.sin_tilt.scale(self.horizon * open.horizon)).max(S::zero());
+        // The negative horizon term of Perez may exceed the rest of the sky.
+        let diffuse = (sky + plane.sin_tilt.scale(self.horizon * visible.horizon)).max(S::zero());
         let circumsolar = bright.min(diffuse);
-        let beam = facing.scale(self.direct_normal * open.sun);
+        let beam = facing.scale(self.direct_normal * visible.sun);
         Irradiance { cosine: facing, beam, circumsolar, horizon: diffuse - sky, diffuse, ground }
     }
 }
 
-/// Shares of the sky that shades leave, 1 each in the open [-].
+/// Which part of sun and sky a shaded surface sees; 1 each without shades [-].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Open {
-    /// Share of a surface that the sun's disc reaches.
+pub struct SkyVisibility {
+    /// Fraction of the surface that the sun's disc reaches.
     pub sun: f64,
-    /// Of the isotropic sky.
+    /// Fraction of the isotropic sky.
     pub sky: f64,
-    /// Of the horizon.
+    /// Fraction of the horizon.
     pub horizon: f64,
 }
 
-impl Open {
+impl SkyVisibility {
     /// No shades.
-    pub const ALL: Self = Self { sun: 1.0, sky: 1.0, horizon: 1.0 };
+    pub const FULL: Self = Self { sun: 1.0, sky: 1.0, horizon: 1.0 };
 }
 
 /// Short-wave radiation on a plane by where it comes from [W/m2].
@@ -148,7 +153,7 @@ pub struct Irradiance<S> {
     pub beam: S,
     /// From the bright sky around it: a part of `diffuse`.
     pub circumsolar: S,
-    /// From the horizon, less than nothing where it is darker than the rest of the sky: a part of `diffuse`.
+    /// From the horizon, negative where it is darker than the rest of the sky: a part of `diffuse`.
     pub horizon: S,
     /// From the sky, the parts around the sun and at the horizon included.
     pub diffuse: S,
@@ -157,19 +162,19 @@ pub struct Irradiance<S> {
 }
 
 impl<S: Real> Irradiance<S> {
-    /// All of it.
+    /// Sum of all parts.
     #[inline(always)]
     pub fn total(&self) -> S {
         self.beam + self.diffuse + self.ground
     }
 
-    /// What comes from the sun's direction.
+    /// From the sun's direction: beam and circumsolar.
     #[inline(always)]
     pub fn directed(&self) -> S {
         self.beam + self.circumsolar
     }
 
-    /// What comes from everywhere alike.
+    /// Isotropic: from the sky without sun and horizon, and from the ground.
     #[inline(always)]
     pub fn scattered(&self) -> S {
         self.diffuse - self.circumsolar - self.horizon + self.ground
@@ -190,8 +195,9 @@ const PEREZ: [[f64; 6]; 8] = [
 /// Upper edges of the clearness bins.
 const PEREZ_BINS: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
 
-/// Circumsolar and horizon shares of the diffuse radiation.
-fn perez_shares(up: f64, direct: f64, diffuse: f64, extra: f64) -> (f64, f64) {
+/// Circumsolar and horizon fractions of the diffuse radiation by sky clearness and sky
+/// brightness (Perez et al. 1990).
+fn perez_fractions(up: f64, direct: f64, diffuse: f64, extra: f64) -> (f64, f64) {
     if diffuse <= 0.0 || extra <= 0.0 {
         return (0.0, 0.0);
     }
@@ -204,4 +210,51 @@ fn perez_shares(up: f64, direct: f64, diffuse: f64, extra: f64) -> (f64, f64) {
     let f = &PEREZ[PEREZ_BINS.iter().filter(|&&edge| clearness >= edge).count()];
     let circumsolar = (f[0] + f[1] * brightness + f[2] * zenith).max(0.0);
     (circumsolar, f[3] + f[4] * brightness + f[5] * zenith)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::forcing::CLIMATE_CHANNELS;
+
+    /// A wall towards the east, the sun in the east 30 deg above the horizon: 400 W/m2 of beam (1000 W/m2 outside the
+    /// atmosphere), 100 W/m2 of diffuse and 300 W/m2 of global horizontal radiation, ground reflectance 0.2.
+    fn on_wall(model: DiffuseSky, visible: &SkyVisibility) -> Irradiance<f64> {
+        let mut row = [0.0; CLIMATE_CHANNELS];
+        (row[channel::SUN_EAST], row[channel::SUN_UP]) = (0.75_f64.sqrt(), 0.5);
+        (row[channel::DIRECT_NORMAL], row[channel::DIRECT_NORMAL_EXTRA]) = (400.0, 1000.0);
+        (row[channel::DIFFUSE_HORIZONTAL], row[channel::GLOBAL_HORIZONTAL]) = (100.0, 300.0);
+        let wall = Plane { normal: [1.0, 0.0, 0.0], sin_tilt: 1.0, sky_view: 0.5, ground_view: 0.5 };
+        Sunlight::new(&row, model).on(&wall, 0.2, visible)
+    }
+
+    fn assert_close(found: f64, expected: f64) {
+        assert!((found / expected - 1.0).abs() < 1e-4, "{found} is not {expected}");
+    }
+
+    /// Beam 400 0.75^1/2 = 346.410, ground 0.2 0.5 300 = 30. Diffuse: isotropic 50; Hay & Davies with A = 0.4
+    /// 0.6 50 + 0.4 100 0.75^1/2/0.5 = 99.2820; Perez with clearness 2.8219, brightness 0.19943, F1 = 0.453861, F2 = 0.182513: 124.1692.
+    #[test]
+    fn a_wall_by_hand() {
+        let diffuse =
+            [(DiffuseSky::Isotropic, 50.0), (DiffuseSky::HayDavies, 99.2820), (DiffuseSky::Perez, 124.1692)];
+        for (model, diffuse) in diffuse {
+            let found = on_wall(model, &SkyVisibility::FULL);
+            assert_close(found.beam, 346.410);
+            assert_close(found.ground, 30.0);
+            assert_close(found.diffuse, diffuse);
+            assert_close(found.total(), 376.410 + diffuse);
+            assert_close(found.directed() + found.scattered() + found.horizon, found.total());
+        }
+    }
+
+    /// A surface that sees a quarter of the sun's disc and half of the sky.
+    #[test]
+    fn shades_take_their_parts() {
+        let visible = SkyVisibility { sun: 0.25, sky: 0.5, horizon: 1.0 };
+        let found = on_wall(DiffuseSky::HayDavies, &visible);
+        assert_close(found.beam, 0.25 * 346.410);
+        assert_close(found.diffuse, 0.5 * 30.0 + 0.25 * 69.2820);
+        assert_close(found.ground, 30.0);
+    }
 }

@@ -12,8 +12,8 @@ use crate::input::forcing::{Forcing, channel};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::convection::{Forced, SurfaceConvection, Wind, WindTerms};
-use crate::physics::longwave::{Heaven, sky_emission};
-use crate::physics::solar::{Open, Sunlight};
+use crate::physics::longwave::{SkyState, sky_emission};
+use crate::physics::solar::{SkyVisibility, Sunlight};
 use crate::weather::index::{Sun, WeatherIndex};
 use crate::weather::zone_conditions::ZoneConditions;
 
@@ -30,7 +30,7 @@ pub struct Instant<'a> {
     /// All channels.
     pub row: &'a [f64],
     sunlight: Sunlight,
-    heaven: Heaven,
+    sky_state: SkyState,
     wind: Wind,
     /// North and east components of the direction the wind comes from, where films ask for it.
     wind_from: [f64; 2],
@@ -51,7 +51,7 @@ impl<'a> Instant<'a> {
             row,
             geometry: plan.daylight.at(&sunlight),
             sunlight,
-            heaven: Heaven::new(&plan.description.site.sky, row),
+            sky_state: SkyState::new(&plan.description.site.sky, row),
             wind: Wind::new(row[channel::WIND_SPEED], terms),
             wind_from: turn(row[channel::WIND_DIRECTION].to_radians(), terms.direction),
             season: turn(row[channel::DAY_OF_YEAR] * PER_DAY, ground),
@@ -61,8 +61,12 @@ impl<'a> Instant<'a> {
 
 impl Instant<'_> {
     /// What shades leave a surface of sun and sky: they stand outside.
-    fn open(&self, plan: &Plan, surface: SurfaceId) -> Open {
-        if surface.is_outside() { plan.daylight.open(surface.wall(), &self.geometry) } else { Open::ALL }
+    fn open(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
+        if surface.is_outside() {
+            plan.daylight.open(surface.wall(), &self.geometry)
+        } else {
+            SkyVisibility::FULL
+        }
     }
 }
 
@@ -292,7 +296,7 @@ impl<S: Real> Conditions<S> {
     ) {
         let site = &plan.description.site;
         let air = S::constant(now.row[channel::AIR_TEMPERATURE]);
-        let sky = sky_emission(&Values::new(numbers), &site.sky, coefficients.cloud, &now.heaven);
+        let sky = sky_emission(&Values::new(numbers), &site.sky, coefficients.cloud, &now.sky_state);
         (self.sky, self.outdoor_air) = (sky, air);
         self.wind = S::constant(now.wind.speed);
         self.shine(plan, coefficients, weather_index, now);

@@ -57,7 +57,7 @@ fn sheet(d: &mut Description) -> Glazing {
         solar_heat_gain: number(d, "sheet.solar_heat_gain", 0.7),
         panes: number(d, "sheet.panes", 2.0),
         category: number(d, "sheet.category", 4.0),
-        films: [number(d, "sheet.outside_film", 0.04), number(d, "sheet.inside_film", 0.13)],
+        surface_resistances: [number(d, "sheet.outside_film", 0.04), number(d, "sheet.inside_film", 0.13)],
     }
 }
 

@@ -63,9 +63,9 @@ pub(super) fn check_polygon(place: &str, corners: &[[f64; 3]]) -> Checked {
     let (mut area, mut extent) = ([0.0; 3], 0.0_f64);
     for pair in corners.windows(2) {
         let [a, b]: [[f64; 3]; 2] = [from_origin(pair[0]), from_origin(pair[1])];
-        for k in 0..3 {
+        for (k, part) in area.iter_mut().enumerate() {
             let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-            area[k] += a[l] * b[m] - a[m] * b[l];
+            *part += a[l] * b[m] - a[m] * b[l];
         }
         extent = extent.max(b.iter().map(|x| x * x).sum());
     }

@@ -29,7 +29,8 @@ pub enum Glazing {
         /// Category of coating, for the angular law [-].
         category: ParamId,
         /// Rated resistances of the outside and inside surface [m2 K/W].
-        films: [ParamId; 2],
+        #[serde(rename = "films")]
+        surface_resistances: [ParamId; 2],
     },
 }
 

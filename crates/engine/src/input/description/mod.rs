@@ -6,7 +6,7 @@
 //! an ensemble (one vector per member) and derivatives (a vector of duals).
 //! What is a plain number, `usize`, `bool` or list here is structural: it shapes the plan.
 //!
-//! A module per object. [`check`](crate::input::check) refuses what the engine cannot compute. A new field of type
+//! A module per object. `input/check` refuses what the engine cannot compute. A new field of type
 //! [`ParamId`] has to be named in `input/parameter_walk.rs` too; the compiler asks for it.
 
 mod air_flow;

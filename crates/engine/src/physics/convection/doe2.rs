@@ -1,8 +1,8 @@
 //! DOE-2: natural convection of TARP and the wind of `MoWiTT` on rough surfaces.
 //!
 //! Source: LBL (1994), DOE2.1E-053 source code, as described in the `EnergyPlus` Engineering Reference, outside convection,
-//! "DOE-2 model": `h = n + Rf (hs - n)`, n the natural part of [`tarp`](super::tarp), `hs = {n^2 + [a V^b]^2}^1/2` the
-//! coefficient of a smooth surface with a and b of [`mowitt`](super::mowitt), Rf the roughness (2.17 very rough to 1.0 very
+//! "DOE-2 model": `h = n + Rf (hs - n)`, n the natural part of `tarp.rs`, `hs = {n^2 + [a V^b]^2}^1/2` the
+//! coefficient of a smooth surface with a and b of `mowitt.rs`, Rf the roughness (2.17 very rough to 1.0 very
 //! smooth).
 //!
 //! Range: that of `MoWiTT`, extended to rough surfaces and to any inclination.

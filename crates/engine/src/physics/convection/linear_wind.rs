@@ -1,6 +1,6 @@
 //! `h = a + b V`, V the wind at the surface.
 //!
-//! Source: McAdams (1954), Heat Transmission, 3rd ed., McGraw-Hill, with a = 5.7 W/(m2 K) and b = 3.8 W s/(m3 K) for wind speeds
+//! Source: `McAdams` (1954), Heat Transmission, 3rd ed., McGraw-Hill, with a = 5.7 W/(m2 K) and b = 3.8 W s/(m3 K) for wind speeds
 //! below 5 m/s (Juerges' measurements on a vertical plate). Coefficients of this form include natural convection, and often
 //! long-wave radiation. The numbers are parameters.
 
@@ -62,7 +62,7 @@ mod tests {
     use crate::input::description::Convection;
     use crate::physics::convection::testing::{assert_close, coefficient, id, surface};
 
-    /// McAdams at 4 m/s: 5.7 + 3.8 4 = 20.9.
+    /// `McAdams` at 4 m/s: 5.7 + 3.8 4 = 20.9.
     #[test]
     fn by_hand() {
         let law = surface(&Convection::LinearWind { constant: id(0), wind: id(1) }, &[5.7, 3.8], 0.0);

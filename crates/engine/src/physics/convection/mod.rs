@@ -7,7 +7,7 @@
 //! | file | correlation | used |
 //! |---|---|---|
 //! | [`constant`] | one number | anywhere |
-//! | [`linear_wind`] | `a + b V` (McAdams 1954) | outdoors |
+//! | [`linear_wind`] | `a + b V` (`McAdams` 1954) | outdoors |
 //! | [`alamdari_hammond`] | Alamdari & Hammond (1983) | indoors |
 //! | [`paper_eq5`] | Guichard et al. (2016), eq. 5 as printed | indoors |
 //! | [`tarp`] | TARP: Walton (1983) | indoors and outdoors |

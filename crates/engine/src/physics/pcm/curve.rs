@@ -7,7 +7,7 @@ use crate::input::values::Values;
 use crate::number::real::{Logistic, Real};
 use core::f64::consts::LOG2_E;
 
-/// Share of the transition that is cut off at either end of a curve with tails to make it compact.
+/// Fraction of the transition that is cut off at each end of a curve with tails, to make it compact.
 pub const CUT: f64 = 1e-3;
 /// Beyond this the double exponential of the Gumbel distribution is zero or one.
 const GUMBEL_END: f64 = 30.0;
@@ -142,7 +142,7 @@ impl<S: Real> Curve<S> {
         CurvePoint { fraction, slope: slope * self.inverse_width, molten: molten * self.width }
     }
 
-    /// The curve itself where it is of this kind.
+    /// The curve, if it is of this kind.
     #[inline(always)]
     pub(super) fn tanh(&self) -> Option<&Tanh<S>> {
         if let Shape::Tanh(tanh) = &self.shape { Some(tanh) } else { None }
@@ -170,7 +170,7 @@ impl<S: Real> Curve<S> {
         (raw.max(S::zero()).min(S::one()), slope)
     }
 
-    /// The curve with its tails, where speed does not matter: fraction and slope.
+    /// The curve with its tails, not inlined, for places where speed does not matter: fraction and slope.
     #[inline(never)]
     pub(super) fn whole(&self, temperature: S) -> (S, S) {
         let point = self.at(temperature);
@@ -210,7 +210,7 @@ impl<S: Real> Curve<S> {
         }
     }
 
-    /// Where the slope jumps by much, if anywhere [degC].
+    /// Where the slope has a large jump, if anywhere [degC].
     #[inline(always)]
     pub(super) fn kinks(&self) -> Option<[S; 2]> {
         matches!(self.shape, Shape::Linear | Shape::Measured(_)).then(
@@ -238,8 +238,8 @@ impl<S: Real> Curve<S> {
         [self.centre + self.width.scale(low), self.centre + self.width.scale(high)]
     }
 
-    /// Temperatures between which the compact curve passes a fraction, a millionth of its support apart: at the second
-    /// it is not below it [degC].
+    /// Temperatures between which the compact curve reaches a fraction, a millionth of its support apart: at the second
+    /// the curve is not below it [degC].
     #[inline(never)]
     pub(super) fn temperatures_of(&self, fraction: S) -> [S; 2] {
         let [mut low, mut high] = self.support();
@@ -326,15 +326,15 @@ fn measured<S: Real>(segments: &Segments, read: S) -> CurvePoint<S> {
     }
 }
 
-/// Whether a temperature is passed on the way between two others.
+/// Whether a temperature lies between two others.
 #[inline(always)]
-pub(super) fn passes<S: Real>(from: S, to: S, place: S) -> S::Mask {
+pub(super) fn crosses<S: Real>(from: S, to: S, place: S) -> S::Mask {
     (from.lt(place) & place.lt(to)) | (to.lt(place) & place.lt(from))
 }
 
-/// Lands a way that leaps over a place by more than a width on the place itself; true where it was kept.
+/// Limits a step that crosses a temperature and is longer than a width to that temperature; true where it was limited.
 #[inline(always)]
-pub(super) fn land<S: Real>(from: S, to: S, place: S, width: S) -> (S, S::Mask) {
-    let leaps = passes(from, to, place) & width.lt((to - from).abs());
-    (S::select(leaps, place, to), leaps)
+pub(super) fn limit_at<S: Real>(from: S, to: S, place: S, width: S) -> (S, S::Mask) {
+    let limited = crosses(from, to, place) & width.lt((to - from).abs());
+    (S::select(limited, place, to), limited)
 }

@@ -4,15 +4,15 @@
 //! start; that function never falls. Sources: Barz et al. (2019), J. Build. Perf. Simul. 12(6),
 //! doi:10.1080/19401493.2019.1657953; Barz et al. (2021), J. Energy Storage 34, doi:10.1016/j.est.2020.101907.
 
-use super::curve::{Curve, land, passes};
+use super::curve::{Curve, crosses, limit_at};
 use crate::input::description::{HysteresisModel, MeltingCurve};
 use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
 
-/// A temperature beyond all others, for what is not known [degC].
+/// A temperature beyond all others, for a mark that is not known [degC].
 const FAR: f64 = 1e100;
 
-/// How many numbers a memory has.
+/// Count of the numbers of a memory.
 pub(crate) const REMEMBERED: usize = 4;
 
 /// What a phase-change cell remembers between steps. Changes once per accepted step;
@@ -32,7 +32,7 @@ pub struct PcmMemory<S> {
 }
 
 impl<S: Real> PcmMemory<S> {
-    /// A memory of nothing but a point.
+    /// A memory of a fraction and a temperature alone.
     #[inline(always)]
     pub fn new(liquid_fraction: S, temperature: S) -> Self {
         Self { liquid_fraction, temperature, marks: [S::zero(); 2] }
@@ -53,7 +53,7 @@ impl<S: Real> PcmMemory<S> {
         change(&mut self.marks[1], second);
     }
 
-    /// Takes over the lanes of another one where the mask is true.
+    /// Takes the lanes of another memory where the mask is true.
     #[inline(always)]
     pub fn take(&mut self, mask: S::Mask, other: &Self) {
         let blend = |a: &mut S, b: S| *a = S::select(mask, b, *a);
@@ -94,7 +94,7 @@ impl<S: Real> Hysteresis<S> {
         [melting, (fraction, slope)]
     }
 
-    /// The memory of a cell that came from below.
+    /// The memory of a cell that was heated to a temperature.
     pub(super) fn begin(&self, temperature: S) -> PcmMemory<S> {
         let fraction = self.heating.compact(temperature).0;
         let memory = PcmMemory::new(fraction, temperature);
@@ -135,17 +135,17 @@ impl<S: Real> Hysteresis<S> {
         }
     }
 
-    /// What is remembered after a step that ended at a temperature with a fraction.
+    /// The memory after a step that ended at a temperature with a fraction.
     #[inline(never)]
     pub(super) fn next(&self, memory: &PcmMemory<S>, temperature: S, fraction: S) -> PcmMemory<S> {
         S::vectorised(
             #[inline(always)]
-            || self.follow(memory, temperature, fraction),
+            || self.memory_after(memory, temperature, fraction),
         )
     }
 
     #[inline(always)]
-    fn follow(&self, memory: &PcmMemory<S>, temperature: S, fraction: S) -> PcmMemory<S> {
+    fn memory_after(&self, memory: &PcmMemory<S>, temperature: S, fraction: S) -> PcmMemory<S> {
         let [first, second] = memory.marks;
         let [(melting, _), (freezing, _)] = self.curves(temperature);
         let marks = match self.model {
@@ -155,7 +155,7 @@ impl<S: Real> Hysteresis<S> {
                 [S::select(molten, S::one(), S::select(frozen, S::zero(), first)), S::zero()]
             }
             HysteresisModel::CurveSwitch => {
-                // On a curve its mark is here, and that of the other one is not yet asked for.
+                // On a curve its own mark is the present temperature, and that of the other curve is not needed yet.
                 let (melts, freezes) = (!melting.lt(fraction), !fraction.lt(freezing));
                 let on = melts | freezes;
                 let far = S::constant(FAR);
@@ -173,11 +173,11 @@ impl<S: Real> Hysteresis<S> {
         PcmMemory { liquid_fraction: fraction, temperature, marks }
     }
 
-    /// Finds the marks of `curve_switch` that are asked for and not known.
+    /// Computes the marks of `curve_switch` that are needed and not known.
     #[inline(always)]
-    fn marked(&self, fraction: S, marks: [S; 2], asked: S::Mask) -> [S; 2] {
+    fn marked(&self, fraction: S, marks: [S; 2], needed: S::Mask) -> [S; 2] {
         let far = S::constant(0.5 * FAR);
-        let missing = [asked & far.lt(marks[0]), asked & marks[1].lt(-far)];
+        let missing = [needed & far.lt(marks[0]), needed & marks[1].lt(-far)];
         let find = |mask: S::Mask, curve: &Curve<S>, side: usize| {
             if mask.any() {
                 S::select(mask, curve.temperatures_of(fraction)[side], marks[side])
@@ -185,11 +185,11 @@ impl<S: Real> Hysteresis<S> {
                 marks[side]
             }
         };
-        // Each on the side where its curve is followed: a step that lands there finds the slope that goes on.
+        // Each on the side on which its curve holds: a step limited to it finds the slope beyond it.
         [find(missing[0], &self.cooling, 0), find(missing[1], &self.heating, 1)]
     }
 
-    /// The same memory with nothing left unknown.
+    /// The same memory with all marks known.
     pub(super) fn complete(&self, memory: &PcmMemory<S>) -> PcmMemory<S> {
         match self.model {
             HysteresisModel::CurveSwitch => PcmMemory {
@@ -200,9 +200,9 @@ impl<S: Real> Hysteresis<S> {
         }
     }
 
-    /// Where freezing ends to go on and where melting begins, coming from the memory [degC].
+    /// Up to which temperature the material freezes and from which it melts, starting from the memory [degC].
     #[inline(always)]
-    fn turns(&self, memory: &PcmMemory<S>) -> [S; 2] {
+    fn thresholds(&self, memory: &PcmMemory<S>) -> [S; 2] {
         match self.model {
             HysteresisModel::CurveTrack => [S::constant(FAR), -S::constant(FAR)],
             HysteresisModel::CurveSwitch => memory.marks,
@@ -210,10 +210,10 @@ impl<S: Real> Hysteresis<S> {
         }
     }
 
-    /// Where the capacity is largest on freezing and on melting [degC].
+    /// Temperatures of the largest capacity on freezing and on melting [degC].
     #[inline(always)]
     fn peaks(&self, memory: &PcmMemory<S>) -> [S; 2] {
-        let [colder, warmer] = self.turns(memory);
+        let [colder, warmer] = self.thresholds(memory);
         [self.cooling.peak().min(colder), self.heating.peak().max(warmer)]
     }
 
@@ -229,16 +229,16 @@ impl<S: Real> Hysteresis<S> {
     #[inline(always)]
     fn limited(&self, from: S, to: S, memory: &PcmMemory<S>) -> (S, S::Mask) {
         let [freezing, melting] = self.peaks(memory);
-        let (to, first) = land(from, to, freezing, self.cooling.width());
-        let (to, second) = land(from, to, melting, self.heating.width());
-        let [colder, warmer] = self.turns(memory);
-        let mut unforeseen = first | second | passes(from, to, colder) | passes(from, to, warmer);
+        let (to, first) = limit_at(from, to, freezing, self.cooling.width());
+        let (to, second) = limit_at(from, to, melting, self.heating.width());
+        let [colder, warmer] = self.thresholds(memory);
+        let mut unpredictable = first | second | crosses(from, to, colder) | crosses(from, to, warmer);
         for curve in [&self.heating, &self.cooling] {
             if let Some([low, high]) = curve.kinks() {
-                unforeseen = unforeseen | passes(from, to, low) | passes(from, to, high);
+                unpredictable = unpredictable | crosses(from, to, low) | crosses(from, to, high);
             }
         }
-        (to, unforeseen)
+        (to, unpredictable)
     }
 
     /// Half-width of the narrower curve [K].
@@ -246,11 +246,11 @@ impl<S: Real> Hysteresis<S> {
         self.heating.width().min(self.cooling.width())
     }
 
-    /// The part of the fraction whose slope never falls, and that slope: each curve up to its peak, then straight on.
+    /// The convex part of the fraction and its slope: each curve up to its peak, then its tangent.
     /// The memory must be complete.
     pub(super) fn rising(&self, temperature: S, memory: &PcmMemory<S>) -> (S, S) {
         let [first, second] = memory.marks;
-        let [_, warmer] = self.turns(memory);
+        let [_, warmer] = self.thresholds(memory);
         let [freezing_peak, melting_peak] = self.peaks(memory);
         let along = |curve: &Curve<S>, peak: S, from: S| {
             let place = temperature.max(from).min(peak);
@@ -282,11 +282,11 @@ impl<S: Real> Hysteresis<S> {
     }
 }
 
-/// Whether a fraction went one way in the first part of a step and back in the second.
+/// Whether a fraction rose in the first part of a step and fell in the second, or the other way round.
 #[inline(always)]
 pub fn reversed<S: Real>(start: S, midway: S, end: S) -> S::Mask {
-    // Less than this is round-off.
-    let real = S::constant(1e-12);
+    // Smaller changes are round-off.
+    let threshold = S::constant(1e-12);
     let (before, after) = (midway - start, end - midway);
-    (before * after).lt(S::zero()) & real.lt(before.abs()) & real.lt(after.abs())
+    (before * after).lt(S::zero()) & threshold.lt(before.abs()) & threshold.lt(after.abs())
 }

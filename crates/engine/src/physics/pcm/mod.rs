@@ -3,9 +3,9 @@
 //! A law gives the enthalpy itself and its exact derivative, so that the step can
 //! conserve heat; the "apparent capacity" of the paper is that derivative.
 //!
-//! Mass stays: a cell is a fixed mass, its volume that of the solid it was built with. Heat is counted per volume as
-//! built, `H(T, xi) = rho_s c_s (T - Tr) + xi [rho_s L + rho_s (c_l - c_s)(T - Tr)]`; the liquid, thicker by
-//! `rho_s/rho_l`, conducts `k_l rho_l/rho_s` over the thickness as built. With one density this is the paper's eq. 2.
+//! Mass is conserved: a cell is a fixed mass, its volume that of the solid as built. Heat is counted per volume as
+//! built, `H(T, xi) = rho_s c_s (T - Tr) + xi [rho_s L + rho_s (c_l - c_s)(T - Tr)]`; the liquid layer is thicker by
+//! `rho_s/rho_l` and conducts `k_l rho_l/rho_s` over the thickness as built. With one density this is the paper's eq. 2.
 
 mod curve;
 mod hysteresis;
@@ -16,7 +16,7 @@ mod table;
 use crate::input::description::{ParamId, PcmLaw};
 use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
-use curve::{Curve, CurvePoint, land, passes};
+use curve::{Curve, CurvePoint, crosses, limit_at};
 use hysteresis::Hysteresis;
 use table::Table;
 
@@ -45,7 +45,7 @@ pub struct PcmPoint<S> {
 }
 
 impl<S: Real> PcmPoint<S> {
-    /// A point not yet evaluated.
+    /// Zeros, before it is evaluated.
     pub fn zero() -> Self {
         let zero = S::zero();
         Self {
@@ -129,7 +129,7 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     /// Properties at several temperatures [degC]; a law that remembers takes a memory for each.
-    // Not inlined: all laws at every place where a cell is looked at would be a lot of code.
+    // One copy only: inlining all laws at every call would multiply compile time.
     #[inline(never)]
     pub fn at_all(&self, temperatures: &[S], memory: &[PcmMemory<S>], points: &mut [PcmPoint<S>]) {
         S::vectorised(
@@ -138,25 +138,25 @@ impl<S: Real> PcmCoefficients<S> {
                 let places = points.iter_mut().zip(temperatures);
                 match &self.law {
                     Law::Melting(latent, curve) => {
-                        // The usual curve by itself, so that its loop holds nothing else.
+                        // The usual curve has a loop of its own without the other curves, which is faster.
                         if let Some(tanh) = curve.tanh() {
                             for (point, &temperature) in places {
-                                *point = self.melt(*latent, temperature, tanh.at(temperature));
+                                *point = self.without_hysteresis(*latent, temperature, tanh.at(temperature));
                             }
                         } else {
                             for (point, &temperature) in places {
-                                *point = self.melt(*latent, temperature, curve.at(temperature));
+                                *point = self.without_hysteresis(*latent, temperature, curve.at(temperature));
                             }
                         }
                     }
                     Law::Hysteresis(latent, hysteresis) => {
                         for ((point, &temperature), memory) in places.zip(memory) {
-                            *point = self.turn(*latent, hysteresis, temperature, memory);
+                            *point = self.with_hysteresis(*latent, hysteresis, temperature, memory);
                         }
                     }
                     Law::Table(table) => {
                         for (point, &temperature) in places {
-                            *point = self.read(table, temperature);
+                            *point = self.tabulated(table, temperature);
                         }
                     }
                 }
@@ -165,14 +165,14 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     #[inline(always)]
-    fn melt(&self, latent: Latent<S>, temperature: S, point: CurvePoint<S>) -> PcmPoint<S> {
+    fn without_hysteresis(&self, latent: Latent<S>, temperature: S, point: CurvePoint<S>) -> PcmPoint<S> {
         let CurvePoint { fraction, slope, molten } = point;
         let (enthalpy, capacity) = self.heat(latent, temperature, fraction, slope);
         self.point(temperature, [enthalpy, capacity], [fraction, slope], molten)
     }
 
     #[inline(always)]
-    fn turn(
+    fn with_hysteresis(
         &self,
         latent: Latent<S>,
         hysteresis: &Hysteresis<S>,
@@ -185,7 +185,7 @@ impl<S: Real> PcmCoefficients<S> {
     }
 
     #[inline(always)]
-    fn read(&self, table: &Table<S>, temperature: S) -> PcmPoint<S> {
+    fn tabulated(&self, table: &Table<S>, temperature: S) -> PcmPoint<S> {
         let (enthalpy, capacity, fraction, slope) = table.at(temperature, self.volumetric_heat);
         self.point(temperature, [enthalpy, capacity], [fraction, slope], table.molten(temperature))
     }
@@ -230,12 +230,12 @@ impl<S: Real> PcmCoefficients<S> {
         }
     }
 
-    /// Whether the enthalpy depends on the way taken.
+    /// Whether the enthalpy depends on earlier temperatures.
     pub fn remembers(&self) -> bool {
         matches!(self.law, Law::Hysteresis(..))
     }
 
-    /// The memory of a cell that came to a temperature from below.
+    /// The memory of a cell that was heated to a temperature.
     pub fn begin(&self, temperature: S) -> PcmMemory<S> {
         if let Law::Hysteresis(_, hysteresis) = &self.law {
             return hysteresis.begin(temperature);
@@ -261,9 +261,9 @@ impl<S: Real> PcmCoefficients<S> {
         }
     }
 
-    /// Keeps a Newton step from leaping over the steep part of the enthalpy curve: a step that crosses its
-    /// inflection from beyond one half-width lands on the inflection, from where Newton converges monotonically.
-    /// True where the next change cannot be foreseen from this one: it was kept, or the slope jumps on the way.
+    /// Limits a Newton step across the steep part of the enthalpy curve: a step that crosses its inflection and is longer
+    /// than a half-width ends on the inflection, from where Newton's method converges monotonically.
+    /// True where the next change cannot be predicted from this one: the step was limited, or the slope jumps within it.
     #[inline(always)]
     pub fn limit(&self, from: S, to: S, memory: &PcmMemory<S>) -> (S, S::Mask) {
         let (peak, width, kinks) = match &self.law {
@@ -271,10 +271,10 @@ impl<S: Real> PcmCoefficients<S> {
             Law::Table(table) => (table.peak(), table.width(), Some(table.ends())),
             Law::Hysteresis(_, hysteresis) => return hysteresis.limit(from, to, memory),
         };
-        let (to, leaps) = land(from, to, peak, width);
-        let jumps =
-            kinks.map_or(S::Mask::splat(false), |[low, high]| passes(from, to, low) | passes(from, to, high));
-        (to, leaps | jumps)
+        let (to, limited) = limit_at(from, to, peak, width);
+        let jumps = kinks
+            .map_or(S::Mask::splat(false), |[low, high]| crosses(from, to, low) | crosses(from, to, high));
+        (to, limited | jumps)
     }
 
     /// Half-width of the melting range [K].

@@ -1,0 +1,110 @@
+//! Long-wave emission of the sky.
+//!
+//! Sources:
+//! - Emissivity of the clear sky by the dew point: Clark & Allen (1978), Proc. 2nd National Passive Solar Conference, 675-678;
+//!   Martin & Berdahl (1984), Solar Energy 33(3), doi:10.1016/0038-092X(84)90162-2; Brunt (1932),
+//!   doi:10.1002/qj.49705824704; recalibrated by Li, Jiang & Coimbra (2017), Solar Energy 144,
+//!   doi:10.1016/j.solener.2017.01.006. All coefficients are parameters.
+//! - Clouds: Clark & Allen (1978).
+
+use crate::input::description::Sky;
+use crate::input::forcing::channel;
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::constants::{KELVIN, SIGMA};
+
+/// The weather as the models of the sky need it.
+#[derive(Debug, Clone, Copy)]
+pub struct SkyState {
+    /// Black emission at the air's temperature [W/m2].
+    black: f64,
+    /// Air temperature [K].
+    air: f64,
+    /// Infrared [W/m2], or the model's function of the dew point.
+    humidity: f64,
+    /// Cloud cover [tenths].
+    cloud: f64,
+}
+
+impl SkyState {
+    /// Reads a forcing row for a model.
+    #[must_use]
+    pub fn new(sky: &Sky, row: &[f64]) -> Self {
+        let air = row[channel::AIR_TEMPERATURE] + KELVIN;
+        let dew = row[channel::DEW_POINT];
+        let humidity = match sky {
+            Sky::Measured { .. } => row[channel::INFRARED],
+            Sky::Offset { .. } => 0.0,
+            Sky::ClarkAllen { .. } => Real::ln((dew + KELVIN) / 273.0),
+            Sky::MartinBerdahl { .. } => dew / 100.0,
+            Sky::Brunt { .. } => Real::sqrt(vapour_pressure(dew)),
+        };
+        Self { black: SIGMA * air.pow4(), air, humidity, cloud: row[channel::CLOUD_COVER] }
+    }
+}
+
+/// Downward emission of the sky on a horizontal plane [W/m2].
+#[inline(always)]
+pub fn sky_emission<S: Real>(values: &Values<'_, S>, sky: &Sky, cloud: [S; 3], state: &SkyState) -> S {
+    let h = state.humidity;
+    let emissivity = match sky {
+        Sky::Measured { scale } => return values.get(*scale).scale(h),
+        Sky::Offset { depression } => {
+            return (S::constant(state.air) - values.get(*depression)).pow4().scale(SIGMA);
+        }
+        Sky::ClarkAllen { a, b } | Sky::Brunt { a, b } => values.get(*a) + values.get(*b).scale(h),
+        Sky::MartinBerdahl { a, b, c } => {
+            values.get(*a) + values.get(*b).scale(h) + values.get(*c).scale(h * h)
+        }
+    };
+    let n = state.cloud;
+    let clouds = S::one() + (cloud[0] + (cloud[1] + cloud[2].scale(n)).scale(n)).scale(n);
+    (emissivity * clouds).min(S::one()).scale(state.black)
+}
+
+/// Vapour pressure [hPa] at a dew point [degC]: Magnus form, Alduchov & Eskridge (1996),
+/// J. Appl. Meteorol. 35, doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2.
+fn vapour_pressure(dew: f64) -> f64 {
+    6.1094 * Real::exp(17.625 * dew / (243.04 + dew))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::description::ParamId;
+    use crate::input::forcing::CLIMATE_CHANNELS;
+
+    /// Air at 20 degC, dew point 10 degC, 5 tenths of cloud.
+    fn emission(sky: &Sky, numbers: &[f64], cloud: [f64; 3]) -> f64 {
+        let mut row = [0.0; CLIMATE_CHANNELS];
+        row[channel::AIR_TEMPERATURE] = 20.0;
+        row[channel::DEW_POINT] = 10.0;
+        row[channel::CLOUD_COVER] = 5.0;
+        row[channel::INFRARED] = 333.0;
+        sky_emission(&Values::new(numbers), sky, cloud, &SkyState::new(sky, &row))
+    }
+
+    /// Black at 20 degC: 418.766 W/m2.
+    #[test]
+    fn models_by_hand() {
+        let [a, b, c] = core::array::from_fn(|k| ParamId(u32::try_from(k).unwrap()));
+        let clear = [0.0; 3];
+        let close = |found: f64, expected: f64| {
+            assert!((found / expected - 1.0).abs() < 1e-5, "{found} is not {expected}");
+        };
+        // 0.711 + 0.56 0.1 + 0.73 0.01 = 0.7743; clouds 1 + 0.0224 5 - 0.0035 25 + 0.00028 125 = 1.0595.
+        let martin = Sky::MartinBerdahl { a, b, c };
+        close(emission(&martin, &[0.711, 0.56, 0.73], clear), 0.7743 * 418.766);
+        let cloud = [0.0224, -0.0035, 0.00028];
+        close(emission(&martin, &[0.711, 0.56, 0.73], cloud), 0.7743 * 1.0595 * 418.766);
+        // 0.787 + 0.764 ln(283.15/273) = 0.814890.
+        close(emission(&Sky::ClarkAllen { a, b }, &[0.787, 0.764], clear), 0.814_890 * 418.766);
+        // Vapour pressure 6.1094 e^(176.25/253.04) = 12.2602 hPa: 0.52 + 0.065 3.50146 = 0.747595.
+        close(emission(&Sky::Brunt { a, b }, &[0.52, 0.065], clear), 0.747_595 * 418.766);
+        // 10 K below the air: sigma 283.15^4 = 364.484; measured: the channel.
+        close(emission(&Sky::Offset { depression: a }, &[10.0], clear), 364.484);
+        close(emission(&Sky::Measured { scale: a }, &[1.1], cloud), 1.1 * 333.0);
+        // No more than a black body.
+        close(emission(&martin, &[1.2, 0.0, 0.0], cloud), 418.766);
+    }
+}
