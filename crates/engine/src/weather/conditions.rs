@@ -36,7 +36,7 @@ pub struct Instant<'a> {
     wind_from: [f64; 2],
     /// Cosine and sine of the angle of the day in the year, where the ground asks for it.
     season: [f64; 2],
-    /// Sun and shade, see [`Daylight`](crate::geometry::daylight::Daylight).
+    /// Sun and shade, see [`SolarGeometry`](crate::building::solar_geometry::SolarGeometry).
     geometry: Box<[f64]>,
 }
 
@@ -49,7 +49,7 @@ impl<'a> Instant<'a> {
         let sunlight = Sunlight::new(row, plan.description.site.diffuse);
         Self {
             row,
-            geometry: plan.daylight.at(&sunlight),
+            geometry: plan.solar_geometry.at(&sunlight),
             sunlight,
             sky_state: SkyState::new(&plan.description.site.sky, row),
             wind: Wind::new(row[channel::WIND_SPEED], terms),
@@ -63,7 +63,7 @@ impl Instant<'_> {
     /// What shades leave a surface of sun and sky: they stand outside.
     fn open(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
         if surface.is_outside() {
-            plan.daylight.open(surface.wall(), &self.geometry)
+            plan.solar_geometry.open(surface.wall(), &self.geometry)
         } else {
             SkyVisibility::FULL
         }
@@ -97,7 +97,7 @@ impl<'a> Weather<'a> {
     #[must_use]
     pub fn once(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
         // Where the sun is followed, what it meets is not to be found twice when days are repeated.
-        if plan.daylight.idle() { Self::passing(plan, forcing) } else { Self::new(plan, forcing) }
+        if plan.solar_geometry.is_empty() { Self::passing(plan, forcing) } else { Self::new(plan, forcing) }
     }
 
     fn passing(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
@@ -453,7 +453,7 @@ impl<S: Real> Conditions<S> {
         first.fill(S::zero());
         for &(window, i) in &plan.zones[z].windows {
             let at = &self.windows[window];
-            let patches = plan.daylight.patches(window, &now.geometry);
+            let patches = plan.solar_geometry.beam_fractions(window, &now.geometry);
             // A window in full shade has no beam to follow.
             let patches = patches.filter(|shares| shares.iter().sum::<f64>() > 0.0);
             let beam = if patches.is_some() { at.directed } else { S::zero() };

@@ -106,7 +106,7 @@ impl<S: Real> WeatherIndex<S> {
             }
             _ => return None,
         };
-        let shaded = |surface: SurfaceId| surface.is_outside() && plan.daylight.shaded(surface.wall());
+        let shaded = |surface: SurfaceId| surface.is_outside() && plan.solar_geometry.shaded(surface.wall());
         let alike = |a: SurfaceId, b: SurfaceId| !shaded(a) && !shaded(b);
         let known = self.suns.iter().position(|known| match (known, &sun) {
             (Sun::Measured(mine), Sun::Measured(theirs)) => mine == theirs,

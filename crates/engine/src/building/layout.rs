@@ -1,0 +1,117 @@
+//! Walls, surfaces and zones of a compiled building: how cells, layers and rows of unknowns are laid out.
+
+use super::glazing::GlassPlan;
+use super::ids::SurfaceId;
+use crate::input::description::{Construction, Description, Glazing, Material};
+
+/// A wall as a chain of cells between two surfaces.
+#[derive(Debug, Clone)]
+pub struct WallPlan {
+    /// Index of its first cell in the flat cell arrays.
+    pub first_cell: usize,
+    /// Layer (or pane) of each cell.
+    pub cell_layers: Vec<usize>,
+    /// Massless layers in each link, from the outside surface to the inside surface (`cells + 1` lists).
+    pub link_layers: Vec<Vec<usize>>,
+    /// First and one past the last cell of each layer.
+    pub layer_cells: Vec<(usize, usize)>,
+    /// True when its properties depend on temperature, or its panes absorb sun.
+    pub nonlinear: bool,
+    /// The panes of a window.
+    pub glass: Option<GlassPlan>,
+}
+
+/// How a surface takes part in the solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SurfaceRole {
+    /// Unknown `row` of the coupled system, in contact with a zone.
+    Zone {
+        /// Index of the zone.
+        zone: usize,
+        /// Row in the coupled system.
+        row: usize,
+    },
+    /// In contact with no zone: eliminated with its wall.
+    Exterior,
+}
+
+/// A surface.
+#[derive(Debug, Clone)]
+pub struct SurfacePlan {
+    /// Wall it belongs to.
+    pub wall: usize,
+    /// 0 outside, 1 inside.
+    pub side: usize,
+    /// Its part in the solution.
+    pub role: SurfaceRole,
+}
+
+/// A zone.
+#[derive(Debug, Clone)]
+pub struct ZonePlan {
+    /// Its surfaces, in the order of all surfaces.
+    pub surfaces: Vec<SurfaceId>,
+    /// Row of each of its surfaces in the coupled system.
+    pub surface_rows: Vec<usize>,
+    /// Row of its air in the coupled system.
+    pub air_row: usize,
+    /// Its windows: position in [`Plan::windows`](crate::building::plan::Plan::windows) and among its surfaces.
+    pub windows: Vec<(usize, usize)>,
+}
+
+impl WallPlan {
+    /// Lays out a construction in cells; `first_cell` is its place in the flat cell arrays.
+    pub(crate) fn new(description: &Description, construction: &Construction, first_cell: usize) -> Self {
+        if let Some(glazing) = &construction.glazing {
+            return Self::of_glass(glazing, first_cell);
+        }
+        let mut cell_layers = Vec::new();
+        let mut link_layers = vec![Vec::new()];
+        let mut layer_cells = Vec::new();
+        let mut nonlinear = false;
+        for (index, layer) in construction.layers.iter().enumerate() {
+            let start = cell_layers.len();
+            match description.materials[layer.material] {
+                Material::Resistance { .. } | Material::Rated { .. } => {
+                    if let Some(link) = link_layers.last_mut() {
+                        link.push(index);
+                    }
+                }
+                Material::Solid { .. } | Material::Pcm { .. } => {
+                    nonlinear |= matches!(description.materials[layer.material], Material::Pcm { .. });
+                    for _ in 0..layer.nodes {
+                        cell_layers.push(index);
+                        link_layers.push(Vec::new());
+                    }
+                }
+            }
+            layer_cells.push((start, cell_layers.len()));
+        }
+        Self { first_cell, cell_layers, link_layers, layer_cells, nonlinear, glass: None }
+    }
+
+    fn of_glass(glazing: &Glazing, first_cell: usize) -> Self {
+        let glass = GlassPlan::new(glazing);
+        Self {
+            first_cell,
+            cell_layers: glass.cell_panes.clone(),
+            link_layers: vec![Vec::new(); glass.cell_panes.len() + 1],
+            layer_cells: Vec::new(),
+            nonlinear: true,
+            glass: Some(glass),
+        }
+    }
+
+    /// Number of cells.
+    #[must_use]
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.cell_layers.len()
+    }
+
+    /// True for a wall of resistances only.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.cell_layers.is_empty()
+    }
+}

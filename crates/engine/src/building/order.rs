@@ -1,0 +1,234 @@
+//! The numbering of the unknowns of the coupled system: surfaces in contact with zones, and the air of each zone.
+//!
+//! First come, zone by zone, the surfaces that exchange heat with their own zone only: surfaces of walls of constant
+//! properties whose other surface is in contact with no zone. Then the other surfaces of walls of constant properties: they
+//! need not be eliminated again where only the other walls change. Last come the surfaces of nonlinear walls and the air of the
+//! zones. Within these two groups the unknown with the fewest neighbours comes next (minimum degree; Tinney & Walker 1967,
+//! doi:10.1109/PROC.1967.6011; George & Liu 1989, doi:10.1137/1031001), which keeps the factors sparse. Unknowns of different
+//! zones are coupled only by the walls and the air paths between the zones.
+
+use core::ops::Range;
+use std::collections::BTreeSet;
+
+use super::ids::SurfaceId;
+use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
+use crate::input::description::{Description, Facing, ZoneLongwave};
+
+/// The order of elimination; see [`Plan`](crate::building::plan::Plan).
+#[derive(Debug, Clone)]
+pub(crate) struct Order {
+    pub(crate) own_rows: usize,
+    pub(crate) reach: Vec<Vec<Range<usize>>>,
+    pub(crate) constant_rows: usize,
+}
+
+/// Finds the unknowns and numbers them in the order of elimination.
+pub(crate) fn number_unknowns(
+    description: &Description,
+    walls: &[WallPlan],
+) -> (Vec<SurfacePlan>, Vec<ZonePlan>, Order) {
+    let (mut surfaces, mut zones) = find_unknowns(description);
+    let groups = groups(walls, &surfaces, &zones);
+    let in_group = |wanted: usize| groups.iter().filter(|(group, _)| *group == wanted).count();
+    let (own_rows, constant_rows) = (in_group(OWN), in_group(CONSTANT));
+    let (position, later) = minimum_degree(neighbours(description, &surfaces, &zones), &groups);
+    for surface in &mut surfaces {
+        if let SurfaceRole::Zone { row, .. } = &mut surface.role {
+            *row = position[*row];
+        }
+    }
+    for zone in &mut zones {
+        zone.air_row = position[zone.air_row];
+        zone.surface_rows = zone.surface_rows.iter().map(|&row| position[row]).collect();
+    }
+    let later = later.into_iter().skip(own_rows);
+    let reach = later.map(|met| runs(met.into_iter().map(|k| position[k] - own_rows).collect())).collect();
+    (surfaces, zones, Order { own_rows, reach, constant_rows })
+}
+
+/// The unknowns in the order of the description: the surfaces in contact with zones, then the air of each zone.
+fn find_unknowns(description: &Description) -> (Vec<SurfacePlan>, Vec<ZonePlan>) {
+    let mut zones: Vec<ZonePlan> = description
+        .zones
+        .iter()
+        .map(|_| ZonePlan { surfaces: Vec::new(), surface_rows: Vec::new(), air_row: 0, windows: Vec::new() })
+        .collect();
+    let mut surfaces = Vec::with_capacity(2 * description.surfaces.len());
+    let mut row = 0;
+    for (wall, definition) in description.surfaces.iter().enumerate() {
+        for (side, part) in [&definition.outside, &definition.inside].into_iter().enumerate() {
+            let role = if let Facing::Zone { zone } = part.facing {
+                zones[zone].surfaces.push(SurfaceId::new(wall, side));
+                zones[zone].surface_rows.push(row);
+                row += 1;
+                SurfaceRole::Zone { zone, row: row - 1 }
+            } else {
+                SurfaceRole::Exterior
+            };
+            surfaces.push(SurfacePlan { wall, side, role });
+        }
+    }
+    for zone in &mut zones {
+        zone.air_row = row;
+        row += 1;
+    }
+    (surfaces, zones)
+}
+
+/// Group of the surfaces of constant walls that exchange heat with their own zone only.
+const OWN: usize = 0;
+/// Group of the other surfaces of constant walls.
+const CONSTANT: usize = 1;
+/// Group of the surfaces of nonlinear walls and of the air of zones.
+const CHANGING: usize = 2;
+
+/// Group of each unknown, and the zone of those of the first group.
+fn groups(walls: &[WallPlan], surfaces: &[SurfacePlan], zones: &[ZonePlan]) -> Vec<(usize, usize)> {
+    let unknowns = zones.iter().map(|zone| zone.surfaces.len() + 1).sum();
+    let mut groups = vec![(CHANGING, 0); unknowns];
+    for pair in surfaces.chunks_exact(2) {
+        let between_zones = pair.iter().all(|surface| matches!(surface.role, SurfaceRole::Zone { .. }));
+        for surface in pair {
+            if let SurfaceRole::Zone { zone, row } = surface.role
+                && !walls[surface.wall].nonlinear
+            {
+                groups[row] = if between_zones { (CONSTANT, 0) } else { (OWN, zone) };
+            }
+        }
+    }
+    groups
+}
+
+/// Which unknowns of the coupled system exchange heat directly.
+fn neighbours(
+    description: &Description,
+    surfaces: &[SurfacePlan],
+    zones: &[ZonePlan],
+) -> Vec<BTreeSet<usize>> {
+    let row = |surface: SurfaceId| match surfaces[surface.index()].role {
+        SurfaceRole::Zone { row, .. } => Some(row),
+        SurfaceRole::Exterior => None,
+    };
+    let unknowns = zones.iter().map(|zone| zone.surfaces.len() + 1).sum();
+    let mut neighbours = vec![BTreeSet::new(); unknowns];
+    let mut couple = |a: usize, b: usize| {
+        neighbours[a].insert(b);
+        neighbours[b].insert(a);
+    };
+    for (zone, definition) in zones.iter().zip(&description.zones) {
+        let rows = &zone.surface_rows;
+        for (i, &a) in rows.iter().enumerate() {
+            couple(a, zone.air_row);
+            if !matches!(definition.longwave, ZoneLongwave::None) {
+                rows[..i].iter().for_each(|&b| couple(a, b));
+            }
+        }
+    }
+    for wall in 0..description.surfaces.len() {
+        if let (Some(a), Some(b)) = (row(SurfaceId::outside(wall)), row(SurfaceId::inside(wall))) {
+            couple(a, b);
+        }
+    }
+    for path in &description.air_paths {
+        couple(zones[path.between[0]].air_row, zones[path.between[1]].air_row);
+    }
+    neighbours
+}
+
+/// Eliminates group by group, always the unknown with the fewest neighbours next; those of the first group in their order.
+///
+/// Returns the position of each unknown in the order, and by position the unknowns eliminated later that the eliminated one
+/// is coupled with, those that elimination adds (the fill) included.
+fn minimum_degree(
+    mut neighbours: Vec<BTreeSet<usize>>,
+    groups: &[(usize, usize)],
+) -> (Vec<usize>, Vec<BTreeSet<usize>>) {
+    let n = neighbours.len();
+    let mut position = vec![usize::MAX; n];
+    let mut later = Vec::with_capacity(n);
+    for next in 0..n {
+        let waiting = (0..n).filter(|&k| position[k] == usize::MAX);
+        let degree = |k: usize| if groups[k].0 == OWN { 0 } else { neighbours[k].len() };
+        let Some(chosen) = waiting.min_by_key(|&k| (groups[k], degree(k))) else { break };
+        position[chosen] = next;
+        let coupled = core::mem::take(&mut neighbours[chosen]);
+        // Elimination couples all neighbours of the unknown with each other.
+        for &k in &coupled {
+            neighbours[k].extend(coupled.iter().filter(|&&other| other != k));
+            neighbours[k].remove(&chosen);
+        }
+        later.push(coupled);
+    }
+    (position, later)
+}
+
+/// Numbers gathered into runs without gaps.
+fn runs(numbers: BTreeSet<usize>) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for number in numbers {
+        match runs.last_mut() {
+            Some(run) if run.end == number => run.end += 1,
+            _ => runs.push(number..number + 1),
+        }
+    }
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn graph(n: usize, couplings: &[[usize; 2]]) -> Vec<BTreeSet<usize>> {
+        let mut neighbours = vec![BTreeSet::new(); n];
+        for &[a, b] in couplings {
+            neighbours[a].insert(b);
+            neighbours[b].insert(a);
+        }
+        neighbours
+    }
+
+    /// Couplings that elimination adds to those of a graph.
+    fn fill(n: usize, couplings: &[[usize; 2]], groups: &[(usize, usize)]) -> usize {
+        let (_, later) = minimum_degree(graph(n, couplings), groups);
+        later.iter().map(BTreeSet::len).sum::<usize>() - couplings.len()
+    }
+
+    /// A chain of zones joined by walls and air paths: surface, air, surface of each zone in a row, and so on. It has no
+    /// cycle: minimum degree eliminates it from its ends, without fill, whatever the numbering.
+    #[test]
+    fn a_chain_of_zones_has_no_fill() {
+        let n = 30;
+        let numbered = |k: usize| k * 7 % n;
+        let chain: Vec<[usize; 2]> = (1..n).map(|k| [numbered(k - 1), numbered(k)]).collect();
+        let groups = vec![(CHANGING, 0); n];
+        assert_eq!(fill(n, &chain, &groups), 0);
+        let (_, later) = minimum_degree(graph(n, &chain), &groups);
+        assert!(later[..n - 1].iter().all(|coupled| coupled.len() == 1) && later[n - 1].is_empty());
+    }
+
+    /// A ring of n unknowns: each of the first n - 3 eliminations couples two neighbours anew.
+    #[test]
+    fn a_ring_has_the_least_fill() {
+        for n in 4..9 {
+            let ring: Vec<[usize; 2]> = (0..n).map(|k| [k, (k + 1) % n]).collect();
+            assert_eq!(fill(n, &ring, &vec![(CHANGING, 0); n]), n - 3);
+        }
+    }
+
+    /// A star is eliminated from its points; with its centre in an earlier group, all points are coupled with each other.
+    #[test]
+    fn groups_come_before_degrees() {
+        let star: Vec<[usize; 2]> = (1..6).map(|k| [0, k]).collect();
+        let mut groups = vec![(CHANGING, 0); 6];
+        assert_eq!(fill(6, &star, &groups), 0);
+        groups[0] = (CONSTANT, 0);
+        assert_eq!(fill(6, &star, &groups), 5 * 4 / 2);
+        assert_eq!(minimum_degree(graph(6, &star), &groups).0[0], 0);
+    }
+
+    #[test]
+    fn runs_of_numbers() {
+        assert_eq!(runs([1, 2, 3, 7, 9, 10].into()), [1..4, 7..8, 9..11]);
+        assert!(runs(BTreeSet::new()).is_empty());
+    }
+}
