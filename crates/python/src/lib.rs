@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 /// Panics on purpose, so that tests can see what becomes of a defect of the engine.
 #[pyfunction]
-fn _panic(py: Python<'_>, message: String) -> PyResult<()> {
+fn _panic(py: Python<'_>, message: &str) -> PyResult<()> {
     errors::attended(py, None, |_| panic!("{message}"))
 }
 
