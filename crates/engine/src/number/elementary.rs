@@ -9,7 +9,7 @@ use crate::number::real::{Logistic, Real};
 
 pub(crate) use libm::{acos, cos, sin};
 
-/// What elementary functions need to know of the bits of a number, by lane.
+/// Operations on the bits of a number that elementary functions need, in each lane.
 pub(super) trait Bits: Real {
     /// `2^k` of the integer k that stands in the low bits of `1.5 * 2^52 + k`.
     fn power_of_two(shifted: Self) -> Self;
@@ -100,7 +100,7 @@ pub(super) fn ln<S: Bits>(x: S) -> S {
 #[inline(always)]
 pub(super) fn logistic<S: Bits>(x: S) -> Logistic<S> {
     use core::f64::consts::{LN_2, SQRT_2};
-    // Below this nothing is left of `2^t`.
+    // Below this `2^t` is zero in the sum.
     const LEAST: f64 = -1000.0;
     let t = (-x.abs()).max(S::constant(LEAST));
     let shifted = t + S::constant(ROUND);
@@ -134,7 +134,7 @@ pub(super) fn logistic<S: Bits>(x: S) -> Logistic<S> {
     Logistic { rise: S::select(falls, small, large), rest: S::select(falls, large, small), tail }
 }
 
-/// A polynomial of degree 5 whose lowest coefficient comes first, in parts that do not wait for each other.
+/// A polynomial of degree 5 whose lowest coefficient comes first, in parts that can be computed at the same time.
 #[inline(always)]
 fn quintic<S: Real>(x: S, c: [f64; 6]) -> S {
     let pair = |i: usize| S::constant(c[i]) + x.scale(c[i + 1]);
@@ -162,7 +162,7 @@ pub(super) const SPLIT: u64 = (EXPONENT_BIAS << 52) - 0x3FE6_A09E_667F_3BCD;
 pub(super) const TWO_52: u64 = 0x4330_0000_0000_0000;
 /// A third of 2^32, rounded up.
 pub(super) const THIRD: u64 = 0x5555_5556;
-/// High word of the guess of `x^(-1/3)` before a third of the high word of x is taken off.
+/// High word of the guess of `x^(-1/3)` before a third of the high word of x is subtracted.
 pub(super) const INVERSE_CBRT: u64 = 0x553F_0000;
 
 #[cfg(test)]

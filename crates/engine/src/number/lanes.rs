@@ -120,17 +120,17 @@ impl<const N: usize> Real for Lanes<N> {
     fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }
-    // Not inlined, for the compiler's sake.
+    // One copy only: inlining multiplies compile time.
     #[inline(never)]
     fn exp(self) -> Self {
         exp(self)
     }
-    // Not inlined, for the compiler's sake.
+    // One copy only: inlining multiplies compile time.
     #[inline(never)]
     fn ln(self) -> Self {
         ln(self)
     }
-    // Not inlined, for the compiler's sake.
+    // One copy only: inlining multiplies compile time.
     #[inline(never)]
     fn inverse_cbrt(self) -> Self {
         inverse_cbrt(self)

@@ -1,12 +1,12 @@
 //! The number trait [`Real`] that all physics is written over, and what goes with it: masks, numbers side by side, and
 //! equations at a known solution.
 //!
-//! The same law runs as a plain `f64` ([`plain`](super::plain)), on several ensemble members at once, one in each lane
+//! The same law runs as a plain `f64` (`plain`), on several ensemble members at once, one in each lane
 //! ([`lanes`](super::lanes), [`simd`](super::simd)), with forward derivatives ([`dual`](super::dual)) and on a tape for
 //! reverse derivatives ([`tape`](super::tape)).
 //!
 //! A member must give the same bits alone and in a lane. Therefore elementary functions are our own
-//! ([`elementary`](super::elementary)), lanes apply them element by element, nothing is contracted to fused operations,
+//! (`elementary`), lanes apply them element by element, nothing is contracted to fused operations,
 //! and code on lane values selects instead of branching.
 
 use core::fmt::Debug;
@@ -42,7 +42,7 @@ impl Mask for bool {
 pub struct Logistic<S> {
     /// `1/(1 + 2^-x)`.
     pub rise: S,
-    /// `1/(1 + 2^x)`, which is what `rise` lacks of 1.
+    /// `1/(1 + 2^x)`, which is `1 - rise`.
     pub rest: S,
     /// `ln(1 + 2^-|x|)`, within 4e-16.
     pub tail: S,
@@ -58,7 +58,7 @@ impl<S: Real> Logistic<S> {
     }
 }
 
-/// A number the physics can be run with.
+/// A number that the physics can be computed with.
 pub trait Real:
     Copy
     + Debug
@@ -80,12 +80,12 @@ pub trait Real:
     type Equations: Equations<Self>;
     /// True when the number carries derivatives (Newton then adds one iteration, so that they converge too).
     const DERIVATIVES: bool;
-    /// How many of them that stand side by side in memory are computed with together, see [`Abreast`].
+    /// Neighbouring numbers of an array that are computed with at once, see [`Abreast`].
     const SIDE: usize = 1;
-    /// Whether it lies in a register or two, so that a row of numbers may stay there.
+    /// Whether [`Self::SIDE`] of them fit into a register or two, so that a row of a matrix can stay in registers.
     const REGISTERS: bool = false;
 
-    /// Does a task with as many numbers at once as the machine has room for.
+    /// Does a task on neighbouring numbers of an array, as many at once as the registers of the machine hold.
     #[inline(always)]
     fn abreast<T: Task<Self>>(task: T) -> T::Output {
         task.run::<Self>()
@@ -135,7 +135,7 @@ pub trait Real:
 
     /// Runs `work` with the vector instructions that this number is made of, if any.
     ///
-    /// What is to run vectorised must be inlined into `work`: hence the `inline(always)` on all physics.
+    /// Only code that is inlined into `work` uses these instructions: hence the `inline(always)` on all physics.
     #[inline(always)]
     fn vectorised<R>(work: impl FnOnce() -> R) -> R {
         work()
@@ -171,7 +171,7 @@ pub trait Real:
     fn abs(self) -> Self {
         Self::select(self.lt(Self::zero()), -self, self)
     }
-    /// `|self|` rounded off within `radius` of zero, so that its powers keep a finite slope there.
+    /// `sqrt(self^2 + radius^2)`: nearly `|self|`, but smooth at zero, so that its powers have a finite slope there.
     #[inline(always)]
     #[must_use]
     fn smooth_abs(self, radius: f64) -> Self {
@@ -204,26 +204,26 @@ pub trait Real:
     }
 }
 
-/// Whether two numbers have the same bits in all lanes; of slopes nothing is known.
+/// Whether two numbers have the same bits in all lanes. Never for numbers with derivatives: their slopes may differ.
 pub(crate) fn same<S: Real>(a: S, b: S) -> bool {
     !S::DERIVATIVES && (0..S::LANES).all(|lane| a.lane(lane).to_bits() == b.lane(lane).to_bits())
 }
 
-/// [`Real::SIDE`] numbers that stand side by side in memory, computed with together: of a plain number as many as fit a
-/// register, of all others one. Each gets the bits that it would get alone.
+/// [`Real::SIDE`] neighbouring numbers of an array, computed with at once: eight plain numbers, but one of any other kind,
+/// which fills registers by itself. Each gets the bits that it would get alone.
 pub trait Abreast<S: Real>: Real {
     /// The first numbers of a slice.
     fn load(numbers: &[S]) -> Self;
-    /// To the first places of a slice.
+    /// Writes to the first places of a slice.
     fn store(self, numbers: &mut [S]);
     /// The same number in all places.
     fn everywhere(number: S) -> Self;
     /// A number in one place and zero in all others.
     fn alone(number: S, place: usize) -> Self;
-    /// What stands in one place, in all of them.
+    /// The number in one place, in all places.
     #[must_use]
     fn spread(self, place: usize) -> Self;
-    /// What stands in the first place.
+    /// The number in the first place.
     fn first(self) -> S;
     /// Numbers by their places in a slice.
     fn pick(numbers: &[S], places: &[usize]) -> Self;
@@ -260,11 +260,11 @@ impl<S: Real> Abreast<S> for S {
     }
 }
 
-/// Work on numbers side by side.
+/// Work on neighbouring numbers of an array.
 pub trait Task<S: Real> {
-    /// What it leaves behind.
+    /// Its result.
     type Output;
-    /// Does the work with registers of one kind.
+    /// Does the work with one kind of registers.
     fn run<V: Abreast<S>>(self) -> Self::Output;
 }
 

@@ -1,9 +1,9 @@
 //! Reverse derivatives: numbers that record their operations on a tape.
 //!
 //! The tape is the list of all operations in the order in which they were computed. An entry holds the places of its
-//! operands and the partial derivatives by them. [`Tape::propagate`] goes through the list from its end and turns weights
+//! operands and the partial derivatives by them. Propagation goes through the list from its end and turns weights
 //! on results (the derivative of the quantity asked for by each of them) into weights on what they were computed from.
-//! Each thread has a tape of its own, which exists only while a [`Recording`] does.
+//! Each thread has a tape of its own, which exists only while a recording does.
 //!
 //! A number that depends on nothing has no entry. Neither has one that depends on a single entry, by however many
 //! functions: it keeps its slope by that entry. Only where two entries meet a new one is made.
@@ -417,7 +417,7 @@ mod tests {
             S::constant(2.0) * x.powf(y) - y.inverse_cbrt(),
             of_x.rise * of_y.rest + of_y.tail / of_x.rest,
             S::select(x.lt(y), x * x, y.pow4()) * (x - y).smooth_abs(0.3),
-            x.fixed() * y + (x - x) + S::one() - S::zero(),
+            x.fixed() * y + (x - x.fixed()) + S::one() - S::zero(),
         ]
     }
 

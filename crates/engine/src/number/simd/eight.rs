@@ -18,12 +18,12 @@ macro_rules! eight {
         use crate::number::real::{Logistic, Mask, Real};
         use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-        /// Eight members.
+        /// Eight numbers.
         #[derive(Clone, Copy)]
         #[repr(transparent)]
         pub struct Eight(Vector);
 
-        /// Truth of eight members.
+        /// Truth values of eight numbers.
         #[derive(Clone, Copy)]
         #[repr(transparent)]
         pub struct EightMask(Flags);

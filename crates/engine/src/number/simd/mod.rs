@@ -1,7 +1,7 @@
 //! Eight numbers at once in the vector registers of the machine at hand.
 //!
 //! The only module with `unsafe` code. Each type `Eight` below holds eight numbers and computes with one set of vector
-//! instructions; a token ([`token`]) proves that the machine has them. No operation is contracted or reordered: every
+//! instructions; a token ([`Avx512`]) proves that the machine has them. No operation is contracted or reordered: every
 //! level gives the bits of a plain `f64`.
 //!
 //! Two kinds of work use them: [`LaneTask`] computes eight members of an ensemble, [`Task`] eight neighbouring numbers of
