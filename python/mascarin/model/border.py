@@ -1,6 +1,6 @@
 """The building as it crosses the border into the engine.
 
-The layout is that of ``crates/engine/src/description.rs``: references are indices, every number is the id
+The layout is that of ``crates/engine/src/input/description``: references are indices, every number is the id
 of a leaf in ``parameters``.
 """
 

@@ -19,7 +19,7 @@ pub struct AirPath {
     pub schedule: Option<usize>,
 }
 
-/// An opening to outdoors that wind and buoyancy drive air through; equation and source in `zone.rs`.
+/// An opening to outdoors that wind and buoyancy drive air through; equation and source in `physics/air_flow.rs`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Opening {

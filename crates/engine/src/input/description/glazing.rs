@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::ParamId;
 
-/// What a window is made of; equations and sources in `optics.rs` and `glazing.rs`.
+/// What a window is made of; equations and sources in `physics/optics` and `physics/window_gaps.rs`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Glazing {
