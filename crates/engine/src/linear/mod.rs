@@ -1,6 +1,7 @@
 //! Linear systems of walls, zones and the building.
 
 pub mod coupled;
+pub(crate) mod product;
 pub mod step_maps;
 pub mod surface_balance;
 pub(crate) mod tridiagonal;

@@ -5,7 +5,8 @@
 //! with the two surface temperatures as unknowns that are left ([`tridiagonal`](super::tridiagonal)).
 
 use crate::building::coefficients::{Matter, WallCoefficients};
-use crate::linear::tridiagonal::{Tridiagonal, product, scaled};
+use crate::linear::product::{PlainMatrix, SameKind};
+use crate::linear::tridiagonal::Tridiagonal;
 use crate::linear::wall_linearisation::PhaseChange;
 use crate::number::real::Real;
 
@@ -144,24 +145,22 @@ impl<S: Real> Chain<S> {
     /// [`Self::temperature_changes`] needs.
     #[inline(always)]
     pub fn source_changes(&self, held: &[S], known: &mut [S]) -> [S; 2] {
-        self.elimination.forward(
+        self.elimination.forward::<SameKind, _>(
             &self.links,
             known,
             #[inline(always)]
             |i, _| held[i] * self.rate[i],
-            product,
         )
     }
 
     /// How cell temperatures change with those of the surfaces and with the enthalpies that cells hold.
     #[inline(always)]
     pub fn temperature_changes(&self, known: &[S], surfaces: [S; 2], cells: &mut [S]) {
-        self.elimination.back(
+        self.elimination.back::<SameKind, _>(
             #[inline(always)]
             |i, _| known[i],
             surfaces,
             cells,
-            product,
         );
     }
 
@@ -210,24 +209,22 @@ impl Chain<f64> {
     /// Heat into the surfaces [W/m2] from heat released in the cells [W/m2], which is replaced by what [`Self::back`] needs.
     #[inline(always)]
     pub(crate) fn forward<R: Real>(&self, cells: &mut [R]) -> [R; 2] {
-        self.elimination.forward(
+        self.elimination.forward::<PlainMatrix, _>(
             &self.links,
             cells,
             #[inline(always)]
             |_, heat| heat,
-            scaled,
         )
     }
 
     /// Cell temperatures from what [`Self::forward`] left and those of the surfaces.
     #[inline(always)]
     pub(crate) fn back<R: Real>(&self, surfaces: [R; 2], cells: &mut [R]) {
-        self.elimination.back(
+        self.elimination.back::<PlainMatrix, _>(
             #[inline(always)]
             |_, known| known,
             surfaces,
             cells,
-            scaled,
         );
     }
 

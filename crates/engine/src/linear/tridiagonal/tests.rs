@@ -1,6 +1,7 @@
 //! The elimination of a chain against a dense solver, its closed-form answers and its transpose.
 
-use super::{Link, Tridiagonal, product, scaled};
+use super::{Link, Tridiagonal};
+use crate::linear::product::{PlainMatrix, SameKind};
 use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
 use crate::number::dual::Dual;
 use crate::number::real::Real;
@@ -110,7 +111,7 @@ fn a_chain_at_rest_is_a_series_of_resistances() {
         let u = 1.0 / total;
         close(response.as_flattened(), &[-u, u, u, -u], 1e-12, &format!("{n} cells"));
         let mut cells = vec![0.0; n];
-        factors.back(|_, known| known, [20.0, -10.0], &mut cells, product);
+        factors.back::<SameKind, _>(|_, known| known, [20.0, -10.0], &mut cells);
         let mut outside_of = 0.0;
         for (i, cell) in cells.iter().enumerate() {
             outside_of += resistances[i];
@@ -129,9 +130,9 @@ fn other_right_hand_sides_are_solved_with_the_same_factors() {
         let mut numbers = Numbers::new(n as u64 + 100);
         let (heat, slopes) = (numbers.line(n), numbers.line(n));
         let mut known = vec![0.0; n];
-        let sources = factors.forward(&chain.links, &mut known, |i, _| heat[i], product);
+        let sources = factors.forward::<SameKind, _>(&chain.links, &mut known, |i, _| heat[i]);
         let mut cells = vec![0.0; n];
-        factors.back(|i, _| known[i], SURFACES, &mut cells, product);
+        factors.back::<SameKind, _>(|i, _| known[i], SURFACES, &mut cells);
         close(&cells, &chain.dense(&heat, SURFACES, false), 1e-13, &format!("{n} cells"));
         let mut plain = chain;
         plain.links.iter_mut().for_each(|link| link.offset = 0.0);
@@ -140,8 +141,8 @@ fn other_right_hand_sides_are_solved_with_the_same_factors() {
         let mut duals: Vec<Dual<1>> =
             heat.iter().zip(&slopes).map(|(&value, &slope)| Dual { value, slope: [slope] }).collect();
         let surfaces = [Dual::variable(SURFACES[0], 0), Dual::constant(SURFACES[1])];
-        factors.forward(&plain.links, &mut duals, |_, heat| heat, scaled);
-        factors.back(|_, known| known, surfaces, &mut duals, scaled);
+        factors.forward::<PlainMatrix, _>(&plain.links, &mut duals, |_, heat| heat);
+        factors.back::<PlainMatrix, _>(|_, known| known, surfaces, &mut duals);
         let values: Vec<f64> = duals.iter().map(|dual| dual.value).collect();
         assert_eq!(values, cells, "bits of {n} cells");
         let slopes_found: Vec<f64> = duals.iter().map(|dual| dual.slope[0]).collect();
@@ -164,8 +165,8 @@ fn the_transposed_sweeps_are_the_transpose() {
         let (heat, weights) = (numbers.line(n), numbers.line(n));
         let outer = [0.7, -0.4];
         let mut cells = heat.clone();
-        let sources = factors.forward(&chain.links, &mut cells, |_, heat| heat, product);
-        factors.back(|_, known| known, SURFACES, &mut cells, product);
+        let sources = factors.forward::<SameKind, _>(&chain.links, &mut cells, |_, heat| heat);
+        factors.back::<SameKind, _>(|_, known| known, SURFACES, &mut cells);
         let mut back = weights.clone();
         let by_surfaces = factors.back_transposed(&mut back);
         factors.forward_transposed(&chain.links, outer, &mut back);
