@@ -1,10 +1,13 @@
-//! Walls of constant properties: a step of such a wall is one linear map, worked out once per stage length.
+//! Walls of constant properties: a whole step of such a wall as one linear map, computed once for each stage length.
 //!
-//! A stage makes `P x + Q f` of cells that start from `x`, between surfaces at `f`. The second stage of a step starts from
-//! `x + r (T1 - x)`, with `r = (1 - g)/g` and `T1` what the first one reached, so that a step ends with
-//! `A x + B f1 + Q f2`, where `A = P ((1 - r) I + r P)` and `B = r P Q`; with one stage `r` is zero. The heat that a wall
-//! sends into a surface is the conductance of its last half cell times the temperature of that cell: a row of these maps.
-//! Cells inside are never looked at between the stages.
+//! One implicit stage takes cells at `x` to `P x + Q f` between surfaces at `f`. The second stage of SDIRK2 (diagonal
+//! coefficient g, Alexander 1977, doi:10.1137/0714068) starts from `x + r (T1 - x)` with `r = (1 - g)/g` and the solution
+//! `T1` of the first stage. A step therefore ends with
+//!
+//! `A x + B f1 + Q f2`, where `A = P ((1 - r) I + r P)` and `B = r P Q`;
+//!
+//! with one stage r is zero. The heat that a wall sends into a surface is the conductance of its last half cell times the
+//! temperature of that cell, and so another row of these maps. The cells themselves are needed only at the end of the step.
 
 use core::ops::Range;
 
@@ -14,48 +17,49 @@ use crate::linear::wall::Chain;
 use crate::number::real::Real;
 use crate::number::simd::widened;
 
-/// Rows of a map that are multiplied together: their sums do not wait for each other.
+/// Rows of a map that are multiplied together: their sums do not depend on each other, so that the processor adds them
+/// at once.
 const ROWS: usize = 4;
 
 /// Some rows of a map, column by column.
 type Rows<S> = [S; ROWS];
 
-/// One wall of at least one cell. Its maps have the cells as rows, filled up with zeros to whole [`Rows`].
+/// The maps of one wall of at least one cell. They have the cells as rows, filled up with zeros to whole [`Rows`].
 #[derive(Debug, Clone)]
 struct StepMap<S> {
     wall: usize,
     cells: Range<usize>,
-    /// Blocks of rows of the map from the cells, and of that from the surfaces.
+    /// Numbers of [`Rows`] in the map from the cells and in the map from the surfaces.
     blocks: [usize; 2],
-    /// Conductance between the surfaces and the cells behind them [W/(m2 K)].
-    ends: [S; 2],
+    /// Conductance between each surface and the cell behind it [W/(m2 K)].
+    end_conductances: [S; 2],
     /// Heat into surface e in the second stage per degree of surface o in the first [W/(m2 K)].
     carried: [[S; 2]; 2],
-    /// Temperatures of the surfaces in the first stage.
-    first: [S; 2],
+    /// Temperatures of the surfaces in the first stage [degC].
+    first_surfaces: [S; 2],
 }
 
-/// All of them. Maps follow each other wall by wall.
+/// The maps of all walls of constant properties, wall after wall.
 #[derive(Debug, Clone)]
 pub(crate) struct StepMaps<S> {
     walls: Vec<StepMap<S>>,
-    /// `A`, and in two more rows the heat into the surfaces in the first stage; columns are cells.
+    /// `A`, and in two more rows the heat into the surfaces in the first stage [W/m2]; columns are cells.
     from_cells: Vec<Rows<S>>,
     /// `B` and `Q`; columns are the outside and inside surface in the first and in the last stage.
     from_surfaces: Vec<[Rows<S>; 4]>,
-    /// What the start of the step makes of the rows of the former.
-    left: Vec<Rows<S>>,
+    /// `from_cells` times the cells at the start of the step.
+    by_start: Vec<Rows<S>>,
     /// Heat capacity of the cells of the building [J/K].
     capacity: Vec<S>,
     /// `(1 - g)/g` of the scheme's diagonal coefficient.
     ratio: f64,
-    /// The start of the step is worked in.
-    begun: bool,
+    /// Whether `by_start` belongs to the step at hand.
+    started: bool,
 }
 
 impl<S: Real> StepMap<S> {
-    /// Works out the maps from an elimination, see [`Chain::factor`].
-    fn map(
+    /// Computes the maps from a factored wall, see [`Chain::factor`], column by column.
+    fn compute(
         &mut self,
         chain: &Chain<S>,
         ratio: f64,
@@ -63,10 +67,10 @@ impl<S: Real> StepMap<S> {
         from_surfaces: &mut [[Rows<S>; 4]],
     ) {
         let n = self.cells.len();
-        self.ends = [chain.links[0].right, chain.links[n].left];
+        self.end_conductances = [chain.links[0].right, chain.links[n].left];
         let (zeros, mut known) = (vec![S::zero(); n], vec![S::zero(); n]);
         let (mut start, mut reached, mut carried) = (zeros.clone(), zeros.clone(), zeros.clone());
-        // What a stage makes of cells that start from temperatures.
+        // One stage from temperatures of the cells, between surfaces at 0 degC.
         let mut stage = |from: &[S], to: &mut [S]| {
             let held: Vec<S> =
                 from.iter().zip(&chain.storage).map(|(&from, storage)| storage.capacity * from).collect();
@@ -77,7 +81,7 @@ impl<S: Real> StepMap<S> {
             start.fill(S::zero());
             start[column] = S::one();
             stage(&start, &mut reached);
-            let heat = [self.ends[0] * reached[0], self.ends[1] * reached[n - 1]];
+            let heat = [self.end_conductances[0] * reached[0], self.end_conductances[1] * reached[n - 1]];
             for (start, &reached) in start.iter_mut().zip(&reached) {
                 *start = start.scale(1.0 - ratio) + reached.scale(ratio);
             }
@@ -98,8 +102,8 @@ impl<S: Real> StepMap<S> {
                 from_surfaces[row / ROWS][side][row % ROWS] = carried;
                 from_surfaces[row / ROWS][2 + side][row % ROWS] = reached;
             }
-            self.carried[0][side] = self.ends[0] * carried[0];
-            self.carried[1][side] = self.ends[1] * carried[n - 1];
+            self.carried[0][side] = self.end_conductances[0] * carried[0];
+            self.carried[1][side] = self.end_conductances[1] * carried[n - 1];
         }
     }
 }
@@ -115,9 +119,9 @@ fn multiply<S: Real>(mut sum: Rows<S>, map: &[Rows<S>], x: &[S]) -> Rows<S> {
     sum
 }
 
-/// Does work on rows of plain numbers with wider instructions, where the machine has them. Lanes are as wide by themselves.
+/// Runs work on rows of plain numbers with wide instructions, where the machine has them. Packs of lanes use them anyway.
 #[inline(always)]
-fn side_by_side<S: Real, R>(work: impl FnOnce() -> R) -> R {
+fn with_wide_instructions<S: Real, R>(work: impl FnOnce() -> R) -> R {
     if S::LANES == 1 { widened(work) } else { work() }
 }
 
@@ -128,10 +132,10 @@ impl<S: Real> StepMaps<S> {
             walls: Vec::new(),
             from_cells: Vec::new(),
             from_surfaces: Vec::new(),
-            left: Vec::new(),
+            by_start: Vec::new(),
             capacity: vec![S::zero(); plan.n_cells],
             ratio: (1.0 - diagonal) / diagonal,
-            begun: false,
+            started: false,
         };
         let zero = [S::zero(); ROWS];
         let constant = plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear && !wall.is_empty());
@@ -145,52 +149,59 @@ impl<S: Real> StepMaps<S> {
             let blocks = [2, 0].map(|more| (of_plan.len() + more).div_ceil(ROWS));
             step_maps.from_cells.resize(step_maps.from_cells.len() + blocks[0] * of_plan.len(), zero);
             step_maps.from_surfaces.resize(step_maps.from_surfaces.len() + blocks[1], [zero; 4]);
-            step_maps.left.resize(step_maps.left.len() + blocks[0], zero);
+            step_maps.by_start.resize(step_maps.by_start.len() + blocks[0], zero);
             let carried = [nothing; 2];
-            step_maps.walls.push(StepMap { wall, cells, blocks, ends: nothing, carried, first: nothing });
+            step_maps.walls.push(StepMap {
+                wall,
+                cells,
+                blocks,
+                end_conductances: nothing,
+                carried,
+                first_surfaces: nothing,
+            });
         }
         step_maps
     }
 
-    /// Works out all maps for a stage length [s].
+    /// Computes all maps from the walls, factored for a stage length.
     #[cold]
     #[inline(never)]
     pub(crate) fn factor(&mut self, chains: &[Chain<S>]) {
         let (mut from_cells, mut from_surfaces) = (&mut self.from_cells[..], &mut self.from_surfaces[..]);
         for step_map in &mut self.walls {
-            let [all, tall] = step_map.blocks;
+            let [of_cells, of_surfaces] = step_map.blocks;
             let (own_cells, own_surfaces);
-            (own_cells, from_cells) = from_cells.split_at_mut(all * step_map.cells.len());
-            (own_surfaces, from_surfaces) = from_surfaces.split_at_mut(tall);
-            step_map.map(&chains[step_map.wall], self.ratio, own_cells, own_surfaces);
+            (own_cells, from_cells) = from_cells.split_at_mut(of_cells * step_map.cells.len());
+            (own_surfaces, from_surfaces) = from_surfaces.split_at_mut(of_surfaces);
+            step_map.compute(&chains[step_map.wall], self.ratio, own_cells, own_surfaces);
         }
-        self.begun = false;
+        self.started = false;
     }
 
-    /// A step begins at another state.
+    /// Begins a step from another state.
     #[inline(always)]
     pub(crate) fn begin(&mut self) {
-        self.begun = false;
+        self.started = false;
     }
 
     /// Heat into the surfaces [W/m2] in the first stage of a step that starts from cells.
     #[inline(always)]
     pub(crate) fn first_sources(&mut self, cells: &[S], sources: &mut [[S; 2]]) {
-        side_by_side::<S, _>(
+        with_wide_instructions::<S, _>(
             #[inline(always)]
-            || self.set_out(cells, sources),
+            || self.multiply_start(cells, sources),
         );
     }
 
     #[inline(always)]
-    fn set_out(&mut self, cells: &[S], sources: &mut [[S; 2]]) {
-        let (mut maps, mut left) = (&self.from_cells[..], &mut self.left[..]);
+    fn multiply_start(&mut self, cells: &[S], sources: &mut [[S; 2]]) {
+        let (mut maps, mut by_start) = (&self.from_cells[..], &mut self.by_start[..]);
         for step_map in &self.walls {
             let x = &cells[step_map.cells.clone()];
             let n = x.len();
             let own;
-            (own, left) = left.split_at_mut(step_map.blocks[0]);
-            if !self.begun {
+            (own, by_start) = by_start.split_at_mut(step_map.blocks[0]);
+            if !self.started {
                 for rows in &mut *own {
                     let map;
                     (map, maps) = maps.split_at(n);
@@ -200,66 +211,66 @@ impl<S: Real> StepMaps<S> {
             let own = own.as_flattened();
             sources[step_map.wall] = [own[n], own[n + 1]];
         }
-        self.begun = true;
+        self.started = true;
     }
 
-    /// Takes over the surfaces that the first stage reached.
+    /// Stores the temperatures of the surfaces at the end of the first stage.
     #[inline(always)]
     pub(crate) fn hold_over(&mut self, surfaces: &[S]) {
         let (pairs, _) = surfaces.as_chunks::<2>();
         for step_map in &mut self.walls {
-            step_map.first = pairs[step_map.wall];
+            step_map.first_surfaces = pairs[step_map.wall];
         }
     }
 
     /// Heat into the surfaces [W/m2] in the second stage.
     #[inline(always)]
     pub(crate) fn second_sources(&self, sources: &mut [[S; 2]]) {
-        let mut left = &self.left[..];
+        let mut by_start = &self.by_start[..];
         for step_map in &self.walls {
             let own;
-            (own, left) = left.split_at(step_map.blocks[0]);
-            let [outside, inside] = step_map.first;
+            (own, by_start) = by_start.split_at(step_map.blocks[0]);
+            let [outside, inside] = step_map.first_surfaces;
             let [into_outside, into_inside] = step_map.carried;
+            // What the start alone makes of the first and the last cell.
             let ends = [own[0][0], own.as_flattened()[step_map.cells.len() - 1]];
             sources[step_map.wall] = [
-                step_map.ends[0] * ends[0] + into_outside[0] * outside + into_outside[1] * inside,
-                step_map.ends[1] * ends[1] + into_inside[0] * outside + into_inside[1] * inside,
+                step_map.end_conductances[0] * ends[0] + into_outside[0] * outside + into_outside[1] * inside,
+                step_map.end_conductances[1] * ends[1] + into_inside[0] * outside + into_inside[1] * inside,
             ];
         }
     }
 
-    /// What a degree more at each surface of a wall in the first stage sends into its surfaces in the second [W/(m2 K)]:
-    /// wall, heat into surface e by surface o.
+    /// Heat into surface e of each wall in the second stage per degree of its surface o in the first [W/(m2 K)].
     pub(crate) fn carried(&self) -> impl Iterator<Item = (usize, [[S; 2]; 2])> + '_ {
         self.walls.iter().map(|step_map| (step_map.wall, step_map.carried))
     }
 
-    /// Ends a step at the surfaces of its last stage: the cells in place of where they started, and the heat stored [J].
+    /// Ends a step with the surface temperatures of its last stage: replaces the cells at its start by those at its end, and
+    /// returns the heat stored [J].
     #[inline(always)]
     pub(crate) fn finish(&self, surfaces: &[S], cells: &mut [S]) -> S {
-        side_by_side::<S, _>(
+        with_wide_instructions::<S, _>(
             #[inline(always)]
-            || self.arrive(surfaces, cells),
+            || self.multiply_surfaces(surfaces, cells),
         )
     }
 
     #[inline(always)]
-    fn arrive(&self, surfaces: &[S], cells: &mut [S]) -> S {
-        // Sums that do not wait for each other.
+    fn multiply_surfaces(&self, surfaces: &[S], cells: &mut [S]) -> S {
+        // As many sums as rows, none of which depends on another.
         let mut stored = [S::zero(); ROWS];
-        let (mut maps, mut left) = (&self.from_surfaces[..], &self.left[..]);
+        let (mut maps, mut by_start) = (&self.from_surfaces[..], &self.by_start[..]);
         let (pairs, _) = surfaces.as_chunks::<2>();
         for step_map in &self.walls {
-            let [all, tall] = step_map.blocks;
+            let [of_cells, of_surfaces] = step_map.blocks;
             let (own, map);
-            (own, left) = left.split_at(all);
-            (map, maps) = maps.split_at(tall);
-            let [a, b] = step_map.first;
-            let [c, d] = pairs[step_map.wall];
+            (own, by_start) = by_start.split_at(of_cells);
+            (map, maps) = maps.split_at(of_surfaces);
+            let ([a, b], [c, d]) = (step_map.first_surfaces, pairs[step_map.wall]);
             let mut reached = own.iter().zip(map).map(
                 #[inline(always)]
-                |(&left, map)| multiply(left, map, &[a, b, c, d]),
+                |(&by_start, map)| multiply(by_start, map, &[a, b, c, d]),
             );
             let (cells, capacity) =
                 (&mut cells[step_map.cells.clone()], &self.capacity[step_map.cells.clone()]);

@@ -1,0 +1,213 @@
+//! A chain of cells eliminated onto its two ends: the tridiagonal system of a wall, and the engine's only solver for it.
+//!
+//! Cell i exchanges heat along link i with the cell (or the outside surface) before it and along link i + 1 with the cell (or
+//! the inside surface) behind it. In one implicit stage each cell satisfies
+//!
+//! `storage_i T_i = heat_i + flux_i - flux_(i+1)` with `flux_i = left_i T_(i-1) - right_i T_i + offset_i`.
+//!
+//! Gaussian elimination from outside to inside leaves
+//!
+//! `T_i = known_i + to_outside_i T_outside + next_i T_(i+1)`,
+//!
+//! where the inside surface follows the last cell. The heat that the wall sends into its surfaces is then an affine function of
+//! both surface temperatures. Storage is positive and each column sums up to it, so that the matrix is an M-matrix: pivots
+//! are positive in the order of the cells.
+//!
+//! Right-hand sides may be of another kind of number than the matrix, see [`Product`].
+
+use crate::linear::product::Product;
+use crate::number::real::Real;
+
+/// Heat flux along a link, `left x_left - right x_right + offset` [W/m2], positive towards the inside. For cells x is the
+/// temperature above the one that their tangent touches at, for surfaces the temperature.
+#[derive(Debug, Clone, Copy)]
+pub struct Link<S> {
+    /// Slope of the flux by the temperature on the outer side [W/(m2 K)].
+    pub left: S,
+
+    /// Slope of the flux by the temperature on the inner side, with the opposite sign [W/(m2 K)].
+    pub right: S,
+
+    /// Part that depends on neither [W/m2].
+    pub offset: S,
+}
+
+impl<S: Real> Link<S> {
+    /// Flux between two temperatures.
+    #[inline(always)]
+    pub fn flux(&self, left: S, right: S) -> S {
+        self.left * left - self.right * right + self.offset
+    }
+}
+
+/// Heat that the wall sends into its surfaces, `source_e + sum_o response_eo T_o` [W/m2].
+#[derive(Debug, Clone, Copy)]
+pub struct Condensed<S> {
+    /// Heat into the outside and the inside surface at surfaces of 0 degC [W/m2].
+    pub source: [S; 2],
+
+    /// Heat into surface e per degree of surface o [W/(m2 K)].
+    pub response: [[S; 2]; 2],
+}
+
+/// The factors of a chain of cells.
+#[derive(Debug, Clone)]
+pub(crate) struct Tridiagonal<S> {
+    /// One over the pivots [m2 K/W].
+    inverse: Vec<S>,
+    /// `T_i = known_i + to_outside_i T_outside + next_i T_(i+1)`.
+    known: Vec<S>,
+    to_outside: Vec<S>,
+    next: Vec<S>,
+    /// Product of `next` of all cells before: how `known` of a cell acts on the first cell.
+    path: Vec<S>,
+}
+
+impl<S: Real> Tridiagonal<S> {
+    /// Room for a number of cells.
+    pub(crate) fn new(cells: usize) -> Self {
+        let zeros = || vec![S::zero(); cells];
+        Self { inverse: zeros(), known: zeros(), to_outside: zeros(), next: zeros(), path: zeros() }
+    }
+
+    /// Eliminates the cells from the matrix. `storage`: heat per degree of each cell [W/(m2 K)].
+    #[inline(always)]
+    pub(crate) fn factor(&mut self, links: &[Link<S>], storage: impl Fn(usize) -> S) -> [[S; 2]; 2] {
+        self.eliminate::<false>(links, storage, |_| S::zero()).response
+    }
+
+    /// Eliminates the cells from the matrix and from the right-hand side; [`Self::cell`] then gives the cells. `heat`: what is
+    /// released in each cell beside the fluxes along the links [W/m2].
+    #[inline(always)]
+    pub(crate) fn condense(
+        &mut self,
+        links: &[Link<S>],
+        storage: impl Fn(usize) -> S,
+        heat: impl Fn(usize) -> S,
+    ) -> Condensed<S> {
+        self.eliminate::<true>(links, storage, heat)
+    }
+
+    /// The elimination, with its right-hand side or without.
+    #[inline(always)]
+    fn eliminate<const RIGHT: bool>(
+        &mut self,
+        links: &[Link<S>],
+        storage: impl Fn(usize) -> S,
+        heat: impl Fn(usize) -> S,
+    ) -> Condensed<S> {
+        let n = self.inverse.len();
+        // Slices of a common length: the compiler then leaves out the checks of the indices.
+        let links = &links[..=n];
+        let (inverses, nexts) = (&mut self.inverse[..n], &mut self.next[..n]);
+        let (to_outsides, knowns) = (&mut self.to_outside[..n], &mut self.known[..n]);
+        let paths = &mut self.path[..n];
+        // Of the node before: the outside surface is its own.
+        let (mut known, mut to_outside, mut next) = (S::zero(), S::one(), S::zero());
+        // The first cell: its known part, its slopes by the outside surface and by the next node.
+        let (mut first, mut first_outside, mut path) = (S::zero(), S::zero(), S::one());
+        for i in 0..n {
+            let (before, after) = (&links[i], &links[i + 1]);
+            let diagonal = storage(i) + before.right + after.left;
+            let inverse = S::one() / (diagonal - before.left * next);
+            if const { RIGHT } {
+                let right = heat(i) + before.offset - after.offset;
+                known = (right + before.left * known) * inverse;
+                first += path * known;
+                knowns[i] = known;
+            }
+            to_outside = before.left * to_outside * inverse;
+            next = after.right * inverse;
+            first_outside += path * to_outside;
+            (inverses[i], nexts[i], to_outsides[i], paths[i]) = (inverse, next, to_outside, path);
+            path = path * next;
+        }
+        let (outer, inner) = (&links[0], &links[n]);
+        if n == 0 {
+            let source = [-outer.offset, outer.offset];
+            return Condensed { source, response: [[-outer.left, outer.right], [outer.left, -outer.right]] };
+        }
+        Condensed {
+            source: [outer.right * first - outer.offset, inner.left * known + inner.offset],
+            response: [
+                [outer.right * first_outside - outer.left, outer.right * path],
+                [inner.left * to_outside, inner.left * next - inner.right],
+            ],
+        }
+    }
+
+    /// Temperature of a cell after [`Self::condense`], from that of the outside surface and that of the node behind it.
+    #[inline(always)]
+    pub(crate) fn cell(&self, i: usize, outside: S, behind: S) -> S {
+        self.known[i] + self.to_outside[i] * outside + self.next[i] * behind
+    }
+
+    /// Eliminates the cells from another right-hand side. `heat` gives the heat released in a cell [W/m2] from its number and
+    /// the value in `known`, which is replaced by what [`Self::back`] needs. Returns the heat into the surfaces [W/m2].
+    #[inline(always)]
+    pub(crate) fn forward<P: Product<S, R>, R: Real>(
+        &self,
+        links: &[Link<S>],
+        known: &mut [R],
+        heat: impl Fn(usize, R) -> R,
+    ) -> [R; 2] {
+        let (mut first, mut before) = (R::zero(), R::zero());
+        for (i, known) in known.iter_mut().enumerate() {
+            before = P::of(self.inverse[i], heat(i, *known) + P::of(links[i].left, before));
+            *known = before;
+            first += P::of(self.path[i], before);
+        }
+        [P::of(links[0].right, first), P::of(links[self.inverse.len()].left, before)]
+    }
+
+    /// Cell temperatures from those of the surfaces and from what [`Self::forward`] left in `known`.
+    #[inline(always)]
+    pub(crate) fn back<P: Product<S, R>, R: Real>(
+        &self,
+        known: impl Fn(usize, R) -> R,
+        [outside, inside]: [R; 2],
+        cells: &mut [R],
+    ) {
+        let mut behind = inside;
+        for (i, cell) in cells.iter_mut().enumerate().rev() {
+            behind = known(i, *cell) + P::of(self.to_outside[i], outside) + P::of(self.next[i], behind);
+            *cell = behind;
+        }
+    }
+}
+
+impl Tridiagonal<f64> {
+    /// The transpose of [`Self::back`] in place: weights on the surfaces from weights on the cells, which become weights on what
+    /// `forward` left.
+    #[inline(always)]
+    pub(crate) fn back_transposed(&self, cells: &mut [f64]) -> [f64; 2] {
+        let (mut outside, mut behind) = (0.0, 0.0);
+        for (i, cell) in cells.iter_mut().enumerate() {
+            *cell += behind;
+            outside += self.to_outside[i] * *cell;
+            behind = self.next[i] * *cell;
+        }
+        [outside, behind]
+    }
+
+    /// The transpose of [`Self::forward`] in place: weights on heat released in the cells from weights on heat into the surfaces
+    /// and on what `forward` left.
+    #[inline(always)]
+    pub(crate) fn forward_transposed(
+        &self,
+        links: &[Link<f64>],
+        [outside, inside]: [f64; 2],
+        cells: &mut [f64],
+    ) {
+        let outside = links[0].right * outside;
+        let mut behind = links[self.inverse.len()].left * inside;
+        for (i, cell) in cells.iter_mut().enumerate().rev() {
+            let weight = (*cell + behind + outside * self.path[i]) * self.inverse[i];
+            *cell = weight;
+            behind = links[i].left * weight;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

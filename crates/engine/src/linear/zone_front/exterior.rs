@@ -1,0 +1,153 @@
+//! The exterior surfaces of the walls in a front: eliminated first, each onto the interior surface of its wall.
+//!
+//! The balance of an exterior surface is `heat + response_oe T_interior + response_oo T = (h + e slope) T + ...`, straight in
+//! both temperatures, so that `T = offset + slope T_interior`.
+
+use crate::building::coefficients::{Boundary, Coefficients};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::linear::surface_balance::SurfaceLaws;
+use crate::number::line::Line;
+use crate::number::real::{Abreast, Real};
+use crate::physics::longwave::Emission;
+use crate::weather::conditions::Conditions;
+
+use super::laws::Laws;
+use super::{Front, Layout};
+
+/// The exterior surfaces, by the place of the interior surface of their wall.
+#[derive(Debug, Clone)]
+pub(super) struct Exterior<S> {
+    pub(super) laws: Laws<S>,
+    /// Areas of the walls [m2].
+    pub(super) wall_area: Vec<S>,
+    pub(super) emissivity: Vec<S>,
+    /// Whether a surface is at an imposed temperature.
+    pub(super) fixed: Vec<bool>,
+    /// Responses of the walls: heat into the interior surface by its temperature and by that of the exterior one [W/K], heat
+    /// into the exterior surface likewise [W/(m2 K)].
+    pub(super) responses: [Vec<S>; 4],
+    /// Heat from sun, sky and ground and from the wall at surfaces of 0 degC [W/m2].
+    pub(super) heat: Vec<S>,
+    /// Imposed temperature, else zero [degC].
+    imposed: Vec<S>,
+    /// Rise of the surface with heat, the interior surface held [m2 K/W]; zero where its temperature is imposed.
+    inverse: Vec<S>,
+    /// The surface's temperature as a line of the interior one's: offset [degC] and slope [-].
+    line: [Vec<S>; 2],
+}
+
+impl<S: Real> Exterior<S> {
+    /// The exterior surfaces of a front, with their constant laws.
+    pub(super) fn new(numbers: &Coefficients<S>, laws: &BySurface<SurfaceLaws<S>>, layout: &Layout) -> Self {
+        let surfaces: Vec<SurfaceId> = layout.walls.iter().map(|surface| surface.opposite()).collect();
+        let of = |surface: SurfaceId| &numbers.surfaces[surface];
+        let mut laws = Laws::new(&surfaces, layout.stride, laws);
+        laws.sort(
+            numbers,
+            |surface| !matches!(of(surface).boundary, Boundary::Adiabatic),
+            |surface| {
+                matches!(&of(surface).boundary, Boundary::Outdoors(outdoors)
+                    if matches!(outdoors.emission, Some(Emission::Exact)))
+            },
+        );
+        let mut all = Self::blank(laws, layout.stride);
+        for (i, &surface) in surfaces.iter().enumerate() {
+            (all.wall_area[i], all.emissivity[i]) =
+                (numbers.walls[surface.wall()].area, of(surface).emissivity);
+            let imposed = matches!(of(surface).boundary, Boundary::Imposed(_));
+            all.fixed.push(imposed && of(surface).convection.is_none());
+        }
+        all
+    }
+
+    /// Surfaces that have nothing but their laws.
+    pub(super) fn blank(laws: Laws<S>, stride: usize) -> Self {
+        let zeros = || vec![S::zero(); stride];
+        Self {
+            laws,
+            wall_area: zeros(),
+            emissivity: zeros(),
+            fixed: Vec::new(),
+            // Places without a wall are not divided by zero.
+            responses: [zeros(), zeros(), zeros(), vec![-S::one(); stride]],
+            heat: zeros(),
+            imposed: zeros(),
+            inverse: zeros(),
+            line: [zeros(), zeros()],
+        }
+    }
+
+    /// Sets the responses of the walls.
+    pub(super) fn set_responses(&mut self, layout: &Layout, responses: &[[[S; 2]; 2]]) {
+        for (i, interior) in layout.walls.iter().enumerate() {
+            let (response, area) = (responses[interior.wall()], self.wall_area[i]);
+            let (e, o) = (interior.side(), interior.opposite().side());
+            // One over an infinite sum is zero: an imposed temperature does not rise.
+            let other = if self.fixed[i] { S::constant(f64::NEG_INFINITY) } else { response[o][o] };
+            let all = [area * response[e][e], area * response[e][o], response[o][e], other];
+            for (mine, response) in self.responses.iter_mut().zip(all) {
+                mine[i] = response;
+            }
+        }
+    }
+
+    /// Reads what drives a stage; adds the heat of the walls to that into the interior surfaces [W].
+    #[inline(always)]
+    pub(super) fn begin(
+        &mut self,
+        layout: &Layout,
+        conditions: &Conditions<S>,
+        sources: &[[S; 2]],
+        interior_heat: &mut [S],
+    ) {
+        self.laws.set_wind(conditions);
+        for (i, interior) in layout.walls.iter().enumerate() {
+            let at = &conditions.surfaces[interior.opposite()];
+            let source = sources[interior.wall()];
+            interior_heat[i] += self.wall_area[i] * source[interior.side()];
+            self.heat[i] = source[interior.opposite().side()] + (at.solar + at.longwave);
+            self.laws.air[i] = at.temperature;
+            if self.fixed[i] {
+                self.imposed[i] = at.temperature;
+            }
+        }
+    }
+
+    /// Eliminates the surfaces of one register: heat into the interior surfaces by their own temperature [W/K] and at 0 degC
+    /// [W], the former only with a matrix.
+    #[inline(always)]
+    pub(super) fn eliminate<V: Abreast<S>>(&mut self, front: Front, start: usize) -> (V, V) {
+        let places = start..start + S::SIDE;
+        let (convection, emission): (Line<V>, Line<V>) =
+            (self.laws.convection_at(start), self.laws.emission_at(start));
+        let air: V = part!(self.laws.air, start);
+        let to_interior: V = part!(self.responses[1], start);
+        let emissivity: V = part!(self.emissivity, start);
+        let mut gain = V::zero();
+        if front == Front::Whole {
+            let slope = convection.slope + emissivity * emission.slope;
+            let inverse = V::one() / (slope - part!(self.responses[3], start));
+            let rise = part!(self.responses[2], start) * inverse;
+            gain = part!(self.responses[0], start) + to_interior * rise;
+            inverse.store(&mut self.inverse[places.clone()]);
+            rise.store(&mut self.line[1][places.clone()]);
+        }
+        let heat = part!(self.heat, start) + convection.slope * air
+            - convection.offset
+            - emissivity * emission.offset;
+        let offset = part!(self.imposed, start) + heat * part!(self.inverse, start);
+        offset.store(&mut self.line[0][places]);
+        (gain, to_interior * offset)
+    }
+
+    /// Temperatures of the surfaces of one register from those of the interior surfaces.
+    #[inline(always)]
+    pub(super) fn temperatures<V: Abreast<S>>(&self, interior: V, start: usize) -> V {
+        part!(self.line[0], start) + part!(self.line[1], start) * interior
+    }
+
+    /// A surface as a line of the interior one [degC], and its rise with heat [m2 K/W].
+    pub(super) fn line_at(&self, i: usize) -> (Line<S>, S) {
+        (Line { offset: self.line[0][i], slope: self.line[1][i] }, self.inverse[i])
+    }
+}

@@ -1,0 +1,289 @@
+//! What follows the elimination of a front: its Schur complement, its solution, other right-hand sides and the transpose.
+//!
+//! Where the matrix is constant, the *influence* of right-hand sides and retained unknowns on the eliminated surfaces is
+//! computed once, and a new right-hand side is a product of matrix and vector, whose sums do not depend on each other.
+
+use crate::linear::coupled::CoupledSystem;
+use crate::linear::product::{PlainMatrix, Product, SameKind};
+use crate::number::real::{Abreast, Real};
+
+use super::{Front, Layout, ZoneFront};
+
+/// Influence coefficients of a constant matrix.
+#[derive(Debug, Clone)]
+pub(super) struct Influence<S> {
+    /// By right-hand side of an eliminated surface (rows): temperatures of the eliminated surfaces, then what is added to the
+    /// right-hand sides of the retained unknowns.
+    of_right: Vec<S>,
+    /// By retained unknown (rows): temperatures of the eliminated surfaces.
+    of_retained: Vec<S>,
+    /// Influence of the right-hand side at hand.
+    applied: Vec<S>,
+}
+
+impl<S: Real> Influence<S> {
+    pub(super) fn new(stride: usize) -> Self {
+        let zeros = |count| vec![S::zero(); count];
+        Self { of_right: zeros(stride * stride), of_retained: zeros(stride * stride), applied: zeros(stride) }
+    }
+}
+
+impl<S: Real> ZoneFront<S> {
+    /// Computes the influence coefficients, column by column of the inverse.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn compute_influence(&mut self) {
+        let Layout { surfaces, eliminated, stride, .. } = self.layout;
+        for j in 0..eliminated {
+            let mut values = vec![S::zero(); surfaces + 1];
+            values[j] = S::one();
+            self.forward::<SameKind, S>(&mut values, |i| i);
+            for (i, retained) in values.iter_mut().enumerate().skip(eliminated) {
+                self.influence.of_right[j * stride + i] = *retained;
+                // The retained unknowns themselves are zero here: their influence follows.
+                *retained = S::zero();
+            }
+            self.back::<SameKind, S>(&mut values, |i| i);
+            self.influence.of_right[j * stride..j * stride + eliminated]
+                .copy_from_slice(&values[..eliminated]);
+        }
+        for retained in eliminated..=surfaces {
+            let mut values = vec![S::zero(); surfaces + 1];
+            values[retained] = S::one();
+            self.back::<SameKind, S>(&mut values, |i| i);
+            let start = retained * stride;
+            self.influence.of_retained[start..start + eliminated].copy_from_slice(&values[..eliminated]);
+        }
+    }
+
+    /// Influence of the right-hand side at hand, where the matrix is constant.
+    #[inline(always)]
+    pub(super) fn apply_influence<V: Abreast<S>>(&mut self) {
+        let Layout { surfaces, eliminated, stride, .. } = self.layout;
+        for start in (0..=surfaces).step_by(S::SIDE) {
+            let mut sum = V::zero();
+            let lines = self.influence.of_right.chunks_exact(stride);
+            for (line, &right) in lines.zip(&self.equations.right).take(eliminated) {
+                sum += V::load(&line[start..start + S::SIDE]) * V::everywhere(right);
+            }
+            sum.store(&mut self.influence.applied[start..start + S::SIDE]);
+        }
+    }
+
+    /// Adds the Schur complement of the retained unknowns, and their right-hand sides, to the coupled system. Its unknowns are
+    /// temperatures; convection of retained surfaces is added here, too.
+    #[inline(always)]
+    pub(super) fn add_schur_complement(
+        &self,
+        front: Front,
+        constant: bool,
+        coupled: &mut CoupledSystem<'_, S>,
+    ) {
+        let Layout { surfaces, eliminated, retained_rows, .. } = &self.layout;
+        let (surfaces, eliminated, emission) = (*surfaces, *eliminated, &self.laws.emission);
+        if constant {
+            for (i, &row) in (eliminated..).zip(retained_rows) {
+                coupled.right[row] += self.equations.right[i] + self.influence.applied[i];
+            }
+        }
+        if front == Front::Right {
+            return;
+        }
+        let air_row = retained_rows[surfaces - eliminated];
+        for (i, &row) in (eliminated..).zip(retained_rows) {
+            let mut right = self.entry(i, surfaces + 1);
+            for (j, &column) in (eliminated..surfaces).zip(retained_rows) {
+                // Between surfaces only the upper triangle is stored.
+                let entry = if i <= j || i == surfaces { self.entry(i, j) } else { self.entry(j, i) };
+                coupled.add(row, column, entry * emission[1][j]);
+                right = right - entry * emission[0][j];
+            }
+            coupled.add(row, air_row, self.entry(i, surfaces));
+            if i < surfaces {
+                coupled.couple(row, air_row, self.equations.to_air[i]);
+                right += self.equations.right[i];
+            }
+            if !constant {
+                coupled.right[row] += right;
+            }
+        }
+    }
+
+    /// An entry of the factors.
+    #[inline(always)]
+    fn entry(&self, i: usize, j: usize) -> S {
+        self.factors.rows[i * self.layout.stride + j]
+    }
+
+    /// Temperatures of the eliminated surfaces and of the exterior surfaces of their walls, once the retained unknowns are
+    /// known.
+    #[inline(always)]
+    pub(super) fn solve<V: Abreast<S>>(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
+        if constant {
+            self.solve_by_influence::<V>(unknowns);
+        } else {
+            self.solve_by_factors::<V>(unknowns);
+        }
+        let Layout { eliminated, first_row, .. } = self.layout;
+        unknowns[first_row..first_row + eliminated].copy_from_slice(&self.equations.right[..eliminated]);
+        self.write_surfaces::<V>(surfaces);
+    }
+
+    /// Temperatures of the eliminated surfaces in place of their right-hand sides, where the matrix is constant.
+    #[inline(always)]
+    fn solve_by_influence<V: Abreast<S>>(&mut self, unknowns: &[S]) {
+        let Layout { eliminated, stride, retained_rows, .. } = &self.layout;
+        for start in (0..*eliminated).step_by(S::SIDE) {
+            let mut sum = V::load(&self.influence.applied[start..start + S::SIDE]);
+            let lines = self.influence.of_retained[eliminated * stride..].chunks_exact(*stride);
+            for (line, &row) in lines.zip(retained_rows) {
+                sum += V::load(&line[start..start + S::SIDE]) * V::everywhere(unknowns[row]);
+            }
+            sum.store(&mut self.equations.right[start..start + S::SIDE]);
+        }
+    }
+
+    /// The same by back substitution, from the last surface to the first.
+    #[inline(always)]
+    fn solve_by_factors<V: Abreast<S>>(&mut self, unknowns: &[S]) {
+        let Self { layout, laws, equations, factors, scratch: emissions, .. } = self;
+        let Layout { surfaces, eliminated, stride, .. } = *layout;
+        let retained = emissions[eliminated..=surfaces].iter_mut().zip(&layout.retained_rows);
+        for (i, (value, &row)) in retained.enumerate() {
+            let (offset, slope) = (laws.emission[0][eliminated + i], laws.emission[1][eliminated + i]);
+            *value = if eliminated + i == surfaces { unknowns[row] } else { offset + slope * unknowns[row] };
+        }
+        let rows = factors.rows.chunks_exact(stride).zip(&factors.inverse_pivots);
+        for (k, (row, &inverse)) in rows.enumerate().take(eliminated).rev() {
+            // The value that was computed last is subtracted last: the other products need not wait for it.
+            let mut sum = row[surfaces + 1];
+            for (&entry, &value) in row[k + 1..=surfaces].iter().zip(&emissions[k + 1..=surfaces]).rev() {
+                sum = sum - entry * value;
+            }
+            emissions[k] = sum * inverse;
+        }
+        for start in (0..eliminated).step_by(S::SIDE) {
+            let temperature: V = (part!(emissions, start) - part!(laws.emission[0], start))
+                * part!(equations.inverse_slope, start);
+            temperature.store(&mut equations.right[start..start + S::SIDE]);
+        }
+    }
+
+    /// Writes the eliminated surfaces and the exterior surfaces of their walls to the surfaces of the building.
+    #[inline(always)]
+    fn write_surfaces<V: Abreast<S>>(&mut self, surfaces: &mut [S]) {
+        let interior = &self.equations.right;
+        for start in (0..self.layout.eliminated).step_by(S::SIDE) {
+            let exterior: V = self.exterior.temperatures(part!(interior, start), start);
+            exterior.store(&mut self.scratch[start..start + S::SIDE]);
+        }
+        for ((&surface, &interior), &exterior) in self.layout.walls.iter().zip(interior).zip(&self.scratch) {
+            (surfaces[surface.index()], surfaces[surface.opposite().index()]) = (interior, exterior);
+        }
+    }
+
+    /// Eliminates the surfaces from another right-hand side; `place` is where an unknown of the front stands in it.
+    #[inline(always)]
+    pub(super) fn forward<P: Product<S, R>, R: Real>(
+        &self,
+        values: &mut [R],
+        place: impl Fn(usize) -> usize,
+    ) {
+        let Layout { surfaces, eliminated, stride, .. } = self.layout;
+        let pivots = self.factors.inverse_pivots.iter().zip(&self.factors.below);
+        let rows = self.factors.rows.chunks_exact(stride).zip(pivots);
+        for (k, (row, (&inverse, &below))) in rows.enumerate().take(eliminated) {
+            let known = P::of(inverse, values[place(k)]);
+            for (i, &entry) in row.iter().enumerate().take(surfaces).skip(k + 1) {
+                let at = place(i);
+                values[at] = values[at] - P::of(entry, known);
+            }
+            let at = place(surfaces);
+            values[at] = values[at] - P::of(below, known);
+        }
+    }
+
+    /// Temperatures of the eliminated surfaces, from the last to the first, once the retained unknowns are known.
+    #[inline(always)]
+    pub(super) fn back<P: Product<S, R>, R: Real>(&self, values: &mut [R], place: impl Fn(usize) -> usize) {
+        let Layout { surfaces, eliminated, stride, .. } = self.layout;
+        let rows = self.factors.rows.chunks_exact(stride).zip(&self.factors.inverse_pivots);
+        for (k, (row, &inverse)) in rows.enumerate().take(eliminated).rev() {
+            let mut sum = values[place(k)] - P::of(row[surfaces], values[place(surfaces)]);
+            let entries = row.iter().zip(&self.laws.emission[1]).enumerate();
+            for (j, (&entry, &slope)) in entries.take(surfaces).skip(k + 1) {
+                sum = sum - P::of_both(entry, slope, values[place(j)]);
+            }
+            values[place(k)] = P::of_both(self.equations.inverse_slope[k], inverse, sum);
+        }
+    }
+
+    /// [`Self::forward`] of a right-hand side of the building.
+    #[inline(always)]
+    pub(super) fn forward_in_building(&self, right: &mut [S]) {
+        self.forward::<SameKind, S>(
+            right,
+            #[inline(always)]
+            |i| self.layout.row(i),
+        );
+    }
+
+    /// [`Self::back`] of a right-hand side of the building.
+    #[inline(always)]
+    pub(super) fn back_in_building(&self, right: &mut [S]) {
+        self.back::<SameKind, S>(
+            right,
+            #[inline(always)]
+            |i| self.layout.row(i),
+        );
+    }
+}
+
+impl ZoneFront<f64> {
+    /// [`ZoneFront::forward_in_building`] of values of any kind.
+    #[inline(always)]
+    pub(super) fn forward_beside<R: Real>(&self, values: &mut [R]) {
+        self.forward::<PlainMatrix, R>(
+            values,
+            #[inline(always)]
+            |i| self.layout.row(i),
+        );
+    }
+
+    /// [`ZoneFront::back_in_building`] of values of any kind.
+    #[inline(always)]
+    pub(super) fn back_beside<R: Real>(&self, values: &mut [R]) {
+        self.back::<PlainMatrix, R>(
+            values,
+            #[inline(always)]
+            |i| self.layout.row(i),
+        );
+    }
+
+    /// The transpose of [`ZoneFront::back`].
+    pub(super) fn back_transposed(&self, values: &mut [f64]) {
+        let Layout { surfaces, eliminated, .. } = self.layout;
+        let row = |i| self.layout.row(i);
+        for k in 0..eliminated {
+            let weight = values[row(k)] * (self.factors.inverse_pivots[k] * self.equations.inverse_slope[k]);
+            values[row(k)] = weight;
+            values[row(surfaces)] -= self.entry(k, surfaces) * weight;
+            for j in k + 1..surfaces {
+                values[row(j)] -= self.entry(k, j) * self.laws.emission[1][j] * weight;
+            }
+        }
+    }
+
+    /// The transpose of [`ZoneFront::forward`].
+    pub(super) fn forward_transposed(&self, values: &mut [f64]) {
+        let Layout { surfaces, eliminated, .. } = self.layout;
+        let row = |i| self.layout.row(i);
+        for k in (0..eliminated).rev() {
+            let mut sum = self.factors.below[k] * values[row(surfaces)];
+            for i in k + 1..surfaces {
+                sum += self.entry(k, i) * values[row(i)];
+            }
+            values[row(k)] -= self.factors.inverse_pivots[k] * sum;
+        }
+    }
+}
