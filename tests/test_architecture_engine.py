@@ -33,7 +33,7 @@ FILE_LINES, FUNCTION_LINES = 500, 60
 
 _COMMENT = re.compile(r"//[^\n]*")
 _STRING = re.compile(r'"(?:[^"\\\n]|\\.)*"')
-_USE = re.compile(r"\buse\s+((?:crate|super|self)::[^;]+);")
+_USE = re.compile(r"\buse\s+(\w+::[^;]+);")
 _PATH = re.compile(r"\b((?:crate|super)(?:::\w+)+)")
 _TESTS = re.compile(r"#\[cfg\(test\)\]\s*(?:#\[[^\]]*\]\s*)*mod (\w+)\s*([{;])")
 _FUNCTION = re.compile(r"^( *)(?:pub(?:\([^)]*\))? )?(?:const )?(?:unsafe )?fn (\w+)", re.MULTILINE)
@@ -81,11 +81,12 @@ def flattened(tree: str) -> list[str]:
 def resolved(path: str, inside: tuple[str, ...]) -> tuple[str, ...] | None:
     """The deepest module of the crate that a path speaks of, seen from a module."""
     names = path.split("::")
+    base = inside
     if names[0] == "crate":
-        base: tuple[str, ...] = ()
-        names = names[1:]
+        base, names = (), names[1:]
+    elif names[0] not in ("super", "self") and (*inside, names[0]) not in MODULES:
+        return None  # another crate, or a name of this file
     else:
-        base = inside
         while names and names[0] in ("super", "self"):
             if names[0] == "super":
                 base = base[:-1]
