@@ -11,7 +11,7 @@
 //! - Surface resistances of a rated U value: ISO 10292:1994 and EN 673.
 //! - A unit by U and g: Arasteh, Kohler & Griffith (2009), LBNL-2804E.
 
-use crate::building::coefficients::{Cell, Matter};
+use super::cell::{Cell, Matter};
 use crate::input::description::{Gap, Glazing, Pane, Surface};
 use crate::input::values::Values;
 use crate::number::real::Real;

@@ -26,8 +26,8 @@ impl<S: Real> ZoneConditions<S> {
         Self { convective: zero, radiant: zero, ventilation: zero, open: vec![zero; zone.openings.len()] }
     }
 
-    /// Linear interpolation or extrapolation of two others; see [`Conditions::between`](super::conditions::Conditions::between).
-    pub(crate) fn between(&mut self, first: &Self, second: &Self, share: f64) {
+    /// Linear interpolation or extrapolation of two others; see `Conditions::between`](super::conditions::Conditions::between).
+    pub(crate) fn interpolate(&mut self, first: &Self, second: &Self, share: f64) {
         let line = |a: S, b: S| a + (b - a).scale(share);
         self.convective = line(first.convective, second.convective);
         self.radiant = line(first.radiant, second.radiant);
