@@ -9,3 +9,5 @@ pub(crate) mod order;
 pub mod plan;
 pub(crate) mod solar_distribution;
 pub(crate) mod solar_geometry;
+#[cfg(test)]
+pub(crate) mod test_buildings;

@@ -162,3 +162,125 @@ impl<S: Real> Conditions<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::ids::SurfaceId;
+    use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+    use crate::input::forcing::{CLIMATE_CHANNELS, Forcing};
+
+    /// Air at 10 degC, wind of 3 m/s from the south, sun due south at 30 deg: 600 W/m2 direct, 120 W/m2 diffuse.
+    fn row() -> [f64; CLIMATE_CHANNELS] {
+        let mut row = [0.0; CLIMATE_CHANNELS];
+        row[channel::AIR_TEMPERATURE] = 10.0;
+        (row[channel::WIND_SPEED], row[channel::WIND_DIRECTION]) = (3.0, 180.0);
+        (row[channel::DIRECT_NORMAL], row[channel::DIFFUSE_HORIZONTAL]) = (600.0, 120.0);
+        row[channel::GLOBAL_HORIZONTAL] = 600.0 * 0.5 + 120.0;
+        row[channel::DIRECT_NORMAL_EXTRA] = 1361.0;
+        (row[channel::SUN_NORTH], row[channel::SUN_UP]) = (-0.75_f64.sqrt(), 0.5);
+        row
+    }
+
+    fn conditions(plan: &Plan, row: &[f64]) -> Conditions<f64> {
+        let numbers = values(&plan.description);
+        let coefficients = Coefficients::new(plan, &numbers);
+        let index = WeatherIndex::new(plan, &coefficients);
+        let weather = Weather::new(plan, &Forcing::new(row, 1, row.len()).unwrap());
+        let mut conditions = Conditions::new(plan, &coefficients, &index);
+        conditions.update(plan, &coefficients, &index, &numbers, &weather.at(0, 0));
+        conditions
+    }
+
+    /// By Perez a horizontal plane receives the global radiation: the roof, of absorptance 0.6. The floor receives what the
+    /// ground reflects, a fifth of it.
+    #[test]
+    fn a_horizontal_plane_receives_the_global_radiation() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let at = conditions(&plan, &row());
+        let solar = |wall| at.surfaces[SurfaceId::outside(wall)].solar;
+        assert!((solar(5) - 0.6 * 420.0).abs() < 1e-10, "{}", solar(5));
+        assert!((solar(4) - 0.6 * 0.2 * 420.0).abs() < 1e-10, "{}", solar(4));
+        // On the south wall the beam alone gives 600 cos 30; on the north wall there is none.
+        assert!(solar(0) > 0.6 * 600.0 * 0.75_f64.sqrt() && solar(1) < 0.6 * (120.0 + 42.0));
+    }
+
+    /// The sky 10 K below the air: the roof absorbs its emission, the floor that of the air.
+    #[test]
+    fn long_wave_radiation_of_sky_and_air() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let at = conditions(&plan, &row());
+        let black = |kelvin: f64| 5.670_374_419e-8 * kelvin.pow4();
+        assert!((at.sky / black(273.15) - 1.0).abs() < 1e-12);
+        let longwave = |wall| at.surfaces[SurfaceId::outside(wall)].longwave;
+        assert!((longwave(5) / (0.9 * black(273.15)) - 1.0).abs() < 1e-12);
+        assert!((longwave(4) / (0.9 * black(283.15)) - 1.0).abs() < 1e-12);
+        assert_eq!(at.surfaces[SurfaceId::outside(0)].temperature, 10.0);
+    }
+
+    /// Whatever the law, the surfaces and the glass absorb and lose what the window transmits.
+    #[test]
+    fn the_transmitted_sun_is_absorbed_or_lost() {
+        for (sun, overhang) in [("area", false), ("geometry", false), ("area", true), ("geometry", true)] {
+            let plan = Plan::new(glazed_zone(sun, overhang)).unwrap();
+            let at = conditions(&plan, &row());
+            let areas = Coefficients::new(&plan, &values(&plan.description)).zones.remove(0).areas;
+            let opaque = (0..WINDOW).map(|wall| areas[wall] * at.surfaces[SurfaceId::inside(wall)].solar);
+            let zone = &at.sun.zones[0];
+            assert!(zone.transmitted > 1000.0 && zone.transmitted == at.sun.windows[0].transmitted);
+            let sum = opaque.sum::<f64>() + zone.in_glass + zone.lost;
+            assert!((sum / zone.transmitted - 1.0).abs() < 1e-9, "{sun}: {sum} of {}", zone.transmitted);
+            // Half of what the single sheet absorbs acts on each surface.
+            let [outside, inside] = SurfaceId::pair(WINDOW).map(|surface| at.surfaces[surface].solar);
+            assert!((outside + inside - at.sun.windows[0].panes[0]).abs() < 1e-12);
+        }
+    }
+
+    /// With beams traced, at 30 deg most of the beam ends on the floor: more than by area.
+    #[test]
+    fn a_traced_beam_ends_on_the_floor() {
+        let floor = |sun: &str| {
+            let plan = Plan::new(glazed_zone(sun, false)).unwrap();
+            conditions(&plan, &row()).surfaces[SurfaceId::inside(4)].solar
+        };
+        assert!(floor("geometry") > 2.0 * floor("area"), "{} and {}", floor("geometry"), floor("area"));
+    }
+
+    /// No sun: nothing is absorbed inside, and means over a step weigh the stages.
+    #[test]
+    fn night_and_means() {
+        let plan = Plan::new(glazed_zone("geometry", true)).unwrap();
+        let day = conditions(&plan, &row());
+        let mut dark = row();
+        for at in [channel::DIRECT_NORMAL, channel::DIFFUSE_HORIZONTAL, channel::GLOBAL_HORIZONTAL] {
+            dark[at] = 0.0;
+        }
+        let night = conditions(&plan, &dark);
+        assert!(night.surfaces.iter().all(|surface| surface.solar == 0.0));
+        let mut means = SolarMeans::new(&day.sun);
+        means.add(&day.sun, 0.25);
+        means.add(&night.sun, 0.75);
+        assert_eq!(means.zones[0], 0.25 * day.sun.zones[0].transmitted);
+        means.restart();
+        assert_eq!((means.windows[0], means.lost[0]), (0.0, 0.0));
+    }
+
+    /// Halfway between two instants are their means; beyond them temperatures go on, the wind not below zero.
+    #[test]
+    fn interpolation() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let (first, mut later) = (conditions(&plan, &row()), row());
+        (later[channel::AIR_TEMPERATURE], later[channel::WIND_SPEED]) = (14.0, 1.0);
+        later[channel::DIRECT_NORMAL] = 400.0;
+        let second = conditions(&plan, &later);
+        let mut at = first.clone();
+        at.interpolate(&first, &second, 0.5);
+        let wall = SurfaceId::outside(0);
+        assert_eq!((at.outdoor_air, at.wind, at.surfaces[wall].temperature), (12.0, 2.0, 12.0));
+        let mean = 0.5 * (first.sun.windows[0].transmitted + second.sun.windows[0].transmitted);
+        assert!((at.sun.windows[0].transmitted / mean - 1.0).abs() < 1e-12);
+        at.interpolate(&first, &second, 2.0);
+        assert_eq!((at.outdoor_air, at.wind), (18.0, 0.0));
+        assert!(at.surfaces[wall].forced[0] >= 0.0);
+    }
+}

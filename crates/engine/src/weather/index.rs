@@ -144,3 +144,37 @@ fn source_of<S: Real>(coefficients: &Coefficients<S>, index: SurfaceId) -> Optio
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+
+    fn index_of(overhang: bool) -> WeatherIndex<f64> {
+        let plan = Plan::new(glazed_zone("area", overhang)).unwrap();
+        WeatherIndex::new(&plan, &Coefficients::new(&plan, &values(&plan.description)))
+    }
+
+    /// South wall and window share a source of irradiance; under an overhang each has its own.
+    #[test]
+    fn surfaces_of_one_orientation_share_a_source() {
+        let index = index_of(false);
+        let source = |index: &WeatherIndex<f64>, wall| index.irradiance_source(SurfaceId::outside(wall));
+        assert_eq!(index.irradiance_sources.len(), 6);
+        assert_eq!((source(&index, 0), source(&index, WINDOW)), (Some(0), Some(0)));
+        assert_eq!(index.irradiance_source(SurfaceId::inside(0)), None);
+        assert_eq!((index.emissions.len(), index.outdoors.len(), index.windy.len()), (1, 7, 7));
+        let shaded = index_of(true);
+        assert_eq!(shaded.irradiance_sources.len(), 7);
+        assert_ne!(source(&shaded, 0), source(&shaded, WINDOW));
+    }
+
+    /// Of the long-wave radiation on a vertical wall of emissivity 0.9 the fraction 0.5^(3/2) has the temperature of the sky.
+    #[test]
+    fn long_wave_fractions() {
+        let index = index_of(false);
+        let of_sky = 0.9 * 0.5 * 0.5_f64.sqrt();
+        assert!((index.outdoors[0].of_sky - of_sky).abs() < 1e-15);
+        assert!((index.outdoors[0].of_air - (0.9 - of_sky)).abs() < 1e-15);
+    }
+}

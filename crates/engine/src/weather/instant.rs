@@ -17,7 +17,7 @@ use crate::physics::solar::{SkyVisibility, Sunlight};
 pub struct Instant<'a> {
     /// All forcing channels.
     pub row: &'a [f64],
-    /// Solar radiation before it meets a plane.
+    /// The sun and its radiation, independent of any plane.
     pub(crate) sunlight: Sunlight,
     /// What the emission of the sky depends on.
     pub(crate) sky: SkyState,
@@ -50,9 +50,9 @@ impl<'a> Instant<'a> {
     }
 
     /// Fractions that obstacles leave of sun and sky on a surface: obstacles stand outside only.
-    pub(crate) fn open(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
+    pub(crate) fn visibility(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
         if surface.is_outside() {
-            plan.solar_geometry.open(surface.wall(), &self.fractions)
+            plan.solar_geometry.visibility(surface.wall(), &self.fractions)
         } else {
             SkyVisibility::FULL
         }
@@ -120,5 +120,37 @@ impl<'a> Weather<'a> {
             Some(instant) => Cow::Borrowed(instant),
             None => Cow::Owned(self.evaluate(step, stage)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::test_buildings::glazed_zone;
+    use crate::input::forcing::CLIMATE_CHANNELS;
+
+    /// Two steps of two stages, the air one degree warmer at each.
+    #[test]
+    fn stages_evaluated_before_or_on_demand() {
+        let rows: Vec<f64> = (0..4 * CLIMATE_CHANNELS)
+            .map(|k| {
+                if k % CLIMATE_CHANNELS == channel::AIR_TEMPERATURE {
+                    (k / CLIMATE_CHANNELS) as f64
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        let forcing = Forcing::new(&rows, 2, CLIMATE_CHANNELS).unwrap();
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let (all, single) = (Weather::new(&plan, &forcing), Weather::for_single_run(&plan, &forcing));
+        assert_eq!((all.steps(), all.stages.len(), single.stages.len()), (2, 4, 0));
+        for weather in [&all, &single] {
+            assert_eq!(weather.at(1, 0).row[channel::AIR_TEMPERATURE], 2.0);
+            assert_eq!(weather.row(0, 1)[channel::AIR_TEMPERATURE], 1.0);
+        }
+        // Tracing beams is done once: all stages are evaluated before the run.
+        let traced = Plan::new(glazed_zone("geometry", false)).unwrap();
+        assert_eq!(Weather::for_single_run(&traced, &forcing).stages.len(), 4);
     }
 }

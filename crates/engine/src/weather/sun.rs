@@ -110,11 +110,12 @@ impl<S: Real> SolarConditions<S> {
                 IrradianceSource::Measured(channel) => S::constant(now.row[*channel]),
                 _ if dark => S::zero(),
                 IrradianceSource::Uniform(plane, ground, surface) => {
-                    S::constant(now.sunlight.on(plane, *ground, &now.open(plan, *surface)).total())
+                    S::constant(now.sunlight.on(plane, *ground, &now.visibility(plan, *surface)).total())
                 }
-                IrradianceSource::Varied(plane, surface) => {
-                    now.sunlight.on(plane, coefficients.ground_reflectance, &now.open(plan, *surface)).total()
-                }
+                IrradianceSource::Varied(plane, surface) => now
+                    .sunlight
+                    .on(plane, coefficients.ground_reflectance, &now.visibility(plan, *surface))
+                    .total(),
             };
         }
     }
@@ -138,7 +139,7 @@ impl<S: Real> SolarConditions<S> {
             if now.sunlight.dark() {
                 continue;
             }
-            let open = now.open(plan, SurfaceId::outside(w));
+            let open = now.visibility(plan, SurfaceId::outside(w));
             let light = now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open);
             let (directed, scattered) = (light.directed(), light.scattered());
             let (front, level) = (&glass.optics.front, &glass.horizon);

@@ -175,3 +175,61 @@ fn wind_factor<S: Real>(plan: &Plan, height: ParamId, values: &Values<'_, S>) ->
     let height = get(height).max(S::constant(0.1));
     mast * (height / get(wind.layer)).powf(get(wind.exponent))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::coefficients::Coefficients;
+    use crate::building::test_buildings::{glazed_zone, values};
+
+    fn outdoors_of(wall: usize) -> Outdoors<f64> {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let surfaces = Coefficients::new(&plan, &values(&plan.description)).surfaces;
+        match &surfaces[SurfaceId::outside(wall)].boundary {
+            Boundary::Outdoors(outdoors) => (**outdoors).clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// The south wall sees half of the sky, the floor none, the roof all of it; `to_sky` is the view factor to the power 3/2.
+    #[test]
+    fn orientation_and_view_factors() {
+        for (wall, normal, sky) in [
+            (0, [0.0, -1.0, 0.0], 0.5),
+            (2, [1.0, 0.0, 0.0], 0.5),
+            (4, [0.0, 0.0, -1.0], 0.0),
+            (5, [0.0, 0.0, 1.0], 1.0),
+        ] {
+            let Outdoors { plane, to_sky, .. } = outdoors_of(wall);
+            assert!((0..3).all(|k| (plane.normal[k] - normal[k]).abs() < 1e-15), "{:?}", plane.normal);
+            assert!((plane.sky_view - sky).abs() < 1e-15 && (plane.ground_view - (1.0 - sky)).abs() < 1e-15);
+            assert!((to_sky - sky * sky.sqrt()).abs() < 1e-15);
+        }
+        // Wind from the south is normal to the south wall: the components of its azimuth are north -1, east 0.
+        let [north, east] = outdoors_of(0).heading;
+        assert!((north + 1.0).abs() < 1e-15 && east.abs() < 1e-15);
+    }
+
+    /// The normal of the inside surface of the roof points down, that of the floor up.
+    #[test]
+    fn normals_of_inside_surfaces() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let surfaces = Coefficients::new(&plan, &values(&plan.description)).surfaces;
+        let upward = |surface: SurfaceId| surfaces[surface].upward;
+        assert_eq!((upward(SurfaceId::outside(5)), upward(SurfaceId::inside(5))), (1.0, -1.0));
+        assert_eq!((upward(SurfaceId::outside(4)), upward(SurfaceId::inside(4))), (-1.0, 1.0));
+    }
+
+    /// At 10 m over open country to 10 m in suburbs, by the power laws: 1.586 x 0.4516 = 0.716.
+    #[test]
+    fn wind_at_the_height_of_a_surface() {
+        let mut description = glazed_zone("area", false);
+        let height = description.site.wind.mast_height;
+        description.surfaces[0].outside.height = Some(height);
+        let numbers = values(&description);
+        let plan = Plan::new(description).unwrap();
+        let factor = wind_factor(&plan, height, &Values::new(&numbers));
+        assert!((factor - Real::powf(27.0, 0.14) * Real::powf(1.0 / 37.0, 0.22)).abs() < 1e-14);
+        assert!((factor - 0.7168).abs() < 1e-4, "{factor}");
+    }
+}

@@ -96,3 +96,28 @@ fn resistance<S: Real>(plan: &Plan, material: usize, values: &Values<'_, S>) -> 
         Material::Solid { .. } | Material::Pcm { .. } => S::zero(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::building::coefficients::{Coefficients, Matter};
+    use crate::building::plan::Plan;
+    use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+
+    /// 5 cm of board in two cells; the area of the window is not part of the south wall.
+    #[test]
+    fn a_wall_and_its_window() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let walls = Coefficients::new(&plan, &values(&plan.description)).walls;
+        assert!((walls[0].area - 15.6).abs() < 1e-12 && walls[WINDOW].area == 6.0);
+        assert!(walls[0].cells.iter().all(|cell| cell.thickness == 0.025));
+        let Matter::Solid { conductivity, capacity } = walls[0].cells[0].matter else { panic!("board") };
+        assert_eq!((conductivity, capacity), (0.16, 8e5));
+        assert_eq!(
+            (walls[0].extra.as_slice(), walls[0].massless.as_slice()),
+            ([0.0; 3].as_slice(), [false; 3].as_slice())
+        );
+        // 1/U less both surface resistances.
+        assert!((walls[WINDOW].extra[0] - (1.0 / 2.1 - 0.17)).abs() < 1e-12);
+        assert!(walls[WINDOW].glass.is_some() && walls[WINDOW].massless == [true]);
+    }
+}

@@ -173,3 +173,81 @@ fn same_plane(plan: &Plan, a: SurfaceId, b: SurfaceId) -> bool {
     let dot: f64 = normal(a).iter().zip(normal(b)).map(|(x, y)| x * y).sum();
     dot > 1.0 - 1e-9
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::coefficients::Coefficients;
+    use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+
+    fn zone(sun: &str) -> ZoneCoefficients<f64> {
+        let plan = Plan::new(glazed_zone(sun, false)).unwrap();
+        Coefficients::new(&plan, &values(&plan.description)).zones.remove(0)
+    }
+
+    /// 129.6 m3 of air of 1.225 kg/m3 and 1006 J/(kg K).
+    #[test]
+    fn capacity_of_the_air() {
+        let zone = zone("area");
+        assert!((zone.air_capacity / (129.6 * 1.225 * 1006.0) - 1.0).abs() < 1e-4);
+        assert_eq!(zone.capacity, zone.air_capacity);
+    }
+
+    /// With one emissivity e, radiant gains are absorbed by area; each surface's exchange areas add up to no more than e A.
+    #[test]
+    fn radiation_between_surfaces() {
+        let zone = zone("area");
+        let total: f64 = zone.areas.iter().sum();
+        assert!((total - (2.0 * 21.6 + 2.0 * 16.2 + 2.0 * 48.0)).abs() < 1e-12);
+        for (i, &area) in zone.areas.iter().enumerate() {
+            assert!((zone.radiant_shares[i] - area / total).abs() < 1e-15);
+            let row = zone.exchange_sums[i] + zone.exchange[i * zone.areas.len() + i];
+            assert!((row / (0.9 * area) - 1.0).abs() < 1e-9, "{row}");
+        }
+    }
+
+    /// South wall and window are parts of one plane and see each other by no weight; other surfaces by the product of areas.
+    #[test]
+    fn surfaces_of_one_plane() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let areas = zone("area").areas;
+        let weights = view_weights(&plan, 0, &areas);
+        let n = areas.len();
+        assert_eq!((weights[WINDOW], weights[WINDOW * n], weights[0]), (0.0, 0.0, 0.0));
+        assert_eq!(weights[n + WINDOW], areas[1] * areas[WINDOW]);
+    }
+
+    /// Given weights replace the products of areas: after balancing, rows sum to the areas.
+    #[test]
+    fn given_view_weights() {
+        let mut description = glazed_zone("area", false);
+        let n = description.surfaces.len();
+        let given: Vec<Vec<f64>> =
+            (0..n).map(|i| (0..n).map(|j| if i == j { 0.0 } else { (1 + i + j) as f64 }).collect()).collect();
+        description.zones[0].view_weights.clone_from(&given);
+        let plan = Plan::new(description).unwrap();
+        let areas = zone("area").areas;
+        assert_eq!(view_weights(&plan, 0, &areas), given.concat());
+    }
+
+    /// A distribution exists where there is a window; the irradiance of a zone in which beams are traced is
+    /// `sum(A a G) + transmitted = 1` per watt of first incidence.
+    #[test]
+    fn every_traced_watt_is_absorbed_or_lost() {
+        let Some(SolarDistribution::Traced(traced)) = zone("geometry").solar_distribution else {
+            panic!("beams are traced")
+        };
+        let plan = Plan::new(glazed_zone("geometry", false)).unwrap();
+        let numbers = Coefficients::new(&plan, &values(&plan.description));
+        for first in 0..=WINDOW {
+            let incidence: Vec<f64> = (0..=WINDOW).map(|i| f64::from(u8::from(i == first))).collect();
+            let admitted = numbers.zones[0].areas.iter().enumerate().map(|(i, area)| {
+                let fraction =
+                    numbers.walls[i].glass.as_ref().map_or(0.55, |glass| glass.optics.back.admitted());
+                area * fraction * traced.irradiance(i, &incidence)
+            });
+            let sum: f64 = admitted.sum();
+            assert!((sum - 1.0).abs() < 1e-9, "{first}: {sum}");
+        }
+    }
+}
