@@ -11,7 +11,7 @@
 //! - Surface resistances of a rated U value: ISO 10292:1994 and EN 673.
 //! - A unit by U and g: Arasteh, Kohler & Griffith (2009), LBNL-2804E.
 
-use crate::building::coefficients::{Cell, Matter};
+use super::cell::{Cell, Matter};
 use crate::input::description::{Gap, Glazing, Pane, Surface};
 use crate::input::values::Values;
 use crate::number::real::Real;
@@ -46,9 +46,9 @@ pub enum Node {
 pub struct GlassPlan {
     /// Pane that each cell belongs to.
     pub cell_panes: Vec<usize>,
-    /// Where each pane takes up sun.
+    /// Where the sun absorbed in each pane acts.
     pub sites: Vec<Site>,
-    /// Link that stands for each gap.
+    /// Link across each gap.
     pub gap_links: Vec<usize>,
 }
 
@@ -196,7 +196,7 @@ fn split_gain<S: Real>(u_value: S, gain: S, resistance: S, outer_inner: [S; 2]) 
     let transmittance = (many + share * (single - many)).max(S::zero()).min(gain);
     let inward = (outer_inner[0] + resistance.scale(0.5)) / (outer_inner[0] + resistance + outer_inner[1]);
     let absorptance = (gain - transmittance) / inward;
-    // No more than what is not transmitted: else T and A follow from T + A = 1 and T + N A = g.
+    // No more than what is not transmitted: else T and A solve T + A = 1 and T + N A = g.
     let full = (S::one() - gain) / (S::one() - inward);
     let too_much = (S::one() - transmittance).lt(absorptance);
     [S::select(too_much, S::one() - full, transmittance), S::select(too_much, full, absorptance)]

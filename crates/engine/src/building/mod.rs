@@ -1,10 +1,13 @@
 //! The building compiled to flat arrays (the plan), and its coefficients at a parameter vector.
 
+pub(crate) mod cell;
 pub mod coefficients;
 pub mod glazing;
 pub mod ids;
 pub(crate) mod layout;
 pub(crate) mod order;
 pub mod plan;
+pub(crate) mod solar_distribution;
 pub(crate) mod solar_geometry;
-pub mod sun_distribution;
+#[cfg(test)]
+pub(crate) mod test_buildings;

@@ -42,7 +42,8 @@ pub(crate) fn number_unknowns(
         zone.surface_rows = zone.surface_rows.iter().map(|&row| position[row]).collect();
     }
     let later = later.into_iter().skip(own_rows);
-    let reach = later.map(|met| runs(met.into_iter().map(|k| position[k] - own_rows).collect())).collect();
+    let reach =
+        later.map(|coupled| runs(coupled.into_iter().map(|k| position[k] - own_rows).collect())).collect();
     (surfaces, zones, Order { own_rows, reach, constant_rows })
 }
 

@@ -120,3 +120,43 @@ impl Plan {
         format!("surface {} ({side})", self.description.surfaces[surface.wall()].name)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::test_buildings::{WINDOW, glazed_zone, zones_in_a_row};
+
+    /// Three zones in a row: of each the wall outdoors comes first, then the four surfaces of the walls between, then the air.
+    #[test]
+    fn rows_of_zones_in_a_row() {
+        let plan = Plan::new(zones_in_a_row(3)).unwrap();
+        assert_eq!((plan.own_rows, plan.constant_rows, plan.rows()), (3, 4, 10));
+        for (z, zone) in plan.zones.iter().enumerate() {
+            assert_eq!(plan.row(SurfaceId::inside(2 * z)), z);
+            assert!(zone.surface_rows.iter().all(|row| *row == z || (3..7).contains(row)));
+            assert!((7..10).contains(&zone.air_row));
+            for (&surface, &row) in zone.surfaces.iter().zip(&zone.surface_rows) {
+                assert_eq!(plan.surfaces[surface].role, SurfaceRole::Zone { zone: z, row });
+            }
+        }
+        // The walls between zones couple their air: the two surfaces of a wall have two later neighbours each, the air of a zone
+        // that of the next.
+        let later: Vec<usize> = plan.reach.iter().map(|runs| runs.iter().map(Range::len).sum()).collect();
+        assert_eq!(later, [2, 2, 2, 2, 1, 1, 0]);
+    }
+
+    /// Cells are numbered wall by wall; the single pane of a simple window has none.
+    #[test]
+    fn a_glazed_zone() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        assert_eq!((plan.n_cells, plan.windows.as_slice()), (12, [WINDOW].as_slice()));
+        for (w, wall) in plan.walls.iter().enumerate().take(WINDOW) {
+            assert_eq!((wall.first_cell, wall.len(), wall.nonlinear), (2 * w, 2, false));
+            assert_eq!((&wall.cell_layers, &wall.layer_cells), (&vec![0, 0], &vec![(0, 2)]));
+        }
+        assert!(plan.walls[WINDOW].nonlinear && plan.walls[WINDOW].is_empty());
+        assert_eq!(plan.zones[0].windows, [(0, WINDOW)]);
+        assert_eq!(plan.surfaces[SurfaceId::outside(WINDOW)].role, SurfaceRole::Exterior);
+        assert_eq!(plan.surface_name(SurfaceId::inside(0)), "surface wall (inside)");
+    }
+}

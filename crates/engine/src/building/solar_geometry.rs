@@ -99,7 +99,7 @@ impl SolarGeometry {
 
     /// Fractions that obstacles leave of sun and sky on the outside of a wall.
     #[must_use]
-    pub fn open(&self, wall: usize, fractions: &[f64]) -> SkyVisibility {
+    pub fn visibility(&self, wall: usize, fractions: &[f64]) -> SkyVisibility {
         match &self.receivers[wall] {
             Some((place, receiver)) => {
                 SkyVisibility { sun: fractions.get(*place).copied().unwrap_or(1.0), ..receiver.sky }
@@ -141,5 +141,55 @@ fn target(
             Target::new(window, plane, towards)
         }
         _ => Target::NONE,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::plan::Plan;
+    use crate::building::test_buildings::{WINDOW, glazed_zone};
+    use crate::input::description::DiffuseSky;
+    use crate::input::forcing::{CLIMATE_CHANNELS, channel};
+
+    fn sunlight(direction: [f64; 3]) -> Sunlight {
+        let mut row = [0.0; CLIMATE_CHANNELS];
+        row[channel::DIRECT_NORMAL] = 800.0;
+        for (k, at) in [channel::SUN_EAST, channel::SUN_NORTH, channel::SUN_UP].into_iter().enumerate() {
+            row[at] = direction[k];
+        }
+        Sunlight::new(&row, DiffuseSky::Isotropic)
+    }
+
+    /// Nothing to compute without obstacles and traced beams.
+    #[test]
+    fn empty_without_shades_and_beams() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        assert!(plan.solar_geometry.is_empty());
+        let half = 0.5_f64.sqrt();
+        assert!(plan.solar_geometry.at(&sunlight([0.0, -half, half])).is_empty());
+        assert_eq!(plan.solar_geometry.visibility(0, &[]), SkyVisibility::FULL);
+        assert_eq!(plan.solar_geometry.beam_fractions(0, &[]), None);
+    }
+
+    /// Due south at 45 deg the overhang of 1 m shades the upper metre of the wall, 0.5 m of which are window: of the wall
+    /// without its window (21.6 - 6) m2 are left 8 x 1.7 - 3 x 1.5. The beam ends on the floor.
+    #[test]
+    fn a_shaded_wall_and_its_window() {
+        let plan = Plan::new(glazed_zone("geometry", true)).unwrap();
+        let geometry = &plan.solar_geometry;
+        let half = 0.5_f64.sqrt();
+        let fractions = geometry.at(&sunlight([0.0, -half, half]));
+        assert!(geometry.shaded(0) && geometry.shaded(WINDOW));
+        let wall = geometry.visibility(0, &fractions);
+        assert!((wall.sun - (8.0 * 1.7 - 3.0 * 1.5) / 15.6).abs() < 1e-12, "{wall:?}");
+        assert!(wall.sky < 1.0 && wall.sky > 0.5);
+        assert!((geometry.visibility(WINDOW, &fractions).sun - 0.75).abs() < 1e-12);
+        let beam = geometry.beam_fractions(0, &fractions).unwrap();
+        assert!((beam[4] - 1.0).abs() < 1e-12 && beam.iter().sum::<f64>() < 1.0 + 1e-12, "{beam:?}");
+        // At night no fractions are stored: all of the sun's disc, and no beam.
+        let night = geometry.at(&sunlight([0.0, -half, -half]));
+        assert!(night.is_empty() && geometry.visibility(0, &night).sun == 1.0);
+        assert_eq!(geometry.beam_fractions(0, &night), None);
     }
 }

@@ -18,7 +18,7 @@ use crate::physics::solar::SkyVisibility;
 
 /// Bands of elevation and sectors of azimuth of the sky.
 const SKY: [usize; 2] = [36, 144];
-/// Elevation that stands for the horizon [rad].
+/// Elevation at which the horizon is evaluated [rad].
 const HORIZON: f64 = 1e-3;
 
 /// A surface outdoors, and the obstacles in front of it.
@@ -42,7 +42,7 @@ impl Receiver {
         });
         let mut receiver = Self { obstacles: front.collect(), surface, sky: SkyVisibility::FULL };
         if receiver.obstructed() {
-            receiver.sky = receiver.open_sky();
+            receiver.sky = receiver.sky_visibility();
         }
         receiver
     }
@@ -77,7 +77,7 @@ impl Receiver {
         (sunlit / self.surface.area).min(1.0)
     }
 
-    fn open_sky(&self) -> SkyVisibility {
+    fn sky_visibility(&self) -> SkyVisibility {
         let [bands, sectors] = SKY;
         let band = core::f64::consts::FRAC_PI_2 / bands as f64;
         let centres: Vec<f64> = (0..bands).map(|k| (k as f64 + 0.5) * band).collect();

@@ -24,7 +24,7 @@ impl PlaneSurface {
         Self { plane, pieces, area }
     }
 
-    /// Less the smaller surfaces that lie in its plane and look the same way: its openings.
+    /// The surface without its openings: the smaller surfaces in its plane with the same normal.
     pub(crate) fn without(mut self, others: &[Self]) -> Self {
         let whole = self.area;
         for other in others {
@@ -60,7 +60,7 @@ fn along(plane: &PlaneAxes, vertices: &[Vertex]) -> Vec<Point> {
 mod tests {
     use super::*;
 
-    /// A wall of 8 m x 2.7 m loses the 6 m2 of its window, but not itself and not a surface that looks the other way.
+    /// The 6 m2 of a window are cut out of a wall of 8 m x 2.7 m; the wall itself and a surface of opposite normal are not.
     #[test]
     fn a_window_is_cut_out_of_its_wall() {
         let wall = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 0.0, 2.7], [0.0, 0.0, 2.7]];

@@ -93,7 +93,7 @@ pub fn march<S: Real>(
     watch: &Watch,
 ) -> Result<Run<S>, EngineError> {
     check(plan, numbers.len(), forcing, options)?;
-    march_in(plan, numbers, &Weather::once(plan, forcing), options, watch)
+    march_in(plan, numbers, &Weather::for_single_run(plan, forcing), options, watch)
 }
 
 /// Runs a plan at a parameter vector in a weather that many runs share. What `march` checks must hold.

@@ -156,7 +156,7 @@ impl<S: Real> Stepper<'_, S> {
                 self.follow_stage(state, place, &solution.stages[0]);
                 state.surfaces.copy_from_slice(&self.solved.surfaces);
                 self.sun.restart();
-                self.sun.add(&self.conditions, 1.0);
+                self.sun.add(&self.conditions.sun, 1.0);
             },
         );
     }
@@ -362,7 +362,8 @@ impl<S: Real> Stepper<'_, S> {
             let reached = storage.offset.lane(0) + storage.capacity.lane(0) * above;
             equations.add(k, cell.thickness, (held - reached) / place.length);
         }
-        let gains = self.plan.windows.iter().zip(&self.conditions.windows).find(|(window, _)| **window == w);
+        let gains =
+            self.plan.windows.iter().zip(&self.conditions.sun.windows).find(|(window, _)| **window == w);
         for (i, &gain) in gains.iter().flat_map(|(_, at)| &at.cells).enumerate() {
             equations.add(wall.first_cell + i, gain, 1.0);
         }

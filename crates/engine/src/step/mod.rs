@@ -34,7 +34,7 @@ use crate::physics::window_gaps::GapTangent;
 use crate::step::ideal_loads::{IdealLoads, Response};
 use crate::step::stage_solutions::StageSolutions;
 use crate::step::state::{Initial, State, Unknowns, blend, copy_runs, line, squared_distance};
-use crate::weather::conditions::{Conditions, Instant, SunMeans, SurfaceConditions, Weather};
+use crate::weather::conditions::{Conditions, Instant, SolarMeans, SurfaceConditions, Weather};
 use crate::weather::index::WeatherIndex;
 
 use follow::Following;
@@ -126,7 +126,7 @@ pub struct Stepper<'a, S: Real> {
     load: Vec<S>,
     ideal_loads: IdealLoads<S>,
     /// The sun over the last step.
-    pub sun: SunMeans<S>,
+    pub sun: SolarMeans<S>,
     /// Convective conductance of the gaps of each wall that is a window, expected in each stage [W/(m2 K)].
     gap_convection: Vec<Vec<Vec<S>>>,
     /// Stage in hand.
@@ -232,7 +232,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let weather_index = WeatherIndex::new(plan, &coefficients);
         let conditions = Conditions::new(plan, &coefficients, &weather_index);
         let flow_index = FlowIndex::new(plan, &coefficients);
-        let means = SunMeans::new(&conditions);
+        let means = SolarMeans::new(&conditions.sun);
         let gaps = coefficients.walls.iter().map(|wall| wall.glass.as_ref().map_or(0, Glass::filled_gaps));
         let gap_convection = vec![gaps.map(zeros).collect(); scheme.weights().len()];
         Self {
@@ -335,7 +335,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.surfaces.copy_from_slice(&self.solved.surfaces);
                 self.sun.restart();
-                self.sun.add(&self.conditions, 1.0);
+                self.sun.add(&self.conditions.sun, 1.0);
                 Ok(())
             },
         )
@@ -757,19 +757,19 @@ impl<'a, S: Real> Stepper<'a, S> {
             self.sun.restart();
         }
         if part.halvings == 0 || weights.len() == 1 {
-            self.sun.add(&self.conditions, weights[stage]);
+            self.sun.add(&self.conditions.sun, weights[stage]);
         } else {
             let (mut first, mut second) = (self.conditions.clone(), self.conditions.clone());
             read(&mut first, 0);
             read(&mut second, 1);
             if stage == 0 {
                 // The mean is that of the whole step.
-                self.sun.add(&first, weights[0]);
-                self.sun.add(&second, weights[1]);
+                self.sun.add(&first.sun, weights[0]);
+                self.sun.add(&second.sun, weights[1]);
             }
             let diagonal = self.scheme.diagonal();
             let place = part.from + part.share * if stage == 0 { diagonal } else { 1.0 };
-            self.conditions.between(&first, &second, (place - diagonal) / (1.0 - diagonal));
+            self.conditions.interpolate(&first, &second, (place - diagonal) / (1.0 - diagonal));
         }
     }
 
@@ -1116,7 +1116,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             let wall = &self.plan.walls[w];
             let (chain, held) =
                 (&mut self.chains[w], &self.held[wall.first_cell..wall.first_cell + wall.len()]);
-            let mut windows = self.plan.windows.iter().zip(&self.conditions.windows);
+            let mut windows = self.plan.windows.iter().zip(&self.conditions.sun.windows);
             let condensed = match windows.find(|(window, _)| **window == w) {
                 // The sun in the panes.
                 Some((_, sun)) => chain.condense_heated(held, &sun.cells),
@@ -1471,11 +1471,11 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// Adds the sun in windows and what they let in.
     #[inline(always)]
     fn accumulate_windows(&self, power: &mut Power<S>) {
-        for (&w, window) in self.plan.windows.iter().zip(&self.conditions.windows) {
+        for (&w, window) in self.plan.windows.iter().zip(&self.conditions.sun.windows) {
             let absorbed = window.panes.iter().fold(S::zero(), |sum, heat| sum + *heat);
             power.book(Flow::Glass, self.coefficients.walls[w].area * absorbed);
         }
-        for zone in &self.conditions.light {
+        for zone in &self.conditions.sun.zones {
             // What the surfaces absorb, seen from what came in: the two agree or the books do not close.
             power.book(Flow::Transmitted, zone.transmitted - zone.lost - zone.in_glass);
         }
@@ -1526,7 +1526,9 @@ impl<'a, S: Real> Stepper<'a, S> {
 
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
     pub(crate) fn incident(&self, surface: SurfaceId) -> S {
-        self.weather_index.sun_on(surface).map_or_else(S::zero, |sun| self.sun.suns[sun])
+        self.weather_index
+            .irradiance_source(surface)
+            .map_or_else(S::zero, |source| self.sun.irradiances[source])
     }
 
     /// Temperature of the sky at the end of the last stage [degC].

@@ -1,4 +1,4 @@
-//! What of the weather acts on which surface, sorted once: the same for several surfaces is reckoned once.
+//! Which parts of the weather act on which surfaces, sorted once: what several surfaces have in common is computed once.
 
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::ids::SurfaceId;
@@ -10,25 +10,26 @@ use crate::physics::solar::Plane;
 
 /// Where the irradiance of one or several surfaces comes from.
 #[derive(Debug, Clone)]
-pub(crate) enum Sun<S> {
+pub(crate) enum IrradianceSource<S> {
     /// A forcing channel.
     Measured(usize),
-    /// A plane that is the same in all lanes, and the ground before it; a surface whose shades it has.
-    Even(Plane<f64>, f64, SurfaceId),
-    /// Another plane.
+    /// A plane and a reflectance of the ground that are the same in all lanes, and the surface whose shading applies.
+    Uniform(Plane<f64>, f64, SurfaceId),
+    /// Another plane, and the surface whose shading applies.
     Varied(Plane<S>, SurfaceId),
 }
 
 /// A surface outdoors.
 #[derive(Debug, Clone)]
-pub(crate) struct Outside<S> {
+pub(crate) struct OutdoorSurface<S> {
     pub(crate) surface: SurfaceId,
-    /// Position among [`WeatherIndex::suns`].
-    pub(crate) sun: Option<usize>,
+    /// Position among [`WeatherIndex::irradiance_sources`]; none: no sun.
+    pub(crate) source: Option<usize>,
+    /// Solar absorptance [-].
     pub(crate) absorptance: S,
-    /// Position among [`WeatherIndex::emissions`]; none: the film is combined.
+    /// Position among [`WeatherIndex::emissions`]; none: the surface heat transfer coefficient includes radiation.
     pub(crate) emission: Option<usize>,
-    /// What it absorbs of the long-wave emission of the outdoor air and of the sky [-]:
+    /// Fractions absorbed of the long-wave emission of the outdoor air and of the sky [-]:
     /// `F_sky (beta E_sky + (1 - beta) E_air) + F_ground E_air`, `beta = sqrt(F_sky)`; the ground is at air temperature.
     pub(crate) of_air: S,
     pub(crate) of_sky: S,
@@ -37,37 +38,39 @@ pub(crate) struct Outside<S> {
 /// All surfaces that weather or measurements act on.
 #[derive(Debug, Clone)]
 pub(crate) struct WeatherIndex<S> {
-    pub(crate) suns: Vec<Sun<S>>,
-    /// Laws by which the outdoor air emits.
+    /// Sources of irradiance, each different from the others.
+    pub(crate) irradiance_sources: Vec<IrradianceSource<S>>,
+    /// Laws of emission of the outdoor air, each different from the others.
     pub(crate) emissions: Vec<Emission<S>>,
-    pub(crate) outdoors: Vec<Outside<S>>,
-    /// Surfaces outdoors whose films the wind acts on.
+    pub(crate) outdoors: Vec<OutdoorSurface<S>>,
+    /// Surfaces outdoors whose heat transfer coefficients depend on the wind.
     pub(crate) windy: Vec<SurfaceId>,
     /// Surfaces at imposed temperatures.
     pub(crate) imposed: Vec<SurfaceId>,
-    /// Other surfaces with a measured irradiance: the sun and its absorptance.
-    pub(crate) lit: Vec<(SurfaceId, usize, S)>,
+    /// Surfaces not outdoors with a measured irradiance: its source and their absorptance [-].
+    pub(crate) irradiated: Vec<(SurfaceId, usize, S)>,
 }
 
 impl<S: Real> WeatherIndex<S> {
-    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>) -> Self {
+    /// Sorts the surfaces of a building.
+    pub(crate) fn new(plan: &Plan, coefficients: &Coefficients<S>) -> Self {
         let mut all = Self {
-            suns: Vec::new(),
+            irradiance_sources: Vec::new(),
             emissions: Vec::new(),
             outdoors: Vec::new(),
             windy: Vec::new(),
             imposed: Vec::new(),
-            lit: Vec::new(),
+            irradiated: Vec::new(),
         };
-        for (index, surface) in numbers.surfaces.entries() {
-            let sun = all.sun_of(plan, numbers, index);
-            match (&surface.boundary, sun) {
+        for (index, surface) in coefficients.surfaces.entries() {
+            let source = all.add_source(plan, coefficients, index);
+            match (&surface.boundary, source) {
                 (Boundary::Outdoors(outdoors), _) => {
-                    let emission = outdoors.emission.as_ref().map(|law| all.emission_of(law));
+                    let emission = outdoors.emission.as_ref().map(|law| all.add_emission(law));
                     let of_sky = surface.emissivity * outdoors.to_sky;
-                    all.outdoors.push(Outside {
+                    all.outdoors.push(OutdoorSurface {
                         surface: index,
-                        sun,
+                        source,
                         absorptance: surface.absorptance,
                         emission,
                         of_air: surface.emissivity - of_sky,
@@ -79,60 +82,99 @@ impl<S: Real> WeatherIndex<S> {
                         all.windy.push(index);
                     }
                 }
-                (boundary, sun) => {
+                (boundary, source) => {
                     if matches!(boundary, Boundary::Imposed(_)) {
                         all.imposed.push(index);
                     }
-                    all.lit.extend(sun.map(|sun| (index, sun, surface.absorptance)));
+                    all.irradiated.extend(source.map(|source| (index, source, surface.absorptance)));
                 }
             }
         }
         all
     }
 
-    /// Position of the sun that shines on a surface.
-    fn sun_of(&mut self, plan: &Plan, numbers: &Coefficients<S>, index: SurfaceId) -> Option<usize> {
-        let surface = &numbers.surfaces[index];
-        let sun = match (surface.irradiance, &surface.boundary) {
-            (Some(channel), _) => Sun::Measured(channel),
-            (None, Boundary::Outdoors(outdoors)) if surface.exposure.sun => {
-                let (plane, ground) = (&outdoors.plane, numbers.ground_reflectance);
-                let first = |number: S| S::constant(number.lane(0));
-                if plane.same(&plane.map(first)) && same(ground, first(ground)) {
-                    Sun::Even(plane.map(|number| number.lane(0)), ground.lane(0), index)
-                } else {
-                    Sun::Varied(*plane, index)
-                }
-            }
-            _ => return None,
-        };
+    /// Position of the source of a surface's irradiance, added where no earlier surface has the same; none: no sun.
+    fn add_source(&mut self, plan: &Plan, coefficients: &Coefficients<S>, index: SurfaceId) -> Option<usize> {
+        let source = source_of(coefficients, index)?;
         let shaded = |surface: SurfaceId| surface.is_outside() && plan.solar_geometry.shaded(surface.wall());
-        let alike = |a: SurfaceId, b: SurfaceId| !shaded(a) && !shaded(b);
-        let known = self.suns.iter().position(|known| match (known, &sun) {
-            (Sun::Measured(mine), Sun::Measured(theirs)) => mine == theirs,
-            (Sun::Even(mine, _, surface), Sun::Even(theirs, _, other)) => {
-                mine.same(theirs) && alike(*surface, *other)
+        let unshaded = |a: SurfaceId, b: SurfaceId| !shaded(a) && !shaded(b);
+        let known = self.irradiance_sources.iter().position(|known| match (known, &source) {
+            (IrradianceSource::Measured(a), IrradianceSource::Measured(b)) => a == b,
+            (IrradianceSource::Uniform(a, _, surface), IrradianceSource::Uniform(b, _, other)) => {
+                a.same(b) && unshaded(*surface, *other)
             }
-            (Sun::Varied(mine, surface), Sun::Varied(theirs, other)) => {
-                mine.same(theirs) && alike(*surface, *other)
+            (IrradianceSource::Varied(a, surface), IrradianceSource::Varied(b, other)) => {
+                a.same(b) && unshaded(*surface, *other)
             }
             _ => false,
         });
         Some(known.unwrap_or_else(|| {
-            self.suns.push(sun);
-            self.suns.len() - 1
+            self.irradiance_sources.push(source);
+            self.irradiance_sources.len() - 1
         }))
     }
 
-    fn emission_of(&mut self, law: &Emission<S>) -> usize {
+    fn add_emission(&mut self, law: &Emission<S>) -> usize {
         self.emissions.iter().position(|known| known.same(law)).unwrap_or_else(|| {
             self.emissions.push(*law);
             self.emissions.len() - 1
         })
     }
 
-    /// Position of the sun on a surface outdoors, if any shines there.
-    pub(crate) fn sun_on(&self, surface: SurfaceId) -> Option<usize> {
-        self.outdoors.iter().find(|outside| outside.surface == surface)?.sun
+    /// Position of the source of irradiance of a surface outdoors; none: no sun.
+    pub(crate) fn irradiance_source(&self, surface: SurfaceId) -> Option<usize> {
+        self.outdoors.iter().find(|outside| outside.surface == surface)?.source
+    }
+}
+
+/// The source of a surface's irradiance; none: no sun.
+fn source_of<S: Real>(coefficients: &Coefficients<S>, index: SurfaceId) -> Option<IrradianceSource<S>> {
+    let surface = &coefficients.surfaces[index];
+    match (surface.irradiance, &surface.boundary) {
+        (Some(channel), _) => Some(IrradianceSource::Measured(channel)),
+        (None, Boundary::Outdoors(outdoors)) if surface.exposure.sun => {
+            let (plane, ground) = (&outdoors.plane, coefficients.ground_reflectance);
+            let first = |number: S| S::constant(number.lane(0));
+            Some(if plane.same(&plane.map(first)) && same(ground, first(ground)) {
+                IrradianceSource::Uniform(plane.map(|number| number.lane(0)), ground.lane(0), index)
+            } else {
+                IrradianceSource::Varied(*plane, index)
+            })
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+
+    fn index_of(overhang: bool) -> WeatherIndex<f64> {
+        let plan = Plan::new(glazed_zone("area", overhang)).unwrap();
+        WeatherIndex::new(&plan, &Coefficients::new(&plan, &values(&plan.description)))
+    }
+
+    /// South wall and window share a source of irradiance; under an overhang each has its own.
+    #[test]
+    fn surfaces_of_one_orientation_share_a_source() {
+        let index = index_of(false);
+        let source = |index: &WeatherIndex<f64>, wall| index.irradiance_source(SurfaceId::outside(wall));
+        assert_eq!(index.irradiance_sources.len(), 6);
+        assert_eq!((source(&index, 0), source(&index, WINDOW)), (Some(0), Some(0)));
+        assert_eq!(index.irradiance_source(SurfaceId::inside(0)), None);
+        assert_eq!((index.emissions.len(), index.outdoors.len(), index.windy.len()), (1, 7, 7));
+        let shaded = index_of(true);
+        assert_eq!(shaded.irradiance_sources.len(), 7);
+        assert_ne!(source(&shaded, 0), source(&shaded, WINDOW));
+    }
+
+    /// Of the long-wave radiation on a vertical wall of emissivity 0.9 the fraction 0.5^(3/2) has the temperature of the sky.
+    #[test]
+    fn long_wave_fractions() {
+        let index = index_of(false);
+        let of_sky = 0.9 * 0.5 * 0.5_f64.sqrt();
+        assert!((index.outdoors[0].of_sky - of_sky).abs() < 1e-15);
+        assert!((index.outdoors[0].of_air - (0.9 - of_sky)).abs() < 1e-15);
     }
 }

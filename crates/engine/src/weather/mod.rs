@@ -1,5 +1,8 @@
-//! The conditions that act on a building at an instant.
+//! The conditions that act on a building at an instant: forcing evaluated at its surfaces, zones and windows.
 
 pub mod conditions;
 pub mod index;
+pub(crate) mod instant;
+pub(crate) mod sun;
+pub(crate) mod surface;
 pub mod zone_conditions;

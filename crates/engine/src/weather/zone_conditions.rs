@@ -26,9 +26,11 @@ impl<S: Real> ZoneConditions<S> {
         Self { convective: zero, radiant: zero, ventilation: zero, open: vec![zero; zone.openings.len()] }
     }
 
-    /// Linear interpolation or extrapolation of two others; see [`Conditions::between`](super::conditions::Conditions::between).
-    pub(crate) fn between(&mut self, first: &Self, second: &Self, share: f64) {
-        let line = |a: S, b: S| a + (b - a).scale(share);
+    /// Linear interpolation or extrapolation of two others: `fraction` 0 at the first, 1 at the second.
+    ///
+    /// Ventilation is not extrapolated below zero, and open fractions stay between 0 and 1.
+    pub(crate) fn interpolate(&mut self, first: &Self, second: &Self, fraction: f64) {
+        let line = |a: S, b: S| a + (b - a).scale(fraction);
         self.convective = line(first.convective, second.convective);
         self.radiant = line(first.radiant, second.radiant);
         self.ventilation = line(first.ventilation, second.ventilation).max(S::zero());
@@ -66,8 +68,69 @@ impl<S: Real> ZoneConditions<S> {
         self.intake(zone).heat(wind, outdoor, air)
     }
 
-    /// Outdoor air that enters the zone, infiltration included [1/h].
+    /// Flow of outdoor air into the zone, infiltration included [1/h].
     pub(crate) fn air_changes(&self, zone: &ZoneCoefficients<S>, wind: S, outdoor: S, air: S) -> S {
         air_flow::air_changes(&zone.infiltration, zone.air_capacity, &self.intake(zone), wind, outdoor, air)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::coefficients::Coefficients;
+    use crate::building::plan::Plan;
+    use crate::building::test_buildings::{glazed_zone, values};
+    use crate::input::description::{Gain, ParamId, Parameter, Ventilation};
+    use crate::input::forcing::CLIMATE_CHANNELS;
+
+    /// Gains of 100 W, of which 40 % are radiated, and two air changes per hour by a schedule, at which the air of the zone
+    /// carries `2/3600 C` per degree.
+    fn zone() -> ZoneCoefficients<f64> {
+        let mut description = glazed_zone("area", false);
+        let mut number = |value: f64| {
+            description.parameters.push(Parameter { path: "number".to_owned(), value });
+            ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
+        };
+        let (power, radiative, air_changes) = (number(100.0), number(0.4), number(2.0));
+        let name = "number".to_owned();
+        let zone = &mut description.zones[0];
+        zone.gains = vec![Gain { name: name.clone(), power, radiative, schedule: None }];
+        zone.ventilation = vec![Ventilation {
+            name: name.clone(),
+            air_changes: Some(air_changes),
+            flow: None,
+            schedule: Some(0),
+        }];
+        description.channels = vec![name];
+        let plan = Plan::new(description).unwrap();
+        Coefficients::new(&plan, &values(&plan.description)).zones.remove(0)
+    }
+
+    #[test]
+    fn gains_and_ventilation_of_a_row() {
+        let zone = zone();
+        let mut at = ZoneConditions::new(&zone);
+        let mut row = [0.0; CLIMATE_CHANNELS + 1];
+        row[CLIMATE_CHANNELS] = 0.5;
+        at.update(&zone, &row);
+        assert_eq!((at.convective, at.radiant), (60.0, 40.0));
+        assert!((at.ventilation / (zone.air_capacity / 3600.0) - 1.0).abs() < 1e-14);
+        // 0.5 1/h of infiltration and 1 1/h of ventilation.
+        assert!((at.air_changes(&zone, 0.0, 0.0, 20.0) - 1.5).abs() < 1e-12);
+        // Ventilation at 20 K brings -20 K times its conductance.
+        let heat = at.outdoor_heat(&zone, 0.0, 0.0, 20.0).at(-20.0);
+        assert!((heat + 20.0 * at.ventilation).abs() < 1e-9);
+    }
+
+    /// Gains are extrapolated along the line; ventilation not below zero.
+    #[test]
+    fn extrapolation() {
+        let zone = zone();
+        let [mut first, mut second] = [ZoneConditions::new(&zone), ZoneConditions::new(&zone)];
+        (first.convective, first.ventilation) = (10.0, 4.0);
+        (second.convective, second.ventilation) = (20.0, 1.0);
+        let mut at = first.clone();
+        at.interpolate(&first, &second, 2.0);
+        assert_eq!((at.convective, at.ventilation), (30.0, 0.0));
     }
 }

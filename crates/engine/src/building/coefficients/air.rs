@@ -1,0 +1,30 @@
+//! Density of the air in the zones.
+
+use crate::building::plan::Plan;
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::constants::AIR_GAS_CONSTANT;
+
+/// Density of the air in the zones [kg/m3]: given, or by the altitude of the site.
+pub(crate) fn density<S: Real>(plan: &Plan, values: &Values<'_, S>) -> S {
+    let site = &plan.description.site;
+    site.air_density.map_or_else(|| density_at(values.get(site.altitude)), |id| values.get(id))
+}
+
+/// Density of dry air [kg/m3] at an altitude [m]: pressure of the standard atmosphere (ICAO Doc 7488) at 15 degC.
+fn density_at<S: Real>(altitude: S) -> S {
+    let pressure = (S::one() - altitude.scale(2.255_77e-5)).powf(S::constant(5.255_88)).scale(101_325.0);
+    pressure.scale(1.0 / (AIR_GAS_CONSTANT * 288.15))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ICAO Doc 7488: 1.225 kg/m3 at sea level; 89 874.6 Pa at 1000 m.
+    #[test]
+    fn standard_atmosphere() {
+        assert!((density_at(0.0) - 1.225).abs() < 1e-4);
+        assert!((density_at(1000.0) / density_at(0.0) - 89_874.6 / 101_325.0).abs() < 1e-5);
+    }
+}

@@ -1,0 +1,62 @@
+//! The coefficients of a building: a plan evaluated at a parameter vector, for one run or for a pack of members in lanes.
+
+pub(crate) mod air;
+pub(crate) mod surface;
+pub(crate) mod wall;
+pub(crate) mod zone;
+
+pub use self::surface::{Boundary, Imposed, Outdoors, SurfaceCoefficients};
+pub use self::wall::WallCoefficients;
+pub use self::zone::ZoneCoefficients;
+pub use super::cell::{Cell, Matter};
+use super::ids::BySurface;
+use super::plan::Plan;
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::air_flow::Path;
+
+/// All coefficients of a run.
+#[derive(Debug, Clone)]
+pub struct Coefficients<S> {
+    /// Walls.
+    pub walls: Vec<WallCoefficients<S>>,
+    /// The two surfaces of each wall.
+    pub surfaces: BySurface<SurfaceCoefficients<S>>,
+    /// Zones.
+    pub zones: Vec<ZoneCoefficients<S>>,
+    /// Air exchanged between zones.
+    pub paths: Vec<Path<S>>,
+    /// Solar reflectance of the ground [-].
+    pub ground_reflectance: S,
+    /// Coefficients of the cloud polynomial of the sky's emission [-].
+    pub cloud: [S; 3],
+    /// Depth of each sensor from the outside surface [m].
+    pub sensor_depths: Vec<S>,
+}
+
+impl<S: Real> Coefficients<S> {
+    /// Evaluates a plan at a parameter vector.
+    #[must_use]
+    pub fn new(plan: &Plan, numbers: &[S]) -> Self {
+        let values = Values::new(numbers);
+        let description = &plan.description;
+        let walls: Vec<_> = (0..plan.walls.len()).map(|i| WallCoefficients::new(plan, i, &values)).collect();
+        let surfaces: BySurface<_> =
+            plan.surfaces.ids().map(|i| SurfaceCoefficients::new(plan, i, &values)).collect();
+        let site = &description.site;
+        let density = air::density(plan, &values);
+        let zones = (0..plan.zones.len())
+            .map(|i| ZoneCoefficients::new(plan, i, &values, &walls, &surfaces, density))
+            .collect();
+        let paths = description.air_paths.iter().map(|path| Path::new(path, &values, density)).collect();
+        Self {
+            walls,
+            surfaces,
+            zones,
+            paths,
+            ground_reflectance: values.get(site.ground_reflectance),
+            cloud: site.cloud.map(|id| values.get(id)),
+            sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! Coefficients of a surface: convection, long-wave and solar properties, and what it borders on.
+//!
+//! Sources:
+//! - Long-wave radiation of the sky by `F_sky sqrt(F_sky)`: Walton (1983), NBSSIR 83-2655.
+//! - Wind at the height of a surface: power laws of the boundary layers at the mast and at the site, ASHRAE Handbook of
+//!   Fundamentals 2017, ch. 24, eq. 4.
+
+use super::air;
+use super::wall::net_area;
+use crate::building::ids::SurfaceId;
+use crate::building::plan::Plan;
+use crate::input::description::{Exposure, Facing, OutdoorLongwave, ParamId, Side, Surface};
+use crate::input::forcing::CLIMATE_CHANNELS;
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::convection::{Placement, SurfaceConvection};
+use crate::physics::longwave::Emission;
+use crate::physics::solar::Plane;
+
+/// Angle of a day in the year [rad/d].
+pub(crate) const PER_DAY: f64 = core::f64::consts::TAU / 365.0;
+
+/// A surface.
+#[derive(Debug, Clone)]
+pub struct SurfaceCoefficients<S> {
+    /// Law of convection; none: no convection.
+    pub convection: Option<SurfaceConvection<S>>,
+    /// Convective area over plane area [-].
+    pub area_factor: S,
+    /// Upward component of the normal that points into the air [-].
+    pub upward: S,
+    /// Long-wave emissivity [-].
+    pub emissivity: S,
+    /// Solar absorptance [-].
+    pub absorptance: S,
+    /// Forcing channel of a measured irradiance on the plane.
+    pub irradiance: Option<usize>,
+    /// What it borders on.
+    pub boundary: Boundary<S>,
+    /// Which of sun, sky and wind reach it.
+    pub exposure: Exposure,
+}
+
+/// What drives a surface that is in contact with no zone.
+#[derive(Debug, Clone)]
+pub enum Boundary<S> {
+    /// Outdoor air, sun, sky and ground.
+    Outdoors(Box<Outdoors<S>>),
+    /// A temperature, through the surface heat transfer coefficient if there is one.
+    Imposed(Imposed<S>),
+    /// No heat flow but absorbed sun.
+    Adiabatic,
+    /// A zone: solved in the coupled system.
+    Zone,
+}
+
+/// Coefficients of a surface outdoors.
+#[derive(Debug, Clone)]
+pub struct Outdoors<S> {
+    /// Orientation and view factors to sky and ground.
+    pub plane: Plane<S>,
+    /// Components (north, east) of the azimuth of the normal, for the wind.
+    pub heading: [S; 2],
+    /// Fraction of the incident long-wave radiation that has the temperature of the sky; the rest has that of the air [-].
+    pub to_sky: S,
+    /// Long-wave law; none: the surface heat transfer coefficient includes radiation.
+    pub emission: Option<Emission<S>>,
+}
+
+/// Imposed temperatures.
+#[derive(Debug, Clone)]
+pub enum Imposed<S> {
+    /// Forcing channel.
+    Channel(usize),
+    /// `mean - amplitude cos(2 pi (day - coldest)/365)`.
+    Annual {
+        /// Annual mean [degC].
+        mean: S,
+        /// Amplitude times cosine and sine of the coldest day's angle [K].
+        swing: [S; 2],
+    },
+}
+
+impl<S: Real> SurfaceCoefficients<S> {
+    pub(crate) fn new(plan: &Plan, index: SurfaceId, values: &Values<'_, S>) -> Self {
+        let wall = &plan.description.surfaces[index.wall()];
+        let side = plan.side(index);
+        let degrees = values.get(wall.tilt);
+        let tilt = radians(degrees);
+        let placement = Placement {
+            area: net_area(wall, values),
+            upward: outward::<S>(index) * tilt.cos(),
+            wind_factor: side.height.map_or_else(S::one, |height| wind_factor(plan, height, values)),
+            inclination: degrees.min(S::constant(180.0) - degrees),
+            density: air::density(plan, values),
+        };
+        Self {
+            convection: side.convection.as_ref().map(|law| SurfaceConvection::new(values, law, &placement)),
+            area_factor: values.get_or(side.area_factor, 1.0),
+            upward: placement.upward,
+            emissivity: values.get_or(side.emissivity, 0.0),
+            absorptance: values.get_or(side.absorptance, 0.0),
+            irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),
+            boundary: boundary(wall, index, side, values),
+            exposure: side.exposure,
+        }
+    }
+}
+
+/// 1 for an outside surface, whose normal has the tilt and azimuth of the description; -1 for an inside surface.
+fn outward<S: Real>(surface: SurfaceId) -> S {
+    if surface.is_outside() { S::one() } else { -S::one() }
+}
+
+fn radians<S: Real>(degrees: S) -> S {
+    degrees.scale(core::f64::consts::PI / 180.0)
+}
+
+fn boundary<S: Real>(wall: &Surface, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Boundary<S> {
+    match side.facing {
+        Facing::Zone { .. } => Boundary::Zone,
+        Facing::Adiabatic => Boundary::Adiabatic,
+        Facing::Measured { channel } => Boundary::Imposed(Imposed::Channel(CLIMATE_CHANNELS + channel)),
+        Facing::Ground { mean, amplitude, coldest_day } => {
+            let (amplitude, angle) = (values.get(amplitude), values.get(coldest_day).scale(PER_DAY));
+            let swing = [amplitude * angle.cos(), amplitude * angle.sin()];
+            Boundary::Imposed(Imposed::Annual { mean: values.get(mean), swing })
+        }
+        Facing::Outdoors => Boundary::Outdoors(Box::new(outdoors(wall, index, side, values))),
+    }
+}
+
+fn outdoors<S: Real>(wall: &Surface, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
+    let (plane, heading) = plane(wall, index, side, values);
+    let sky_view = plane.sky_view;
+    Outdoors {
+        plane,
+        heading,
+        // F_sky sqrt(F_sky): near the horizon the sky has the temperature of the air.
+        to_sky: if side.exposure.sky {
+            sky_view * sky_view.max(S::constant(1e-300)).sqrt()
+        } else {
+            S::zero()
+        },
+        emission: match side.longwave {
+            OutdoorLongwave::Exact => Some(Emission::Exact),
+            OutdoorLongwave::Linearised { reference } => Some(Emission::Linearised(values.get(reference))),
+            OutdoorLongwave::None => None,
+        },
+    }
+}
+
+/// The plane of a surface outdoors, and the components (north, east) of its azimuth.
+fn plane<S: Real>(
+    wall: &Surface,
+    index: SurfaceId,
+    side: &Side,
+    values: &Values<'_, S>,
+) -> (Plane<S>, [S; 2]) {
+    let (tilt, azimuth) = (radians(values.get(wall.tilt)), radians(values.get(wall.azimuth)));
+    let outward = outward::<S>(index);
+    let (sin_tilt, cos_tilt) = (tilt.sin(), tilt.cos() * outward);
+    let heading = [azimuth.cos() * outward, azimuth.sin() * outward];
+    let sky_view = side.sky_view.map_or_else(|| (S::one() + cos_tilt).scale(0.5), |id| values.get(id));
+    let normal = [heading[1] * sin_tilt, heading[0] * sin_tilt, cos_tilt];
+    (Plane { normal, sin_tilt, sky_view, ground_view: (S::one() - cos_tilt).scale(0.5) }, heading)
+}
+
+/// Wind at a height of the site over the wind at the mast [-]: `(delta_mast/z_mast)^a_mast (z/delta)^a`.
+fn wind_factor<S: Real>(plan: &Plan, height: ParamId, values: &Values<'_, S>) -> S {
+    let wind = &plan.description.site.wind;
+    let get = |id| values.get(id);
+    let mast = (get(wind.mast_layer) / get(wind.mast_height)).powf(get(wind.mast_exponent));
+    // Below a tenth of a metre the power law has no meaning.
+    let height = get(height).max(S::constant(0.1));
+    mast * (height / get(wind.layer)).powf(get(wind.exponent))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::coefficients::Coefficients;
+    use crate::building::test_buildings::{glazed_zone, values};
+
+    fn outdoors_of(wall: usize) -> Outdoors<f64> {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let surfaces = Coefficients::new(&plan, &values(&plan.description)).surfaces;
+        match &surfaces[SurfaceId::outside(wall)].boundary {
+            Boundary::Outdoors(outdoors) => (**outdoors).clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// The south wall sees half of the sky, the floor none, the roof all of it; `to_sky` is the view factor to the power 3/2.
+    #[test]
+    fn orientation_and_view_factors() {
+        for (wall, normal, sky) in [
+            (0, [0.0, -1.0, 0.0], 0.5),
+            (2, [1.0, 0.0, 0.0], 0.5),
+            (4, [0.0, 0.0, -1.0], 0.0),
+            (5, [0.0, 0.0, 1.0], 1.0),
+        ] {
+            let Outdoors { plane, to_sky, .. } = outdoors_of(wall);
+            assert!((0..3).all(|k| (plane.normal[k] - normal[k]).abs() < 1e-15), "{:?}", plane.normal);
+            assert!((plane.sky_view - sky).abs() < 1e-15 && (plane.ground_view - (1.0 - sky)).abs() < 1e-15);
+            assert!((to_sky - sky * sky.sqrt()).abs() < 1e-15);
+        }
+        // Wind from the south is normal to the south wall: the components of its azimuth are north -1, east 0.
+        let [north, east] = outdoors_of(0).heading;
+        assert!((north + 1.0).abs() < 1e-15 && east.abs() < 1e-15);
+    }
+
+    /// The normal of the inside surface of the roof points down, that of the floor up.
+    #[test]
+    fn normals_of_inside_surfaces() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let surfaces = Coefficients::new(&plan, &values(&plan.description)).surfaces;
+        let upward = |surface: SurfaceId| surfaces[surface].upward;
+        assert_eq!((upward(SurfaceId::outside(5)), upward(SurfaceId::inside(5))), (1.0, -1.0));
+        assert_eq!((upward(SurfaceId::outside(4)), upward(SurfaceId::inside(4))), (-1.0, 1.0));
+    }
+
+    /// At 10 m over open country to 10 m in suburbs, by the power laws: 1.586 x 0.4516 = 0.716.
+    #[test]
+    fn wind_at_the_height_of_a_surface() {
+        let mut description = glazed_zone("area", false);
+        let height = description.site.wind.mast_height;
+        description.surfaces[0].outside.height = Some(height);
+        let numbers = values(&description);
+        let plan = Plan::new(description).unwrap();
+        let factor = wind_factor(&plan, height, &Values::new(&numbers));
+        assert!((factor - Real::powf(27.0, 0.14) * Real::powf(1.0 / 37.0, 0.22)).abs() < 1e-14);
+        assert!((factor - 0.7168).abs() < 1e-4, "{factor}");
+    }
+}

@@ -1,0 +1,123 @@
+//! Coefficients of a wall: its area, the thermal properties of its cells and the resistances between them.
+
+use crate::building::cell::{Cell, Matter};
+use crate::building::glazing::{Glass, GlassWall, rated_resistance};
+use crate::building::layout::WallPlan;
+use crate::building::plan::Plan;
+use crate::input::description::{Material, Surface};
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::pcm::PcmCoefficients;
+
+/// Both surface resistances of a rated U value [m2 K/W] (ISO 6946:2017, table 7: 0.13 inside, 0.04 outside).
+const RATED_SURFACE_RESISTANCES: f64 = 0.17;
+
+/// A wall.
+#[derive(Debug, Clone)]
+pub struct WallCoefficients<S> {
+    /// Area without openings [m2].
+    pub area: S,
+    /// Cells, outside to inside.
+    pub cells: Vec<Cell<S>>,
+    /// Massless resistance in each link [m2 K/W].
+    pub extra: Vec<S>,
+    /// Whether a massless layer lies in a link.
+    pub massless: Vec<bool>,
+    /// Phase-change laws of its layers.
+    pub pcm: Vec<PcmCoefficients<S>>,
+    /// Resistance of each massless layer, zero for the others [m2 K/W].
+    pub layer_resistance: Vec<S>,
+    /// Optics and gaps of a window.
+    pub glass: Option<Glass<S>>,
+}
+
+impl<S: Real> WallCoefficients<S> {
+    pub(crate) fn new(plan: &Plan, index: usize, values: &Values<'_, S>) -> Self {
+        let description = &plan.description;
+        let described = &description.surfaces[index];
+        let construction = &description.constructions[described.construction];
+        let wall: &WallPlan = &plan.walls[index];
+        let area = net_area(described, values);
+        if let (Some(glazing), Some(glass)) = (&construction.glazing, &wall.glass) {
+            let GlassWall { cells, extra, glass } = GlassWall::new(values, glazing, glass, described);
+            let massless = vec![true; extra.len()];
+            let (pcm, layer_resistance) = (Vec::new(), Vec::new());
+            return Self { area, cells, extra, massless, pcm, layer_resistance, glass: Some(glass) };
+        }
+        let mut pcm = Vec::new();
+        let mut cells = Vec::with_capacity(wall.len());
+        let layer_resistance: Vec<S> =
+            construction.layers.iter().map(|layer| resistance(plan, layer.material, values)).collect();
+        for (layer, &(start, end)) in construction.layers.iter().zip(&wall.layer_cells) {
+            let thickness = values.get_or(layer.thickness, 0.0);
+            let matter = match &description.materials[layer.material] {
+                Material::Resistance { .. } | Material::Rated { .. } => continue,
+                Material::Solid { conductivity, density, specific_heat } => Matter::Solid {
+                    conductivity: values.get(*conductivity),
+                    capacity: values.get(*density) * values.get(*specific_heat),
+                },
+                Material::Pcm { conductivity, density, specific_heat, law } => {
+                    pcm.push(PcmCoefficients::new(values, *conductivity, *density, *specific_heat, law));
+                    Matter::Pcm(pcm.len() - 1)
+                }
+            };
+            let share = 1.0 / (end - start) as f64;
+            for _ in start..end {
+                cells.push(Cell { thickness: thickness.scale(share), matter: matter.clone() });
+            }
+        }
+        let extra = wall
+            .link_layers
+            .iter()
+            .map(|layers| layers.iter().fold(S::zero(), |sum, &layer| sum + layer_resistance[layer]));
+        let extra = extra.collect();
+        let massless = wall.link_layers.iter().map(|layers| !layers.is_empty()).collect();
+        Self { area, extra, massless, cells, pcm, layer_resistance, glass: None }
+    }
+}
+
+/// Area of a wall without its openings, of a window without its frame, or of the frame [m2].
+pub(crate) fn net_area<S: Real>(wall: &Surface, values: &Values<'_, S>) -> S {
+    let whole = values.get(wall.area);
+    if let Some(frame) = &wall.frame {
+        let fraction = values.get(frame.fraction);
+        return whole * if frame.is_frame { fraction } else { S::one() - fraction };
+    }
+    wall.openings.iter().fold(whole, |rest, opening| rest - values.get(*opening))
+}
+
+/// Resistance of a massless material, zero for others [m2 K/W].
+fn resistance<S: Real>(plan: &Plan, material: usize, values: &Values<'_, S>) -> S {
+    match &plan.description.materials[material] {
+        Material::Resistance { resistance } => values.get(*resistance),
+        Material::Rated { u_value } => {
+            rated_resistance(values.get(*u_value), S::constant(RATED_SURFACE_RESISTANCES))
+        }
+        Material::Solid { .. } | Material::Pcm { .. } => S::zero(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::building::coefficients::{Coefficients, Matter};
+    use crate::building::plan::Plan;
+    use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+
+    /// 5 cm of board in two cells; the area of the window is not part of the south wall.
+    #[test]
+    fn a_wall_and_its_window() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let walls = Coefficients::new(&plan, &values(&plan.description)).walls;
+        assert!((walls[0].area - 15.6).abs() < 1e-12 && walls[WINDOW].area == 6.0);
+        assert!(walls[0].cells.iter().all(|cell| cell.thickness == 0.025));
+        let Matter::Solid { conductivity, capacity } = walls[0].cells[0].matter else { panic!("board") };
+        assert_eq!((conductivity, capacity), (0.16, 8e5));
+        assert_eq!(
+            (walls[0].extra.as_slice(), walls[0].massless.as_slice()),
+            ([0.0; 3].as_slice(), [false; 3].as_slice())
+        );
+        // 1/U less both surface resistances.
+        assert!((walls[WINDOW].extra[0] - (1.0 / 2.1 - 0.17)).abs() < 1e-12);
+        assert!(walls[WINDOW].glass.is_some() && walls[WINDOW].massless == [true]);
+    }
+}

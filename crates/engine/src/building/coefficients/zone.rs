@@ -1,0 +1,253 @@
+//! Coefficients of a zone: air, gains and flows, long-wave exchange and the distribution of the sun in it.
+
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::plan::Plan;
+use crate::building::solar_distribution::{SolarDistribution, SolarSurface};
+use crate::input::description::{Infiltration, ParamId, ZoneLongwave};
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::air_flow::{AirFlow, Opening};
+use crate::physics::constants::AIR_SPECIFIC_HEAT;
+use crate::physics::gains::{Gain, Thermostat};
+use crate::physics::longwave::{Emission, direct_exchange_areas, exchange_areas, self_weight};
+
+use super::surface::SurfaceCoefficients;
+use super::wall::WallCoefficients;
+
+/// A zone.
+#[derive(Debug, Clone)]
+pub struct ZoneCoefficients<S> {
+    /// Heat capacity of the air and contents [J/K].
+    pub capacity: S,
+    /// Heat capacity of the zone's air volume [J/K], for air changes.
+    pub air_capacity: S,
+    /// Infiltration: constant, by temperature difference, by wind [1/h], [1/(h K)], [1/(h m/s)].
+    pub infiltration: [S; 3],
+    /// Exchange areas between its surfaces, by row [m2]; empty without long-wave exchange.
+    pub exchange: Vec<S>,
+    /// Sum of each surface's exchange areas with the others [m2].
+    pub exchange_sums: Vec<S>,
+    /// Law of emission.
+    pub emission: Emission<S>,
+    /// Areas of its surfaces [m2].
+    pub areas: Vec<S>,
+    /// Heat from people, light and machines.
+    pub gains: Vec<Gain<S>>,
+    /// Fraction of the radiant gains that each surface absorbs [-].
+    pub radiant_shares: Vec<S>,
+    /// Ventilation with outdoor air.
+    pub ventilation: Vec<AirFlow<S>>,
+    /// Openings to outdoors.
+    pub openings: Vec<Opening<S>>,
+    /// Ideal heating.
+    pub heating: Option<Thermostat<S>>,
+    /// Ideal cooling.
+    pub cooling: Option<Thermostat<S>>,
+    /// Where the sun that windows transmit is absorbed; none without windows.
+    pub solar_distribution: Option<SolarDistribution<S>>,
+}
+
+impl<S: Real> ZoneCoefficients<S> {
+    pub(crate) fn new(
+        plan: &Plan,
+        index: usize,
+        values: &Values<'_, S>,
+        walls: &[WallCoefficients<S>],
+        surfaces: &BySurface<SurfaceCoefficients<S>>,
+        density: S,
+    ) -> Self {
+        let definition = &plan.description.zones[index];
+        let zone_surfaces = &plan.zones[index].surfaces;
+        let areas: Vec<S> = zone_surfaces.iter().map(|&surface| walls[surface.wall()].area).collect();
+        let emissivities: Vec<S> =
+            zone_surfaces.iter().map(|&surface| surfaces[surface].emissivity).collect();
+        let emission = match definition.longwave {
+            ZoneLongwave::Linearised { reference } => Emission::Linearised(values.get(reference)),
+            ZoneLongwave::Radiosity | ZoneLongwave::None => Emission::Exact,
+        };
+        let exchanging = !matches!(definition.longwave, ZoneLongwave::None);
+        let exchange = if exchanging && zone_surfaces.len() > 1 {
+            exchange_areas(&areas, &emissivities, &view_weights(plan, index, &areas))
+        } else {
+            Vec::new()
+        };
+        let exchange_sums = sums_of_others(&exchange, zone_surfaces.len());
+        let air_capacity = values.get(definition.volume) * density.scale(AIR_SPECIFIC_HEAT);
+        let Infiltration { constant, temperature, wind } = &definition.infiltration;
+        let heat = density.scale(AIR_SPECIFIC_HEAT);
+        let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
+        let ventilation = definition.ventilation.iter();
+        let thermostat = |ideal_load| Thermostat::new(ideal_load, values);
+        Self {
+            gains: definition.gains.iter().map(|gain| Gain::new(gain, values)).collect(),
+            radiant_shares: radiant_shares(&areas, exchanging.then_some(&emissivities)),
+            ventilation: ventilation.map(|flow| AirFlow::new(flow, values, heat, air_capacity)).collect(),
+            openings: openings.map(|opening| Opening::new(opening, values, heat)).collect(),
+            heating: definition.heating.as_ref().map(thermostat),
+            cooling: definition.cooling.as_ref().map(thermostat),
+            capacity: air_capacity * values.get(definition.capacity_factor),
+            air_capacity,
+            infiltration: [constant, temperature, wind].map(|id| values.get(*id)),
+            exchange,
+            exchange_sums,
+            emission,
+            solar_distribution: SolarDistribution::new(
+                &definition.sun,
+                &solar_surfaces(zone_surfaces, walls, surfaces),
+                values,
+                || direct_exchange_areas(&areas, &view_weights(plan, index, &areas)),
+            ),
+            areas,
+        }
+    }
+}
+
+/// What the surfaces of a zone do with the sun.
+fn solar_surfaces<'a, S: Real>(
+    zone_surfaces: &[SurfaceId],
+    walls: &'a [WallCoefficients<S>],
+    surfaces: &BySurface<SurfaceCoefficients<S>>,
+) -> Vec<SolarSurface<'a, S>> {
+    let of = |&surface: &SurfaceId| {
+        let wall = &walls[surface.wall()];
+        let glass = wall.glass.as_ref().map(|glass| &glass.optics.back);
+        SolarSurface { area: wall.area, absorptance: surfaces[surface].absorptance, glass }
+    };
+    zone_surfaces.iter().map(of).collect()
+}
+
+/// Sum of each surface's exchange areas with the others; zeros where there are none.
+fn sums_of_others<S: Real>(exchange: &[S], n: usize) -> Vec<S> {
+    let others = |row: usize| (0..exchange.len() / n.max(1)).filter(move |&column| column != row);
+    let sum = |row: usize| others(row).fold(S::zero(), |sum, column| sum + exchange[row * n + column]);
+    (0..n).map(sum).collect()
+}
+
+/// Fractions by area times emissivity; by area alone where the surfaces exchange no long-wave radiation.
+fn radiant_shares<S: Real>(areas: &[S], emissivities: Option<&Vec<S>>) -> Vec<S> {
+    let weights: Vec<S> = match emissivities {
+        Some(emissivities) => areas.iter().zip(emissivities).map(|(&a, &e)| a * e).collect(),
+        None => areas.to_vec(),
+    };
+    let total = weights.iter().fold(S::zero(), |sum, &weight| sum + weight);
+    weights.into_iter().map(|weight| weight / total).collect()
+}
+
+/// Given weights, or `A_i A_j` between surfaces that are not parts of one plane.
+fn view_weights<S: Real>(plan: &Plan, index: usize, areas: &[S]) -> Vec<S> {
+    let surfaces = &plan.zones[index].surfaces;
+    let given = &plan.description.zones[index].view_weights;
+    let n = surfaces.len();
+    let mut weights = Vec::with_capacity(n * n);
+    for i in 0..n {
+        for j in 0..n {
+            let weight = if !given.is_empty() {
+                // The given weights hold at the nominal areas: balancing adapts them when an area is varied.
+                S::constant(given[i][j])
+            } else if i == j {
+                self_weight(areas, i)
+            } else if !same_plane(plan, surfaces[i], surfaces[j]) {
+                areas[i] * areas[j]
+            } else {
+                S::zero()
+            };
+            weights.push(weight);
+        }
+    }
+    weights
+}
+
+/// True when the normals of two surfaces of a zone agree at their nominal tilt and azimuth: parts of one plane.
+fn same_plane(plan: &Plan, a: SurfaceId, b: SurfaceId) -> bool {
+    let normal = |surface: SurfaceId| {
+        let wall = &plan.description.surfaces[surface.wall()];
+        let value = |id: ParamId| plan.description.parameters[id.0 as usize].value.to_radians();
+        let (tilt, azimuth) = (value(wall.tilt), value(wall.azimuth));
+        let sign = if surface.is_outside() { 1.0 } else { -1.0 };
+        [
+            Real::sin(azimuth) * Real::sin(tilt) * sign,
+            Real::cos(azimuth) * Real::sin(tilt) * sign,
+            Real::cos(tilt) * sign,
+        ]
+    };
+    let dot: f64 = normal(a).iter().zip(normal(b)).map(|(x, y)| x * y).sum();
+    dot > 1.0 - 1e-9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::coefficients::Coefficients;
+    use crate::building::test_buildings::{WINDOW, glazed_zone, values};
+
+    fn zone(sun: &str) -> ZoneCoefficients<f64> {
+        let plan = Plan::new(glazed_zone(sun, false)).unwrap();
+        Coefficients::new(&plan, &values(&plan.description)).zones.remove(0)
+    }
+
+    /// 129.6 m3 of air of 1.225 kg/m3 and 1006 J/(kg K).
+    #[test]
+    fn capacity_of_the_air() {
+        let zone = zone("area");
+        assert!((zone.air_capacity / (129.6 * 1.225 * 1006.0) - 1.0).abs() < 1e-4);
+        assert_eq!(zone.capacity, zone.air_capacity);
+    }
+
+    /// With one emissivity e, radiant gains are absorbed by area; each surface's exchange areas add up to no more than e A.
+    #[test]
+    fn radiation_between_surfaces() {
+        let zone = zone("area");
+        let total: f64 = zone.areas.iter().sum();
+        assert!((total - (2.0 * 21.6 + 2.0 * 16.2 + 2.0 * 48.0)).abs() < 1e-12);
+        for (i, &area) in zone.areas.iter().enumerate() {
+            assert!((zone.radiant_shares[i] - area / total).abs() < 1e-15);
+            let row = zone.exchange_sums[i] + zone.exchange[i * zone.areas.len() + i];
+            assert!((row / (0.9 * area) - 1.0).abs() < 1e-9, "{row}");
+        }
+    }
+
+    /// South wall and window are parts of one plane and see each other by no weight; other surfaces by the product of areas.
+    #[test]
+    fn surfaces_of_one_plane() {
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let areas = zone("area").areas;
+        let weights = view_weights(&plan, 0, &areas);
+        let n = areas.len();
+        assert_eq!((weights[WINDOW], weights[WINDOW * n], weights[0]), (0.0, 0.0, 0.0));
+        assert_eq!(weights[n + WINDOW], areas[1] * areas[WINDOW]);
+    }
+
+    /// Given weights replace the products of areas: after balancing, rows sum to the areas.
+    #[test]
+    fn given_view_weights() {
+        let mut description = glazed_zone("area", false);
+        let n = description.surfaces.len();
+        let given: Vec<Vec<f64>> =
+            (0..n).map(|i| (0..n).map(|j| if i == j { 0.0 } else { (1 + i + j) as f64 }).collect()).collect();
+        description.zones[0].view_weights.clone_from(&given);
+        let plan = Plan::new(description).unwrap();
+        let areas = zone("area").areas;
+        assert_eq!(view_weights(&plan, 0, &areas), given.concat());
+    }
+
+    /// A distribution exists where there is a window; the irradiance of a zone in which beams are traced is
+    /// `sum(A a G) + transmitted = 1` per watt of first incidence.
+    #[test]
+    fn every_traced_watt_is_absorbed_or_lost() {
+        let Some(SolarDistribution::Traced(traced)) = zone("geometry").solar_distribution else {
+            panic!("beams are traced")
+        };
+        let plan = Plan::new(glazed_zone("geometry", false)).unwrap();
+        let numbers = Coefficients::new(&plan, &values(&plan.description));
+        for first in 0..=WINDOW {
+            let incidence: Vec<f64> = (0..=WINDOW).map(|i| f64::from(u8::from(i == first))).collect();
+            let admitted = numbers.zones[0].areas.iter().enumerate().map(|(i, area)| {
+                let fraction =
+                    numbers.walls[i].glass.as_ref().map_or(0.55, |glass| glass.optics.back.admitted());
+                area * fraction * traced.irradiance(i, &incidence)
+            });
+            let sum: f64 = admitted.sum();
+            assert!((sum - 1.0).abs() < 1e-9, "{first}: {sum}");
+        }
+    }
+}

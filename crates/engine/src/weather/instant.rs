@@ -1,0 +1,156 @@
+//! The weather at an instant, as far as it is the same for all members of an ensemble.
+
+use std::borrow::Cow;
+
+use crate::building::coefficients::surface::PER_DAY;
+use crate::building::ids::SurfaceId;
+use crate::building::plan::Plan;
+use crate::input::description::Facing;
+use crate::input::forcing::{Forcing, channel};
+use crate::number::real::Real;
+use crate::physics::convection::{Wind, WindTerms};
+use crate::physics::longwave::SkyState;
+use crate::physics::solar::{SkyVisibility, Sunlight};
+
+/// The weather at one stage of a step.
+#[derive(Debug, Clone)]
+pub struct Instant<'a> {
+    /// All forcing channels.
+    pub row: &'a [f64],
+    /// The sun and its radiation, independent of any plane.
+    pub(crate) sunlight: Sunlight,
+    /// What the emission of the sky depends on.
+    pub(crate) sky: SkyState,
+    /// Wind at the mast.
+    pub(crate) wind: Wind,
+    /// North and east components of the direction that the wind comes from; zeros where no law depends on it.
+    pub(crate) wind_from: [f64; 2],
+    /// Cosine and sine of the angle of the day in the year; zeros where no ground temperature depends on it.
+    pub(crate) season: [f64; 2],
+    /// Fractions of sun and beams, see [`SolarGeometry`](crate::building::solar_geometry::SolarGeometry).
+    pub(crate) fractions: Box<[f64]>,
+}
+
+impl<'a> Instant<'a> {
+    /// Evaluates a forcing row.
+    #[must_use]
+    pub fn new(plan: &Plan, row: &'a [f64], terms: WindTerms, ground: bool) -> Self {
+        let unit =
+            |angle: f64, needed: bool| if needed { [Real::cos(angle), Real::sin(angle)] } else { [0.0; 2] };
+        let sunlight = Sunlight::new(row, plan.description.site.diffuse);
+        Self {
+            row,
+            fractions: plan.solar_geometry.at(&sunlight),
+            sunlight,
+            sky: SkyState::new(&plan.description.site.sky, row),
+            wind: Wind::new(row[channel::WIND_SPEED], terms),
+            wind_from: unit(row[channel::WIND_DIRECTION].to_radians(), terms.direction),
+            season: unit(row[channel::DAY_OF_YEAR] * PER_DAY, ground),
+        }
+    }
+
+    /// Fractions that obstacles leave of sun and sky on a surface: obstacles stand outside only.
+    pub(crate) fn visibility(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
+        if surface.is_outside() {
+            plan.solar_geometry.visibility(surface.wall(), &self.fractions)
+        } else {
+            SkyVisibility::FULL
+        }
+    }
+}
+
+/// The weather at all stages of a run.
+#[derive(Debug)]
+pub struct Weather<'a> {
+    plan: &'a Plan,
+    forcing: Forcing<'a>,
+    /// Terms of the wind that the laws of convection depend on.
+    terms: WindTerms,
+    /// Whether a ground temperature depends on the day of the year.
+    ground: bool,
+    /// All stages, evaluated; empty where each is evaluated on demand.
+    stages: Vec<Instant<'a>>,
+}
+
+impl<'a> Weather<'a> {
+    /// Evaluates all stages of a forcing, for many runs.
+    #[must_use]
+    pub fn new(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
+        let mut weather = Self::on_demand(plan, forcing);
+        let stages = forcing.stages();
+        weather.stages =
+            (0..forcing.steps() * stages).map(|k| weather.evaluate(k / stages, k % stages)).collect();
+        weather
+    }
+
+    /// The weather for a single run: stages that are read once are evaluated on demand.
+    #[must_use]
+    pub fn for_single_run(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
+        // Tracing beams is expensive: stages that warm-up reads again are then evaluated once.
+        if plan.solar_geometry.is_empty() { Self::on_demand(plan, forcing) } else { Self::new(plan, forcing) }
+    }
+
+    fn on_demand(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
+        let sides = || plan.surfaces.ids().map(|surface| plan.side(surface));
+        let terms = WindTerms::of(sides().filter_map(|side| side.convection.as_ref()));
+        let ground = sides().any(|side| matches!(side.facing, Facing::Ground { .. }));
+        Self { plan, forcing: *forcing, terms, ground, stages: Vec::new() }
+    }
+
+    fn evaluate(&self, step: usize, stage: usize) -> Instant<'a> {
+        Instant::new(self.plan, self.forcing.at(step, stage), self.terms, self.ground)
+    }
+
+    /// Number of steps.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.forcing.steps()
+    }
+
+    /// All forcing channels at a stage of a step.
+    #[must_use]
+    pub fn row(&self, step: usize, stage: usize) -> &'a [f64] {
+        self.forcing.at(step, stage)
+    }
+
+    /// The weather at a stage of a step.
+    #[must_use]
+    pub fn at(&self, step: usize, stage: usize) -> Cow<'_, Instant<'a>> {
+        match self.stages.get(step * self.forcing.stages() + stage) {
+            Some(instant) => Cow::Borrowed(instant),
+            None => Cow::Owned(self.evaluate(step, stage)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::building::test_buildings::glazed_zone;
+    use crate::input::forcing::CLIMATE_CHANNELS;
+
+    /// Two steps of two stages, the air one degree warmer at each.
+    #[test]
+    fn stages_evaluated_before_or_on_demand() {
+        let rows: Vec<f64> = (0..4 * CLIMATE_CHANNELS)
+            .map(|k| {
+                if k % CLIMATE_CHANNELS == channel::AIR_TEMPERATURE {
+                    (k / CLIMATE_CHANNELS) as f64
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        let forcing = Forcing::new(&rows, 2, CLIMATE_CHANNELS).unwrap();
+        let plan = Plan::new(glazed_zone("area", false)).unwrap();
+        let (all, single) = (Weather::new(&plan, &forcing), Weather::for_single_run(&plan, &forcing));
+        assert_eq!((all.steps(), all.stages.len(), single.stages.len()), (2, 4, 0));
+        for weather in [&all, &single] {
+            assert_eq!(weather.at(1, 0).row[channel::AIR_TEMPERATURE], 2.0);
+            assert_eq!(weather.row(0, 1)[channel::AIR_TEMPERATURE], 1.0);
+        }
+        // Tracing beams is done once: all stages are evaluated before the run.
+        let traced = Plan::new(glazed_zone("geometry", false)).unwrap();
+        assert_eq!(Weather::for_single_run(&traced, &forcing).stages.len(), 4);
+    }
+}

@@ -1,0 +1,336 @@
+//! The sun on planes, through windows and in zones.
+//!
+//! Sunlight is incident on each plane; windows transmit a part of it and absorb another in their panes; what they transmit
+//! into a zone is absorbed by its surfaces and its glass or is lost outdoors again
+//! (see [`solar_distribution`](crate::building::solar_distribution)).
+
+use crate::building::coefficients::{Boundary, Coefficients};
+use crate::building::glazing::{Node, Site};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::layout::{SurfaceRole, ZonePlan};
+use crate::building::plan::Plan;
+use crate::building::solar_distribution::{FixedDistribution, SolarDistribution, TracedDistribution};
+use crate::number::real::Real;
+use crate::weather::index::{IrradianceSource, WeatherIndex};
+use crate::weather::instant::Instant;
+use crate::weather::surface::SurfaceConditions;
+
+/// The sun at a window.
+#[derive(Debug, Clone)]
+pub struct WindowConditions<S> {
+    /// Transmitted into its zone [W].
+    pub transmitted: S,
+    /// The part of it that comes from the sun's direction [W].
+    pub beam: S,
+    /// Absorbed in each pane, from both sides [W/m2].
+    pub panes: Vec<S>,
+    /// The part of it that acts in each cell [W/m2].
+    pub cells: Vec<S>,
+}
+
+/// The sun in a zone [W].
+#[derive(Debug, Clone, Copy)]
+pub struct ZoneSolar<S> {
+    /// Transmitted into it by its windows.
+    pub transmitted: S,
+    /// Transmitted outdoors again.
+    pub lost: S,
+    /// Absorbed by its glass from inside.
+    pub in_glass: S,
+}
+
+/// The sun at an instant.
+#[derive(Debug, Clone)]
+pub struct SolarConditions<S> {
+    /// Irradiance from each of [`WeatherIndex::irradiance_sources`] [W/m2].
+    pub(crate) irradiances: Vec<S>,
+    /// Per window, in the order of [`Plan::windows`](crate::building::plan::Plan::windows).
+    pub windows: Vec<WindowConditions<S>>,
+    /// Per zone.
+    pub zones: Vec<ZoneSolar<S>>,
+    /// Per zone: power of first incidence on each of its surfaces, where beams are traced [W].
+    incidence: Vec<Vec<S>>,
+}
+
+impl<S: Real> SolarConditions<S> {
+    /// Zeros for a building.
+    pub(crate) fn new(plan: &Plan, weather_index: &WeatherIndex<S>) -> Self {
+        let zero = S::zero();
+        let windows = plan.windows.iter().map(|&w| WindowConditions {
+            transmitted: zero,
+            beam: zero,
+            panes: vec![zero; plan.walls[w].glass.as_ref().map_or(0, |glass| glass.sites.len())],
+            cells: vec![zero; plan.walls[w].len()],
+        });
+        Self {
+            irradiances: vec![zero; weather_index.irradiance_sources.len()],
+            windows: windows.collect(),
+            zones: vec![ZoneSolar { transmitted: zero, lost: zero, in_glass: zero }; plan.zones.len()],
+            incidence: plan.zones.iter().map(|zone| vec![zero; zone.surfaces.len()]).collect(),
+        }
+    }
+
+    /// Linear interpolation or extrapolation: `fraction` 0 at the first, 1 at the second.
+    pub(crate) fn interpolate(&mut self, first: &Self, second: &Self, fraction: f64) {
+        let line = |a: S, b: S| a + (b - a).scale(fraction);
+        for (at, (&a, &b)) in
+            self.irradiances.iter_mut().zip(first.irradiances.iter().zip(&second.irradiances))
+        {
+            *at = line(a, b);
+        }
+        for (at, (a, b)) in self.windows.iter_mut().zip(first.windows.iter().zip(&second.windows)) {
+            at.transmitted = line(a.transmitted, b.transmitted);
+            at.beam = line(a.beam, b.beam);
+            let sets = [(&mut at.panes, &a.panes, &b.panes), (&mut at.cells, &a.cells, &b.cells)];
+            for (set, one, other) in sets {
+                for (heat, (&a, &b)) in set.iter_mut().zip(one.iter().zip(other)) {
+                    *heat = line(a, b);
+                }
+            }
+        }
+        for (at, (a, b)) in self.zones.iter_mut().zip(first.zones.iter().zip(&second.zones)) {
+            at.transmitted = line(a.transmitted, b.transmitted);
+            at.lost = line(a.lost, b.lost);
+            at.in_glass = line(a.in_glass, b.in_glass);
+        }
+    }
+
+    /// The irradiance of all planes.
+    #[inline(always)]
+    pub(crate) fn irradiate(
+        &mut self,
+        plan: &Plan,
+        coefficients: &Coefficients<S>,
+        weather_index: &WeatherIndex<S>,
+        now: &Instant<'_>,
+    ) {
+        let dark = now.sunlight.dark();
+        for (irradiance, source) in self.irradiances.iter_mut().zip(&weather_index.irradiance_sources) {
+            *irradiance = match source {
+                IrradianceSource::Measured(channel) => S::constant(now.row[*channel]),
+                _ if dark => S::zero(),
+                IrradianceSource::Uniform(plane, ground, surface) => {
+                    S::constant(now.sunlight.on(plane, *ground, &now.visibility(plan, *surface)).total())
+                }
+                IrradianceSource::Varied(plane, surface) => now
+                    .sunlight
+                    .on(plane, coefficients.ground_reflectance, &now.visibility(plan, *surface))
+                    .total(),
+            };
+        }
+    }
+
+    /// What windows transmit, and what their panes absorb of the sun from outside.
+    #[inline(always)]
+    pub(crate) fn transmit(&mut self, plan: &Plan, coefficients: &Coefficients<S>, now: &Instant<'_>) {
+        for zone in &mut self.zones {
+            zone.transmitted = S::zero();
+        }
+        for (at, &w) in self.windows.iter_mut().zip(&plan.windows) {
+            let wall = &coefficients.walls[w];
+            at.transmitted = S::zero();
+            at.beam = S::zero();
+            at.panes.fill(S::zero());
+            let (Some(glass), Boundary::Outdoors(outdoors)) =
+                (&wall.glass, &coefficients.surfaces[SurfaceId::outside(w)].boundary)
+            else {
+                continue;
+            };
+            if now.sunlight.dark() {
+                continue;
+            }
+            let open = now.visibility(plan, SurfaceId::outside(w));
+            let light = now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open);
+            let (directed, scattered) = (light.directed(), light.scattered());
+            let (front, level) = (&glass.optics.front, &glass.horizon);
+            let through = glass.optics.beam.split(light.cosine, &mut at.panes);
+            let diffuse = front.absorptance.iter().zip(&level.absorptance);
+            for (pane, (&everywhere, &level)) in at.panes.iter_mut().zip(diffuse) {
+                *pane = *pane * directed + everywhere * scattered + level * light.horizon;
+            }
+            at.beam = wall.area * through * directed;
+            let spread = front.transmittance * scattered + level.transmittance * light.horizon;
+            at.transmitted = at.beam + wall.area * spread;
+            if let SurfaceRole::Zone { zone, .. } = plan.surfaces[SurfaceId::inside(w)].role {
+                self.zones[zone].transmitted += at.transmitted;
+            }
+        }
+    }
+
+    /// Distributes what windows transmit over the surfaces of the zones and the insides of the panes.
+    #[inline(always)]
+    pub(crate) fn distribute(
+        &mut self,
+        plan: &Plan,
+        coefficients: &Coefficients<S>,
+        now: &Instant<'_>,
+        surfaces: &mut BySurface<SurfaceConditions<S>>,
+    ) {
+        for (z, (zone, numbers)) in plan.zones.iter().zip(&coefficients.zones).enumerate() {
+            let Some(distribution) = &numbers.solar_distribution else { continue };
+            if now.sunlight.dark() {
+                (self.zones[z].lost, self.zones[z].in_glass) = (S::zero(), S::zero());
+                for &surface in &zone.surfaces {
+                    surfaces[surface].solar = S::zero();
+                }
+                continue;
+            }
+            match distribution {
+                SolarDistribution::Fixed(fixed) => self.distribute_fixed(z, zone, fixed, surfaces),
+                SolarDistribution::Traced(traced) => {
+                    self.trace_beams(plan, z, traced, now);
+                    self.distribute_traced(z, zone, traced, coefficients, surfaces);
+                }
+            }
+            for &(window, i) in &zone.windows {
+                let Some(glass) = &coefficients.walls[plan.windows[window]].glass else { continue };
+                let on = match distribution {
+                    SolarDistribution::Fixed(fixed) => fixed.on_glass[i] * self.zones[z].transmitted,
+                    SolarDistribution::Traced(traced) => traced.irradiance(i, &self.incidence[z]),
+                };
+                let panes = &mut self.windows[window].panes;
+                for (pane, &absorptance) in panes.iter_mut().zip(&glass.optics.back.absorptance) {
+                    *pane += absorptance * on;
+                }
+            }
+        }
+    }
+
+    /// Distributes the sun in a zone by fractions.
+    #[inline(always)]
+    fn distribute_fixed(
+        &mut self,
+        z: usize,
+        zone: &ZonePlan,
+        fixed: &FixedDistribution<S>,
+        surfaces: &mut BySurface<SurfaceConditions<S>>,
+    ) {
+        let transmitted = self.zones[z].transmitted;
+        self.zones[z].lost = fixed.lost * transmitted;
+        self.zones[z].in_glass = fixed.in_glass * transmitted;
+        for (i, &surface) in zone.surfaces.iter().enumerate() {
+            surfaces[surface].solar = fixed.absorbed[i] * transmitted;
+        }
+    }
+
+    /// The power of first incidence on each surface of a zone.
+    #[inline(always)]
+    fn trace_beams(&mut self, plan: &Plan, z: usize, traced: &TracedDistribution<S>, now: &Instant<'_>) {
+        let incidence = &mut self.incidence[z];
+        let n = incidence.len();
+        incidence.fill(S::zero());
+        for &(window, i) in &plan.zones[z].windows {
+            let at = &self.windows[window];
+            let fractions = plan.solar_geometry.beam_fractions(window, &now.fractions);
+            // All fractions of a window in full shade are zero: what it transmits is diffuse.
+            let fractions = fractions.filter(|fractions| fractions.iter().sum::<f64>() > 0.0);
+            let beam = if fractions.is_some() { at.beam } else { S::zero() };
+            let rest = at.transmitted - beam;
+            for (j, power) in incidence.iter_mut().enumerate() {
+                *power += rest * traced.views[i * n + j];
+                if let Some(fractions) = fractions {
+                    *power += beam.scale(fractions[j]);
+                }
+            }
+        }
+    }
+
+    /// Distributes the sun in a zone by reflections after the first incidence.
+    #[inline(always)]
+    fn distribute_traced(
+        &mut self,
+        z: usize,
+        zone: &ZonePlan,
+        traced: &TracedDistribution<S>,
+        coefficients: &Coefficients<S>,
+        surfaces: &mut BySurface<SurfaceConditions<S>>,
+    ) {
+        let (mut lost, mut in_glass) = (S::zero(), S::zero());
+        for (i, &surface) in zone.surfaces.iter().enumerate() {
+            let on = traced.irradiance(i, &self.incidence[z]);
+            surfaces[surface].solar = coefficients.surfaces[surface].absorptance * on;
+            if let Some(glass) = &coefficients.walls[surface.wall()].glass {
+                let (power, back) = (coefficients.zones[z].areas[i] * on, &glass.optics.back);
+                lost += power * back.transmittance;
+                in_glass += power * (back.admitted() - back.transmittance);
+            }
+        }
+        (self.zones[z].lost, self.zones[z].in_glass) = (lost, in_glass);
+    }
+
+    /// Assigns the heat absorbed in panes to the cells and surfaces where it acts.
+    #[inline(always)]
+    pub(crate) fn absorb_in_panes(&mut self, plan: &Plan, surfaces: &mut BySurface<SurfaceConditions<S>>) {
+        for (at, &w) in self.windows.iter_mut().zip(&plan.windows) {
+            let Some(glass) = &plan.walls[w].glass else { continue };
+            let mut both = [S::zero(); 2];
+            at.cells.fill(S::zero());
+            for (site, &heat) in glass.sites.iter().zip(&at.panes) {
+                match site {
+                    Site::Middle(cell) => at.cells[*cell] += heat,
+                    Site::Surfaces(nodes) => {
+                        for node in nodes {
+                            match node {
+                                Node::Outside => both[0] += heat.scale(0.5),
+                                Node::Cell(cell) => at.cells[*cell] += heat.scale(0.5),
+                                Node::Inside => both[1] += heat.scale(0.5),
+                            }
+                        }
+                    }
+                }
+            }
+            surfaces[SurfaceId::outside(w)].solar = both[0];
+            surfaces[SurfaceId::inside(w)].solar += both[1];
+        }
+    }
+}
+
+/// The sun over a step: means of its stages.
+#[derive(Debug, Clone)]
+pub struct SolarMeans<S> {
+    /// Irradiance from each of [`WeatherIndex::irradiance_sources`] [W/m2].
+    pub(crate) irradiances: Vec<S>,
+    /// Transmitted by each window [W].
+    pub windows: Vec<S>,
+    /// Transmitted into each zone [W].
+    pub zones: Vec<S>,
+    /// Lost outdoors from each zone [W].
+    pub lost: Vec<S>,
+}
+
+impl<S: Real> SolarMeans<S> {
+    /// Zeros for a building.
+    #[must_use]
+    pub fn new(sun: &SolarConditions<S>) -> Self {
+        let zeros = |count: usize| vec![S::zero(); count];
+        Self {
+            irradiances: zeros(sun.irradiances.len()),
+            windows: zeros(sun.windows.len()),
+            zones: zeros(sun.zones.len()),
+            lost: zeros(sun.zones.len()),
+        }
+    }
+
+    /// Sets all means to zero.
+    #[inline(always)]
+    pub fn restart(&mut self) {
+        for means in [&mut self.irradiances, &mut self.windows, &mut self.zones, &mut self.lost] {
+            means.fill(S::zero());
+        }
+    }
+
+    /// Adds a stage by its weight.
+    #[inline(always)]
+    pub fn add(&mut self, sun: &SolarConditions<S>, weight: f64) {
+        for (mean, irradiance) in self.irradiances.iter_mut().zip(&sun.irradiances) {
+            *mean += irradiance.scale(weight);
+        }
+        for (mean, window) in self.windows.iter_mut().zip(&sun.windows) {
+            *mean += window.transmitted.scale(weight);
+        }
+        for ((mean, lost), zone) in self.zones.iter_mut().zip(&mut self.lost).zip(&sun.zones) {
+            *mean += zone.transmitted.scale(weight);
+            *lost += zone.lost.scale(weight);
+        }
+    }
+}
