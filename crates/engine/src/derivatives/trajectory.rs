@@ -10,11 +10,12 @@ use crate::balance::ledger::Ledger;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
+use crate::linear::unknowns::Unknowns;
 use crate::number::tape::{Tape, Taped};
 use crate::run::march::{Move, Options, Run, Watch, check, march_seen};
 use crate::step::Stepper;
 use crate::step::stage_solutions::{Solution, read_solution};
-use crate::step::state::{State, Unknowns};
+use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
 /// A run, and what is needed to go back along it.
@@ -46,7 +47,7 @@ impl Stretch {
     fn push(&mut self, before: &State<f64>, stepper: &Stepper<'_, f64>, load: &[f64]) {
         before.write(&mut self.states);
         if let Some(solution) = stepper.known.solution(load) {
-            solution.write(stepper.changing_cells(), &mut self.solutions);
+            solution.write(&stepper.model.parts.nonlinear_cells, &mut self.solutions);
         }
         self.ends.push(self.solutions.len());
     }
@@ -236,7 +237,7 @@ impl<'a> Back<'a> {
             *number = Taped::new(value, place);
             place += 1;
         });
-        let cells = stepper.changing_cells();
+        let cells = &stepper.model.parts.nonlinear_cells;
         let known = read_solution(solution, cells, &mut self.stages, &mut self.load);
         let solution = known.then_some(Solution { stages: &self.stages, load: &self.load });
         stepper.forget();
@@ -247,7 +248,7 @@ impl<'a> Back<'a> {
         if let Some(row) = made.row(self.options) {
             let probes = &self.options.probes;
             for (probe, weight) in probes.iter().zip(&self.records[row * probes.len()..]) {
-                let record = probe.read(stepper.plan, stepper, state);
+                let record = probe.read(stepper.model.plan, stepper, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
                 record.add_weight(*weight, &mut self.weights);
             }

@@ -179,7 +179,7 @@ pub(crate) fn march_seen<'a, S: Real>(
     watch: &Watch,
     mut see: impl FnMut(&Stepper<'a, S>, &State<S>, Move) -> Result<(), EngineError>,
 ) -> Result<Run<S>, EngineError> {
-    let plan = stepper.plan;
+    let plan = stepper.model.plan;
     let mut state = stepper.begin(&options.initial);
     let (cycles, settled) = warm_up(&mut stepper, &mut state, weather, options, watch, &mut see)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
@@ -194,7 +194,15 @@ pub(crate) fn march_seen<'a, S: Real>(
         }
         see(&stepper, &state, made)?;
     }
-    Ok(Run { records, ledger, state, cycles, settled, counters: stepper.counters, failed: stepper.failed })
+    Ok(Run {
+        records,
+        ledger,
+        state,
+        cycles,
+        settled,
+        counters: stepper.counters(),
+        failed: stepper.failed(),
+    })
 }
 
 /// Repeats the first period until every lane has settled; a settled lane keeps its state.
@@ -222,7 +230,7 @@ fn warm_up<'a, S: Real>(
         let change = next.distance(state);
         state.take(active, &next);
         settled = S::select(active, change, settled);
-        active = active & !stepper.failed & S::constant(warmup.tolerance).lt(change);
+        active = active & !stepper.failed() & S::constant(warmup.tolerance).lt(change);
         if !active.any() {
             return Ok((cycle, settled));
         }

@@ -185,14 +185,14 @@ impl Probe {
             Self::IncidentSolar { surface } => stepper.incident(SurfaceId::outside(surface)),
             Self::TransmittedSolar { surface } => {
                 let window = plan.windows.iter().position(|&w| w == surface);
-                window.map_or_else(S::zero, |window| stepper.sun.windows[window])
+                window.map_or_else(S::zero, |window| stepper.weather.sun.windows[window])
             }
-            Self::ZoneTransmittedSolar { zone } => stepper.sun.zones[zone],
-            Self::ZoneLostSolar { zone } => stepper.sun.lost[zone],
+            Self::ZoneTransmittedSolar { zone } => stepper.weather.sun.zones[zone],
+            Self::ZoneLostSolar { zone } => stepper.weather.sun.lost[zone],
             Self::SkyTemperature => stepper.sky_temperature(),
             Self::Sensor { sensor } => {
                 let surface = plan.description.sensors[sensor].surface;
-                let depth = stepper.coefficients.sensor_depths[sensor];
+                let depth = stepper.model.coefficients.sensor_depths[sensor];
                 profile_at(&profile(plan, stepper, state, surface), depth)
             }
         }
@@ -200,7 +200,7 @@ impl Probe {
 }
 
 fn mean_radiant<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, zone: usize) -> S {
-    let areas = &stepper.coefficients.zones[zone].areas;
+    let areas = &stepper.model.coefficients.zones[zone].areas;
     let (mut sum, mut total) = (S::zero(), S::zero());
     for (&face, &area) in plan.zones[zone].surfaces.iter().zip(areas) {
         sum += area * state.surfaces[face];
@@ -250,7 +250,7 @@ fn interface_temperature<S: Real>(
     surface: usize,
     interface: usize,
 ) -> S {
-    let (wall, numbers) = (&plan.walls[surface], &stepper.coefficients.walls[surface]);
+    let (wall, numbers) = (&plan.walls[surface], &stepper.model.coefficients.walls[surface]);
     // The link that holds the interface follows the cells of all layers before it.
     let link = wall.layer_cells[interface - 1].1;
     let flux = stepper.link_flux(state, surface, link);
@@ -269,7 +269,7 @@ fn interface_temperature<S: Real>(
 
 /// Temperatures and depths of the faces, cell centres and interfaces of a wall, outside to inside.
 fn profile<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, surface: usize) -> Vec<(S, S)> {
-    let (wall, numbers) = (&plan.walls[surface], &stepper.coefficients.walls[surface]);
+    let (wall, numbers) = (&plan.walls[surface], &stepper.model.coefficients.walls[surface]);
     let face = |face: SurfaceId| state.surfaces[face];
     let mut depth = S::zero();
     let mut points = vec![(depth, face(SurfaceId::outside(surface)))];

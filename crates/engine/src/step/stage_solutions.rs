@@ -2,8 +2,8 @@
 
 use core::ops::Range;
 
+use crate::linear::unknowns::Unknowns;
 use crate::number::real::Real;
-use crate::step::state::Unknowns;
 
 /// What a step found.
 #[derive(Debug, Clone, Copy)]
