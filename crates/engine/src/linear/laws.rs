@@ -5,6 +5,7 @@ use crate::building::model::Model;
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::line::Line;
 use crate::number::real::Real;
+use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::Emission;
 use crate::weather::conditions::Conditions;
 
@@ -24,7 +25,7 @@ impl<S: Real> LinearisedLaws<S> {
     pub(crate) fn new(model: &Model<'_, S>) -> Self {
         let constant = |surface| {
             let mut laws = SurfaceLaws { convection: Line::zero(), emission: Line::zero() };
-            if let Some(coefficient) = model.convection(surface).and_then(|law| law.constant()) {
+            if let Some(coefficient) = model.convection(surface).and_then(SurfaceConvection::constant) {
                 laws.convection.slope = coefficient * model.coefficients.surfaces[surface].area_factor;
             }
             if let Some(emission @ Emission::Linearised(_)) = model.emission(surface) {
