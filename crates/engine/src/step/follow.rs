@@ -265,7 +265,7 @@ impl<S: Real> Stepper<'_, S> {
                 match self.model.plan.surfaces[SurfaceId::new(w, e)].role {
                     // What enters by its area beside the heat from the wall is added with the zone.
                     SurfaceRole::Zone { .. } => {
-                        equations.add(surfaces[e], self.model.coefficients.walls[w].area, heat)
+                        equations.add(surfaces[e], self.model.coefficients.walls[w].area, heat);
                     }
                     SurfaceRole::Exterior => {
                         self.gather_local(
@@ -325,7 +325,7 @@ impl<S: Real> Stepper<'_, S> {
             (&self.weather.conditions.surfaces[index], &self.solver.linearisation.laws.surfaces[index]);
         match surface.boundary {
             Boundary::Imposed(_) if surface.convection.is_none() => {
-                equations.add(row, conditions.temperature, 1.0)
+                equations.add(row, conditions.temperature, 1.0);
             }
             Boundary::Adiabatic => equations.add(row, conditions.solar, 1.0),
             _ => {

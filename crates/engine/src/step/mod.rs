@@ -10,14 +10,14 @@ pub(crate) mod ideal_loads;
 mod limiter;
 mod linearisation;
 mod nested;
-mod newton;
+pub(crate) mod newton;
 mod readings;
-mod scheme;
+pub(crate) mod scheme;
 mod stage;
 pub(crate) mod stage_solutions;
 mod stage_weather;
 pub mod state;
-mod stepper;
+pub(crate) mod stepper;
 
 pub use newton::Counters;
 pub use scheme::Scheme;
