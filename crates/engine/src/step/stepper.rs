@@ -36,8 +36,7 @@ pub struct Stepper<'a, S: Real> {
     pub(crate) solver: StageSolver<'a, S>,
     pub(crate) guess: Guess<S>,
     pub(crate) ideal_loads: IdealLoads<S>,
-    /// What is left of the step.
-    pub(crate) parts: StepParts,
+    pub(crate) parts: StepParts<S>,
     pub(crate) known: StageSolutions<S>,
     /// Only where slopes are carried along a known solution.
     pub(super) following: Option<Box<Following<'a, S>>>,
@@ -74,7 +73,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             ideal_loads: IdealLoads::new(&model, &solver.solution, tableau.weights.len()),
             solver,
             guess: Guess::none(),
-            parts: StepParts::default(),
+            parts: StepParts::new(plan.zones.len()),
             known: StageSolutions::nothing(),
             following: None,
             model,
@@ -148,7 +147,10 @@ impl<'a, S: Real> Stepper<'a, S> {
                     match self.attempt(state, weather, part, dt, ledger) {
                         Ok(()) if part.halvings == 0 => {}
                         // Parts differ in length: none is guessed from the one before it.
-                        Ok(()) => self.forget(),
+                        Ok(()) => {
+                            self.parts.average(part, &mut state.load);
+                            self.forget();
+                        }
                         Err(error) => self.halve(part, error)?,
                     }
                 }
