@@ -96,8 +96,11 @@ mod tests {
             };
             let actions = core::iter::once(Action::Balance).chain((0..steps).map(Action::Step));
             let rows: Vec<usize> = actions.filter_map(|action| action.row(&options)).collect();
-            let expected = if record_from > steps { 0 } else { options.rows(steps) };
-            assert_eq!(rows, (0..expected).collect::<Vec<_>>(), "{steps}, {record_from}, {record_every}");
+            assert_eq!(
+                rows,
+                (0..options.rows(steps)).collect::<Vec<_>>(),
+                "{steps}, {record_from}, {record_every}"
+            );
             assert_eq!(Action::WarmUp(record_from).row(&options), None);
         }
     }

@@ -49,13 +49,19 @@ pub fn ensemble(
         closure: vec![f64::NAN; members],
         failures: Vec::new(),
     };
-    let packs = result.records.par_chunks_mut(row.max(1) * WIDTH).zip(result.closure.par_chunks_mut(WIDTH));
+    let mut rest = &mut result.records[..];
+    let packs = result.closure.chunks_mut(WIDTH).map(|closure| {
+        let records;
+        (records, rest) = core::mem::take(&mut rest).split_at_mut(row * closure.len());
+        Target { records, closure, row }
+    });
+    let packs: Vec<_> = packs.collect();
     let failures: Result<Vec<_>, EngineError> = packs
+        .into_par_iter()
         .enumerate()
-        .map(|(pack, (records, closure))| {
+        .map(|(pack, mut target)| {
             let first = pack * WIDTH;
-            let members = &numbers[first * width..(first + closure.len()) * width];
-            let mut target = Target { records, closure, row };
+            let members = &numbers[first * width..(first + target.closure.len()) * width];
             let failed = run_pack(level, plan, members, &weather, options, control, &mut target)?;
             Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
         })

@@ -42,8 +42,7 @@ impl Options {
     /// Number of recorded rows for a forcing of `steps` steps.
     #[must_use]
     pub fn rows(&self, steps: usize) -> usize {
-        let from = self.record_from.min(steps);
-        1 + (steps - from) / self.record_every
+        steps.checked_sub(self.record_from).map_or(0, |left| 1 + left / self.record_every)
     }
 
     /// Checks that a run with these options is possible, with so many parameter values and a forcing; the lanes to use.
