@@ -9,7 +9,7 @@ use crate::linear::unknowns::Temperatures;
 use crate::number::real::Real;
 use crate::physics::pcm::{PcmMemory, REMEMBERED};
 
-/// Temperatures that a run starts from [degC], the same for all members; what melts has come to them from below.
+/// Temperatures that a run starts from [degC], the same for all members; phase-change materials have been heated to them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Initial {
     /// One temperature everywhere.
@@ -18,7 +18,7 @@ pub enum Initial {
     Given {
         /// Of the cells of all walls.
         cells: Vec<f64>,
-        /// Of the surfaces: where the search for their balance begins.
+        /// Of the surfaces: the first guess of their balance.
         surfaces: Vec<f64>,
         /// Of the airs of the zones.
         air: Vec<f64>,
@@ -51,15 +51,15 @@ impl Initial {
 pub struct State<S> {
     /// Cell temperatures of all walls [degC].
     pub cells: Vec<S>,
-    /// Enthalpies of the cells of walls that change [J/m3]; those of others are the capacity times the temperature.
+    /// Enthalpies of the cells of nonlinear walls [J/m3]; those of others are the capacity times the temperature.
     pub enthalpy: Vec<S>,
-    /// What the cells remember.
+    /// Memory of the cells: their history, as far as the laws depend on it.
     pub memory: Vec<PcmMemory<S>>,
     /// Surface temperatures [degC].
     pub surfaces: BySurface<S>,
     /// Zone air temperatures [degC].
     pub air: Vec<S>,
-    /// Heat from the plant of each zone over the step that ended here [W]; cooling is negative.
+    /// Ideal load of each zone, mean over the step that ended here [W]; cooling is negative.
     pub load: Vec<S>,
 }
 
@@ -141,7 +141,7 @@ impl<S: Real> State<S> {
         }
     }
 
-    /// Shows each number with one of others, in the order of [`Self::write`].
+    /// Passes each number with one of others to a function, in the order of [`Self::write`].
     #[inline(always)]
     pub(crate) fn beside<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
         for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load] {
@@ -159,7 +159,7 @@ impl<S: Real> State<S> {
         }
     }
 
-    /// Takes over another state.
+    /// Copies another state.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.cells.copy_from_slice(&other.cells);
         self.enthalpy.copy_from_slice(&other.enthalpy);
@@ -194,7 +194,7 @@ impl<S: Real> State<S> {
         }
     }
 
-    /// Takes over the lanes of `other` where the mask is true.
+    /// Copies the lanes of `other` where the mask is true.
     #[inline(always)]
     pub fn take(&mut self, mask: S::Mask, other: &Self) {
         blend(mask, &mut self.cells, &other.cells);
@@ -215,7 +215,7 @@ impl<S: Real> State<S> {
     }
 }
 
-/// Takes over `theirs` where the mask is true.
+/// Copies `theirs` where the mask is true.
 #[inline(always)]
 pub(crate) fn blend<S: Real>(mask: S::Mask, mine: &mut [S], theirs: &[S]) {
     for (a, &b) in mine.iter_mut().zip(theirs) {
