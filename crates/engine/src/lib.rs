@@ -28,5 +28,17 @@ pub use linear_model as state_space;
 pub use number as real;
 pub use number::simd as dispatch;
 pub use physics::pcm;
-pub use run::{ensemble as batch, march, probe};
+pub use run::ensemble as batch;
 pub use step::state;
+
+/// Runs of one plan.
+pub mod march {
+    pub use crate::run::control::RunControl as Watch;
+    pub use crate::run::march::{Run, march};
+    pub use crate::run::options::{Options, Warmup};
+}
+
+/// Quantities to record.
+pub mod probe {
+    pub use crate::run::outputs::Output as Probe;
+}

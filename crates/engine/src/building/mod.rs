@@ -5,6 +5,7 @@ pub mod coefficients;
 pub mod glazing;
 pub mod ids;
 pub(crate) mod layout;
+pub mod model;
 pub(crate) mod order;
 pub mod plan;
 pub(crate) mod solar_distribution;

@@ -9,7 +9,9 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::dual::Dual;
 use crate::number::real::Real;
-use crate::run::march::{Options, Watch, check, march_seen};
+use crate::run::control::RunControl;
+use crate::run::march::march_observed;
+use crate::run::options::Options;
 use crate::step::Stepper;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
@@ -33,9 +35,9 @@ pub fn jacobian(
     which: &[usize],
     forcing: &Forcing<'_>,
     options: &Options,
-    watch: &Watch,
+    watch: &RunControl,
 ) -> Result<Jacobian, EngineError> {
-    check(plan, numbers.len(), forcing, options)?;
+    options.check(plan, numbers.len(), forcing)?;
     if which.is_empty() || which.iter().any(|&k| k >= numbers.len()) {
         return Err(EngineError::Input(format!(
             "derivatives by parameters {which:?}: give at least one, each below {}",
@@ -87,7 +89,7 @@ fn along(
     by: &[usize],
     weather: &Weather<'_>,
     options: &Options,
-    watch: &Watch,
+    watch: &RunControl,
 ) -> Result<Vec<Slopes>, EngineError> {
     let sloped = |group: &[usize]| {
         let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::constant(value)).collect();
@@ -108,7 +110,7 @@ fn along(
         .collect();
     let mut plain = Stepper::new(plan, numbers, options.scheme);
     plain.known.start();
-    march_seen(plain, weather, options, watch, |plain, reached, made| {
+    march_observed(plain, weather, options, watch, |plain, reached, made| {
         let solution = plain.known.solution(&reached.load);
         for Follower { stepper, state, slopes } in &mut followers {
             made.follow(stepper, state, weather, options.dt, solution)?;

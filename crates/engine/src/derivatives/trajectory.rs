@@ -10,11 +10,15 @@ use crate::balance::ledger::Ledger;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::forcing::Forcing;
+use crate::linear::unknowns::Unknowns;
 use crate::number::tape::{Tape, Taped};
-use crate::run::march::{Move, Options, Run, Watch, check, march_seen};
+use crate::run::Action;
+use crate::run::control::RunControl;
+use crate::run::march::{Run, march_observed};
+use crate::run::options::Options;
 use crate::step::Stepper;
 use crate::step::stage_solutions::{Solution, read_solution};
-use crate::step::state::{State, Unknowns};
+use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
 /// A run, and what is needed to go back along it.
@@ -23,16 +27,16 @@ pub struct Trajectory {
     /// The run.
     pub run: Run<f64>,
     /// Everything that was done to the state.
-    moves: Vec<Move>,
+    moves: Vec<Action>,
     /// States before the stretches that are run again.
     starts: Vec<State<f64>>,
-    /// Moves in each of them.
+    /// Actions in each of them.
     length: usize,
     /// What follows them.
     last: Stretch,
 }
 
-/// Moves in a row, each with the numbers of the state before it and of its solution.
+/// Actions in a row, each with the numbers of the state before it and of its solution.
 #[derive(Debug, Default)]
 struct Stretch {
     states: Vec<f64>,
@@ -46,7 +50,7 @@ impl Stretch {
     fn push(&mut self, before: &State<f64>, stepper: &Stepper<'_, f64>, load: &[f64]) {
         before.write(&mut self.states);
         if let Some(solution) = stepper.known.solution(load) {
-            solution.write(stepper.changing_cells(), &mut self.solutions);
+            solution.write(&stepper.model.parts.nonlinear_cells, &mut self.solutions);
         }
         self.ends.push(self.solutions.len());
     }
@@ -71,10 +75,10 @@ impl Trajectory {
         numbers: &[f64],
         forcing: &Forcing<'_>,
         options: &Options,
-        watch: &Watch,
+        watch: &RunControl,
         bytes: usize,
     ) -> Result<Self, EngineError> {
-        check(plan, numbers.len(), forcing, options)?;
+        options.check(plan, numbers.len(), forcing)?;
         let weather = Weather::new(plan, forcing);
         let mut stepper = Stepper::new(plan, numbers, options.scheme);
         stepper.known.start();
@@ -83,7 +87,7 @@ impl Trajectory {
         let length = stretch(&before, weather.steps(), options, bytes);
         let (mut moves, mut starts, mut last) = (Vec::new(), Vec::new(), Stretch::default());
         last.states.reserve(before.count() * length.min(weather.steps() + 1));
-        let run = march_seen(stepper, &weather, options, watch, |stepper, reached, made| {
+        let run = march_observed(stepper, &weather, options, watch, |stepper, reached, made| {
             if last.ends.len() == length {
                 starts.push(core::mem::replace(&mut start, before.clone()));
                 last = Stretch::default();
@@ -106,10 +110,10 @@ impl Trajectory {
         numbers: &[f64],
         forcing: &Forcing<'_>,
         options: &Options,
-        watch: &Watch,
+        watch: &RunControl,
         weights: &[f64],
     ) -> Result<Vec<f64>, EngineError> {
-        check(plan, numbers.len(), forcing, options)?;
+        options.check(plan, numbers.len(), forcing)?;
         if weights.len() != self.run.records.len() {
             let (found, expected) = (weights.len(), self.run.records.len());
             return Err(EngineError::Input(format!("{found} weights on records, expected {expected}")));
@@ -130,7 +134,7 @@ impl Trajectory {
     }
 }
 
-/// Moves between two kept states: all of them where they fit into the bytes.
+/// Actions between two kept states: all of them where they fit into the bytes.
 fn stretch(state: &State<f64>, steps: usize, options: &Options, bytes: usize) -> usize {
     // A state and the solutions of its stages, which are never larger.
     let each = state.count() * size_of::<f64>() * (1 + options.scheme.weights().len());
@@ -148,7 +152,7 @@ fn again(
     weather: &Weather<'_>,
     options: &Options,
     start: &State<f64>,
-    moves: &[Move],
+    moves: &[Action],
 ) -> Result<Stretch, EngineError> {
     let mut stepper = Stepper::new(plan, numbers, options.scheme);
     stepper.known.start();
@@ -156,7 +160,7 @@ fn again(
     let mut made = Stretch::default();
     for step in moves {
         before.copy_from(&state);
-        step.make(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
+        step.take(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
         made.push(&before, &stepper, &state.load);
     }
     Ok(made)
@@ -217,7 +221,7 @@ impl<'a> Back<'a> {
     }
 
     /// Goes back over a stretch.
-    fn over(&mut self, moves: &[Move], stretch: &Stretch, watch: &Watch) -> Result<(), EngineError> {
+    fn over(&mut self, moves: &[Action], stretch: &Stretch, watch: &RunControl) -> Result<(), EngineError> {
         for (&made, (before, solution)) in moves.iter().rev().zip(stretch.back()) {
             if watch.stop.load(core::sync::atomic::Ordering::Relaxed) {
                 return Err(EngineError::Interrupted);
@@ -228,7 +232,7 @@ impl<'a> Back<'a> {
     }
 
     /// Goes back over a move: its weights on the state before it take the place of those on the state after it.
-    fn pass(&mut self, made: Move, before: &[f64], solution: &[f64]) -> Result<(), EngineError> {
+    fn pass(&mut self, made: Action, before: &[f64], solution: &[f64]) -> Result<(), EngineError> {
         Tape::truncate(self.base);
         let (stepper, state) = (&mut self.stepper, &mut self.now);
         let mut place = self.first;
@@ -236,7 +240,7 @@ impl<'a> Back<'a> {
             *number = Taped::new(value, place);
             place += 1;
         });
-        let cells = stepper.changing_cells();
+        let cells = &stepper.model.parts.nonlinear_cells;
         let known = read_solution(solution, cells, &mut self.stages, &mut self.load);
         let solution = known.then_some(Solution { stages: &self.stages, load: &self.load });
         stepper.forget();
@@ -247,7 +251,7 @@ impl<'a> Back<'a> {
         if let Some(row) = made.row(self.options) {
             let probes = &self.options.probes;
             for (probe, weight) in probes.iter().zip(&self.records[row * probes.len()..]) {
-                let record = probe.read(stepper.plan, stepper, state);
+                let record = probe.read(stepper.model.plan, stepper, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
                 record.add_weight(*weight, &mut self.weights);
             }

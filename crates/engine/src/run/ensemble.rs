@@ -2,8 +2,6 @@
 //!
 //! A member's bits do not depend on its neighbours, the lane width or the number of threads.
 
-use core::sync::atomic::Ordering;
-
 use rayon::prelude::*;
 
 use crate::building::plan::Plan;
@@ -11,15 +9,17 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::real::{Mask, Real};
 use crate::number::simd::{LaneTask, Level, WIDTH, run};
-use crate::run::march::{Options, Watch, check, march_in};
+use crate::run::control::RunControl;
+use crate::run::march::march_in;
+use crate::run::options::Options;
 use crate::weather::conditions::Weather;
 
 /// What an ensemble leaves behind, by member.
 #[derive(Debug)]
 pub struct Ensemble {
-    /// Members x rows x probes; NaN for a member that failed.
+    /// Members x rows x outputs; NaN for a member that failed.
     pub records: Vec<f64>,
-    /// Energy closure of each member; NaN for one that failed.
+    /// Relative energy-balance residual of each member [-]; NaN for one that failed.
     pub closure: Vec<f64>,
     /// Members that failed, with the reason.
     pub failures: Vec<(usize, EngineError)>,
@@ -34,13 +34,13 @@ pub fn ensemble(
     numbers: &[f64],
     forcing: &Forcing<'_>,
     options: &Options,
-    watch: &Watch,
+    control: &RunControl,
 ) -> Result<Ensemble, EngineError> {
     let width = plan.description.parameters.len();
     if width == 0 || !numbers.len().is_multiple_of(width) {
         return Err(EngineError::Input(format!("member rows must hold {width} parameters")));
     }
-    let level = check(plan, width, forcing, options)?;
+    let level = options.check(plan, width, forcing)?;
     let weather = Weather::new(plan, forcing);
     let members = numbers.len() / width;
     let row = options.rows(forcing.steps()) * options.probes.len();
@@ -49,14 +49,20 @@ pub fn ensemble(
         closure: vec![f64::NAN; members],
         failures: Vec::new(),
     };
-    let packs = result.records.par_chunks_mut(row.max(1) * WIDTH).zip(result.closure.par_chunks_mut(WIDTH));
+    let mut rest = &mut result.records[..];
+    let packs = result.closure.chunks_mut(WIDTH).map(|closure| {
+        let records;
+        (records, rest) = core::mem::take(&mut rest).split_at_mut(row * closure.len());
+        Target { records, closure, row }
+    });
+    let packs: Vec<_> = packs.collect();
     let failures: Result<Vec<_>, EngineError> = packs
+        .into_par_iter()
         .enumerate()
-        .map(|(pack, (records, closure))| {
+        .map(|(pack, mut target)| {
             let first = pack * WIDTH;
-            let members = &numbers[first * width..(first + closure.len()) * width];
-            let mut target = Target { records, closure, row };
-            let failed = run_pack(level, plan, members, &weather, options, watch, &mut target)?;
+            let members = &numbers[first * width..(first + target.closure.len()) * width];
+            let failed = run_pack(level, plan, members, &weather, options, control, &mut target)?;
             Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
         })
         .collect();
@@ -78,7 +84,7 @@ struct Pack<'a> {
     members: usize,
     weather: &'a Weather<'a>,
     options: &'a Options,
-    watch: &'a Watch,
+    control: &'a RunControl,
 }
 
 impl LaneTask for Pack<'_> {
@@ -91,7 +97,7 @@ impl LaneTask for Pack<'_> {
             // A short pack repeats its last member.
             .map(|p| pack(core::array::from_fn(|lane| self.numbers[lane.min(self.members - 1) * width + p])))
             .collect();
-        let run = march_in(self.plan, &lanes, self.weather, self.options, self.watch)?;
+        let run = march_in(self.plan, &lanes, self.weather, self.options, self.control)?;
         let closure = run.ledger.closure();
         let of = |member| (run.records.iter().map(|r| r.lane(member)).collect(), closure.lane(member));
         Ok((0..self.members).map(|member| (!run.failed.lane(member)).then(|| of(member))).collect())
@@ -105,20 +111,20 @@ fn run_pack(
     numbers: &[f64],
     weather: &Weather<'_>,
     options: &Options,
-    watch: &Watch,
+    control: &RunControl,
     target: &mut Target<'_>,
 ) -> Result<Vec<(usize, EngineError)>, EngineError> {
     let width = plan.description.parameters.len();
     let members = target.closure.len();
     let mut failures = Vec::new();
-    let results = match run(level, Pack { plan, numbers, members, weather, options, watch }) {
+    let results = match run(level, Pack { plan, numbers, members, weather, options, control }) {
         Err(EngineError::NotConverged { .. } | EngineError::NotSettled { .. }) => vec![None; members],
         other => other?,
     };
     for (member, result) in results.into_iter().enumerate() {
         let alone = || {
             let numbers = &numbers[member * width..(member + 1) * width];
-            march_in(plan, numbers, weather, options, watch).map(|run| (run.records, run.ledger.closure()))
+            march_in(plan, numbers, weather, options, control).map(|run| (run.records, run.ledger.closure()))
         };
         match result.map_or_else(alone, Ok) {
             Ok((records, closure)) => {
@@ -129,6 +135,6 @@ fn run_pack(
             Err(error) => failures.push((member, error)),
         }
     }
-    watch.done.fetch_add(members, Ordering::Relaxed);
+    control.count(members);
     Ok(failures)
 }

@@ -1,5 +1,11 @@
-//! Runs, outputs and ensembles.
+//! Runs: options, warm-up, outputs, ensembles.
 
+mod action;
+pub mod control;
 pub mod ensemble;
 pub mod march;
-pub mod probe;
+pub mod options;
+pub mod outputs;
+mod warm_up;
+
+pub(crate) use action::Action;

@@ -4,92 +4,24 @@
 //! are gathered term by term, the laws in them linearised at the solution as ever, and a plain twin of the stepper, which
 //! takes over the values of that linearisation, solves for all slopes (see [`crate::number::real::Equations`]).
 
-use crate::building::coefficients::{Boundary, Matter};
+use crate::building::coefficients::Boundary;
 use crate::building::ids::SurfaceId;
+use crate::building::model::outdoor_emission;
 use crate::building::plan::SurfaceRole;
+use crate::linear::stage_matrix::StageMatrix;
+use crate::linear::unknowns::Unknowns;
 use crate::number::line::Line;
 use crate::number::real::{Equations, Mask, Real};
 use crate::physics::longwave::Emission;
+use crate::step::following::Following;
+use crate::step::halving::Part;
+use crate::step::newton::StageSolver;
+use crate::step::scheme::Tableau;
+use crate::step::stage::Stage;
 use crate::step::stage_solutions::Solution;
-use crate::step::state::{State, Unknowns};
+use crate::step::state::State;
+use crate::step::stepper::{INSTANT, Stepper};
 use crate::weather::conditions::{Instant, Weather};
-
-use super::{INSTANT, Part, Stepper, outdoor_emission};
-
-/// What a stepper needs to follow a plain run.
-#[derive(Debug, Clone)]
-pub(super) struct Following<'a, S: Real> {
-    /// One for each stage, with its linearisation at the solution.
-    twins: Vec<Stepper<'a, f64>>,
-    equations: S::Equations,
-    carries: Carries,
-    /// Of the cells of constant walls [J/(m2 K)].
-    capacity: Vec<S>,
-    /// The solution of the stage in hand: cells, surfaces, airs [degC].
-    at: Vec<f64>,
-    /// How air and walls answer to a watt of a plant.
-    answers: Vec<Vec<f64>>,
-    block: Vec<f64>,
-}
-
-/// Which numbers that stay have derivatives: of the others nothing need be gathered.
-#[derive(Debug, Clone)]
-struct Carries {
-    /// By wall: conductances, heat capacities.
-    links: Vec<bool>,
-    capacity: Vec<bool>,
-    /// By zone: exchange between its surfaces.
-    exchange: Vec<bool>,
-}
-
-/// Whether one of some numbers has derivatives.
-fn any<S: Real>(numbers: impl IntoIterator<Item = S>) -> bool {
-    numbers.into_iter().any(S::carries)
-}
-
-impl<'a, S: Real> Following<'a, S> {
-    pub(super) fn new(stepper: &Stepper<'a, S>) -> Self {
-        let plan = stepper.plan;
-        let plain: Vec<f64> = stepper.numbers.iter().map(|number| number.lane(0)).collect();
-        let twin = Stepper::with(
-            plan,
-            crate::building::coefficients::Coefficients::new(plan, &plain),
-            &[],
-            stepper.scheme,
-        );
-        let mut capacity = vec![S::zero(); plan.n_cells];
-        for (wall, numbers) in plan.walls.iter().zip(&stepper.coefficients.walls) {
-            for (capacity, cell) in capacity[wall.first_cell..].iter_mut().zip(&numbers.cells) {
-                if let Matter::Solid { capacity: heat, .. } = cell.matter {
-                    *capacity = heat * cell.thickness;
-                }
-            }
-        }
-        let zones = &stepper.coefficients.zones;
-        let unknowns = plan.n_cells + plan.surfaces.len() + plan.zones.len();
-        Self {
-            twins: vec![twin; stepper.scheme.weights().len()],
-            equations: S::Equations::default(),
-            carries: Carries {
-                links: stepper
-                    .chains
-                    .iter()
-                    .map(|chain| any(chain.links.iter().map(|link| link.left)))
-                    .collect(),
-                capacity: plan
-                    .walls
-                    .iter()
-                    .map(|wall| any(capacity[wall.first_cell..wall.first_cell + wall.len()].iter().copied()))
-                    .collect(),
-                exchange: zones.iter().map(|zone| any(zone.exchange.iter().copied())).collect(),
-            },
-            capacity,
-            at: vec![0.0; unknowns],
-            answers: vec![vec![0.0; unknowns]; plan.ideal_loads.len()],
-            block: Vec::new(),
-        }
-    }
-}
 
 /// Where in the stages of a step a stage stands.
 #[derive(Debug, Clone, Copy)]
@@ -103,7 +35,7 @@ struct Place {
 
 impl<S: Real> Stepper<'_, S> {
     /// One step of length `dt` [s] along its solution.
-    // Once, not at every place that takes steps: the compiler has enough to do.
+    // One copy only: inlining multiplies compile time.
     #[inline(never)]
     pub(crate) fn follow_step(
         &mut self,
@@ -118,12 +50,12 @@ impl<S: Real> Stepper<'_, S> {
             || {
                 self.set_off(state);
                 let asked =
-                    !self.plan.ideal_loads.is_empty() && self.ask_ideal_loads(weather, step, solution);
+                    !self.model.plan.ideal_loads.is_empty() && self.ask_ideal_loads(weather, step, solution);
                 // Responses leave out what a load does to the convection expected in gaps: with windows its slope is
                 // found in a round more.
                 let rounds = if !asked {
                     0
-                } else if self.plan.windows.is_empty() {
+                } else if self.model.plan.windows.is_empty() {
                     1
                 } else {
                     2
@@ -133,8 +65,8 @@ impl<S: Real> Stepper<'_, S> {
                     if round < rounds {
                         self.answer();
                         self.ideal_loads.correct(
-                            &self.solved.air,
-                            &mut self.load,
+                            &self.solver.solution.air,
+                            &mut self.solver.start.load,
                             S::Mask::splat(true),
                             true,
                         );
@@ -151,12 +83,11 @@ impl<S: Real> Stepper<'_, S> {
             #[inline(always)]
             || {
                 self.set_off(state);
-                self.conditions.update(self.plan, &self.coefficients, &self.weather_index, self.numbers, now);
+                self.weather.set_instant(&self.model, now);
                 let place = Place { stage: 0, length: INSTANT, ratio: 0.0 };
                 self.follow_stage(state, place, &solution.stages[0]);
-                state.surfaces.copy_from_slice(&self.solved.surfaces);
-                self.sun.restart();
-                self.sun.add(&self.conditions.sun, 1.0);
+                state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
+                self.weather.average_instant();
             },
         );
     }
@@ -164,15 +95,15 @@ impl<S: Real> Stepper<'_, S> {
     /// Weights on the equations of a stage from weights on its solution, in place.
     pub(crate) fn pull_stage(&mut self, stage: usize, weights: &mut [f64]) {
         if let Some(following) = &mut self.following {
-            following.twins[stage].solve_transposed(weights, &mut following.block);
+            following.matrices[stage].solve_transposed(weights, &mut following.block);
         }
     }
 
     #[inline(always)]
     fn set_off(&mut self, state: &State<S>) {
         self.forget();
-        self.load.copy_from_slice(&state.load);
-        self.expect_gaps(0, state);
+        self.solver.start.load.copy_from_slice(&state.load);
+        self.solver.linearisation.expect_gaps(&self.model, 0, &state.cells);
     }
 
     #[inline(always)]
@@ -183,14 +114,14 @@ impl<S: Real> Stepper<'_, S> {
         (step, dt): (usize, f64),
         solution: Solution<'_>,
     ) {
-        let diagonal = self.scheme.diagonal();
-        let part = Part { step, from: 0.0, share: 1.0, halvings: 0 };
+        let Tableau { diagonal, ratio, .. } = *self.scheme.tableau();
+        let part = Part::whole(step);
         for (stage, known) in solution.stages.iter().enumerate() {
             if stage > 0 {
                 self.carry(state);
             }
-            self.conditions_at(weather, part, stage);
-            let ratio = if stage > 0 { (1.0 - diagonal) / diagonal } else { 0.0 };
+            self.weather.set_stage(&self.model, weather, self.scheme.tableau(), part, stage);
+            let ratio = if stage > 0 { ratio } else { 0.0 };
             self.follow_stage(state, Place { stage, length: diagonal * dt, ratio }, known);
         }
     }
@@ -199,22 +130,23 @@ impl<S: Real> Stepper<'_, S> {
     #[inline(always)]
     fn follow_stage(&mut self, state: &State<S>, place: Place, known: &Unknowns<f64>) {
         let Some(mut following) = self.following.take() else { return };
-        self.stage = place.stage;
-        self.iterate.set(known);
-        let twin = &mut following.twins[place.stage];
-        let new = twin.factor_constant(place.length);
-        self.locate(state, place, known, twin, &mut following.at);
-        self.linearise_at(state);
-        twin.adopt(self, place.length, new);
+        self.solver.iterate.set(known);
+        let matrix = &mut following.matrices[place.stage];
+        let new = matrix.factor_linear_walls(place.length);
+        self.locate(state, place, known, matrix, &mut following.at);
+        self.linearise_at(state, place);
+        let (laws, walls) = (&self.solver.linearisation.laws, &self.solver.system.walls);
+        matrix.factor((laws, walls, &self.weather.conditions.paths), place.length, new);
         following.equations.begin(following.at.len());
         self.gather_walls(state, place, &mut following);
         self.gather_zones(state, place, &mut following);
-        let Following { equations, twins, at, .. } = &mut *following;
-        let Unknowns { cells, surfaces, air } = &mut self.solved;
-        equations.solve(place.stage, &twins[place.stage], at, [cells, surfaces, air]);
-        for &w in &self.changing.walls {
-            let wall = &self.plan.walls[w];
-            self.chains[w].arrive(&self.solved.cells[wall.first_cell..wall.first_cell + wall.len()]);
+        let Following { equations, matrices, at, .. } = &mut *following;
+        let Unknowns { cells, surfaces, air } = &mut self.solver.solution;
+        equations.solve(place.stage, &matrices[place.stage], at, [cells, surfaces, air]);
+        for &w in &self.model.parts.nonlinear_walls {
+            let wall = &self.model.plan.walls[w];
+            self.solver.system.walls[w]
+                .arrive(&self.solver.solution.cells[wall.first_cell..wall.first_cell + wall.len()]);
         }
         self.following = Some(following);
     }
@@ -226,21 +158,21 @@ impl<S: Real> Stepper<'_, S> {
         state: &State<S>,
         place: Place,
         known: &Unknowns<f64>,
-        twin: &Stepper<'_, f64>,
+        matrix: &StageMatrix<'_>,
         at: &mut [f64],
     ) {
-        let (cells, rest) = at.split_at_mut(self.plan.n_cells);
-        let (surfaces, air) = rest.split_at_mut(self.plan.surfaces.len());
+        let (cells, rest) = at.split_at_mut(self.model.plan.n_cells);
+        let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
         surfaces.copy_from_slice(&known.surfaces);
         air.copy_from_slice(&known.air);
         cells.copy_from_slice(&known.cells);
-        for &w in &self.changing.constant {
-            let (wall, chain) = (&self.plan.walls[w], &twin.chains[w]);
+        for &w in &self.model.parts.linear_walls {
+            let (wall, chain) = (&self.model.plan.walls[w], &matrix.system.walls[w]);
             let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
             for (i, cell) in own.iter_mut().enumerate() {
                 let k = wall.first_cell + i;
                 let start = state.cells[k].lane(0);
-                let held = start + (self.solved.cells[k].lane(0) - start) * place.ratio;
+                let held = start + (self.solver.solution.cells[k].lane(0) - start) * place.ratio;
                 *cell = chain.rate[i] * chain.storage[i].capacity * held;
             }
             chain.forward(own);
@@ -250,24 +182,34 @@ impl<S: Real> Stepper<'_, S> {
 
     /// Linearises everything at the iterate.
     #[inline(always)]
-    fn linearise_at(&mut self, state: &State<S>) {
-        for i in 0..self.changing.walls.len() {
-            self.linearise_wall(self.changing.walls[i], state, None);
+    fn linearise_at(&mut self, state: &State<S>, place: Place) {
+        let (model, conditions) = (&self.model, &self.weather.conditions);
+        let stage = Stage {
+            model,
+            conditions,
+            state,
+            storage: self.scheme.tableau().storage,
+            length: place.length,
+            place: (0, place.stage + 1),
+        };
+        let StageSolver { linearisation, system, iterate, .. } = &mut self.solver;
+        for &w in &model.parts.nonlinear_walls {
+            linearisation.linearise_wall(&stage, w, (iterate, None), &mut system.walls[w]);
         }
-        self.blow(true);
-        self.linearise_surfaces(true);
+        linearisation.set_wind(model, conditions, true);
+        linearisation.linearise_surfaces(model, conditions, iterate, true);
     }
 
     /// Cells of all walls: heat held and heat that flows between them and into the surfaces.
     #[inline(always)]
     fn gather_walls(&self, state: &State<S>, place: Place, following: &mut Following<'_, S>) {
-        let Following { equations, capacity, at, twins, carries, .. } = following;
-        let twin = &twins[place.stage];
+        let Following { equations, capacity, at, matrices, carries, .. } = following;
+        let matrix = &matrices[place.stage];
         let per_second = 1.0 / place.length;
-        for (w, wall) in self.plan.walls.iter().enumerate() {
-            let (chain, first, n) = (&self.chains[w], wall.first_cell, wall.len());
-            let surfaces = SurfaceId::pair(w).map(|surface| self.plan.n_cells + surface.index());
-            let shares = SurfaceId::pair(w).map(|surface| twin.takes(surface));
+        for (w, wall) in self.model.plan.walls.iter().enumerate() {
+            let (chain, first, n) = (&self.solver.system.walls[w], wall.first_cell, wall.len());
+            let surfaces = SurfaceId::pair(w).map(|surface| self.model.plan.n_cells + surface.index());
+            let shares = SurfaceId::pair(w).map(|surface| matrix.takes(surface));
             if wall.nonlinear {
                 self.gather_storage(state, place, w, (&mut *equations, at));
             } else {
@@ -276,8 +218,8 @@ impl<S: Real> Stepper<'_, S> {
                     let mut held = start.lane(0);
                     equations.add(k, start, heat * (1.0 - place.ratio));
                     if place.stage > 0 {
-                        equations.add(k, self.solved.cells[k], heat * place.ratio);
-                        held += (self.solved.cells[k].lane(0) - held) * place.ratio;
+                        equations.add(k, self.solver.solution.cells[k], heat * place.ratio);
+                        held += (self.solver.solution.cells[k].lane(0) - held) * place.ratio;
                     }
                     if carries.capacity[w] {
                         equations.add(k, capacity[k], (held - at[k]) * per_second);
@@ -320,10 +262,10 @@ impl<S: Real> Stepper<'_, S> {
                 sign * (link.offset.lane(0) + link.left.lane(0) * left - link.right.lane(0) * right)
             });
             for (e, heat) in ends.into_iter().enumerate() {
-                match self.plan.surfaces[SurfaceId::new(w, e)].role {
+                match self.model.plan.surfaces[SurfaceId::new(w, e)].role {
                     // What enters by its area beside the heat from the wall is added with the zone.
                     SurfaceRole::Zone { .. } => {
-                        equations.add(surfaces[e], self.coefficients.walls[w].area, heat)
+                        equations.add(surfaces[e], self.model.coefficients.walls[w].area, heat);
                     }
                     SurfaceRole::Exterior => {
                         self.gather_local(
@@ -346,7 +288,8 @@ impl<S: Real> Stepper<'_, S> {
         w: usize,
         (equations, at): (&mut S::Equations, &[f64]),
     ) {
-        let (wall, chain, numbers) = (&self.plan.walls[w], &self.chains[w], &self.coefficients.walls[w]);
+        let (wall, chain, numbers) =
+            (&self.model.plan.walls[w], &self.solver.system.walls[w], &self.model.coefficients.walls[w]);
         for (i, (storage, cell)) in chain.storage.iter().zip(&numbers.cells).enumerate() {
             let k = wall.first_cell + i;
             let rate = cell.thickness.lane(0) / place.length;
@@ -354,16 +297,21 @@ impl<S: Real> Stepper<'_, S> {
             let mut held = state.enthalpy[k].lane(0);
             equations.add(k, state.enthalpy[k], rate * (1.0 - place.ratio));
             if place.stage > 0 {
-                equations.add(k, self.held[k], rate * place.ratio);
-                held += (self.held[k].lane(0) - held) * place.ratio;
+                equations.add(k, self.solver.start.enthalpy[k], rate * place.ratio);
+                held += (self.solver.start.enthalpy[k].lane(0) - held) * place.ratio;
             }
             equations.add(k, storage.offset, -rate);
             equations.add(k, storage.capacity, -rate * above);
             let reached = storage.offset.lane(0) + storage.capacity.lane(0) * above;
             equations.add(k, cell.thickness, (held - reached) / place.length);
         }
-        let gains =
-            self.plan.windows.iter().zip(&self.conditions.sun.windows).find(|(window, _)| **window == w);
+        let gains = self
+            .model
+            .plan
+            .windows
+            .iter()
+            .zip(&self.weather.conditions.sun.windows)
+            .find(|(window, _)| **window == w);
         for (i, &gain) in gains.iter().flat_map(|(_, at)| &at.cells).enumerate() {
             equations.add(wall.first_cell + i, gain, 1.0);
         }
@@ -372,11 +320,12 @@ impl<S: Real> Stepper<'_, S> {
     /// What a surface outside the zones takes from there.
     #[inline(always)]
     fn gather_local(&self, index: SurfaceId, at: f64, (equations, row): (&mut S::Equations, usize)) {
-        let surface = &self.coefficients.surfaces[index];
-        let (conditions, laws) = (&self.conditions.surfaces[index], &self.laws[index]);
+        let surface = &self.model.coefficients.surfaces[index];
+        let (conditions, laws) =
+            (&self.weather.conditions.surfaces[index], &self.solver.linearisation.laws.surfaces[index]);
         match surface.boundary {
             Boundary::Imposed(_) if surface.convection.is_none() => {
-                equations.add(row, conditions.temperature, 1.0)
+                equations.add(row, conditions.temperature, 1.0);
             }
             Boundary::Adiabatic => equations.add(row, conditions.solar, 1.0),
             _ => {
@@ -399,16 +348,21 @@ impl<S: Real> Stepper<'_, S> {
     #[inline(always)]
     fn gather_zones(&self, state: &State<S>, place: Place, following: &mut Following<'_, S>) {
         let Following { equations, at, carries, .. } = following;
-        let first_air = self.plan.n_cells + self.plan.surfaces.len();
-        for (z, (zone, numbers)) in self.plan.zones.iter().zip(&self.coefficients.zones).enumerate() {
-            let (row, conditions) = (first_air + z, &self.conditions.zones[z]);
+        let first_air = self.model.plan.n_cells + self.model.plan.surfaces.len();
+        for (z, (zone, numbers)) in
+            self.model.plan.zones.iter().zip(&self.model.coefficients.zones).enumerate()
+        {
+            let (row, conditions) = (first_air + z, &self.weather.conditions.zones[z]);
             let air = at[row];
             for (i, &index) in zone.surfaces.iter().enumerate() {
-                let (surface, convection) = (self.plan.n_cells + index.index(), &self.laws[index].convection);
+                let (surface, convection) = (
+                    self.model.plan.n_cells + index.index(),
+                    &self.solver.linearisation.laws.surfaces[index].convection,
+                );
                 let (area, above, solar) = (
                     numbers.areas[i].lane(0),
-                    at[self.plan.n_cells + index.index()] - air,
-                    self.conditions.surfaces[index].solar,
+                    at[self.model.plan.n_cells + index.index()] - air,
+                    self.weather.conditions.surfaces[index].solar,
                 );
                 for (row, area) in [(surface, -area), (row, area)] {
                     equations.add(row, convection.offset, area);
@@ -423,22 +377,30 @@ impl<S: Real> Stepper<'_, S> {
             }
             self.gather_exchange(z, carries.exchange[z], (&mut *equations, at));
             let held = if place.stage > 0 {
-                equations.add(row, self.solved.air[z], numbers.capacity.lane(0) / place.length * place.ratio);
-                state.air[z].lane(0) + (self.solved.air[z].lane(0) - state.air[z].lane(0)) * place.ratio
+                equations.add(
+                    row,
+                    self.solver.solution.air[z],
+                    numbers.capacity.lane(0) / place.length * place.ratio,
+                );
+                state.air[z].lane(0)
+                    + (self.solver.solution.air[z].lane(0) - state.air[z].lane(0)) * place.ratio
             } else {
                 state.air[z].lane(0)
             };
             equations.add(row, state.air[z], numbers.capacity.lane(0) / place.length * (1.0 - place.ratio));
             equations.add(row, numbers.capacity, (held - air) / place.length);
-            let below = self.conditions.outdoor_air.lane(0) - air;
-            for entering in [&self.inflow[z], &self.airing[z]] {
+            let below = self.weather.conditions.outdoor_air.lane(0) - air;
+            for entering in [
+                &self.solver.linearisation.laws.infiltration[z],
+                &self.solver.linearisation.laws.ventilation[z],
+            ] {
                 equations.add(row, entering.offset, 1.0);
                 equations.add(row, entering.slope, below);
             }
             equations.add(row, conditions.convective, 1.0);
-            equations.add(row, self.load[z], 1.0);
+            equations.add(row, self.solver.start.load[z], 1.0);
         }
-        for (path, &conductance) in self.coefficients.paths.iter().zip(&self.conditions.paths) {
+        for (path, &conductance) in self.model.coefficients.paths.iter().zip(&self.weather.conditions.paths) {
             let [a, b] = path.between.map(|zone| first_air + zone);
             equations.add(a, conductance, at[b] - at[a]);
             equations.add(b, conductance, at[a] - at[b]);
@@ -448,20 +410,21 @@ impl<S: Real> Stepper<'_, S> {
     /// Long-wave exchange between the surfaces of a zone.
     #[inline(always)]
     fn gather_exchange(&self, z: usize, carries: bool, (equations, at): (&mut S::Equations, &[f64])) {
-        let (surfaces, numbers) = (&self.plan.zones[z].surfaces, &self.coefficients.zones[z]);
+        let (surfaces, numbers) = (&self.model.plan.zones[z].surfaces, &self.model.coefficients.zones[z]);
         if numbers.exchange.is_empty() {
             return;
         }
         let n = surfaces.len();
-        let linear =
-            self.laws[surfaces[0]].emission.slope.carries() && !matches!(numbers.emission, Emission::Exact);
+        let linear = self.solver.linearisation.laws.surfaces[surfaces[0]].emission.slope.carries()
+            && !matches!(numbers.emission, Emission::Exact);
         if !carries && !linear {
             return;
         }
         for (i, &index) in surfaces.iter().enumerate() {
-            let row = self.plan.n_cells + index.index();
+            let row = self.model.plan.n_cells + index.index();
             let emission = |surface: SurfaceId| {
-                Line::of(&self.laws[surface].emission).at(at[self.plan.n_cells + surface.index()])
+                Line::of(&self.solver.linearisation.laws.surfaces[surface].emission)
+                    .at(at[self.model.plan.n_cells + surface.index()])
             };
             let own = emission(index);
             let mut by_slope = 0.0;
@@ -469,12 +432,12 @@ impl<S: Real> Stepper<'_, S> {
                 if other != index {
                     // All that a surface sends out comes back to it from the others, as far as they are alike.
                     equations.add(row, exchange, emission(other) - own);
-                    by_slope += exchange.lane(0) * (at[self.plan.n_cells + other.index()] - at[row]);
+                    by_slope += exchange.lane(0) * (at[self.model.plan.n_cells + other.index()] - at[row]);
                 }
             }
             // The slope of a straight law is a number of the building; an exact one depends on the solution alone.
             if linear {
-                equations.add(row, self.laws[index].emission.slope, by_slope);
+                equations.add(row, self.solver.linearisation.laws.surfaces[index].emission.slope, by_slope);
             }
         }
     }
@@ -482,58 +445,61 @@ impl<S: Real> Stepper<'_, S> {
     /// What the first stage leaves to the second.
     #[inline(always)]
     fn carry(&mut self, state: &State<S>) {
-        for &w in &self.changing.walls {
-            let (wall, chain) = (&self.plan.walls[w], &self.chains[w]);
+        for &w in &self.model.parts.nonlinear_walls {
+            let (wall, chain) = (&self.model.plan.walls[w], &self.solver.system.walls[w]);
             for (i, storage) in chain.storage.iter().enumerate() {
-                self.held[wall.first_cell + i] = storage.reached();
-                self.midway[wall.first_cell + i] = chain.liquid_fraction(i);
+                self.solver.start.enthalpy[wall.first_cell + i] = storage.reached();
+                self.solver.start.first_fraction[wall.first_cell + i] = chain.liquid_fraction(i);
             }
         }
-        if !self.plan.windows.is_empty() {
-            self.extrapolate_on(state);
-            self.expect_gaps(1, state);
+        if !self.model.plan.windows.is_empty() {
+            self.extrapolate_stage(state);
         }
     }
 
     /// Takes the last stage as the new state.
     #[inline(always)]
     fn arrive(&mut self, state: &mut State<S>) {
-        self.accept_changing(state);
-        state.cells.copy_from_slice(&self.solved.cells);
-        state.surfaces.copy_from_slice(&self.solved.surfaces);
-        state.air.copy_from_slice(&self.solved.air);
-        state.load.copy_from_slice(&self.load);
+        self.accept_nonlinear(state);
+        state.cells.copy_from_slice(&self.solver.solution.cells);
+        state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
+        state.air.copy_from_slice(&self.solver.solution.air);
+        state.load.copy_from_slice(&self.solver.start.load);
     }
 
     /// Sets the loads of plants to those of the solution. False where none is asked for any.
     #[inline(always)]
     fn ask_ideal_loads(&mut self, weather: &Weather<'_>, step: usize, solution: Solution<'_>) -> bool {
         let (last, all) = (self.scheme.weights().len() - 1, S::Mask::splat(true));
-        self.ideal_loads.begin(&self.coefficients.zones, weather.row(step, last), &mut self.load, false);
-        for (load, &known) in self.load.iter_mut().zip(solution.load) {
+        self.ideal_loads.begin(
+            &self.model.coefficients.zones,
+            weather.row(step, last),
+            &mut self.solver.start.load,
+            false,
+        );
+        for (load, &known) in self.solver.start.load.iter_mut().zip(solution.load) {
             *load = S::constant(known);
         }
         let reached = &solution.stages[last].air;
-        self.ideal_loads.ask(&self.load, |zone| S::constant(reached[zone]));
+        self.ideal_loads.ask(&self.solver.start.load, |zone| S::constant(reached[zone]));
         self.ideal_loads.answering(0, all)
     }
 
-    /// How the airs at the end of the step answer to a watt of each plant, with the factors of the twins.
+    /// How the airs at the end of the step answer to a watt of each plant, with the factors of the matrices.
     #[inline(always)]
     fn answer(&mut self) {
         let Some(mut following) = self.following.take() else { return };
-        let diagonal = self.scheme.diagonal();
-        let ratio = (1.0 - diagonal) / diagonal;
-        let first_air = self.plan.n_cells + self.plan.surfaces.len();
-        let Following { twins, answers, block, .. } = &mut *following;
-        for (p, (&zone, rows)) in self.plan.ideal_loads.iter().zip(answers).enumerate() {
+        let ratio = self.scheme.tableau().ratio;
+        let first_air = self.model.plan.n_cells + self.model.plan.surfaces.len();
+        let Following { matrices, answers, block, .. } = &mut *following;
+        for (p, (&zone, rows)) in self.model.plan.ideal_loads.iter().zip(answers).enumerate() {
             rows.fill(0.0);
-            for (stage, twin) in twins.iter().enumerate() {
+            for (stage, matrix) in matrices.iter().enumerate() {
                 if stage > 0 {
-                    twin.hand_on(rows, ratio);
+                    matrix.hand_on(rows, ratio);
                 }
                 rows[first_air + zone] += 1.0;
-                twin.solve_beside(rows, block);
+                matrix.solve_beside(rows, block);
             }
             if let Some(answer) = self.ideal_loads.responses[p].stages.last_mut() {
                 for (air, &row) in answer.air.iter_mut().zip(&rows[first_air..]) {

@@ -1,15 +1,15 @@
-//! Solutions of the stages of a plain run, for numbers with derivatives that follow it.
+//! Solutions of the stages of a plain run: numbers with derivatives are computed along them.
 
 use core::ops::Range;
 
+use crate::linear::unknowns::Unknowns;
 use crate::number::real::Real;
-use crate::step::state::Unknowns;
 
-/// What a step found.
+/// The solution of a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Solution<'a> {
     pub(crate) stages: &'a [Unknowns<f64>],
-    /// Mean loads of the plants [W].
+    /// Ideal loads, means over the step [W].
     pub(crate) load: &'a [f64],
 }
 
@@ -27,7 +27,7 @@ impl Solution<'_> {
     }
 }
 
-/// Takes over the numbers of a solution. False where there are none.
+/// Reads the numbers of a solution. False where there are none.
 pub(crate) fn read_solution(
     mut numbers: &[f64],
     cells: &[Range<usize>],
@@ -52,7 +52,7 @@ pub(crate) fn read_solution(
     known
 }
 
-/// What a stepper keeps of its solutions.
+/// Solutions that a stepper keeps, where asked to.
 #[derive(Debug, Clone)]
 pub(crate) struct StageSolutions<S> {
     keeps: bool,
@@ -85,7 +85,7 @@ impl<S: Real> StageSolutions<S> {
         self.count = 0;
     }
 
-    /// A stage is solved.
+    /// A stage has been solved.
     #[inline(always)]
     pub(crate) fn keep(&mut self, solved: &Unknowns<S>) {
         if self.keeps {
@@ -98,7 +98,7 @@ impl<S: Real> StageSolutions<S> {
         }
     }
 
-    /// The last stage is corrected.
+    /// The last stage has been corrected.
     #[inline(always)]
     pub(crate) fn amend(&mut self, solved: &Unknowns<S>) {
         if let Some(last) = self.count.checked_sub(1) {

@@ -1,15 +1,15 @@
-//! What passes from step to step, and the temperatures of one iterate.
+//! What passes from step to step, and what a run starts from.
 
-use core::ops::Range;
-
-use crate::building::coefficients::{Coefficients, Matter};
-use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::coefficients::Matter;
+use crate::building::ids::BySurface;
+use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
+use crate::linear::unknowns::Temperatures;
 use crate::number::real::Real;
 use crate::physics::pcm::{PcmMemory, REMEMBERED};
 
-/// Temperatures that a run starts from [degC], the same for all members; what melts has come to them from below.
+/// Temperatures that a run starts from [degC], the same for all members; phase-change materials have been heated to them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Initial {
     /// One temperature everywhere.
@@ -18,7 +18,7 @@ pub enum Initial {
     Given {
         /// Of the cells of all walls.
         cells: Vec<f64>,
-        /// Of the surfaces: where the search for their balance begins.
+        /// Of the surfaces: the first guess of their balance.
         surfaces: Vec<f64>,
         /// Of the airs of the zones.
         air: Vec<f64>,
@@ -51,19 +51,64 @@ impl Initial {
 pub struct State<S> {
     /// Cell temperatures of all walls [degC].
     pub cells: Vec<S>,
-    /// Enthalpies of the cells of walls that change [J/m3]; those of others are the capacity times the temperature.
+    /// Enthalpies of the cells of nonlinear walls [J/m3]; those of others are the capacity times the temperature.
     pub enthalpy: Vec<S>,
-    /// What the cells remember.
+    /// Memory of the cells: their history, as far as the laws depend on it.
     pub memory: Vec<PcmMemory<S>>,
     /// Surface temperatures [degC].
     pub surfaces: BySurface<S>,
     /// Zone air temperatures [degC].
     pub air: Vec<S>,
-    /// Heat from the plant of each zone over the step that ended here [W]; cooling is negative.
+    /// Ideal load of each zone, mean over the step that ended here [W]; cooling is negative.
     pub load: Vec<S>,
 }
 
 impl<S: Real> State<S> {
+    /// The state that a run starts from.
+    pub(crate) fn new(model: &Model<'_, S>, initial: &Initial) -> Self {
+        let plan = model.plan;
+        let (cells, surfaces, air) = match initial {
+            Initial::Everywhere(temperature) => {
+                let all = |count| vec![S::constant(*temperature); count];
+                (all(plan.n_cells), all(plan.surfaces.len()), all(plan.zones.len()))
+            }
+            Initial::Given { cells, surfaces, air } => {
+                let all = |given: &[f64]| given.iter().map(|&temperature| S::constant(temperature)).collect();
+                (all(cells), all(surfaces), all(air))
+            }
+        };
+        let mut state = Self {
+            memory: cells.iter().map(|&cell| PcmMemory::new(S::zero(), cell)).collect(),
+            enthalpy: vec![S::zero(); plan.n_cells],
+            load: vec![S::zero(); plan.zones.len()],
+            cells,
+            surfaces: surfaces.into(),
+            air,
+        };
+        state.set_enthalpies(model);
+        state
+    }
+
+    /// Enthalpies and memory that belong to the temperatures, in the nonlinear walls.
+    fn set_enthalpies(&mut self, model: &Model<'_, S>) {
+        for &w in &model.parts.nonlinear_walls {
+            let (wall, first_cell) = (&model.coefficients.walls[w], model.plan.walls[w].first_cell);
+            for (i, cell) in wall.cells.iter().enumerate() {
+                let k = first_cell + i;
+                match &cell.matter {
+                    Matter::Solid { capacity, .. } => {
+                        self.enthalpy[k] = *capacity * self.cells[k];
+                    }
+                    Matter::Pcm(law) => {
+                        let law = &wall.pcm[*law];
+                        self.memory[k] = law.begin(self.cells[k]);
+                        self.enthalpy[k] = law.at(self.cells[k], &self.memory[k]).enthalpy;
+                    }
+                }
+            }
+        }
+    }
+
     #[inline(always)]
     pub(crate) fn view(&self) -> Temperatures<'_, S> {
         Temperatures { cells: &self.cells, surfaces: &self.surfaces, air: &self.air }
@@ -96,7 +141,7 @@ impl<S: Real> State<S> {
         }
     }
 
-    /// Shows each number with one of others, in the order of [`Self::write`].
+    /// Passes each number with one of others to a function, in the order of [`Self::write`].
     #[inline(always)]
     pub(crate) fn beside<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
         for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load] {
@@ -114,7 +159,7 @@ impl<S: Real> State<S> {
         }
     }
 
-    /// Takes over another state.
+    /// Copies another state.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.cells.copy_from_slice(&other.cells);
         self.enthalpy.copy_from_slice(&other.enthalpy);
@@ -149,7 +194,7 @@ impl<S: Real> State<S> {
         }
     }
 
-    /// Takes over the lanes of `other` where the mask is true.
+    /// Copies the lanes of `other` where the mask is true.
     #[inline(always)]
     pub fn take(&mut self, mask: S::Mask, other: &Self) {
         blend(mask, &mut self.cells, &other.cells);
@@ -170,139 +215,10 @@ impl<S: Real> State<S> {
     }
 }
 
-/// Takes over `theirs` where the mask is true.
+/// Copies `theirs` where the mask is true.
 #[inline(always)]
 pub(crate) fn blend<S: Real>(mask: S::Mask, mine: &mut [S], theirs: &[S]) {
     for (a, &b) in mine.iter_mut().zip(theirs) {
         *a = S::select(mask, b, *a);
-    }
-}
-
-/// Copies some runs of numbers.
-#[inline(always)]
-pub(crate) fn copy_runs<S: Real>(runs: &[Range<usize>], mine: &mut [S], theirs: &[S]) {
-    for run in runs {
-        mine[run.clone()].copy_from_slice(&theirs[run.clone()]);
-    }
-}
-
-/// Sum of squared differences.
-#[inline(always)]
-pub(crate) fn squared_distance<S: Real>(new: &[S], old: &[S]) -> S {
-    let mut sum = S::zero();
-    for (&a, &b) in new.iter().zip(old) {
-        sum += (a - b) * (a - b);
-    }
-    sum
-}
-
-/// `from + ratio (to - from)`.
-#[inline(always)]
-pub(crate) fn line<S: Real>(from: S, to: S, ratio: f64) -> S {
-    from + (to - from).scale(ratio)
-}
-
-/// Temperatures of an iterate or a state, to read.
-pub(crate) struct Temperatures<'a, S> {
-    pub(crate) cells: &'a [S],
-    pub(crate) surfaces: &'a BySurface<S>,
-    pub(crate) air: &'a [S],
-}
-
-/// Temperatures of one iterate.
-#[derive(Debug, Clone)]
-pub(crate) struct Unknowns<S> {
-    pub(crate) cells: Vec<S>,
-    pub(crate) surfaces: BySurface<S>,
-    pub(crate) air: Vec<S>,
-}
-
-impl<S: Real> Unknowns<S> {
-    #[inline(always)]
-    pub(crate) fn view(&self) -> Temperatures<'_, S> {
-        Temperatures { cells: &self.cells, surfaces: &self.surfaces, air: &self.air }
-    }
-
-    /// The values alone.
-    pub(crate) fn plain(&self) -> Unknowns<f64> {
-        let values = |numbers: &[S]| -> Vec<f64> { numbers.iter().map(|number| number.lane(0)).collect() };
-        Unknowns {
-            cells: values(&self.cells),
-            surfaces: values(&self.surfaces).into(),
-            air: values(&self.air),
-        }
-    }
-
-    /// Takes over plain temperatures.
-    #[inline(always)]
-    pub(crate) fn set(&mut self, plain: &Unknowns<f64>) {
-        let pairs = [
-            (&mut self.cells[..], &plain.cells[..]),
-            (&mut self.surfaces, &plain.surfaces),
-            (&mut self.air, &plain.air),
-        ];
-        for (mine, plain) in pairs {
-            for (a, &b) in mine.iter_mut().zip(plain) {
-                *a = S::constant(b);
-            }
-        }
-    }
-
-    /// Takes over other temperatures.
-    #[inline(always)]
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.cells.copy_from_slice(&other.cells);
-        self.surfaces.copy_from_slice(&other.surfaces);
-        self.air.copy_from_slice(&other.air);
-    }
-
-    /// Airs, and some surfaces, as far from others as two that are known from each other: a way once gone, gone again.
-    #[inline(always)]
-    pub(crate) fn go_on(
-        &mut self,
-        surfaces: &[SurfaceId],
-        from: &Temperatures<'_, S>,
-        way: &[Temperatures<'_, S>; 2],
-    ) {
-        let [start, end] = way;
-        for (zone, air) in self.air.iter_mut().enumerate() {
-            *air = from.air[zone] + (end.air[zone] - start.air[zone]);
-        }
-        for &surface in surfaces {
-            self.surfaces[surface] =
-                from.surfaces[surface] + (end.surfaces[surface] - start.surfaces[surface]);
-        }
-    }
-
-    /// `from + ratio (to - from)` at some surfaces, all airs and the cells of some walls, without leaping over a melting
-    /// range.
-    #[inline(always)]
-    pub(crate) fn extrapolate(
-        &mut self,
-        plan: &Plan,
-        coefficients: &Coefficients<S>,
-        (surfaces, walls): (&[SurfaceId], &[usize]),
-        [from, to]: &[Temperatures<'_, S>; 2],
-        ratio: f64,
-        memory: &[PcmMemory<S>],
-    ) {
-        for &surface in surfaces {
-            self.surfaces[surface] = line(from.surfaces[surface], to.surfaces[surface], ratio);
-        }
-        for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
-            *guess = line(from, to, ratio);
-        }
-        for &w in walls {
-            let (wall, numbers) = (&plan.walls[w], &coefficients.walls[w]);
-            let cells = wall.first_cell..wall.first_cell + wall.len();
-            let ends = from.cells[cells.clone()].iter().zip(&to.cells[cells.clone()]);
-            let laws = numbers.cells.iter().zip(&memory[cells.clone()]);
-            for ((guess, (&from, &to)), (cell, memory)) in self.cells[cells].iter_mut().zip(ends).zip(laws) {
-                *guess = line(from, to, ratio);
-                if let Matter::Pcm(law) = cell.matter {
-                    *guess = numbers.pcm[law].limit(to, *guess, memory).0;
-                }
-            }
-        }
     }
 }

@@ -14,12 +14,12 @@
 
 use crate::building::coefficients::Coefficients;
 use crate::building::ids::{BySurface, SurfaceId};
-use crate::building::plan::{Plan, SurfaceRole};
+use crate::building::plan::Plan;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
+use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Abreast, Real, Task};
 use crate::physics::longwave::Emission;
-use crate::step::state::Unknowns;
 use crate::weather::conditions::Conditions;
 
 use assemble::Equations;
@@ -356,13 +356,6 @@ impl ZoneFronts<f64> {
     pub(crate) fn forward_transposed(&self, weights: &mut [f64]) {
         self.zone_fronts.iter().for_each(|front| front.forward_transposed(weights));
     }
-}
-
-/// Whether a wall of constant properties has one surface in a zone and the other in none.
-pub(crate) fn of_one_room(plan: &Plan, wall: usize) -> bool {
-    let roles = SurfaceId::pair(wall).map(|surface| plan.surfaces[surface].role);
-    let inside = roles.iter().filter(|role| matches!(role, SurfaceRole::Zone { .. })).count();
-    !plan.walls[wall].nonlinear && inside == 1
 }
 
 #[cfg(test)]

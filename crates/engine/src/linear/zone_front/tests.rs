@@ -14,7 +14,7 @@ use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
 use crate::number::dual::Dual;
 use crate::number::line::Line;
 use crate::number::real::{Abreast, Real, Task};
-use crate::number::simd::{Level, LaneTask, WIDTH, run};
+use crate::number::simd::{LaneTask, Level, WIDTH, run};
 
 /// What the rest of the building does to each retained unknown: a conductance to 0 degC [W/K], and heat [W].
 const HELD: f64 = 2.0;

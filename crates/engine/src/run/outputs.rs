@@ -1,4 +1,4 @@
-//! What a run records: readings of the state at the end of a step.
+//! What a run records: quantities read at the end of a step.
 
 use serde::Deserialize;
 
@@ -7,78 +7,78 @@ use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::number::real::Real;
-use crate::step::Stepper;
 use crate::step::state::State;
+use crate::step::stepper::Stepper;
 
 /// A quantity to record.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Probe {
+pub enum Output {
     /// Air temperature of a zone [degC].
     AirTemperature {
         /// Index of the zone.
         zone: usize,
     },
-    /// Area-weighted mean temperature of a zone's faces [degC].
+    /// Area-weighted mean temperature of a zone's surfaces [degC].
     MeanRadiantTemperature {
         /// Index of the zone.
         zone: usize,
     },
-    /// Temperature of a face [degC]; side 0 outside, 1 inside.
+    /// Temperature of a surface [degC]; side 0 outside, 1 inside.
     FaceTemperature {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
         /// 0 outside, 1 inside.
         side: usize,
     },
-    /// Conduction through a face [W/m2], positive towards the inside.
+    /// Conduction through a surface [W/m2], positive towards the inside.
     FaceFlux {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
         /// 0 outside, 1 inside.
         side: usize,
     },
     /// Temperature between layer `interface - 1` and `interface`, counted from outside [degC].
     InterfaceTemperature {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
         /// Layers before it.
         interface: usize,
     },
     /// Conduction through the middle of a layer [W/m2], positive towards the inside.
     LayerFlux {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
         /// Index of the layer, counted from outside.
         layer: usize,
     },
     /// Mean temperature of a layer over its volume [degC].
     LayerTemperature {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
         /// Index of the layer, counted from outside.
         layer: usize,
     },
     /// Mean liquid fraction of a layer [-].
     LiquidFraction {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
         /// Index of the layer, counted from outside.
         layer: usize,
     },
     /// Mean enthalpy of a layer above its law's reference [J/m3].
     LayerEnthalpy {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
         /// Index of the layer, counted from outside.
         layer: usize,
     },
-    /// Heat that the plant of a zone gave over the step [W].
+    /// Ideal heating of a zone, mean over the step [W].
     HeatingLoad {
         /// Index of the zone.
         zone: usize,
     },
-    /// Heat that the plant of a zone took over the step [W].
+    /// Ideal cooling of a zone, mean over the step [W].
     CoolingLoad {
         /// Index of the zone.
         zone: usize,
@@ -88,14 +88,14 @@ pub enum Probe {
         /// Index of the zone.
         zone: usize,
     },
-    /// Short-wave radiation on the outside face, after shading, mean over the step [W/m2].
+    /// Short-wave radiation on the outside surface, after shading, mean over the step [W/m2].
     IncidentSolar {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
     },
     /// Sun that a window lets in, mean over the step [W].
     TransmittedSolar {
-        /// Index of the surface.
+        /// Index of the wall or window.
         surface: usize,
     },
     /// Sun that the windows of a zone let in, mean over the step [W].
@@ -117,7 +117,7 @@ pub enum Probe {
     },
 }
 
-impl Probe {
+impl Output {
     /// Checks that what is asked for exists.
     ///
     /// # Errors
@@ -185,14 +185,14 @@ impl Probe {
             Self::IncidentSolar { surface } => stepper.incident(SurfaceId::outside(surface)),
             Self::TransmittedSolar { surface } => {
                 let window = plan.windows.iter().position(|&w| w == surface);
-                window.map_or_else(S::zero, |window| stepper.sun.windows[window])
+                window.map_or_else(S::zero, |window| stepper.weather.sun.windows[window])
             }
-            Self::ZoneTransmittedSolar { zone } => stepper.sun.zones[zone],
-            Self::ZoneLostSolar { zone } => stepper.sun.lost[zone],
+            Self::ZoneTransmittedSolar { zone } => stepper.weather.sun.zones[zone],
+            Self::ZoneLostSolar { zone } => stepper.weather.sun.lost[zone],
             Self::SkyTemperature => stepper.sky_temperature(),
             Self::Sensor { sensor } => {
                 let surface = plan.description.sensors[sensor].surface;
-                let depth = stepper.coefficients.sensor_depths[sensor];
+                let depth = stepper.model.coefficients.sensor_depths[sensor];
                 profile_at(&profile(plan, stepper, state, surface), depth)
             }
         }
@@ -200,10 +200,10 @@ impl Probe {
 }
 
 fn mean_radiant<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, zone: usize) -> S {
-    let areas = &stepper.coefficients.zones[zone].areas;
+    let areas = &stepper.model.coefficients.zones[zone].areas;
     let (mut sum, mut total) = (S::zero(), S::zero());
-    for (&face, &area) in plan.zones[zone].surfaces.iter().zip(areas) {
-        sum += area * state.surfaces[face];
+    for (&surface, &area) in plan.zones[zone].surfaces.iter().zip(areas) {
+        sum += area * state.surfaces[surface];
         total += area;
     }
     sum / total
@@ -250,7 +250,7 @@ fn interface_temperature<S: Real>(
     surface: usize,
     interface: usize,
 ) -> S {
-    let (wall, numbers) = (&plan.walls[surface], &stepper.coefficients.walls[surface]);
+    let (wall, numbers) = (&plan.walls[surface], &stepper.model.coefficients.walls[surface]);
     // The link that holds the interface follows the cells of all layers before it.
     let link = wall.layer_cells[interface - 1].1;
     let flux = stepper.link_flux(state, surface, link);
@@ -267,12 +267,12 @@ fn interface_temperature<S: Real>(
     temperature
 }
 
-/// Temperatures and depths of the faces, cell centres and interfaces of a wall, outside to inside.
+/// Temperatures and depths of the surfaces, cell centres and interfaces of a wall, outside to inside.
 fn profile<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, surface: usize) -> Vec<(S, S)> {
-    let (wall, numbers) = (&plan.walls[surface], &stepper.coefficients.walls[surface]);
-    let face = |face: SurfaceId| state.surfaces[face];
+    let (wall, numbers) = (&plan.walls[surface], &stepper.model.coefficients.walls[surface]);
+    let at = |surface: SurfaceId| state.surfaces[surface];
     let mut depth = S::zero();
-    let mut points = vec![(depth, face(SurfaceId::outside(surface)))];
+    let mut points = vec![(depth, at(SurfaceId::outside(surface)))];
     for (layer, &(start, end)) in wall.layer_cells.iter().enumerate() {
         if layer > 0 {
             points.push((depth, interface_temperature(plan, stepper, state, surface, layer)));
@@ -283,11 +283,11 @@ fn profile<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, sur
             depth += numbers.cells[i].thickness;
         }
     }
-    points.push((depth, face(SurfaceId::inside(surface))));
+    points.push((depth, at(SurfaceId::inside(surface))));
     points
 }
 
-/// Piecewise linear reading of a profile, without a branch on the depth (it may differ between lanes).
+/// Piecewise linear interpolation in a profile, without a branch on the depth (it may differ between lanes).
 fn profile_at<S: Real>(points: &[(S, S)], depth: S) -> S {
     let mut temperature = points[0].1;
     for pair in points.windows(2) {
@@ -299,4 +299,21 @@ fn profile_at<S: Real>(points: &[(S, S)], depth: S) -> S {
         temperature += S::select(thin, beyond, inside) * (t1 - t0);
     }
     temperature
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between two points on a straight line, constant beyond the ends, and a jump over a layer without thickness.
+    #[test]
+    fn a_profile_is_read_between_its_points() {
+        let points = [(0.0, 10.0), (0.1, 20.0), (0.1, 26.0), (0.3, 22.0)];
+        for (depth, expected) in
+            [(-1.0, 10.0), (0.0, 10.0), (0.05, 15.0), (0.2, 24.0), (0.3, 22.0), (9.0, 22.0)]
+        {
+            let found: f64 = profile_at(&points, depth);
+            assert!((found - expected).abs() < 1e-12, "{found} at {depth}, expected {expected}");
+        }
+    }
 }

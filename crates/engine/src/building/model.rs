@@ -1,0 +1,201 @@
+//! What stays the same during a run: the plan, the coefficients of a parameter vector, and which parts are nonlinear.
+
+use core::ops::Range;
+
+use crate::building::coefficients::{Boundary, Coefficients, SurfaceCoefficients};
+use crate::building::ids::SurfaceId;
+use crate::building::plan::{Plan, SurfaceRole};
+use crate::number::real::Real;
+use crate::physics::convection::SurfaceConvection;
+use crate::physics::longwave::Emission;
+
+/// A building at a parameter vector.
+#[derive(Debug, Clone)]
+pub struct Model<'a, S> {
+    /// The building as flat arrays.
+    pub(crate) plan: &'a Plan,
+    /// Its coefficients.
+    pub(crate) coefficients: Coefficients<S>,
+    /// Which of its parts are linear, and which are not.
+    pub(crate) parts: Parts,
+}
+
+impl<'a, S: Real> Model<'a, S> {
+    pub(crate) fn new(plan: &'a Plan, coefficients: Coefficients<S>) -> Self {
+        let parts = Parts::new(plan, &coefficients);
+        Self { plan, coefficients, parts }
+    }
+
+    /// Cells of a wall among those of the building.
+    #[inline(always)]
+    pub(crate) fn cells(&self, wall: usize) -> Range<usize> {
+        let wall = &self.plan.walls[wall];
+        wall.first_cell..wall.first_cell + wall.len()
+    }
+
+    /// Law of convection at a surface; none where no heat passes it, or where the surface is held at a temperature.
+    pub(crate) fn convection(&self, surface: SurfaceId) -> Option<&SurfaceConvection<S>> {
+        convection_law(&self.coefficients, surface)
+    }
+
+    /// Law of emission of a surface; none where it exchanges no long-wave radiation of its own.
+    pub(crate) fn emission(&self, surface: SurfaceId) -> Option<Emission<S>> {
+        emission_law(self.plan, &self.coefficients, surface)
+    }
+}
+
+fn convection_law<S: Real>(
+    coefficients: &Coefficients<S>,
+    surface: SurfaceId,
+) -> Option<&SurfaceConvection<S>> {
+    let surface = &coefficients.surfaces[surface];
+    let adiabatic = matches!(surface.boundary, Boundary::Adiabatic);
+    surface.convection.as_ref().filter(|_| !adiabatic)
+}
+
+fn emission_law<S: Real>(
+    plan: &Plan,
+    coefficients: &Coefficients<S>,
+    surface: SurfaceId,
+) -> Option<Emission<S>> {
+    match plan.surfaces[surface].role {
+        SurfaceRole::Zone { zone, .. } if coefficients.zones[zone].exchange.is_empty() => None,
+        SurfaceRole::Zone { zone, .. } => Some(coefficients.zones[zone].emission),
+        SurfaceRole::Exterior => outdoor_emission(&coefficients.surfaces[surface]),
+    }
+}
+
+/// Law of emission of a surface outdoors; none where the surface heat transfer coefficient contains it.
+#[inline(always)]
+pub(crate) fn outdoor_emission<S: Real>(surface: &SurfaceCoefficients<S>) -> Option<Emission<S>> {
+    match &surface.boundary {
+        Boundary::Outdoors(outdoors) => outdoors.emission,
+        Boundary::Imposed(_) | Boundary::Adiabatic | Boundary::Zone => None,
+    }
+}
+
+/// Which parts of a building are linear, and which are not: found from the plan and from the kinds of laws, never from
+/// the value of a parameter.
+#[derive(Debug, Clone)]
+pub(crate) struct Parts {
+    /// Walls of constant properties.
+    pub(crate) linear_walls: Vec<usize>,
+    /// Those of them that do not lie in exactly one zone: no zone front eliminates them.
+    pub(crate) shared_walls: Vec<usize>,
+    /// Those of them that touch no zone.
+    pub(crate) detached_walls: Vec<usize>,
+    /// Their surfaces in zones.
+    pub(crate) zone_surfaces: Vec<SurfaceId>,
+    /// Walls whose properties depend on temperature, and the cells of each.
+    pub(crate) nonlinear_walls: Vec<usize>,
+    pub(crate) nonlinear_cells: Vec<Range<usize>>,
+    /// Surfaces whose laws are linearised or change with the wind: all of them, and those that no zone front eliminates.
+    pub(crate) surfaces: VariableSurfaces,
+    pub(crate) other_surfaces: VariableSurfaces,
+    /// Surfaces at which something is linearised: convection, radiation or the wall behind.
+    pub(crate) linearised: Vec<SurfaceId>,
+    /// Whether the heat balance of a surface of a linear wall is nonlinear.
+    pub(crate) nonlinear_balances: bool,
+    /// Whether the wind changes the slope of such a balance.
+    pub(crate) wind_changes_balances: bool,
+}
+
+/// Surfaces whose laws change during a run.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct VariableSurfaces {
+    /// Convection that depends on the wind alone.
+    pub(crate) windy: Vec<SurfaceId>,
+    /// Convection that depends on the temperature difference.
+    pub(crate) nonlinear: Vec<SurfaceId>,
+    /// Emission with the fourth power of the temperature.
+    pub(crate) radiant: Vec<SurfaceId>,
+}
+
+impl VariableSurfaces {
+    /// Those for which a condition holds.
+    fn filter(&self, holds: impl Fn(SurfaceId) -> bool) -> Self {
+        let some =
+            |surfaces: &[SurfaceId]| surfaces.iter().copied().filter(|&surface| holds(surface)).collect();
+        Self { windy: some(&self.windy), nonlinear: some(&self.nonlinear), radiant: some(&self.radiant) }
+    }
+}
+
+/// Whether a wall has constant properties and exactly one surface in a zone: the front of that zone eliminates it.
+pub(crate) fn of_one_zone(plan: &Plan, wall: usize) -> bool {
+    let roles = SurfaceId::pair(wall).map(|surface| plan.surfaces[surface].role);
+    let inside = roles.iter().filter(|role| matches!(role, SurfaceRole::Zone { .. })).count();
+    !plan.walls[wall].nonlinear && inside == 1
+}
+
+impl Parts {
+    fn new<S: Real>(plan: &Plan, coefficients: &Coefficients<S>) -> Self {
+        let (nonlinear_walls, linear_walls): (Vec<_>, Vec<_>) =
+            (0..plan.walls.len()).partition(|&wall| plan.walls[wall].nonlinear);
+        let exterior = |surface: SurfaceId| plan.surfaces[surface].role == SurfaceRole::Exterior;
+        let linear = || linear_walls.iter().copied();
+        let cells = nonlinear_walls.iter().map(|&wall| &plan.walls[wall]);
+        let mut parts = Self {
+            shared_walls: linear().filter(|&wall| !of_one_zone(plan, wall)).collect(),
+            detached_walls: linear()
+                .filter(|&wall| SurfaceId::pair(wall).into_iter().all(exterior))
+                .collect(),
+            zone_surfaces: linear().flat_map(SurfaceId::pair).filter(|&surface| !exterior(surface)).collect(),
+            nonlinear_cells: cells.map(|wall| wall.first_cell..wall.first_cell + wall.len()).collect(),
+            linear_walls,
+            nonlinear_walls,
+            surfaces: VariableSurfaces::default(),
+            other_surfaces: VariableSurfaces::default(),
+            linearised: Vec::new(),
+            nonlinear_balances: false,
+            wind_changes_balances: false,
+        };
+        for surface in plan.surfaces.ids() {
+            parts.sort(plan, coefficients, surface);
+        }
+        let surfaces = &parts.surfaces;
+        let linearised = |surface: &SurfaceId| {
+            plan.walls[surface.wall()].nonlinear
+                || surfaces.nonlinear.contains(surface)
+                || surfaces.radiant.contains(surface)
+        };
+        parts.linearised = plan.surfaces.ids().filter(linearised).collect();
+        parts.other_surfaces =
+            parts.surfaces.filter(|surface| exterior(surface) && !of_one_zone(plan, surface.wall()));
+        parts
+    }
+
+    /// Sorts a surface by its laws.
+    fn sort<S: Real>(&mut self, plan: &Plan, coefficients: &Coefficients<S>, surface: SurfaceId) {
+        // The exterior surface of a nonlinear wall is eliminated with its wall, in every iteration.
+        let of_linear_wall = matches!(plan.surfaces[surface].role, SurfaceRole::Zone { .. })
+            || !plan.walls[surface.wall()].nonlinear;
+        match convection_law(coefficients, surface) {
+            Some(law) if law.constant().is_some() => {}
+            Some(law) if law.straight() => {
+                self.surfaces.windy.push(surface);
+                self.wind_changes_balances |= of_linear_wall;
+            }
+            Some(_) => {
+                self.surfaces.nonlinear.push(surface);
+                self.nonlinear_balances |= of_linear_wall;
+            }
+            None => {}
+        }
+        if let Some(Emission::Exact) = emission_law(plan, coefficients, surface) {
+            self.surfaces.radiant.push(surface);
+            self.nonlinear_balances |= of_linear_wall;
+        }
+    }
+
+    /// Surfaces whose laws change: all of them, or those that no zone front eliminates.
+    #[inline(always)]
+    pub(crate) fn variable_surfaces(&self, all: bool) -> &VariableSurfaces {
+        if all { &self.surfaces } else { &self.other_surfaces }
+    }
+
+    /// Whether no slope of the balances of the surfaces of linear walls ever changes.
+    #[inline(always)]
+    pub(crate) fn balances_stay(&self) -> bool {
+        !self.nonlinear_balances && !self.wind_changes_balances
+    }
+}

@@ -1,0 +1,389 @@
+//! The linear system of a stage: all walls, surfaces and airs of the building, the laws in it as straight lines.
+//!
+//! Walls are eliminated onto their surfaces, exterior surfaces onto the other surface of their wall, the surfaces of a
+//! zone onto what it shares with the rest of the building ([`ZoneFronts`]), and what is left is solved as one small dense
+//! system ([`CoupledSystem`]). Walls of constant properties are factored once for each stage length.
+
+use crate::building::coefficients::Boundary;
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::model::Model;
+use crate::building::plan::SurfaceRole;
+use crate::linear::coupled::CoupledSystem;
+use crate::linear::laws::{LinearisedLaws, StageInputs};
+use crate::linear::step_maps::StepMaps;
+use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces, SurfaceLaws, solve_pair};
+use crate::linear::unknowns::Unknowns;
+use crate::linear::wall::Chain;
+use crate::linear::zone_front::{Front, ZoneFronts};
+use crate::number::line::Line;
+use crate::number::real::Real;
+use crate::weather::conditions::Conditions;
+
+/// The linear system of a stage, with its factors.
+#[derive(Debug, Clone)]
+pub(crate) struct BuildingSystem<'a, S> {
+    /// The linearised walls and their elimination.
+    pub(crate) walls: Vec<Chain<S>>,
+    /// Steps of the linear walls.
+    pub(crate) step_maps: StepMaps<S>,
+    /// Heat into surface e of each wall by the temperature of surface o [W/(m2 K)].
+    pub(crate) responses: Vec<[[S; 2]; 2]>,
+    /// Heat of the walls into their surfaces at surfaces of 0 degC [W/m2].
+    pub(crate) sources: Vec<[S; 2]>,
+    /// Effective stage length that walls are factored for [s]; NaN: none.
+    pub(crate) factored_length: f64,
+    /// Surfaces outside the zones, as functions of those inside.
+    pub(crate) exterior: Vec<ExteriorSurfaces<S>>,
+    /// Rise of the exterior surface of each wall with heat, its other surface held [m2 K/W].
+    pub(crate) inverses: Vec<S>,
+    pub(crate) coupled: CoupledSystem<'a, S>,
+    pub(crate) zone_fronts: ZoneFronts<S>,
+}
+
+impl<'a, S: Real> BuildingSystem<'a, S> {
+    /// The system of a building with its constant laws, for a scheme's diagonal coefficient.
+    pub(crate) fn new(model: &Model<'a, S>, laws: &LinearisedLaws<S>, diagonal: f64) -> Self {
+        let (plan, coefficients) = (model.plan, &model.coefficients);
+        let walls: Vec<_> = coefficients.walls.iter().map(Chain::new).collect();
+        let count = plan.walls.len();
+        Self {
+            step_maps: StepMaps::new(plan, coefficients, &walls, diagonal),
+            walls,
+            responses: vec![[[S::zero(); 2]; 2]; count],
+            sources: vec![[S::zero(); 2]; count],
+            factored_length: f64::NAN,
+            exterior: vec![ExteriorSurfaces::None; count],
+            inverses: vec![S::zero(); count],
+            coupled: CoupledSystem::new(&plan.reach, plan.own_rows, plan.constant_rows),
+            zone_fronts: ZoneFronts::new(plan, coefficients, &laws.surfaces),
+        }
+    }
+
+    /// Factors the linear walls for a stage length [s], and prepares the nonlinear ones. True where that was not done
+    /// before.
+    #[inline(always)]
+    pub(crate) fn factor_linear_walls(&mut self, model: &Model<'_, S>, length: f64) -> bool {
+        let new = self.factored_length.to_bits() != length.to_bits();
+        if new {
+            for &w in &model.parts.linear_walls {
+                self.responses[w] = self.walls[w].factor(&model.coefficients.walls[w], length);
+            }
+            for &w in &model.parts.nonlinear_walls {
+                self.walls[w].pace(&model.coefficients.walls[w], length);
+            }
+            self.step_maps.factor(&self.walls);
+            self.zone_fronts.respond(&self.responses);
+            self.factored_length = length;
+        }
+        new
+    }
+
+    /// Everything that stays during a stage: heat from the linear walls into their surfaces; and those surfaces
+    /// eliminated, where their balances are linear. Cells are those at the start of the step.
+    #[inline(always)]
+    pub(crate) fn begin_stage(
+        &mut self,
+        inputs: &StageInputs<'_, S>,
+        iterate: &Unknowns<S>,
+        stage: usize,
+        cells: &[S],
+    ) {
+        let parts = &inputs.model.parts;
+        let matrix = self.factor_linear_walls(inputs.model, inputs.length) | parts.wind_changes_balances;
+        if stage == 0 {
+            self.step_maps.first_sources(cells, &mut self.sources);
+        } else {
+            self.step_maps.second_sources(&mut self.sources);
+        }
+        self.zone_fronts.begin(inputs.conditions, &self.sources);
+        if !parts.nonlinear_balances {
+            self.assemble_linear(inputs, matrix, Some(iterate));
+        }
+    }
+
+    /// Eliminates the cells of a nonlinear wall, linearised and with the enthalpies that they start from [J/m3].
+    #[inline(always)]
+    pub(crate) fn condense(
+        &mut self,
+        model: &Model<'_, S>,
+        conditions: &Conditions<S>,
+        w: usize,
+        enthalpy: &[S],
+    ) {
+        let mut windows = model.plan.windows.iter().zip(&conditions.sun.windows);
+        let condensed = match windows.find(|(window, _)| **window == w) {
+            // Solar radiation absorbed in the panes.
+            Some((_, sun)) => self.walls[w].condense_heated(enthalpy, &sun.cells),
+            None => self.walls[w].condense(enthalpy),
+        };
+        (self.sources[w], self.responses[w]) = (condensed.source, condensed.response);
+    }
+
+    /// Solves the linearised building: airs, nonlinear walls and their surfaces; the surfaces of linear walls, too, where the
+    /// next iteration depends on them.
+    #[inline(always)]
+    pub(crate) fn solve(
+        &mut self,
+        inputs: &StageInputs<'_, S>,
+        iterate: &Unknowns<S>,
+        solution: &mut Unknowns<S>,
+    ) {
+        let model = inputs.model;
+        if model.parts.nonlinear_balances {
+            self.assemble_linear(inputs, true, Some(iterate));
+        }
+        self.assemble_nonlinear(inputs);
+        self.coupled.solve_rest();
+        self.resolve_airs(model, solution);
+        for &w in &model.parts.nonlinear_walls {
+            self.resolve_wall(model, w, solution);
+        }
+        if model.parts.nonlinear_balances {
+            self.resolve_linear_walls(model, solution);
+        }
+    }
+
+    /// Solves for what [`Self::solve`] left out, and makes laws and exterior surfaces inside the zone fronts known to
+    /// others. False in the lanes where a wall that touches no zone is not a number.
+    #[inline(always)]
+    pub(crate) fn finish(
+        &mut self,
+        model: &Model<'_, S>,
+        laws: &mut BySurface<SurfaceLaws<S>>,
+        solution: &mut Unknowns<S>,
+    ) -> S::Mask {
+        if !model.parts.nonlinear_balances {
+            self.resolve_linear_walls(model, solution);
+        }
+        if !model.parts.balances_stay() {
+            self.zone_fronts.tell_laws(laws);
+        }
+        if !model.plan.ideal_loads.is_empty() {
+            self.zone_fronts.tell_locals(&mut self.exterior, &mut self.inverses);
+        }
+        let mut sum = S::zero();
+        for &w in &model.parts.detached_walls {
+            sum += solution.surfaces[SurfaceId::outside(w)] + solution.surfaces[SurfaceId::inside(w)];
+        }
+        sum.abs().lt(S::constant(f64::MAX))
+    }
+
+    /// Assembles the linear walls, and convection and radiation in zones, and eliminates the surfaces of the former; without
+    /// `matrix` only the right-hand sides. Nonlinear laws along their tangents at the iterate; without one as they stand.
+    #[inline(always)]
+    pub(crate) fn assemble_linear(
+        &mut self,
+        inputs: &StageInputs<'_, S>,
+        matrix: bool,
+        iterate: Option<&Unknowns<S>>,
+    ) {
+        let parts = &inputs.model.parts;
+        self.coupled.clear_right();
+        if matrix {
+            self.coupled.clear_matrix();
+        }
+        for &w in &parts.shared_walls {
+            self.exterior[w] = self.eliminate_wall(inputs, w, matrix);
+        }
+        let front = if matrix { Front::Whole } else { Front::Right };
+        self.zone_fronts.eliminate(iterate, front, parts.balances_stay(), &mut self.coupled);
+        if matrix {
+            self.coupled.keep_matrix();
+        }
+        self.coupled.keep_right();
+    }
+
+    /// Assembles what changes from iteration to iteration: the nonlinear walls and all that acts on airs.
+    #[inline(always)]
+    pub(crate) fn assemble_nonlinear(&mut self, inputs: &StageInputs<'_, S>) {
+        let model = inputs.model;
+        self.coupled.begin();
+        for &w in &model.parts.nonlinear_walls {
+            self.exterior[w] = self.eliminate_wall(inputs, w, true);
+        }
+        for zone in 0..model.plan.zones.len() {
+            self.assemble_air(inputs, zone);
+        }
+        for (path, &conductance) in model.coefficients.paths.iter().zip(&inputs.conditions.paths) {
+            let [a, b] = path.between.map(|zone| model.plan.zones[zone].air_row);
+            self.coupled.couple(a, b, conductance);
+        }
+    }
+
+    /// Storage of the air of a zone, outdoor air that enters it, and the heat released into it.
+    #[inline(always)]
+    fn assemble_air(&mut self, inputs: &StageInputs<'_, S>, zone: usize) {
+        let (air, numbers) = (inputs.model.plan.zones[zone].air_row, &inputs.model.coefficients.zones[zone]);
+        let (infiltration, ventilation) = (inputs.laws.infiltration[zone], inputs.laws.ventilation[zone]);
+        let entering = Line {
+            offset: infiltration.offset + ventilation.offset,
+            slope: infiltration.slope + ventilation.slope,
+        };
+        let storage = numbers.capacity.scale(1.0 / inputs.length);
+        self.coupled.add(air, air, storage + entering.slope);
+        self.coupled.right[air] +=
+            storage * inputs.air[zone] + entering.offset + entering.slope * inputs.conditions.outdoor_air;
+        self.coupled.right[air] += inputs.conditions.zones[zone].convective + inputs.load[zone];
+    }
+
+    /// Adds a wall to the coupled system, its exterior surfaces eliminated.
+    #[inline(always)]
+    fn eliminate_wall(&mut self, inputs: &StageInputs<'_, S>, w: usize, matrix: bool) -> ExteriorSurfaces<S> {
+        let model = inputs.model;
+        let (source, response) = (self.sources[w], self.responses[w]);
+        let area = model.coefficients.walls[w].area;
+        let roles = SurfaceId::pair(w).map(|surface| model.plan.surfaces[surface].role);
+        match roles {
+            [SurfaceRole::Exterior, SurfaceRole::Exterior] => {
+                let [outer, inner] = SurfaceId::pair(w)
+                    .map(|surface| exterior_balance(model, inputs.conditions, inputs.laws, surface));
+                ExteriorSurfaces::Both(solve_pair(outer, inner, source, response))
+            }
+            [SurfaceRole::Zone { row: outer, .. }, SurfaceRole::Zone { row: inner, .. }] => {
+                for (e, (mine, other)) in [(outer, inner), (inner, outer)].into_iter().enumerate() {
+                    if matrix {
+                        self.coupled.add(mine, mine, -(area * response[e][e]));
+                        self.coupled.add(mine, other, -(area * response[e][1 - e]));
+                    }
+                    self.coupled.right[mine] += area * source[e];
+                }
+                ExteriorSurfaces::None
+            }
+            [SurfaceRole::Zone { row, .. }, SurfaceRole::Exterior] => {
+                self.eliminate_one(inputs, SurfaceId::outside(w), row, matrix)
+            }
+            [SurfaceRole::Exterior, SurfaceRole::Zone { row, .. }] => {
+                self.eliminate_one(inputs, SurfaceId::inside(w), row, matrix)
+            }
+        }
+    }
+
+    /// A wall with one surface in a zone, in a row, whose other surface is exterior.
+    #[inline(always)]
+    fn eliminate_one(
+        &mut self,
+        inputs: &StageInputs<'_, S>,
+        surface: SurfaceId,
+        row: usize,
+        matrix: bool,
+    ) -> ExteriorSurfaces<S> {
+        let (w, e, o) = (surface.wall(), surface.side(), surface.opposite().side());
+        let (source, response, area) =
+            (self.sources[w], self.responses[w], inputs.model.coefficients.walls[w].area);
+        let balance = exterior_balance(inputs.model, inputs.conditions, inputs.laws, surface.opposite());
+        let slope = match (balance, self.exterior[w]) {
+            (ExteriorBalance::Fixed(_), _) => S::zero(),
+            (ExteriorBalance::Gain(_), ExteriorSurfaces::One { line, .. }) if !matrix => line.slope,
+            (ExteriorBalance::Gain(gain), _) => {
+                self.inverses[w] = S::one() / (gain.slope - response[o][o]);
+                response[o][e] * self.inverses[w]
+            }
+        };
+        let offset = match balance {
+            ExteriorBalance::Fixed(value) => value,
+            ExteriorBalance::Gain(gain) => (source[o] + gain.offset) * self.inverses[w],
+        };
+        if matrix {
+            self.coupled.add(row, row, -(area * (response[e][e] + response[e][o] * slope)));
+        }
+        self.coupled.right[row] += area * (source[e] + response[e][o] * offset);
+        ExteriorSurfaces::One { side: o, line: Line { offset, slope } }
+    }
+
+    /// Airs from the solution of the coupled system.
+    #[inline(always)]
+    fn resolve_airs(&self, model: &Model<'_, S>, solution: &mut Unknowns<S>) {
+        for (zone, plan) in model.plan.zones.iter().enumerate() {
+            solution.air[zone] = self.coupled.right[plan.air_row];
+        }
+    }
+
+    /// Surfaces of the linear walls.
+    #[inline(always)]
+    fn resolve_linear_walls(&mut self, model: &Model<'_, S>, solution: &mut Unknowns<S>) {
+        self.coupled.solve_first();
+        let stays = model.parts.balances_stay();
+        self.zone_fronts.resolve(stays, &mut self.coupled.right, &mut solution.surfaces);
+        for &w in &model.parts.shared_walls {
+            let surfaces = self.resolve_surfaces(model, w);
+            solution.surfaces.set_pair(w, surfaces);
+        }
+    }
+
+    /// Surfaces of a nonlinear wall and its cells.
+    #[inline(always)]
+    fn resolve_wall(&mut self, model: &Model<'_, S>, w: usize, solution: &mut Unknowns<S>) {
+        let surfaces = self.resolve_surfaces(model, w);
+        solution.surfaces.set_pair(w, surfaces);
+        self.walls[w].temperatures(surfaces, &mut solution.cells[model.cells(w)]);
+    }
+
+    /// All airs and surfaces, and the cells of nonlinear walls, from the solution of the coupled system.
+    #[inline(always)]
+    pub(crate) fn resolve_all(&mut self, model: &Model<'_, S>, solution: &mut Unknowns<S>) {
+        self.resolve_airs(model, solution);
+        for (w, wall) in model.plan.walls.iter().enumerate() {
+            if wall.nonlinear {
+                self.resolve_wall(model, w, solution);
+            } else {
+                let surfaces = self.resolve_surfaces(model, w);
+                solution.surfaces.set_pair(w, surfaces);
+            }
+        }
+    }
+
+    /// Both surfaces of a wall.
+    #[inline(always)]
+    fn resolve_surfaces(&self, model: &Model<'_, S>, w: usize) -> [S; 2] {
+        let of_zone = |surface: SurfaceId| self.coupled.right[model.plan.row(surface)];
+        match self.exterior[w] {
+            ExteriorSurfaces::Both(surfaces) => surfaces,
+            ExteriorSurfaces::None => SurfaceId::pair(w).map(of_zone),
+            ExteriorSurfaces::One { side: 0, line } => {
+                let inner = of_zone(SurfaceId::inside(w));
+                [line.at(inner), inner]
+            }
+            ExteriorSurfaces::One { line, .. } => {
+                let outer = of_zone(SurfaceId::outside(w));
+                [outer, line.at(outer)]
+            }
+        }
+    }
+
+    /// Solves the coupled system and the zone fronts for another right-hand side, with the factors at hand.
+    #[inline(always)]
+    pub(crate) fn solve_again(&self, right: &mut [S]) {
+        self.zone_fronts.forward(right);
+        self.coupled.solve_again(right);
+        self.zone_fronts.back(right);
+    }
+}
+
+/// Whether an exterior surface is held at a temperature.
+#[inline(always)]
+pub(crate) fn is_held<S: Real>(model: &Model<'_, S>, index: SurfaceId) -> bool {
+    let surface = &model.coefficients.surfaces[index];
+    surface.convection.is_none() && matches!(surface.boundary, Boundary::Imposed(_))
+}
+
+/// Heat from outside into an exterior surface, `offset - slope T` [W/m2], or the temperature that it is held at.
+#[inline(always)]
+pub(crate) fn exterior_balance<S: Real>(
+    model: &Model<'_, S>,
+    conditions: &Conditions<S>,
+    laws: &LinearisedLaws<S>,
+    index: SurfaceId,
+) -> ExteriorBalance<S> {
+    let surface = &model.coefficients.surfaces[index];
+    let (at, laws) = (&conditions.surfaces[index], &laws.surfaces[index]);
+    match surface.boundary {
+        Boundary::Imposed(_) if surface.convection.is_none() => ExteriorBalance::Fixed(at.temperature),
+        Boundary::Adiabatic => ExteriorBalance::Gain(Line { offset: at.solar, slope: S::zero() }),
+        _ => ExteriorBalance::Gain(Line {
+            offset: at.solar + at.longwave + laws.convection.slope * at.temperature
+                - laws.convection.offset
+                - surface.emissivity * laws.emission.offset,
+            slope: laws.convection.slope + surface.emissivity * laws.emission.slope,
+        }),
+    }
+}

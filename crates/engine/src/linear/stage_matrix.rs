@@ -1,0 +1,252 @@
+//! The plain matrix of a stage, for solutions beside a run: many right-hand sides at once, and the transposed system.
+//!
+//! Unknowns and equations are those of all cells, all surfaces and all airs, in this order. Heat released in cells and at
+//! surfaces outside the zones counts per square metre, at surfaces and airs of zones whole; the equation of a surface that is held
+//! at a temperature is that temperature.
+
+use crate::building::coefficients::Coefficients;
+use crate::building::ids::SurfaceId;
+use crate::building::model::Model;
+use crate::building::plan::{Plan, SurfaceRole};
+use crate::linear::building_system::{BuildingSystem, exterior_balance, is_held};
+use crate::linear::laws::{LinearisedLaws, StageInputs};
+use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces};
+use crate::linear::wall::Chain;
+use crate::number::real::{LinearSystem, Real};
+use crate::weather::conditions::Conditions;
+use crate::weather::index::WeatherIndex;
+
+/// The linear system of a stage in plain numbers, with the values of a linearisation in other numbers.
+#[derive(Debug, Clone)]
+pub(crate) struct StageMatrix<'a> {
+    model: Model<'a, f64>,
+    laws: LinearisedLaws<f64>,
+    conditions: Conditions<f64>,
+    /// A zero for each zone: right-hand sides are given when the system is solved.
+    zeros: Vec<f64>,
+    pub(crate) system: BuildingSystem<'a, f64>,
+}
+
+impl LinearSystem for StageMatrix<'_> {
+    #[inline(always)]
+    fn solve<R: Real>(&self, rows: &mut [R], scratch: &mut Vec<R>) {
+        self.solve_beside(rows, scratch);
+    }
+}
+
+impl<'a> StageMatrix<'a> {
+    /// The matrix of a building at parameters, for a scheme's diagonal coefficient.
+    pub(crate) fn new(plan: &'a Plan, parameters: &[f64], diagonal: f64) -> Self {
+        let model = Model::new(plan, Coefficients::new(plan, parameters));
+        let laws = LinearisedLaws::new(&model);
+        let index = WeatherIndex::new(plan, &model.coefficients);
+        Self {
+            conditions: Conditions::new(plan, &model.coefficients, &index),
+            zeros: vec![0.0; plan.zones.len()],
+            system: BuildingSystem::new(&model, &laws, diagonal),
+            laws,
+            model,
+        }
+    }
+
+    /// Factors the linear walls for a stage length [s]. True where that was not done before.
+    #[inline(always)]
+    pub(crate) fn factor_linear_walls(&mut self, length: f64) -> bool {
+        self.system.factor_linear_walls(&self.model, length)
+    }
+
+    /// Copies the values of a linearisation and factors its matrix; `new`: the linear walls have been factored anew.
+    #[inline(always)]
+    pub(crate) fn factor<S: Real>(
+        &mut self,
+        (laws, walls, paths): (&LinearisedLaws<S>, &[Chain<S>], &[S]),
+        length: f64,
+        new: bool,
+    ) {
+        self.laws.copy_values(laws);
+        for (mine, theirs) in self.conditions.paths.iter_mut().zip(paths) {
+            *mine = theirs.lane(0);
+        }
+        let Self { model, laws, conditions, zeros, system } = self;
+        let inputs = StageInputs { model, conditions, laws, air: zeros, load: zeros, length };
+        if !model.parts.balances_stay() || new {
+            system.zone_fronts.adopt(&laws.surfaces);
+            system.assemble_linear(&inputs, true, None);
+            system.zone_fronts.tell_locals(&mut system.exterior, &mut system.inverses);
+        }
+        for &w in &model.parts.nonlinear_walls {
+            system.walls[w].adopt(&walls[w]);
+            system.responses[w] = system.walls[w].factor(&model.coefficients.walls[w], length);
+        }
+        system.assemble_nonlinear(&inputs);
+        system.coupled.solve_rest();
+    }
+
+    /// Balance of an exterior surface.
+    #[inline(always)]
+    fn balance(&self, surface: SurfaceId) -> ExteriorBalance<f64> {
+        exterior_balance(&self.model, &self.conditions, &self.laws, surface)
+    }
+
+    /// What of the heat that a wall sends into a surface enters the equation of that surface [-], in zones [m2].
+    #[inline(always)]
+    pub(crate) fn takes(&self, surface: SurfaceId) -> f64 {
+        match self.model.plan.surfaces[surface].role {
+            SurfaceRole::Zone { .. } => self.model.coefficients.walls[surface.wall()].area,
+            SurfaceRole::Exterior if is_held(&self.model, surface) => 0.0,
+            SurfaceRole::Exterior => 1.0,
+        }
+    }
+
+    /// How much a local surface gives way, the other surface of its wall held.
+    #[inline(always)]
+    fn yields(&self, surface: SurfaceId) -> f64 {
+        if is_held(&self.model, surface) { 1.0 } else { self.system.inverses[surface.wall()] }
+    }
+
+    /// The matrix of a wall that touches no zone, and one over its determinant.
+    #[inline(always)]
+    fn pair(&self, w: usize) -> ([[f64; 2]; 2], f64) {
+        let response = self.system.responses[w];
+        let ([a, b], _) = self.balance(SurfaceId::outside(w)).equation(0, [0.0; 2], response);
+        let ([d, c], _) = self.balance(SurfaceId::inside(w)).equation(1, [0.0; 2], response);
+        ([[a, b], [c, d]], 1.0 / (a * d - b * c))
+    }
+
+    /// Replaces the right-hand sides of all equations (cells, surfaces, airs) by their solution.
+    #[inline(always)]
+    pub(crate) fn solve_beside<R: Real>(&self, rows: &mut [R], block: &mut Vec<R>) {
+        let (cells, rest) = rows.split_at_mut(self.model.plan.n_cells);
+        let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
+        block.clear();
+        block.resize(self.model.plan.rows(), R::zero());
+        for (w, wall) in self.model.plan.walls.iter().enumerate() {
+            let heat =
+                self.system.walls[w].forward(&mut cells[wall.first_cell..wall.first_cell + wall.len()]);
+            for e in 0..2 {
+                surfaces[SurfaceId::new(w, e).index()] += heat[e].scale(self.takes(SurfaceId::new(w, e)));
+                if let SurfaceRole::Zone { row, .. } = self.model.plan.surfaces[SurfaceId::new(w, e)].role {
+                    block[row] += surfaces[SurfaceId::new(w, e).index()];
+                }
+            }
+            match self.system.exterior[w] {
+                ExteriorSurfaces::None => {}
+                ExteriorSurfaces::One { side, .. } => {
+                    let (local, zone) = (SurfaceId::new(w, side), SurfaceId::new(w, 1 - side));
+                    surfaces[local.index()] = surfaces[local.index()].scale(self.yields(local));
+                    let gain =
+                        self.model.coefficients.walls[w].area * self.system.responses[w][1 - side][side];
+                    block[self.model.plan.row(zone)] += surfaces[local.index()].scale(gain);
+                }
+                ExteriorSurfaces::Both(_) => {
+                    let ([[a, b], [c, d]], inverse) = self.pair(w);
+                    let [f, g] = [
+                        surfaces[SurfaceId::outside(w).index()].scale(inverse),
+                        surfaces[SurfaceId::inside(w).index()].scale(inverse),
+                    ];
+                    (surfaces[SurfaceId::outside(w).index()], surfaces[SurfaceId::inside(w).index()]) =
+                        (f.scale(d) - g.scale(b), g.scale(a) - f.scale(c));
+                }
+            }
+        }
+        for (zone, &air) in self.model.plan.zones.iter().zip(air.iter()) {
+            block[zone.air_row] = air;
+        }
+        self.system.zone_fronts.forward_beside(block);
+        self.system.coupled.solve_beside(block);
+        self.system.zone_fronts.back_beside(block);
+        for (zone, air) in self.model.plan.zones.iter().zip(air) {
+            *air = block[zone.air_row];
+        }
+        for (w, wall) in self.model.plan.walls.iter().enumerate() {
+            for surface in SurfaceId::pair(w) {
+                if let SurfaceRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
+                    surfaces[surface.index()] = block[row];
+                }
+            }
+            if let ExteriorSurfaces::One { side, line } = self.system.exterior[w] {
+                let zone = surfaces[SurfaceId::new(w, 1 - side).index()].scale(line.slope);
+                surfaces[SurfaceId::new(w, side).index()] += zone;
+            }
+            let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
+            self.system.walls[w].back(SurfaceId::pair(w).map(|surface| surfaces[surface.index()]), own);
+        }
+    }
+
+    /// Replaces weights on all unknowns by weights on their equations: the transpose of [`Self::solve_beside`].
+    pub(crate) fn solve_transposed(&self, rows: &mut [f64], block: &mut Vec<f64>) {
+        let (cells, rest) = rows.split_at_mut(self.model.plan.n_cells);
+        let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
+        block.clear();
+        block.resize(self.model.plan.rows(), 0.0);
+        for (w, wall) in self.model.plan.walls.iter().enumerate() {
+            let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
+            let weights = self.system.walls[w].back_transposed(own);
+            for e in 0..2 {
+                surfaces[SurfaceId::new(w, e).index()] += weights[e];
+            }
+            match self.system.exterior[w] {
+                ExteriorSurfaces::None => {}
+                ExteriorSurfaces::One { side, line } => {
+                    let local = SurfaceId::new(w, side);
+                    surfaces[local.opposite().index()] += line.slope * surfaces[local.index()];
+                    surfaces[local.index()] *= self.yields(local);
+                }
+                ExteriorSurfaces::Both(_) => {
+                    let ([[a, b], [c, d]], inverse) = self.pair(w);
+                    let [f, g] = [
+                        surfaces[SurfaceId::outside(w).index()] * inverse,
+                        surfaces[SurfaceId::inside(w).index()] * inverse,
+                    ];
+                    (surfaces[SurfaceId::outside(w).index()], surfaces[SurfaceId::inside(w).index()]) =
+                        (f * d - g * c, g * a - f * b);
+                }
+            }
+            for surface in SurfaceId::pair(w) {
+                if let SurfaceRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
+                    block[row] += surfaces[surface.index()];
+                }
+            }
+        }
+        for (zone, &air) in self.model.plan.zones.iter().zip(air.iter()) {
+            block[zone.air_row] = air;
+        }
+        self.system.zone_fronts.back_transposed(block);
+        self.system.coupled.solve_transposed(block);
+        self.system.zone_fronts.forward_transposed(block);
+        for (zone, air) in self.model.plan.zones.iter().zip(air) {
+            *air = block[zone.air_row];
+        }
+        for (w, wall) in self.model.plan.walls.iter().enumerate() {
+            for surface in SurfaceId::pair(w) {
+                if let SurfaceRole::Zone { row, .. } = self.model.plan.surfaces[surface].role {
+                    surfaces[surface.index()] = block[row];
+                }
+            }
+            if let ExteriorSurfaces::One { side, .. } = self.system.exterior[w] {
+                let (local, zone) = (SurfaceId::new(w, side), SurfaceId::new(w, 1 - side));
+                let gain = self.model.coefficients.walls[w].area * self.system.responses[w][1 - side][side];
+                surfaces[local.index()] += self.yields(local) * gain * surfaces[zone.index()];
+            }
+            let heat =
+                [0, 1].map(|e| self.takes(SurfaceId::new(w, e)) * surfaces[SurfaceId::new(w, e).index()]);
+            let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
+            self.system.walls[w].forward_transposed(heat, own);
+        }
+    }
+
+    /// What changes of the first stage's solution do to the equations of the second, in place.
+    pub(crate) fn hand_on(&self, rows: &mut [f64], ratio: f64) {
+        let (cells, rest) = rows.split_at_mut(self.model.plan.n_cells);
+        let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
+        surfaces.fill(0.0);
+        for (wall, chain) in self.model.plan.walls.iter().zip(&self.system.walls) {
+            for (i, cell) in cells[wall.first_cell..wall.first_cell + wall.len()].iter_mut().enumerate() {
+                *cell *= ratio * chain.rate[i] * chain.storage[i].capacity;
+            }
+        }
+        for (air, zone) in air.iter_mut().zip(&self.model.coefficients.zones) {
+            *air *= ratio * zone.capacity / self.system.factored_length;
+        }
+    }
+}

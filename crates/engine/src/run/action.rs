@@ -1,0 +1,107 @@
+//! What a run does to its state, one action after the other.
+
+use crate::balance::ledger::Ledger;
+use crate::error::EngineError;
+use crate::number::real::Real;
+use crate::run::options::Options;
+use crate::step::stage_solutions::Solution;
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use crate::weather::conditions::Weather;
+
+/// One thing that a run does to its state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Action {
+    /// A step of the warm-up.
+    WarmUp(usize),
+    /// The surfaces brought into balance with the weather of the start.
+    Balance,
+    /// A step.
+    Step(usize),
+}
+
+impl Action {
+    /// Takes it.
+    #[inline(always)]
+    pub(crate) fn take<S: Real>(
+        self,
+        stepper: &mut Stepper<'_, S>,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        dt: f64,
+        ledger: &mut Ledger<S>,
+    ) -> Result<(), EngineError> {
+        match self {
+            Self::WarmUp(step) | Self::Step(step) => stepper.step(state, weather, step, dt, ledger),
+            Self::Balance => {
+                stepper.forget();
+                // The weather of the first stage stands for that of the start.
+                stepper.balance_surfaces(state, &weather.at(0, 0))
+            }
+        }
+    }
+
+    /// Takes it along its solution, where that is known.
+    pub(crate) fn follow<S: Real>(
+        self,
+        stepper: &mut Stepper<'_, S>,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        dt: f64,
+        solution: Option<Solution<'_>>,
+    ) -> Result<(), EngineError> {
+        let Some(solution) = solution else {
+            return self.take(stepper, state, weather, dt, &mut Ledger::new());
+        };
+        match self {
+            Self::WarmUp(step) | Self::Step(step) => stepper.follow_step(state, weather, step, dt, solution),
+            Self::Balance => stepper.follow_balance(state, &weather.at(0, 0), solution),
+        }
+        Ok(())
+    }
+
+    /// Row of the records that the state after it is written to.
+    pub(crate) fn row(self, options: &Options) -> Option<usize> {
+        // Row k is the state at the start of step `record_from + k * record_every`.
+        let steps = match self {
+            Self::WarmUp(_) => return None,
+            Self::Balance => 0,
+            Self::Step(step) => step + 1,
+        };
+        let since = steps.checked_sub(options.record_from)?;
+        since.is_multiple_of(options.record_every).then(|| since / options.record_every)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::scheme::Scheme;
+    use crate::step::state::Initial;
+
+    /// The rows that the actions of a run lead to are those that its options promise, without gap.
+    #[test]
+    fn rows_follow_each_other() {
+        for (steps, record_from, record_every) in
+            [(1, 0, 1), (10, 0, 3), (10, 4, 1), (10, 4, 3), (10, 10, 1), (5, 9, 1)]
+        {
+            let options = Options {
+                dt: 900.0,
+                scheme: Scheme::BackwardEuler,
+                initial: Initial::Everywhere(20.0),
+                warmup: None,
+                probes: Vec::new(),
+                record_from,
+                record_every,
+            };
+            let actions = core::iter::once(Action::Balance).chain((0..steps).map(Action::Step));
+            let rows: Vec<usize> = actions.filter_map(|action| action.row(&options)).collect();
+            assert_eq!(
+                rows,
+                (0..options.rows(steps)).collect::<Vec<_>>(),
+                "{steps}, {record_from}, {record_every}"
+            );
+            assert_eq!(Action::WarmUp(record_from).row(&options), None);
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The warm-up: the first period repeated until the state at its end is that at its start.
+
+use crate::balance::ledger::Ledger;
+use crate::error::EngineError;
+use crate::number::real::{Mask, Real};
+use crate::run::action::Action;
+use crate::run::control::RunControl;
+use crate::run::options::Options;
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use crate::weather::conditions::Weather;
+
+/// Repeats the first period until every lane has converged; such a lane keeps its state. Gives the number of repetitions
+/// and the largest change in the last one [K].
+pub(super) fn warm_up<'a, S: Real>(
+    stepper: &mut Stepper<'a, S>,
+    state: &mut State<S>,
+    weather: &Weather<'_>,
+    options: &Options,
+    control: &RunControl,
+    observe: &mut impl FnMut(&Stepper<'a, S>, &State<S>, Action) -> Result<(), EngineError>,
+) -> Result<(usize, S), EngineError> {
+    let Some(warmup) = options.warmup else { return Ok((0, S::zero())) };
+    let mut active = S::Mask::splat(true);
+    let mut change_left = S::zero();
+    for cycle in 1..=warmup.max_cycles {
+        let mut next = state.clone();
+        let mut unused = Ledger::new();
+        for action in (0..warmup.steps).map(Action::WarmUp) {
+            control.check()?;
+            action.take(stepper, &mut next, weather, options.dt, &mut unused)?;
+            observe(stepper, &next, action)?;
+        }
+        let change = next.distance(state);
+        state.take(active, &next);
+        change_left = S::select(active, change, change_left);
+        active = active & !stepper.failed() & S::constant(warmup.tolerance).lt(change);
+        if !active.any() {
+            return Ok((cycle, change_left));
+        }
+    }
+    let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
+    Err(EngineError::NotSettled { cycles: warmup.max_cycles, residual, tolerance: warmup.tolerance })
+}

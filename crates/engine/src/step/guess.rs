@@ -1,0 +1,101 @@
+//! The temperatures that the iteration of a stage starts from, extrapolated from what went before.
+
+use crate::building::coefficients::Matter;
+use crate::building::ids::SurfaceId;
+use crate::building::model::Model;
+use crate::linear::unknowns::{Temperatures, Unknowns, line};
+use crate::number::real::Real;
+use crate::physics::pcm::PcmMemory;
+use crate::step::state::State;
+
+/// What initial guesses are made from beside the state: the start of the step before.
+#[derive(Debug, Clone)]
+pub(crate) struct Guess<S> {
+    previous: Option<Unknowns<S>>,
+}
+
+impl<S: Real> Guess<S> {
+    /// Nothing went before.
+    pub(crate) fn none() -> Self {
+        Self { previous: None }
+    }
+
+    /// What comes next does not continue the step before.
+    pub(crate) fn forget(&mut self) {
+        self.previous = None;
+    }
+
+    /// The start of the step before, where this step continues it.
+    #[inline(always)]
+    pub(crate) fn previous(&self) -> Option<Temperatures<'_, S>> {
+        self.previous.as_ref().map(Unknowns::view)
+    }
+
+    /// Keeps the start of this step for the guess of the next.
+    #[inline(always)]
+    pub(crate) fn remember(&mut self, model: &Model<'_, S>, state: &State<S>) {
+        let plan = model.plan;
+        let zero = || Unknowns::zero(plan.n_cells, plan.surfaces.len(), plan.zones.len());
+        self.previous.get_or_insert_with(zero).copy_some(&model.parts.nonlinear_cells, &state.view());
+    }
+
+    /// Guesses a stage at a node: the straight line through the start of the step before and that of this one, or the start
+    /// itself.
+    #[inline(always)]
+    pub(crate) fn first(&self, model: &Model<'_, S>, state: &State<S>, node: f64, iterate: &mut Unknowns<S>) {
+        match &self.previous {
+            Some(previous) if node > 0.0 => {
+                iterate.extrapolate(model, &[previous.view(), state.view()], 1.0 + node, &state.memory);
+            }
+            _ => iterate.copy_some(&model.parts.nonlinear_cells, &state.view()),
+        }
+    }
+}
+
+impl<S: Real> Unknowns<S> {
+    /// Airs, and some surfaces, as far from others as two known ones are from each other.
+    #[inline(always)]
+    pub(crate) fn shift(
+        &mut self,
+        surfaces: &[SurfaceId],
+        from: &Temperatures<'_, S>,
+        known: &[Temperatures<'_, S>; 2],
+    ) {
+        let [start, end] = known;
+        for (zone, air) in self.air.iter_mut().enumerate() {
+            *air = from.air[zone] + (end.air[zone] - start.air[zone]);
+        }
+        for &surface in surfaces {
+            self.surfaces[surface] =
+                from.surfaces[surface] + (end.surfaces[surface] - start.surfaces[surface]);
+        }
+    }
+
+    /// `from + ratio (to - from)` where something is linearised, without crossing a melting range.
+    #[inline(always)]
+    pub(crate) fn extrapolate(
+        &mut self,
+        model: &Model<'_, S>,
+        [from, to]: &[Temperatures<'_, S>; 2],
+        ratio: f64,
+        memory: &[PcmMemory<S>],
+    ) {
+        for &surface in &model.parts.linearised {
+            self.surfaces[surface] = line(from.surfaces[surface], to.surfaces[surface], ratio);
+        }
+        for ((guess, &from), &to) in self.air.iter_mut().zip(from.air).zip(to.air) {
+            *guess = line(from, to, ratio);
+        }
+        for &w in &model.parts.nonlinear_walls {
+            let (numbers, cells) = (&model.coefficients.walls[w], model.cells(w));
+            let ends = from.cells[cells.clone()].iter().zip(&to.cells[cells.clone()]);
+            let laws = numbers.cells.iter().zip(&memory[cells.clone()]);
+            for ((guess, (&from, &to)), (cell, memory)) in self.cells[cells].iter_mut().zip(ends).zip(laws) {
+                *guess = line(from, to, ratio);
+                if let Matter::Pcm(law) = cell.matter {
+                    *guess = numbers.pcm[law].limit(to, *guess, memory).0;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Parts of a step: one that does not converge is replaced by its two halves.
+
+use crate::error::EngineError;
+use crate::number::real::Real;
+
+/// How often a step may be halved before it counts as unsolvable.
+const MAX_HALVINGS: u32 = 6;
+
+/// A part of a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Part {
+    pub(crate) step: usize,
+    /// Start, in steps.
+    pub(crate) from: f64,
+    /// Length, in steps.
+    pub(crate) share: f64,
+    /// How often the step was halved for it.
+    pub(crate) halvings: u32,
+}
+
+impl Part {
+    /// A whole step.
+    #[inline(always)]
+    pub(crate) fn whole(step: usize) -> Self {
+        Self { step, from: 0.0, share: 1.0, halvings: 0 }
+    }
+
+    /// Its two halves.
+    pub(crate) fn halves(self) -> [Self; 2] {
+        let share = 0.5 * self.share;
+        let first = Self { share, halvings: self.halvings + 1, ..self };
+        [first, Self { from: self.from + share, ..first }]
+    }
+}
+
+/// The parts of a step.
+#[derive(Debug, Clone)]
+pub(crate) struct StepParts<S> {
+    /// Still to be solved, the next one last.
+    left: Vec<Part>,
+    /// Ideal load of each zone, summed over the parts solved so far, each by its share of the step [W].
+    load: Vec<S>,
+}
+
+impl<S: Real> StepParts<S> {
+    /// For a number of zones.
+    pub(crate) fn new(zones: usize) -> Self {
+        Self { left: Vec::new(), load: vec![S::zero(); zones] }
+    }
+
+    /// Begins with a whole step.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, step: usize) {
+        self.left.push(Part::whole(step));
+    }
+
+    /// The next part.
+    #[inline(always)]
+    pub(crate) fn next(&mut self) -> Option<Part> {
+        self.left.pop()
+    }
+
+    /// Puts two halves in the place of a part that could not be solved.
+    ///
+    /// # Errors
+    /// The error, where halves would not help: after many halvings, or where something is not a number, which comes from
+    /// what drives the step.
+    pub(crate) fn halve(&mut self, part: Part, error: EngineError) -> Result<(), EngineError> {
+        let solvable = matches!(error, EngineError::NotConverged { residual, .. } if !residual.is_nan());
+        if part.halvings == MAX_HALVINGS || !solvable {
+            self.left.clear();
+            return Err(error);
+        }
+        if part.halvings == 0 {
+            self.load.fill(S::zero());
+        }
+        let [first, second] = part.halves();
+        self.left.extend([second, first]);
+        Ok(())
+    }
+
+    /// Adds the mean loads over a part; after the last one they are replaced by the means over the step.
+    #[cold]
+    pub(crate) fn average(&mut self, part: Part, load: &mut [S]) {
+        for (sum, &load) in self.load.iter_mut().zip(load.iter()) {
+            *sum += load.scale(part.share);
+        }
+        if self.left.is_empty() {
+            load.copy_from_slice(&self.load);
+        }
+    }
+
+    /// Drops all parts.
+    pub(crate) fn clear(&mut self) {
+        self.left.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unsolved(residual: f64) -> EngineError {
+        EngineError::NotConverged { step: 3, stage: 1, place: String::new(), residual, iterations: 60 }
+    }
+
+    /// Halves follow each other without gap, down to 1/64 of the step, and then the error is given back.
+    #[test]
+    fn halves_cover_the_step() {
+        let mut parts = StepParts::<f64>::new(1);
+        parts.begin(3);
+        let (mut end, mut count, mut mean) = (0.0, 0, 0.0_f64);
+        while let Some(part) = parts.next() {
+            // Only the smallest parts can be solved, and the second half of the step.
+            if part.from < 0.5 && part.halvings < MAX_HALVINGS {
+                parts.halve(part, unsolved(1.0)).unwrap();
+                continue;
+            }
+            assert_eq!((part.step, part.from), (3, end));
+            end += part.share;
+            count += 1;
+            // A load of as many watts as the part is early: its mean over the step is an integral.
+            let mut load = [1.0 - part.from - 0.5 * part.share];
+            parts.average(part, &mut load);
+            mean = load[0];
+        }
+        assert!((mean - 0.5).abs() < 1e-15, "the mean over the step is {mean}");
+        assert_eq!((end, count), (1.0, 33));
+        let smallest = Part { step: 3, from: 0.0, share: 1.0 / 64.0, halvings: MAX_HALVINGS };
+        assert!(parts.halve(smallest, unsolved(1.0)).is_err() && parts.next().is_none());
+        assert!(parts.halve(Part::whole(3), unsolved(f64::NAN)).is_err());
+    }
+}

@@ -1,0 +1,157 @@
+//! How a building responds to one watt of an ideal load in a step, from the factors of its stages.
+
+use crate::building::ids::SurfaceId;
+use crate::building::model::Model;
+use crate::building::plan::SurfaceRole;
+use crate::linear::building_system::{BuildingSystem, is_held};
+use crate::linear::surface_balance::ExteriorSurfaces;
+use crate::linear::unknowns::Unknowns;
+use crate::number::real::Real;
+
+/// Response of a building to one watt of one load over the step.
+#[derive(Debug, Clone)]
+pub(crate) struct Response<S> {
+    /// Of the temperatures at the end of each stage [K/W].
+    pub(crate) stages: Vec<Unknowns<S>>,
+    /// Of the enthalpies that the second stage starts from [J/(m3 W)].
+    held: Vec<S>,
+    /// Forward sweeps of the nonlinear walls.
+    known: Vec<S>,
+    /// Right-hand side, then solution, of the coupled system.
+    pub(super) right: Vec<S>,
+    /// Of the heat from the walls into their surfaces in the second stage [1/m2].
+    sources: Vec<[S; 2]>,
+}
+
+impl<S: Real> Response<S> {
+    pub(super) fn new(unknowns: &Unknowns<S>, rows: usize, stages: usize) -> Self {
+        let zeros = |n: usize| vec![S::zero(); n];
+        Self {
+            stages: vec![unknowns.clone(); stages],
+            held: zeros(unknowns.cells.len()),
+            known: zeros(unknowns.cells.len()),
+            right: zeros(rows),
+            sources: vec![[S::zero(); 2]; unknowns.surfaces.len() / 2],
+        }
+    }
+
+    /// One watt into the air of a zone.
+    #[inline(always)]
+    fn set_unit(&mut self, model: &Model<'_, S>, zone: usize) {
+        self.right.fill(S::zero());
+        self.right[model.plan.zones[zone].air_row] = S::one();
+    }
+
+    /// Response of the stage just solved, of a length [s], to the load of a zone; `ratio` as in
+    /// [`Tableau`](crate::step::scheme::Tableau).
+    #[inline(always)]
+    pub(super) fn find(
+        &mut self,
+        model: &Model<'_, S>,
+        system: &BuildingSystem<'_, S>,
+        zone: usize,
+        stage: usize,
+        (length, ratio): (f64, f64),
+    ) {
+        self.set_unit(model, zone);
+        if stage > 0 {
+            self.carry_over(model, system, length, ratio);
+        } else {
+            self.known.fill(S::zero());
+        }
+        system.solve_again(&mut self.right);
+        self.spread(model, system, stage, ratio);
+    }
+
+    /// Response of the airs at the end of the step to a load in the last stage alone.
+    #[inline(always)]
+    pub(super) fn find_last(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, zone: usize) {
+        self.set_unit(model, zone);
+        system.solve_again(&mut self.right);
+        let last = self.stages.len() - 1;
+        for (air, plan) in self.stages[last].air.iter_mut().zip(&model.plan.zones) {
+            *air = self.right[plan.air_row];
+        }
+    }
+
+    /// What the response of the first stage does to the second: heat held in walls and airs.
+    #[inline(always)]
+    fn carry_over(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, length: f64, ratio: f64) {
+        let Self { stages, held, known, right, sources } = self;
+        let first = &stages[0];
+        for (zone, plan) in model.plan.zones.iter().enumerate() {
+            let storage = model.coefficients.zones[zone].capacity.scale(ratio / length);
+            right[plan.air_row] += storage * first.air[zone];
+        }
+        for (w, carried) in system.step_maps.carried() {
+            let [outside, inside] = first.surfaces.pair(w);
+            sources[w] = carried.map(|[a, b]| a * outside + b * inside);
+        }
+        for (w, wall) in model.plan.walls.iter().enumerate() {
+            if wall.nonlinear {
+                let cells = model.cells(w);
+                let (held, known) = (&held[cells.clone()], &mut known[cells]);
+                sources[w] = system.walls[w].source_changes(held, known);
+            }
+            let source = sources[w];
+            let area = model.coefficients.walls[w].area;
+            for e in 0..2 {
+                let SurfaceRole::Zone { row, .. } = model.plan.surfaces[SurfaceId::new(w, e)].role else {
+                    continue;
+                };
+                let mut heat = source[e];
+                if let ExteriorSurfaces::One { side, .. } = system.exterior[w] {
+                    let rise = exterior_rise(model, system, SurfaceId::new(w, side), source[side]);
+                    heat += system.responses[w][e][side] * rise;
+                }
+                right[row] += area * heat;
+            }
+        }
+    }
+
+    /// All surfaces, and the cells of nonlinear walls, from the solution of the coupled system.
+    #[inline(always)]
+    fn spread(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, stage: usize, ratio: f64) {
+        let Self { stages, held, known, right, sources } = self;
+        let answer = &mut stages[stage];
+        for (zone, plan) in model.plan.zones.iter().enumerate() {
+            answer.air[zone] = right[plan.air_row];
+        }
+        for (w, wall) in model.plan.walls.iter().enumerate() {
+            let mut surfaces = [S::zero(); 2];
+            for (e, surface) in surfaces.iter_mut().enumerate() {
+                if let SurfaceRole::Zone { row, .. } = model.plan.surfaces[SurfaceId::new(w, e)].role {
+                    *surface = right[row];
+                }
+            }
+            if let ExteriorSurfaces::One { side, line } = system.exterior[w] {
+                let source = if stage > 0 { sources[w][side] } else { S::zero() };
+                surfaces[side] = line.slope * surfaces[1 - side]
+                    + exterior_rise(model, system, SurfaceId::new(w, side), source);
+            }
+            answer.surfaces.set_pair(w, surfaces);
+            if !wall.nonlinear {
+                continue;
+            }
+            let cells = model.cells(w);
+            let chain = &system.walls[w];
+            chain.temperature_changes(&known[cells.clone()], surfaces, &mut answer.cells[cells.clone()]);
+            if stage == 0 {
+                for (i, k) in cells.enumerate() {
+                    held[k] = chain.storage[i].capacity * answer.cells[k].scale(ratio);
+                }
+            }
+        }
+    }
+}
+
+/// Rise of an exterior surface with the heat that its wall sends into it, the other surface held [K].
+#[inline(always)]
+fn exterior_rise<S: Real>(
+    model: &Model<'_, S>,
+    system: &BuildingSystem<'_, S>,
+    surface: SurfaceId,
+    source: S,
+) -> S {
+    if is_held(model, surface) { S::zero() } else { source * system.inverses[surface.wall()] }
+}

@@ -1,0 +1,122 @@
+//! The loads that bring the airs onto their set points, from the responses of the building: an active set.
+
+use crate::number::real::{Mask, Real};
+use crate::step::ideal_loads::loads::{IdealLoads, Limits};
+
+/// A load is found when correcting it would change the air by less than this [K]: the last stage supplies so little.
+const CLOSE: f64 = 1e-5;
+
+/// What an ideal load does: it holds the air on a set point, or gives a fixed load.
+#[derive(Debug, Clone, Copy)]
+struct Mode<S: Real> {
+    held: S::Mask,
+    set_point: S,
+    fixed: S,
+}
+
+impl<S: Real> Limits<S> {
+    /// The mode of a load with the air at a temperature and its response to the load [K/W].
+    #[inline(always)]
+    fn mode(&self, load: S, air: S, gain: S) -> Mode<S> {
+        let [heat, cool] = self.set_points;
+        let heating = load + (heat - air) / gain;
+        let cooling = load + (cool - air) / gain;
+        let heats = S::zero().lt(heating) & S::zero().lt(self.most[0]);
+        let cools = cooling.lt(S::zero()) & S::zero().lt(self.most[1]);
+        let full = (heats & self.most[0].lt(heating)) | (!heats & cools & cooling.lt(-self.most[1]));
+        let fixed = S::select(heats, self.most[0], S::select(cools, -self.most[1], S::zero()));
+        Mode { held: (heats | cools) & !full, set_point: S::select(heats, heat, cool), fixed }
+    }
+}
+
+impl<S: Real> IdealLoads<S> {
+    /// Compares the airs at the end of a sweep with the set points. True in the lanes whose loads are right; in the other
+    /// active ones that know the responses, and in `all` of them on demand, the loads are corrected.
+    #[inline(always)]
+    pub(crate) fn correct(&mut self, air: &[S], loads: &mut [S], active: S::Mask, all: bool) -> S::Mask {
+        let quiet = self.within_set_points(|zone| air[zone]);
+        let known = self.answered;
+        self.asking = self.asking | !quiet;
+        if !(known & active).any() {
+            self.correction.fill(S::zero());
+            return quiet;
+        }
+        self.solve(air, loads);
+        let mut small = S::Mask::splat(true);
+        for (p, &zone) in self.zones.iter().enumerate() {
+            let change = self.correction[p] - loads[zone];
+            small = small & (change * self.gain(p, p)).abs().lt(S::constant(CLOSE));
+            self.correction[p] = change;
+        }
+        let found = (known & small) | (!known & quiet);
+        let moving = known & active & (!found | S::Mask::splat(all));
+        for (p, &zone) in self.zones.iter().enumerate() {
+            self.correction[p] = S::select(moving, self.correction[p], S::zero());
+            loads[zone] += self.correction[p];
+        }
+        found
+    }
+
+    /// Corrects the solution of the coupled system of the last stage by the loads that are missing there.
+    #[inline(always)]
+    pub(super) fn complete(&mut self, air: &[S], loads: &[S], solution: &mut [S]) {
+        let asking = self.asking;
+        self.solve(air, loads);
+        for (p, &zone) in self.zones.iter().enumerate() {
+            self.correction[p] = S::select(asking, self.correction[p] - loads[zone], S::zero());
+            for (value, &rise) in solution.iter_mut().zip(&self.responses[p].right) {
+                *value = S::select(asking, *value + rise * self.correction[p], *value);
+            }
+        }
+    }
+
+    /// The loads that follow from the responses, into `correction`.
+    #[inline(always)]
+    fn solve(&mut self, air: &[S], loads: &[S]) {
+        let n = self.zones.len();
+        for (load, &zone) in self.correction.iter_mut().zip(&self.zones) {
+            *load = loads[zone];
+        }
+        // One load finds its mode at once; several may change each other's.
+        for _ in 0..(if n == 1 { 1 } else { 2 * n + 2 }) {
+            for (p, &zone) in self.zones.iter().enumerate() {
+                let mut now = air[zone];
+                let mut without = air[zone];
+                for (q, &other) in self.zones.iter().enumerate() {
+                    now += self.gain(p, q) * (self.correction[q] - loads[other]);
+                    without = without - self.gain(p, q) * loads[other];
+                }
+                let mode = self.limits[p].mode(self.correction[p], now, self.gain(p, p));
+                self.right[p] = S::select(mode.held, mode.set_point - without, mode.fixed);
+                for q in 0..n {
+                    let unit = if p == q { S::one() } else { S::zero() };
+                    self.matrix[p * n + q] = S::select(mode.held, self.gain(p, q), unit);
+                }
+            }
+            eliminate(&mut self.matrix, &mut self.right);
+            self.correction.copy_from_slice(&self.right);
+        }
+    }
+}
+
+/// Gaussian elimination without pivoting: responses are inverses of M-matrices, whose principal minors are positive.
+#[inline(always)]
+fn eliminate<S: Real>(matrix: &mut [S], right: &mut [S]) {
+    let n = right.len();
+    for k in 0..n {
+        let inverse = S::one() / matrix[k * n + k];
+        for i in k + 1..n {
+            let factor = matrix[i * n + k] * inverse;
+            for j in k..n {
+                matrix[i * n + j] = matrix[i * n + j] - factor * matrix[k * n + j];
+            }
+            right[i] = right[i] - factor * right[k];
+        }
+    }
+    for k in (0..n).rev() {
+        for j in k + 1..n {
+            right[k] = right[k] - matrix[k * n + j] * right[j];
+        }
+        right[k] = right[k] / matrix[k * n + k];
+    }
+}

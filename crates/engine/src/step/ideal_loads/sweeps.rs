@@ -1,0 +1,220 @@
+//! A step with ideal loads: its stages, repeated until their temperatures and the loads are right.
+
+use crate::balance::ledger::Power;
+use crate::building::coefficients::Boundary;
+use crate::error::EngineError;
+use crate::linear::unknowns::line;
+use crate::number::real::{Mask, Real};
+use crate::step::halving::Part;
+use crate::step::newton::Search;
+use crate::step::stage::Stage;
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use crate::weather::conditions::Weather;
+
+/// Sweeps over the stages of a step before it counts as unsolvable, and those of them that solve each stage only once.
+const MAX_SWEEPS: usize = 40;
+const SINGLE_SWEEPS: usize = 12;
+
+/// One sweep over the stages of a step.
+#[derive(Debug, Clone, Copy)]
+struct Sweep<S: Real> {
+    part: Part,
+    /// Of the part [s].
+    length: f64,
+    /// Sweeps before it.
+    number: usize,
+    /// Lanes that change; the others repeat the sweep before bit for bit.
+    active: S::Mask,
+}
+
+/// What a sweep has found.
+struct Swept<S: Real> {
+    /// Heat of all but the last stage.
+    energy: Power<S>,
+    /// Square of the change [K2].
+    change: S,
+    /// Where the change was limited.
+    limited: S::Mask,
+}
+
+impl<S: Real> Stepper<'_, S> {
+    /// Guesses the loads of a step that ends with a forcing row, and the first stage.
+    #[inline(always)]
+    pub(in crate::step) fn guess_loads(&mut self, state: &State<S>, row: &[f64]) {
+        let Self { model, solver, ideal_loads, guess, .. } = self;
+        let (load, iterate) = (&mut solver.start.load, &mut solver.iterate);
+        let previous = guess.previous();
+        ideal_loads.begin(&model.coefficients.zones, row, load, previous.is_some());
+        let diagonal = self.scheme.tableau().diagonal;
+        ideal_loads.ask(load, |zone| line(state.air[zone], iterate.air[zone], 1.0 / diagonal));
+        if let Some(previous) = previous {
+            let known = [previous, ideal_loads.first.view()];
+            iterate.shift(&model.parts.zone_surfaces, &state.view(), &known);
+        }
+    }
+
+    /// The stages of a step, repeated until their temperatures and the loads are right.
+    #[inline(always)]
+    pub(in crate::step) fn step_with_loads(
+        &mut self,
+        state: &State<S>,
+        weather: &Weather<'_>,
+        part: Part,
+        length: f64,
+    ) -> Result<Power<S>, EngineError> {
+        let mut active = S::Mask::splat(true);
+        let mut further = self.further_sweeps();
+        let mut before = S::zero();
+        for number in 0..MAX_SWEEPS {
+            let whole = number >= SINGLE_SWEEPS;
+            let Swept { mut energy, change, limited } =
+                self.sweep(state, weather, Sweep { part, length, number, active })?;
+            before = S::select(limited, S::zero(), before);
+            // The first sweep adds up no heat: it is never the last.
+            let still = self.solver.converged(change, before) & S::Mask::splat(number > 0);
+            let still = still | S::Mask::splat(whole);
+            before = change;
+            let (air, load) = (&self.solver.solution.air, &mut self.solver.start.load);
+            let found = self.ideal_loads.correct(air, load, active, further > 0);
+            let moving = active & !(found & still) & !self.solver.failed;
+            if moving.any() {
+                active = moving;
+            } else if further > 0 {
+                further -= 1;
+                active = S::Mask::splat(true);
+            } else {
+                self.close(&mut energy, length);
+                return Ok(energy);
+            }
+        }
+        Err(self.loads_not_found(active, part.step))
+    }
+
+    /// Names the load that changes most in the first lane that did not converge.
+    #[cold]
+    fn loads_not_found(&self, active: S::Mask, step: usize) -> EngineError {
+        let lane = (0..S::LANES).find(|&lane| active.lane(lane)).unwrap_or(0);
+        let (zone, residual) = self.ideal_loads.worst(lane);
+        let place = format!("zone {} (load of its plant)", self.model.plan.description.zones[zone].name);
+        let (stage, iterations) = (self.scheme.weights().len(), MAX_SWEEPS);
+        EngineError::NotConverged { step, stage, place, residual, iterations }
+    }
+
+    /// Corrects the guess of a stage, once the weather in it is known.
+    #[inline(always)]
+    fn correct_guess(&mut self, state: &State<S>, stage: usize) {
+        let Self { model, solver, ideal_loads, .. } = self;
+        let iterate = &mut solver.iterate;
+        if stage > 0 {
+            // A straight line on from the first stage would contain the error of its load.
+            let known = [ideal_loads.first.view(), state.view()];
+            iterate.shift(&model.parts.zone_surfaces, &solver.solution.view(), &known);
+            return;
+        }
+        // Where the outdoor air changes its course, the surfaces outdoors do so with it.
+        let [before, now] = ideal_loads.outdoor;
+        let expected = line(before, now, 1.0 + self.scheme.tableau().diagonal);
+        let turn = self.weather.conditions.outdoor_air - expected;
+        for (guess, surface) in iterate.surfaces.iter_mut().zip(&model.coefficients.surfaces) {
+            if matches!(surface.boundary, Boundary::Outdoors(_)) {
+                *guess += turn;
+            }
+        }
+    }
+
+    /// Sweeps that are made once the numbers are found: for slopes, and where slopes will be found along these numbers.
+    #[inline(always)]
+    fn further_sweeps(&self) -> usize {
+        if !S::DERIVATIVES {
+            // Numbers converge quadratically, but the effect of a parameter one sweep later: quotients would show it.
+            return if self.known.keeps() { 2 } else { 0 };
+        }
+        // Responses leave out what a load does to the convection expected in gaps: its slope is then found in two rounds.
+        if self.model.plan.windows.is_empty() { 1 } else { 2 }
+    }
+
+    /// All stages of a step at the present loads: one linear solve of each, or after many sweeps as many as it takes.
+    #[inline(always)]
+    fn sweep(
+        &mut self,
+        state: &State<S>,
+        weather: &Weather<'_>,
+        Sweep { part, length, number, active }: Sweep<S>,
+    ) -> Result<Swept<S>, EngineError> {
+        let tableau = self.scheme.tableau();
+        let (weights, length_of_stage) = (tableau.weights, tableau.diagonal * length);
+        let (mut energy, mut change, mut limited) = (Power::none(), S::zero(), S::Mask::splat(false));
+        let (again, answer) = (number > 0, self.ideal_loads.answering(number, active));
+        if again {
+            self.solver.start.begin(&self.model, state);
+            self.known.restart();
+        }
+        for (index, &weight) in weights.iter().enumerate() {
+            if index > 0 {
+                self.begin_second_stage(state);
+            }
+            if weights.len() > 1 && (again || index > 0) {
+                self.weather.swap_stages();
+            }
+            if again {
+                let (cells, solver) = (&self.model.parts.nonlinear_cells, &mut self.solver);
+                self.ideal_loads.guess(index, cells, &mut solver.iterate, &mut solver.solution);
+            } else {
+                self.weather.set_stage(&self.model, weather, tableau, part, index);
+                if self.ideal_loads.continues {
+                    self.correct_guess(state, index);
+                }
+            }
+            let Self { model, weather, solver, ideal_loads, known, .. } = self;
+            let stage = Stage {
+                model,
+                conditions: &weather.conditions,
+                state,
+                storage: tableau.storage,
+                length: length_of_stage,
+                place: (part.step, index + 1),
+            };
+            if again {
+                limited = limited | solver.advance(&stage, active, 0);
+            }
+            let search = if number < SINGLE_SWEEPS { Search::Once } else { Search::Whole(active) };
+            let sound = solver.solve(&stage, search)?;
+            known.keep(&solver.solution);
+            change += S::select(sound, solver.change(model), S::constant(f64::INFINITY));
+            if answer {
+                ideal_loads.respond(model, &solver.system, index, (length_of_stage, tableau.ratio));
+            }
+            ideal_loads.keep(index, &mut solver.iterate, &solver.solution);
+            if again && index + 1 < weights.len() {
+                self.heat().add_to(weight * length, &mut energy);
+            }
+        }
+        Ok(Swept { energy, change, limited })
+    }
+
+    /// Brings the airs onto their set points by the loads of the last stage, and adds its heat.
+    #[inline(always)]
+    fn close(&mut self, energy: &mut Power<S>, length: f64) {
+        let weights = self.scheme.weights();
+        let weight = weights[weights.len() - 1];
+        let Self { model, solver, ideal_loads, known, .. } = self;
+        if ideal_loads.asking(!solver.failed) {
+            ideal_loads.respond_last(model, &solver.system);
+            ideal_loads.complete(&solver.solution.air, &solver.start.load, &mut solver.system.coupled.right);
+            solver.system.resolve_all(model, &mut solver.solution);
+            known.amend(&solver.solution);
+        }
+        for (&correction, &zone) in ideal_loads.correction.iter().zip(&model.plan.ideal_loads) {
+            solver.start.load[zone] += correction;
+        }
+        self.heat().add_to(weight * length, energy);
+        let Self { model, solver, ideal_loads, weather, .. } = self;
+        ideal_loads.outdoor = [ideal_loads.outdoor[1], weather.conditions.outdoor_air];
+        for (&correction, &zone) in ideal_loads.correction.iter().zip(&model.plan.ideal_loads) {
+            // The mean over the step.
+            let load = &mut solver.start.load[zone];
+            *load = *load - correction.scale(1.0 - weight);
+        }
+    }
+}

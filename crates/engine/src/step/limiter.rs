@@ -1,0 +1,62 @@
+//! How far an iterate moves: not across a melting range at once, and half of the step where the iteration may be in a cycle.
+
+use crate::building::coefficients::Matter;
+use crate::linear::unknowns::line;
+use crate::linear::wall::StorageRule;
+use crate::number::real::{Mask, Real};
+use crate::step::newton::StageSolver;
+use crate::step::stage::Stage;
+use crate::step::state::blend;
+
+/// Iterations after which every third moves half of the step only, so that the iteration leaves a cycle.
+const PATIENCE: usize = 20;
+
+impl<S: Real> StageSolver<'_, S> {
+    /// Moves the iterate of the active lanes to the solution, limited where it would cross a melting range. True where it
+    /// was limited.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, stage: &Stage<'_, S>, active: S::Mask, iteration: usize) -> S::Mask {
+        if iteration >= PATIENCE && iteration.is_multiple_of(3) {
+            self.damp();
+        }
+        let model = stage.model;
+        // The apparent capacity is a constant of the step: there is nothing to cross.
+        let limits = stage.storage == StorageRule::Enthalpy;
+        let mut limited = S::Mask::splat(false);
+        for &surface in &model.parts.linearised {
+            let old = self.iterate.surfaces[surface];
+            self.iterate.surfaces[surface] = S::select(active, self.solution.surfaces[surface], old);
+        }
+        blend(active, &mut self.iterate.air, &self.solution.air);
+        for (&w, cells) in model.parts.nonlinear_walls.iter().zip(&model.parts.nonlinear_cells) {
+            let numbers = &model.coefficients.walls[w];
+            let moves = self.iterate.cells[cells.clone()].iter_mut().zip(&self.solution.cells[cells.clone()]);
+            let laws = numbers.cells.iter().zip(&stage.state.memory[cells.clone()]);
+            for ((old, &new), (cell, memory)) in moves.zip(laws) {
+                let target = match cell.matter {
+                    Matter::Pcm(law) if limits => {
+                        let (target, crosses) = numbers.pcm[law].limit(*old, new, memory);
+                        limited = limited | crosses;
+                        target
+                    }
+                    Matter::Pcm(_) | Matter::Solid { .. } => new,
+                };
+                *old = S::select(active, target, *old);
+            }
+        }
+        limited
+    }
+
+    /// Halves the step that Newton's iteration takes: it then leaves a cycle.
+    #[cold]
+    fn damp(&mut self) {
+        let halve = |new: &mut [S], old: &[S]| {
+            for (a, &b) in new.iter_mut().zip(old) {
+                *a = line(b, *a, 0.5);
+            }
+        };
+        halve(&mut self.solution.surfaces, &self.iterate.surfaces);
+        halve(&mut self.solution.air, &self.iterate.air);
+        halve(&mut self.solution.cells, &self.iterate.cells);
+    }
+}

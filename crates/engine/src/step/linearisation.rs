@@ -1,0 +1,129 @@
+//! The laws of a building linearised about an iterate.
+
+use crate::building::glazing::Glass;
+use crate::building::model::Model;
+use crate::building::plan::SurfaceRole;
+use crate::linear::laws::LinearisedLaws;
+use crate::linear::unknowns::Unknowns;
+use crate::linear::wall::{Chain, Iterate, Link, Start};
+use crate::number::line::Line;
+use crate::number::real::Real;
+use crate::physics::air_flow;
+use crate::physics::longwave::Emission;
+use crate::physics::window_gaps::GapTangent;
+use crate::step::stage::Stage;
+use crate::weather::conditions::Conditions;
+
+/// Laws at surfaces and in zones as tangents, and the convection in window gaps.
+#[derive(Debug, Clone)]
+pub(crate) struct Linearisation<S> {
+    pub(crate) laws: LinearisedLaws<S>,
+    /// Convective conductance of the gaps of each wall that is a window, expected in each stage [W/(m2 K)].
+    gap_convection: Vec<Vec<Vec<S>>>,
+}
+
+impl<S: Real> Linearisation<S> {
+    /// The laws of a building that never change, and room for the others.
+    pub(crate) fn new(model: &Model<'_, S>, stages: usize) -> Self {
+        let walls = model.coefficients.walls.iter();
+        let gaps = walls.map(|wall| wall.glass.as_ref().map_or(0, Glass::filled_gaps));
+        let zeros = |n: usize| vec![S::zero(); n];
+        Self { laws: LinearisedLaws::new(model), gap_convection: vec![gaps.map(zeros).collect(); stages] }
+    }
+
+    /// Evaluates the convection in gaps at the cell temperatures that are expected in a stage: those of the step's start in
+    /// the first, so that a step depends on the state and the weather alone.
+    #[inline(always)]
+    pub(crate) fn expect_gaps(&mut self, model: &Model<'_, S>, stage: usize, expected: &[S]) {
+        for &w in &model.plan.windows {
+            if let Some(glass) = &model.coefficients.walls[w].glass {
+                glass.expect(&expected[model.cells(w)], &mut self.gap_convection[stage][w]);
+            }
+        }
+    }
+
+    /// Convection that depends on the wind alone; zone fronts evaluate that of their surfaces, unless `all` is asked for.
+    #[inline(always)]
+    pub(crate) fn set_wind(&mut self, model: &Model<'_, S>, conditions: &Conditions<S>, all: bool) {
+        for &surface in &model.parts.variable_surfaces(all).windy {
+            let numbers = &model.coefficients.surfaces[surface];
+            self.laws.surfaces[surface].convection.slope =
+                conditions.surfaces[surface].forced[0] * numbers.area_factor;
+        }
+    }
+
+    /// Linearises a nonlinear wall about the iterate; `outer`: cells about which the concave part of the enthalpy is
+    /// linearised.
+    #[inline(always)]
+    pub(crate) fn linearise_wall(
+        &self,
+        stage: &Stage<'_, S>,
+        w: usize,
+        (iterate, outer): (&Unknowns<S>, Option<&[S]>),
+        chain: &mut Chain<S>,
+    ) {
+        let (cells, state) = (stage.model.cells(w), stage.state);
+        let numbers = &stage.model.coefficients.walls[w];
+        let at = Iterate {
+            cells: &iterate.cells[cells.clone()],
+            surfaces: iterate.surfaces.pair(w),
+            outer: outer.map(
+                #[inline(always)]
+                |outer| &outer[cells.clone()],
+            ),
+        };
+        let start = Start {
+            cells: &state.cells[cells.clone()],
+            enthalpy: &state.enthalpy[cells.clone()],
+            memory: &state.memory[cells],
+        };
+        if let Some(glass) = &numbers.glass {
+            let links = &mut chain.links;
+            glass.linearise(
+                at.cells,
+                &self.gap_convection[stage.index()][w],
+                #[inline(always)]
+                |link, GapTangent { left, right, offset }| links[link] = Link { left, right, offset },
+            );
+        } else {
+            chain.linearise(numbers, &at, &start, stage.storage);
+        }
+    }
+
+    /// Linearises what depends on the temperatures of surfaces and airs; zone fronts linearise their surfaces, unless `all`
+    /// is asked for.
+    #[inline(always)]
+    pub(crate) fn linearise_surfaces(
+        &mut self,
+        model: &Model<'_, S>,
+        conditions: &Conditions<S>,
+        iterate: &Unknowns<S>,
+        all: bool,
+    ) {
+        let variable = model.parts.variable_surfaces(all);
+        for &index in &variable.nonlinear {
+            let (surface, at) = (&model.coefficients.surfaces[index], &conditions.surfaces[index]);
+            let air = match model.plan.surfaces[index].role {
+                SurfaceRole::Zone { zone, .. } => iterate.air[zone],
+                SurfaceRole::Exterior => at.temperature,
+            };
+            if let Some(convection) = &surface.convection {
+                let difference = iterate.surfaces[index] - air;
+                let flux = convection.flux(difference, &at.forced);
+                let (flux, slope) = (flux.flux * surface.area_factor, flux.slope * surface.area_factor);
+                self.laws.surfaces[index].convection = Line::tangent(flux, slope, difference);
+            }
+        }
+        for &index in &variable.radiant {
+            let temperature = iterate.surfaces[index];
+            let (value, slope) = Emission::Exact.at(temperature);
+            self.laws.surfaces[index].emission = Line::tangent(value, slope, temperature);
+        }
+        for (zone, numbers) in model.coefficients.zones.iter().enumerate() {
+            let (wind, outdoor, air) = (conditions.wind, conditions.outdoor_air, iterate.air[zone]);
+            self.laws.infiltration[zone] =
+                air_flow::infiltration(&numbers.infiltration, numbers.air_capacity, wind, outdoor, air);
+            self.laws.ventilation[zone] = conditions.zones[zone].outdoor_heat(numbers, wind, outdoor, air);
+        }
+    }
+}

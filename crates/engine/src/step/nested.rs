@@ -1,0 +1,63 @@
+//! The nested iteration: the enthalpy is the difference of two convex functions; the outer iteration goes along the tangent
+//! of the second, the inner one is Newton's on the first. Each converges from one side as long as the rest is linear.
+//!
+//! Source: Casulli & Zanolli (2010), SIAM J. Sci. Comput. 32(4), doi:10.1137/100786320.
+
+use crate::building::coefficients::Matter;
+use crate::building::model::Model;
+use crate::linear::unknowns::Unknowns;
+use crate::number::real::{Mask, Real};
+use crate::physics::pcm::PcmMemory;
+use crate::step::newton::{MAX_ITERATIONS, StageSolver, TOLERANCE};
+use crate::step::stage::Stage;
+use crate::step::state::State;
+
+/// Colder than any melting range: there the second function is zero [degC].
+const SOLID: f64 = -273.15;
+
+impl<S: Real> StageSolver<'_, S> {
+    /// Solves a stage from its start, one lane. False where it does not converge.
+    // One copy only: inlining multiplies compile time.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn solve_nested(&mut self, stage: &Stage<'_, S>) -> bool {
+        let model = stage.model;
+        let state = State { memory: complete_memory(model, stage.state), ..stage.state.clone() };
+        let stage = &Stage { state: &state, ..*stage };
+        let enough = S::constant(TOLERANCE * TOLERANCE);
+        let mut outer =
+            Unknowns { cells: state.cells.clone(), surfaces: state.surfaces.clone(), air: state.air.clone() };
+        self.iterate.copy_from(&outer);
+        outer.cells.fill(S::constant(SOLID));
+        for _ in 0..MAX_ITERATIONS {
+            for _ in 0..MAX_ITERATIONS {
+                self.solve_linearised(stage, Some(&outer.cells));
+                let converged = self.change(model).lt(enough);
+                self.iterate.copy_from(&self.solution);
+                if converged.any() {
+                    break;
+                }
+            }
+            if self.distance(model, &outer).lt(enough).any() {
+                self.counters.nested += 1;
+                return self.finish(stage).any();
+            }
+            outer.copy_from(&self.solution);
+        }
+        false
+    }
+}
+
+/// Memory with all that the split of the enthalpy into convex functions needs.
+fn complete_memory<S: Real>(model: &Model<'_, S>, state: &State<S>) -> Vec<PcmMemory<S>> {
+    let mut memory = state.memory.clone();
+    for (wall, numbers) in model.plan.walls.iter().zip(&model.coefficients.walls) {
+        for (i, cell) in numbers.cells.iter().enumerate() {
+            if let Matter::Pcm(law) = cell.matter {
+                let k = wall.first_cell + i;
+                memory[k] = numbers.pcm[law].complete(&memory[k]);
+            }
+        }
+    }
+    memory
+}

@@ -1,0 +1,289 @@
+//! Newton's iteration for one stage: `H(T) - length f(T) = H_start` for all cells, surfaces and airs at once.
+//!
+//! Every law is linearised about the iterate ([`Linearisation`]), the linear system solved ([`BuildingSystem`]) and the
+//! iterate moved to its solution, limited where a melting range would be crossed ([`super::limiter`]), until the change is
+//! small. The solution is that of the last linear solve, so that every flux can be evaluated at the values it used.
+
+use crate::building::model::Model;
+use crate::error::EngineError;
+use crate::linear::building_system::BuildingSystem;
+use crate::linear::laws::StageInputs;
+use crate::linear::unknowns::Unknowns;
+use crate::number::real::{Mask, Real};
+use crate::step::linearisation::Linearisation;
+use crate::step::scheme::Tableau;
+use crate::step::stage::{Stage, StageStart};
+
+/// Root of the sum of squared changes in the last Newton iteration [K]. Convergence is quadratic: the error left is
+/// of the order of its square.
+pub(super) const TOLERANCE: f64 = 1e-6;
+/// A solution is accepted without another iteration to confirm it where the next change is predicted to be below this [K].
+const PREDICTED: f64 = 1e-8;
+/// The prediction holds only for changes below this share of the melting range, and of 1 K.
+const PREDICTABLE: f64 = 0.05;
+/// Iterations before a step is given to the nested iteration, and rounds of that one before it is halved.
+pub(super) const MAX_ITERATIONS: usize = 60;
+
+/// What a run was spent on.
+#[derive(Debug, Clone, Copy)]
+pub struct Counters<S> {
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Stages that only the nested iteration solved.
+    pub nested: usize,
+    /// Steps that were halved.
+    pub halvings: usize,
+    /// Steps of phase-change cells with hysteresis in which melting and freezing followed each other: the memory, which
+    /// changes at the end of a step, saw only the sum.
+    pub reversals: S,
+}
+
+/// How a stage is solved.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Search<S: Real> {
+    /// One linear solve at the iterate.
+    Once,
+    /// Until it has converged, in these lanes.
+    Whole(S::Mask),
+}
+
+/// Solves one stage after the other.
+#[derive(Debug, Clone)]
+pub(crate) struct StageSolver<'a, S: Real> {
+    pub(crate) linearisation: Linearisation<S>,
+    pub(crate) system: BuildingSystem<'a, S>,
+    pub(crate) start: StageStart<S>,
+    pub(crate) iterate: Unknowns<S>,
+    /// Solution of the last linear solve.
+    pub(crate) solution: Unknowns<S>,
+    /// Square of the largest change from which the next one is predicted [K2].
+    predictable: S,
+    /// Lanes whose iteration failed: their numbers mean nothing any more.
+    pub(crate) failed: S::Mask,
+    pub(crate) counters: Counters<S>,
+}
+
+impl<'a, S: Real> StageSolver<'a, S> {
+    pub(crate) fn new(model: &Model<'a, S>, tableau: &Tableau) -> Self {
+        let plan = model.plan;
+        let linearisation = Linearisation::new(model, tableau.weights.len());
+        let unknowns = Unknowns::zero(plan.n_cells, plan.surfaces.len(), plan.zones.len());
+        let laws = model.coefficients.walls.iter().flat_map(|wall| &wall.pcm);
+        let narrowest = laws.fold(S::one(), |narrowest, law| narrowest.min(law.width()));
+        let predictable = narrowest.scale(PREDICTABLE);
+        Self {
+            system: BuildingSystem::new(model, &linearisation.laws, tableau.diagonal),
+            linearisation,
+            start: StageStart::new(model),
+            iterate: unknowns.clone(),
+            solution: unknowns,
+            predictable: predictable * predictable,
+            failed: S::Mask::splat(false),
+            counters: Counters { iterations: 0, nested: 0, halvings: 0, reversals: S::zero() },
+        }
+    }
+
+    /// Solves one stage: by one linear solve where one is asked for, else by iteration. False in the lanes that are not
+    /// numbers.
+    // One copy only: inlining multiplies compile time, and it is by far the largest part of a step.
+    #[inline(never)]
+    pub(crate) fn solve(&mut self, stage: &Stage<'_, S>, search: Search<S>) -> Result<S::Mask, EngineError> {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                self.begin(stage);
+                let mut sound = S::Mask::splat(true);
+                match search {
+                    Search::Once => sound = self.solve_once(stage),
+                    Search::Whole(active) => self.converge(stage, active)?,
+                }
+                Ok(sound)
+            },
+        )
+    }
+
+    /// Everything that stays during a stage.
+    #[inline(always)]
+    fn begin(&mut self, stage: &Stage<'_, S>) {
+        self.linearisation.set_wind(stage.model, stage.conditions, false);
+        let Self { linearisation, system, start, iterate, .. } = self;
+        system.begin_stage(&inputs(stage, linearisation, start), iterate, stage.index(), &stage.state.cells);
+    }
+
+    /// One linear solve at the iterate.
+    #[inline(always)]
+    fn solve_once(&mut self, stage: &Stage<'_, S>) -> S::Mask {
+        self.solve_linearised(stage, None);
+        self.finish(stage)
+    }
+
+    /// Linearises everything about the iterate and solves; `outer` as in [`Linearisation::linearise_wall`].
+    #[inline(always)]
+    pub(super) fn solve_linearised(&mut self, stage: &Stage<'_, S>, outer: Option<&[S]>) {
+        self.counters.iterations += 1;
+        let (model, conditions) = (stage.model, stage.conditions);
+        let Self { linearisation, system, start, iterate, solution, .. } = self;
+        for &w in &model.parts.nonlinear_walls {
+            linearisation.linearise_wall(stage, w, (iterate, outer), &mut system.walls[w]);
+            system.condense(model, conditions, w, &start.enthalpy[model.cells(w)]);
+        }
+        linearisation.linearise_surfaces(model, conditions, iterate, false);
+        system.solve(&inputs(stage, linearisation, start), iterate, solution);
+    }
+
+    /// Newton's iteration. A lane that has converged, or was not active from the start, keeps its iterate: later solves
+    /// repeat its last one bit for bit.
+    #[inline(always)]
+    fn converge(&mut self, stage: &Stage<'_, S>, mut active: S::Mask) -> Result<(), EngineError> {
+        active = active & !self.failed;
+        // Numbers with derivatives make one more iteration at the solution: it gives their slopes.
+        let mut further = S::DERIVATIVES;
+        // Square of the change before this one; zero where the next does not follow from it.
+        let mut before = S::zero();
+        for iteration in 0..MAX_ITERATIONS {
+            self.solve_linearised(stage, None);
+            let change = self.change(stage.model);
+            active = active & !self.converged(change, before);
+            if active.any() && iteration + 1 == MAX_ITERATIONS {
+                // The last change is kept: the error names it.
+                break;
+            }
+            if active.any() {
+                let limited = self.advance(stage, active, iteration);
+                before = S::select(limited, S::zero(), change);
+            } else if further {
+                further = false;
+                self.advance(stage, S::Mask::splat(true), 0);
+            } else {
+                let lost = !(self.finish(stage) | self.failed);
+                return if lost.any() { self.fail(stage, lost) } else { Ok(()) };
+            }
+        }
+        self.finish(stage);
+        if S::LANES > 1 {
+            return self.fail(stage, active);
+        }
+        let error = self.not_converged(stage, active);
+        if self.solve_nested(stage) { Ok(()) } else { Err(error) }
+    }
+
+    /// Solves for all that Newton's iteration did not need. False in the lanes where a wall that touches no zone is not a
+    /// number; of all other walls the iteration has noticed.
+    #[inline(always)]
+    pub(super) fn finish(&mut self, stage: &Stage<'_, S>) -> S::Mask {
+        self.system.finish(stage.model, &mut self.linearisation.laws.surfaces, &mut self.solution)
+    }
+
+    /// Marks lanes as failed: each is run again alone; the others go on. An error where none is left.
+    #[cold]
+    #[inline(never)]
+    fn fail(&mut self, stage: &Stage<'_, S>, lanes: S::Mask) -> Result<(), EngineError> {
+        if S::LANES > 1 {
+            self.failed = self.failed | lanes;
+            if (!self.failed).any() {
+                return Ok(());
+            }
+        }
+        Err(self.not_converged(stage, lanes))
+    }
+
+    /// Where changes (squared) are small, or the next is predicted to be: Newton's iteration squares them.
+    #[inline(always)]
+    pub(super) fn converged(&self, change: S, before: S) -> S::Mask {
+        let small = change.lt(S::constant(TOLERANCE * TOLERANCE));
+        // e2 = e1 (e1/e0)^2, in squares.
+        let predicted = (change * change * change).lt((before * before).scale(PREDICTED * PREDICTED));
+        small | (predicted & change.lt(self.predictable))
+    }
+
+    /// Square of the change from the iterate to the solution, see [`Self::distance`].
+    #[inline(always)]
+    pub(super) fn change(&self, model: &Model<'_, S>) -> S {
+        self.distance(model, &self.iterate)
+    }
+
+    /// Sum of the squared distances of the solution from an iterate where something is linearised, by lane [K2]. Not a
+    /// number when any part of it is not one.
+    #[inline(always)]
+    pub(super) fn distance(&self, model: &Model<'_, S>, iterate: &Unknowns<S>) -> S {
+        let mut sum = squared_distance(&self.solution.air, &iterate.air);
+        for &surface in &model.parts.linearised {
+            let change = self.solution.surfaces[surface] - iterate.surfaces[surface];
+            sum += change * change;
+        }
+        for cells in &model.parts.nonlinear_cells {
+            sum += squared_distance(&self.solution.cells[cells.clone()], &iterate.cells[cells.clone()]);
+        }
+        sum
+    }
+
+    /// Names the part that changes most in the first lane that failed.
+    fn not_converged(&self, stage: &Stage<'_, S>, active: S::Mask) -> EngineError {
+        let (model, plan) = (stage.model, stage.model.plan);
+        let lane = (0..S::LANES).find(|&lane| active.lane(lane)).unwrap_or(0);
+        let mut worst = (0.0, String::from("the building"));
+        let mut look = |new: S, old: S, name: &dyn Fn() -> String| {
+            let change = (new.lane(lane) - old.lane(lane)).abs();
+            // What is not a number comes first; of those, the first.
+            if change > worst.0 || (change.is_nan() && !worst.0.is_nan()) {
+                worst = (change, name());
+            }
+        };
+        for &surface in &model.parts.linearised {
+            look(self.solution.surfaces[surface], self.iterate.surfaces[surface], &|| {
+                plan.surface_name(surface)
+            });
+        }
+        for (zone, (new, old)) in self.solution.air.iter().zip(&self.iterate.air).enumerate() {
+            look(*new, *old, &|| format!("zone {} (air)", plan.description.zones[zone].name));
+        }
+        for (w, wall) in plan.walls.iter().enumerate().filter(|(_, wall)| wall.nonlinear) {
+            for i in 0..wall.len() {
+                let k = wall.first_cell + i;
+                look(self.solution.cells[k], self.iterate.cells[k], &|| {
+                    let surface = &plan.description.surfaces[w];
+                    let layers = &plan.description.constructions[surface.construction].layers;
+                    match layers.get(wall.cell_layers[i]) {
+                        Some(layer) => format!("surface {} (layer {})", surface.name, layer.name),
+                        None => format!("window {} (pane {})", surface.name, wall.cell_layers[i] + 1),
+                    }
+                });
+            }
+        }
+        let (step, stage) = stage.place;
+        EngineError::NotConverged {
+            step,
+            stage,
+            place: worst.1,
+            residual: worst.0,
+            iterations: MAX_ITERATIONS,
+        }
+    }
+}
+
+/// What the linear system of a stage is made of.
+#[inline(always)]
+fn inputs<'s, S: Real>(
+    stage: &Stage<'s, S>,
+    linearisation: &'s Linearisation<S>,
+    start: &'s StageStart<S>,
+) -> StageInputs<'s, S> {
+    StageInputs {
+        model: stage.model,
+        conditions: stage.conditions,
+        laws: &linearisation.laws,
+        air: &start.air,
+        load: &start.load,
+        length: stage.length,
+    }
+}
+
+/// Sum of squared differences.
+#[inline(always)]
+fn squared_distance<S: Real>(new: &[S], old: &[S]) -> S {
+    let mut sum = S::zero();
+    for (&a, &b) in new.iter().zip(old) {
+        sum += (a - b) * (a - b);
+    }
+    sum
+}

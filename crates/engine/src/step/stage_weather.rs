@@ -1,0 +1,109 @@
+//! The weather of the stages of a step, as numbers at the surfaces and zones of the building.
+
+use crate::building::ids::SurfaceId;
+use crate::building::model::Model;
+use crate::number::real::Real;
+use crate::physics::longwave::black_temperature;
+use crate::step::halving::Part;
+use crate::step::scheme::Tableau;
+use crate::weather::conditions::Conditions;
+use crate::weather::index::WeatherIndex;
+use crate::weather::instant::{Instant, Weather};
+use crate::weather::sun::SolarMeans;
+
+/// What acts on the building in the stage to be solved.
+#[derive(Debug, Clone)]
+pub(crate) struct StageWeather<'a, S: Real> {
+    index: WeatherIndex<S>,
+    parameters: &'a [S],
+    /// In the stage to be solved.
+    pub(crate) conditions: Conditions<S>,
+    /// In the other stage of a step whose stages are repeated.
+    other: Conditions<S>,
+    /// Solar radiation, means over the last step.
+    pub(crate) sun: SolarMeans<S>,
+}
+
+impl<'a, S: Real> StageWeather<'a, S> {
+    /// For a building at a parameter vector.
+    pub(crate) fn new(model: &Model<'_, S>, parameters: &'a [S]) -> Self {
+        let index = WeatherIndex::new(model.plan, &model.coefficients);
+        let conditions = Conditions::new(model.plan, &model.coefficients, &index);
+        Self {
+            index,
+            parameters,
+            sun: SolarMeans::new(&conditions.sun),
+            other: conditions.clone(),
+            conditions,
+        }
+    }
+
+    #[inline(always)]
+    fn evaluate(&self, model: &Model<'_, S>, now: &Instant<'_>, conditions: &mut Conditions<S>) {
+        conditions.update(model.plan, &model.coefficients, &self.index, self.parameters, now);
+    }
+
+    /// The weather of one moment, no step.
+    #[inline(always)]
+    pub(crate) fn set_instant(&mut self, model: &Model<'_, S>, now: &Instant<'_>) {
+        let Self { index, parameters, conditions, .. } = self;
+        conditions.update(model.plan, &model.coefficients, index, parameters, now);
+    }
+
+    /// The means over the last step are those of one moment.
+    #[inline(always)]
+    pub(crate) fn average_instant(&mut self) {
+        self.sun.restart();
+        self.sun.add(&self.conditions.sun, 1.0);
+    }
+
+    /// The weather at a stage of a step, or of a part of it.
+    ///
+    /// Within a step of two stages the weather is the straight line through both: SDIRK2 sums a straight line exactly,
+    /// so that the parts of a step add up to the heat of the whole one. With one stage it is constant.
+    #[inline(always)]
+    pub(crate) fn set_stage(
+        &mut self,
+        model: &Model<'_, S>,
+        weather: &Weather<'_>,
+        tableau: &Tableau,
+        part: Part,
+        stage: usize,
+    ) {
+        let Tableau { weights, nodes, .. } = *tableau;
+        self.set_instant(model, &weather.at(part.step, stage));
+        if stage == 0 {
+            self.sun.restart();
+        }
+        if part.halvings == 0 || weights.len() == 1 {
+            self.sun.add(&self.conditions.sun, weights[stage]);
+        } else {
+            let (mut first, mut second) = (self.conditions.clone(), self.conditions.clone());
+            self.evaluate(model, &weather.at(part.step, 0), &mut first);
+            self.evaluate(model, &weather.at(part.step, 1), &mut second);
+            if stage == 0 {
+                // The mean is that of the whole step.
+                self.sun.add(&first.sun, weights[0]);
+                self.sun.add(&second.sun, weights[1]);
+            }
+            let place = part.from + part.share * nodes[stage];
+            self.conditions.interpolate(&first, &second, (place - nodes[0]) / (nodes[1] - nodes[0]));
+        }
+    }
+
+    /// Exchanges the weather with that of the other stage.
+    #[inline(always)]
+    pub(crate) fn swap_stages(&mut self) {
+        core::mem::swap(&mut self.conditions, &mut self.other);
+    }
+
+    /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
+    pub(crate) fn incident(&self, surface: SurfaceId) -> S {
+        self.index.irradiance_source(surface).map_or_else(S::zero, |source| self.sun.irradiances[source])
+    }
+
+    /// Temperature of the sky at the end of the last stage [degC].
+    pub(crate) fn sky_temperature(&self) -> S {
+        black_temperature(self.conditions.sky)
+    }
+}

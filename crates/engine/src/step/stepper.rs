@@ -1,0 +1,289 @@
+//! One implicit time step: a function (state, weather) -> state, made of stages that Newton's iteration solves.
+//!
+//! The state changes only when the step is accepted. A step that does not converge is made in parts.
+
+use crate::balance::flow_index::FlowIndex;
+use crate::balance::ledger::{Ledger, Power};
+use crate::building::coefficients::Coefficients;
+use crate::building::model::Model;
+use crate::building::plan::Plan;
+use crate::error::EngineError;
+use crate::linear::unknowns::Unknowns;
+use crate::number::real::{Mask, Real};
+use crate::step::energy::StageHeat;
+use crate::step::following::Following;
+use crate::step::guess::Guess;
+use crate::step::halving::{Part, StepParts};
+use crate::step::ideal_loads::loads::IdealLoads;
+use crate::step::newton::{Counters, Search, StageSolver};
+use crate::step::scheme::Scheme;
+use crate::step::stage::Stage;
+use crate::step::stage_solutions::StageSolutions;
+use crate::step::stage_weather::StageWeather;
+use crate::step::state::{Initial, State};
+use crate::weather::conditions::{Instant, Weather};
+
+/// Effective length of the stage that brings surfaces into balance [s]: too short for anything to be stored.
+pub(super) const INSTANT: f64 = 1e-3;
+
+/// Takes a building through one step at a time.
+#[derive(Debug, Clone)]
+pub struct Stepper<'a, S: Real> {
+    pub(crate) model: Model<'a, S>,
+    pub(crate) scheme: Scheme,
+    pub(crate) weather: StageWeather<'a, S>,
+    pub(crate) flows: FlowIndex<S>,
+    pub(crate) solver: StageSolver<'a, S>,
+    pub(crate) guess: Guess<S>,
+    pub(crate) ideal_loads: IdealLoads<S>,
+    pub(crate) parts: StepParts<S>,
+    pub(crate) known: StageSolutions<S>,
+    /// Only where slopes are carried along a known solution.
+    pub(super) following: Option<Box<Following<'a, S>>>,
+}
+
+impl<'a, S: Real> Stepper<'a, S> {
+    /// Prepares a plan with a parameter vector.
+    #[must_use]
+    pub fn new(plan: &'a Plan, parameters: &'a [S], scheme: Scheme) -> Self {
+        let mut stepper = Self::with(plan, Coefficients::new(plan, parameters), parameters, scheme);
+        if S::DERIVATIVES {
+            stepper.following = Some(Box::new(Following::new(
+                &stepper.model,
+                parameters,
+                scheme.tableau(),
+                &stepper.solver.system.walls,
+            )));
+        }
+        stepper
+    }
+
+    /// Prepares a plan with coefficients; without parameters it can be driven by no weather.
+    pub(super) fn with(
+        plan: &'a Plan,
+        coefficients: Coefficients<S>,
+        parameters: &'a [S],
+        scheme: Scheme,
+    ) -> Self {
+        let (model, tableau) = (Model::new(plan, coefficients), scheme.tableau());
+        let solver = StageSolver::new(&model, tableau);
+        Self {
+            weather: StageWeather::new(&model, parameters),
+            flows: FlowIndex::new(plan, &model.coefficients),
+            ideal_loads: IdealLoads::new(&model, &solver.solution, tableau.weights.len()),
+            solver,
+            guess: Guess::none(),
+            parts: StepParts::new(plan.zones.len()),
+            known: StageSolutions::nothing(),
+            following: None,
+            model,
+            scheme,
+        }
+    }
+
+    /// The state that a run starts from.
+    pub fn begin(&self, initial: &Initial) -> State<S> {
+        State::new(&self.model, initial)
+    }
+
+    /// What was spent since the start.
+    pub fn counters(&self) -> Counters<S> {
+        self.solver.counters
+    }
+
+    /// Lanes whose iteration failed: their numbers mean nothing any more.
+    pub fn failed(&self) -> S::Mask {
+        self.solver.failed
+    }
+
+    /// A place for the unknowns of each stage.
+    pub(crate) fn places(&self) -> Vec<Unknowns<S>> {
+        vec![self.solver.solution.clone(); self.scheme.weights().len()]
+    }
+
+    /// What comes next does not continue the step before.
+    pub fn forget(&mut self) {
+        self.guess.forget();
+    }
+
+    /// Brings the surfaces of a state into balance with the weather: a stage so short that nothing is stored.
+    ///
+    /// # Errors
+    /// [`EngineError::NotConverged`].
+    pub fn balance_surfaces(&mut self, state: &mut State<S>, now: &Instant<'_>) -> Result<(), EngineError> {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                self.weather.set_instant(&self.model, now);
+                self.begin_step(state, 0.0);
+                self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
+                state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
+                self.weather.average_instant();
+                Ok(())
+            },
+        )
+    }
+
+    /// One step of length `dt` [s].
+    ///
+    /// # Errors
+    /// [`EngineError::NotConverged`].
+    // One copy only: inlining multiplies compile time.
+    #[inline(never)]
+    pub fn step(
+        &mut self,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        step: usize,
+        dt: f64,
+        ledger: &mut Ledger<S>,
+    ) -> Result<(), EngineError> {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                self.parts.begin(step);
+                self.known.halved = false;
+                while let Some(part) = self.parts.next() {
+                    match self.attempt(state, weather, part, dt, ledger) {
+                        Ok(()) if part.halvings == 0 => {}
+                        // Parts differ in length: none is guessed from the one before it.
+                        Ok(()) => {
+                            self.parts.average(part, &mut state.load);
+                            self.forget();
+                        }
+                        Err(error) => self.halve(part, error)?,
+                    }
+                }
+                Ok(())
+            },
+        )
+    }
+
+    /// Puts two halves in the place of a part that could not be solved. Lanes that fail are run alone instead.
+    // One copy only: inlining multiplies compile time.
+    #[cold]
+    #[inline(never)]
+    fn halve(&mut self, part: Part, error: EngineError) -> Result<(), EngineError> {
+        if S::LANES > 1 {
+            self.parts.clear();
+            return Err(error);
+        }
+        self.parts.halve(part, error)?;
+        self.solver.counters.halvings += 1;
+        self.known.halved = true;
+        self.forget();
+        Ok(())
+    }
+
+    /// A part of a step; the state stays as it was when it fails.
+    #[inline(always)]
+    fn attempt(
+        &mut self,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        part: Part,
+        dt: f64,
+        ledger: &mut Ledger<S>,
+    ) -> Result<(), EngineError> {
+        let (length, tableau) = (part.share * dt, self.scheme.tableau());
+        self.begin_step(state, tableau.nodes[0]);
+        let with_loads = !self.model.plan.ideal_loads.is_empty();
+        if with_loads {
+            self.guess_loads(state, weather.row(part.step, tableau.weights.len() - 1));
+        }
+        self.guess.remember(&self.model, state);
+        let energy = if with_loads {
+            self.step_with_loads(state, weather, part, length)?
+        } else {
+            self.step_without_loads(state, weather, part, length)?
+        };
+        self.accept(state, &energy, ledger);
+        Ok(())
+    }
+
+    /// The stages of a step without ideal loads, one after the other.
+    #[inline(always)]
+    fn step_without_loads(
+        &mut self,
+        state: &State<S>,
+        weather: &Weather<'_>,
+        part: Part,
+        length: f64,
+    ) -> Result<Power<S>, EngineError> {
+        let tableau = self.scheme.tableau();
+        let mut energy = Power::none();
+        for (stage, &weight) in tableau.weights.iter().enumerate() {
+            if stage > 0 {
+                self.begin_second_stage(state);
+            }
+            self.weather.set_stage(&self.model, weather, tableau, part, stage);
+            let all = Search::Whole(S::Mask::splat(true));
+            self.solve_stage(state, tableau.diagonal * length, (part.step, stage + 1), all)?;
+            self.heat().add_to(weight * length, &mut energy);
+        }
+        Ok(energy)
+    }
+
+    /// Starts from a state; the stage at a node of the step is guessed from the step before.
+    #[inline(always)]
+    fn begin_step(&mut self, state: &State<S>, node: f64) {
+        let Self { model, solver, .. } = self;
+        solver.start.begin(model, state);
+        solver.start.load.copy_from_slice(&state.load);
+        solver.system.step_maps.begin();
+        self.known.restart();
+        self.guess.first(model, state, node, &mut solver.iterate);
+        solver.linearisation.expect_gaps(model, 0, &state.cells);
+    }
+
+    /// What the second stage starts from; its end is guessed on a straight line.
+    #[inline(always)]
+    pub(super) fn begin_second_stage(&mut self, state: &State<S>) {
+        let Self { model, solver, .. } = self;
+        let StageSolver { system, start, solution, .. } = solver;
+        system.step_maps.hold_over(&solution.surfaces);
+        start.go_on(model, state, self.scheme.tableau().ratio, (&system.walls, solution));
+        self.extrapolate_stage(state);
+    }
+
+    /// Guesses the end of a step on the straight line through its start and the first stage, and the convection in gaps
+    /// there.
+    #[inline(always)]
+    pub(super) fn extrapolate_stage(&mut self, state: &State<S>) {
+        let StageSolver { linearisation, iterate, solution, .. } = &mut self.solver;
+        let known = [state.view(), solution.view()];
+        iterate.extrapolate(&self.model, &known, 1.0 / self.scheme.tableau().diagonal, &state.memory);
+        linearisation.expect_gaps(&self.model, 1, &iterate.cells);
+    }
+
+    /// Solves a stage in the weather that is set.
+    #[inline(always)]
+    fn solve_stage(
+        &mut self,
+        state: &State<S>,
+        length: f64,
+        place: (usize, usize),
+        search: Search<S>,
+    ) -> Result<S::Mask, EngineError> {
+        let (model, conditions) = (&self.model, &self.weather.conditions);
+        let storage = self.scheme.tableau().storage;
+        let stage = Stage { model, conditions, state, storage, length, place };
+        let sound = self.solver.solve(&stage, search)?;
+        self.known.keep(&self.solver.solution);
+        Ok(sound)
+    }
+
+    /// The stage just solved, to read its flows.
+    #[inline(always)]
+    pub(super) fn heat(&self) -> StageHeat<'_, 'a, S> {
+        StageHeat {
+            model: &self.model,
+            flows: &self.flows,
+            conditions: &self.weather.conditions,
+            laws: &self.solver.linearisation.laws,
+            system: &self.solver.system,
+            solution: &self.solver.solution,
+            load: &self.solver.start.load,
+        }
+    }
+}
