@@ -6,6 +6,16 @@
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in square brackets: [m] is no link")]
 
+// Unit tests build their plans with the builders of `tests/common`, which name this crate from outside.
+#[cfg(test)]
+extern crate self as mascarin_engine;
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod common;
+#[cfg(test)]
+#[path = "../tests/common/random.rs"]
+mod random;
+
 pub mod balance;
 pub mod building;
 pub mod derivatives;

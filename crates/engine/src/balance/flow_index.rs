@@ -1,112 +1,103 @@
-//! What is booked of a stage, sorted once: one pass over the surfaces that heat enters by.
+//! Surfaces and zones that exchange heat with the environment, sorted once: one pass over them gives all heat that enters
+//! the building.
 
-use crate::balance::ledger::{Flow, Power};
 use crate::building::coefficients::{Boundary, Coefficients};
-use crate::building::ids::{BySurface, SurfaceId};
-use crate::building::plan::Plan;
-use crate::linear::surface_balance::SurfaceLaws;
+use crate::building::ids::SurfaceId;
+use crate::building::plan::{Plan, SurfaceRole};
 use crate::number::real::Real;
-use crate::weather::conditions::Conditions;
+use crate::weather::index::WeatherIndex;
 
 /// A surface outdoors.
 #[derive(Debug, Clone)]
-struct Outside<S> {
-    surface: SurfaceId,
-    area: S,
-    emissivity: S,
-    /// Whether it absorbs sun itself: the panes of windows are booked by themselves.
-    opaque: bool,
-    /// Whether it exchanges long-wave radiation beside its film.
-    radiates: bool,
+pub(crate) struct Outdoors<S> {
+    pub(crate) surface: SurfaceId,
+    pub(crate) area: S,
+    pub(crate) emissivity: S,
+    /// Whether it absorbs sun itself: the panes of windows are counted by themselves.
+    pub(crate) opaque: bool,
+    /// Whether it exchanges long-wave radiation beside its convection.
+    pub(crate) radiates: bool,
+    pub(crate) absorptance: S,
+    /// Absorbed parts of the emission of the sky and of the outdoor air [-].
+    pub(crate) of_sky: S,
+    pub(crate) of_air: S,
+}
+
+/// Another opaque surface with a measured irradiance.
+#[derive(Debug, Clone)]
+pub(crate) struct Lit<S> {
+    pub(crate) surface: SurfaceId,
+    pub(crate) area: S,
+    pub(crate) absorptance: S,
+}
+
+/// A surface with an imposed temperature.
+#[derive(Debug, Clone)]
+pub(crate) struct ImposedSurface<S> {
+    pub(crate) surface: SurfaceId,
+    pub(crate) area: S,
+    /// Whether the surface is held at it; else it is that of the air that the surface convects to.
+    pub(crate) held: bool,
 }
 
 /// Where heat enters.
 #[derive(Debug, Clone)]
 pub(crate) struct FlowIndex<S> {
-    outdoors: Vec<Outside<S>>,
-    /// Other opaque surfaces with a measured irradiance, and their areas.
-    lit: Vec<(SurfaceId, S)>,
-    /// Surfaces at imposed temperatures, and their areas.
-    pub(crate) imposed: Vec<(SurfaceId, S)>,
-    /// Zones with gains, and those that air is let into on purpose.
+    pub(crate) outdoors: Vec<Outdoors<S>>,
+    pub(crate) lit: Vec<Lit<S>>,
+    /// Other surfaces that sun reaches through windows, and their areas.
+    pub(crate) indirectly_lit: Vec<(SurfaceId, S)>,
+    pub(crate) imposed: Vec<ImposedSurface<S>>,
+    /// Zones with gains, and those with ventilation or openings.
     pub(crate) gaining: Vec<usize>,
-    pub(crate) aired: Vec<usize>,
+    pub(crate) ventilated: Vec<usize>,
 }
 
 impl<S: Real> FlowIndex<S> {
-    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>) -> Self {
-        let (mut outdoors, mut lit, mut imposed) = (Vec::new(), Vec::new(), Vec::new());
+    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, weather: &WeatherIndex<S>) -> Self {
+        let (mut lit, mut indirectly_lit, mut imposed) = (Vec::new(), Vec::new(), Vec::new());
+        let of = |surface: SurfaceId| {
+            (numbers.walls[surface.wall()].area, plan.walls[surface.wall()].glass.is_none())
+        };
         for (index, surface) in numbers.surfaces.entries() {
-            let area = numbers.walls[index.wall()].area;
-            let opaque = plan.walls[index.wall()].glass.is_none();
-            if let Boundary::Outdoors(at) = &surface.boundary {
-                let (emissivity, radiates) = (surface.emissivity, at.emission.is_some());
-                outdoors.push(Outside { surface: index, area, emissivity, opaque, radiates });
-            } else if opaque && surface.irradiance.is_some() {
-                lit.push((index, area));
-            }
+            let (area, opaque) = of(index);
+            let held = matches!(surface.boundary, Boundary::Imposed(_)) && surface.convection.is_none();
             if matches!(surface.boundary, Boundary::Imposed(_)) {
-                imposed.push((index, area));
+                imposed.push(ImposedSurface { surface: index, area, held });
+            }
+            let in_zone = matches!(plan.surfaces[index].role, SurfaceRole::Zone { .. });
+            if matches!(surface.boundary, Boundary::Outdoors(_)) {
+                continue;
+            }
+            if opaque && surface.irradiance.is_some() {
+                lit.push(Lit { surface: index, area, absorptance: surface.absorptance });
+            } else if in_zone || (!opaque && !held) {
+                indirectly_lit.push((index, area));
             }
         }
+        let outdoors = weather.outdoors.iter().map(|outside| {
+            let (area, opaque) = of(outside.surface);
+            Outdoors {
+                surface: outside.surface,
+                area,
+                emissivity: numbers.surfaces[outside.surface].emissivity,
+                opaque,
+                radiates: outside.emission.is_some(),
+                absorptance: outside.absorptance,
+                of_sky: outside.of_sky,
+                of_air: outside.of_air,
+            }
+        });
         let zones = |has: &dyn Fn(usize) -> bool| (0..plan.zones.len()).filter(|&zone| has(zone)).collect();
         Self {
-            outdoors,
+            outdoors: outdoors.collect(),
             lit,
+            indirectly_lit,
             imposed,
             gaining: zones(&|zone| !numbers.zones[zone].gains.is_empty()),
-            aired: zones(&|zone| {
+            ventilated: zones(&|zone| {
                 !numbers.zones[zone].ventilation.is_empty() || !numbers.zones[zone].openings.is_empty()
             }),
         }
-    }
-
-    /// FlowIndex what enters by the surfaces outdoors and by the sun on others [W].
-    #[inline(always)]
-    pub(crate) fn surfaces(
-        &self,
-        conditions: &Conditions<S>,
-        laws: &BySurface<SurfaceLaws<S>>,
-        temperatures: &BySurface<S>,
-        power: &mut Power<S>,
-    ) {
-        let (mut solar, mut convection, mut longwave) = (Sum::none(), Sum::none(), Sum::none());
-        for outside in &self.outdoors {
-            let (at, laws) = (&conditions.surfaces[outside.surface], &laws[outside.surface]);
-            let temperature = temperatures[outside.surface];
-            if outside.opaque {
-                solar.add(outside.area * at.solar);
-            }
-            convection.add(-(outside.area * laws.convection.at(temperature - at.temperature)));
-            if outside.radiates {
-                let net = at.longwave - outside.emissivity * laws.emission.at(temperature);
-                longwave.add(outside.area * net);
-            }
-        }
-        for &(surface, area) in &self.lit {
-            solar.add(area * conditions.surfaces[surface].solar);
-        }
-        power.book_sum(Flow::Solar, &solar);
-        power.book_sum(Flow::Convection, &convection);
-        power.book_sum(Flow::Longwave, &longwave);
-    }
-}
-
-/// Heat of one flow through several surfaces, and its magnitudes.
-pub(crate) struct Sum<S> {
-    pub(crate) net: S,
-    pub(crate) magnitude: S,
-}
-
-impl<S: Real> Sum<S> {
-    #[inline(always)]
-    fn none() -> Self {
-        Self { net: S::zero(), magnitude: S::zero() }
-    }
-
-    #[inline(always)]
-    fn add(&mut self, power: S) {
-        self.net += power;
-        self.magnitude += power.abs();
     }
 }

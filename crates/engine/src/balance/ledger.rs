@@ -1,9 +1,9 @@
-//! The energy ledger: where heat came from, and whether the books close.
+//! The energy ledger: heat that entered the building by flow, heat stored, and the energy-balance residual.
 
-use crate::balance::flow_index::Sum;
+use crate::balance::terms::booking::Sum;
 use crate::number::real::Real;
 
-/// The ways in which heat enters a building.
+/// Flows by which heat enters a building.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
     /// Short-wave radiation absorbed.
@@ -18,15 +18,15 @@ pub enum Flow {
     Infiltration,
     /// Outdoor air let in by ventilation and openings.
     Ventilation,
-    /// Air exchanged between zones: nothing in sum, but it turns over.
+    /// Air exchanged between zones: zero in sum, but part of the total heat exchanged.
     Interzone,
     /// People, light and machines.
     Gains,
-    /// Heat that plants give.
+    /// Ideal heating.
     Heating,
-    /// Heat that plants take, as a negative number.
+    /// Ideal cooling, as a negative number.
     Cooling,
-    /// Sun through windows that the zones keep, without what the glass takes up.
+    /// Sun through windows that is absorbed in zones, without the part absorbed in glass.
     Transmitted,
     /// Sun absorbed in glass, from both sides.
     Glass,
@@ -86,14 +86,14 @@ impl<S: Real> Power<S> {
         Self { into: [S::zero(); Flow::ALL.len()], total_exchanged: S::zero() }
     }
 
-    /// FlowIndex a flow.
+    /// Adds a flow.
     #[inline(always)]
     pub fn book(&mut self, flow: Flow, power: S) {
         self.into[flow as usize] += power;
         self.total_exchanged += power.abs();
     }
 
-    /// FlowIndex a flow through several surfaces.
+    /// Adds a flow through several surfaces.
     #[inline(always)]
     pub(crate) fn book_sum(&mut self, flow: Flow, sum: &Sum<S>) {
         self.into[flow as usize] += sum.net;
@@ -124,14 +124,14 @@ pub struct Ledger<S> {
 }
 
 impl<S: Real> Ledger<S> {
-    /// An empty book.
+    /// No heat yet.
     #[must_use]
     pub fn new() -> Self {
         let zero = S::zero();
         Self { into: [zero; Flow::ALL.len()], stored: zero, total_exchanged: zero, imbalance: zero }
     }
 
-    /// FlowIndex a step: heat into the building and its magnitude over the step [J], and what was stored.
+    /// Adds a step: heat into the building and its magnitude over the step [J], and the heat stored [J].
     #[inline(always)]
     pub fn book(&mut self, energy: &Power<S>, stored: S) {
         let mut total = S::zero();
@@ -144,7 +144,8 @@ impl<S: Real> Ledger<S> {
         self.imbalance += (stored - total).abs();
     }
 
-    /// Imbalance over turnover [-], summed over steps so that opposite errors do not cancel.
+    /// Relative energy-balance residual [-]: imbalance over total heat exchanged, summed over steps so that opposite errors do
+    /// not cancel.
     #[must_use]
     pub fn closure(&self) -> S {
         self.imbalance / self.total_exchanged.max(S::constant(1e-300))

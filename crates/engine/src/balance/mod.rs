@@ -2,3 +2,4 @@
 
 pub mod flow_index;
 pub mod ledger;
+pub(crate) mod terms;

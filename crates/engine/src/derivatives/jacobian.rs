@@ -16,6 +16,8 @@ use crate::step::Stepper;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
+use super::along::StepperAlong;
+
 /// Records of a run and their slopes.
 #[derive(Debug)]
 pub struct Jacobian {
@@ -70,8 +72,8 @@ const GROUP: usize = 8;
 type Sloped = Dual<GROUP>;
 
 /// A run with the slopes of a group, on its way beside a plain one.
-struct Follower<'a> {
-    stepper: Stepper<'a, Sloped>,
+struct Group<'a> {
+    stepper: StepperAlong<'a, Sloped>,
     state: State<Sloped>,
     slopes: Slopes,
 }
@@ -103,21 +105,23 @@ fn along(
     let mut followers: Vec<_> = vectors
         .iter()
         .map(|(numbers, parameters)| {
-            let stepper = Stepper::new(plan, numbers, options.scheme);
-            let state = stepper.begin(&options.initial);
-            Follower { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
+            let stepper = StepperAlong::new(plan, numbers, options.scheme);
+            let state = stepper.stepper.begin(&options.initial);
+            Group { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })
         .collect();
     let mut plain = Stepper::new(plan, numbers, options.scheme);
     plain.known.start();
     march_observed(plain, weather, options, watch, |plain, reached, made| {
         let solution = plain.known.solution(&reached.load);
-        for Follower { stepper, state, slopes } in &mut followers {
-            made.follow(stepper, state, weather, options.dt, solution)?;
+        for Group { stepper, state, slopes } in &mut followers {
+            stepper.take(made, state, weather, options.dt, solution)?;
             // Rounding and tolerances must not add up: the slopes are those along the plain run, as in reverse.
             state.meet(reached, |number, value| number.value = value);
             if made.row(options).is_some() {
-                slopes.records.extend(options.probes.iter().map(|probe| probe.read(plan, stepper, state)));
+                slopes
+                    .records
+                    .extend(options.probes.iter().map(|probe| probe.read(plan, &stepper.stepper, state)));
             }
         }
         Ok(())

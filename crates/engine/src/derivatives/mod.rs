@@ -9,5 +9,7 @@
 //!
 //! Source: Griewank & Walther (2008), Evaluating Derivatives, 2nd ed., doi:10.1137/1.9780898717761.
 
+mod along;
+mod equations;
 pub mod jacobian;
 pub mod trajectory;

@@ -21,6 +21,8 @@ use crate::step::stage_solutions::{Solution, read_solution};
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
+use super::along::StepperAlong;
+
 /// A run, and what is needed to go back along it.
 #[derive(Debug)]
 pub struct Trajectory {
@@ -169,8 +171,8 @@ fn again(
 /// The way back.
 struct Back<'a> {
     /// With the coefficients on the tape.
-    fresh: Stepper<'a, Taped>,
-    stepper: Stepper<'a, Taped>,
+    fresh: StepperAlong<'a, Taped>,
+    stepper: StepperAlong<'a, Taped>,
     weather: &'a Weather<'a>,
     options: &'a Options,
     /// Weights on the records.
@@ -197,15 +199,15 @@ impl<'a> Back<'a> {
         options: &'a Options,
         records: &'a [f64],
     ) -> Self {
-        let fresh = Stepper::new(plan, leaves, options.scheme);
+        let fresh = StepperAlong::new(plan, leaves, options.scheme);
         let (stepper, made) = (fresh.clone(), Tape::len());
-        let now = stepper.begin(&options.initial);
+        let now = fresh.stepper.begin(&options.initial);
         Tape::truncate(made);
         let state = vec![0.0; now.count()];
         let first = Tape::reserve(state.len());
         let plain = |unknowns: &Unknowns<Taped>| unknowns.plain();
         Self {
-            stages: stepper.places().iter().map(plain).collect(),
+            stages: fresh.stepper.places().iter().map(plain).collect(),
             load: vec![0.0; plan.zones.len()],
             fresh,
             stepper,
@@ -234,29 +236,31 @@ impl<'a> Back<'a> {
     /// Goes back over a move: its weights on the state before it take the place of those on the state after it.
     fn pass(&mut self, made: Action, before: &[f64], solution: &[f64]) -> Result<(), EngineError> {
         Tape::truncate(self.base);
-        let (stepper, state) = (&mut self.stepper, &mut self.now);
+        let (along, state) = (&mut self.stepper, &mut self.now);
         let mut place = self.first;
         state.read(before, |number, value| {
             *number = Taped::new(value, place);
             place += 1;
         });
-        let cells = &stepper.model.parts.nonlinear_cells;
+        let cells = &along.stepper.model.parts.nonlinear_cells;
         let known = read_solution(solution, cells, &mut self.stages, &mut self.load);
         let solution = known.then_some(Solution { stages: &self.stages, load: &self.load });
-        stepper.forget();
-        made.follow(stepper, state, self.weather, self.options.dt, solution)?;
+        along.stepper.forget();
+        along.take(made, state, self.weather, self.options.dt, solution)?;
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
         state.beside(&self.state, |number, weight| number.add_weight(weight, weights));
         if let Some(row) = made.row(self.options) {
             let probes = &self.options.probes;
             for (probe, weight) in probes.iter().zip(&self.records[row * probes.len()..]) {
-                let record = probe.read(stepper.model.plan, stepper, state);
+                let record = probe.read(along.stepper.model.plan, &along.stepper, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
                 record.add_weight(*weight, &mut self.weights);
             }
         }
-        Tape::propagate(&mut self.weights, self.base, |stage, weights| stepper.pull_stage(stage, weights));
+        Tape::propagate(&mut self.weights, self.base, |stage, weights| {
+            along.solve_transposed(stage, weights)
+        });
         let passed = &mut self.weights[self.base - self.state.len()..self.base];
         self.state.copy_from_slice(passed);
         passed.fill(0.0);
@@ -270,7 +274,7 @@ impl<'a> Back<'a> {
     /// Weights on the parameters.
     fn finish(mut self, leaves: &[Taped]) -> Vec<f64> {
         Tape::truncate(self.base);
-        let start = self.fresh.begin(&self.options.initial);
+        let start = self.fresh.stepper.begin(&self.options.initial);
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
         start.beside(&self.state, |number, weight| number.add_weight(weight, weights));

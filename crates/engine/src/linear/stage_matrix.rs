@@ -90,7 +90,7 @@ impl<'a> StageMatrix<'a> {
 
     /// What of the heat that a wall sends into a surface enters the equation of that surface [-], in zones [m2].
     #[inline(always)]
-    pub(crate) fn takes(&self, surface: SurfaceId) -> f64 {
+    fn takes(&self, surface: SurfaceId) -> f64 {
         match self.model.plan.surfaces[surface].role {
             SurfaceRole::Zone { .. } => self.model.coefficients.walls[surface.wall()].area,
             SurfaceRole::Exterior if is_held(&self.model, surface) => 0.0,
@@ -235,8 +235,8 @@ impl<'a> StageMatrix<'a> {
         }
     }
 
-    /// What changes of the first stage's solution do to the equations of the second, in place.
-    pub(crate) fn hand_on(&self, rows: &mut [f64], ratio: f64) {
+    /// Heat that changes of the first stage's solution leave stored for the second one: on its equations, in place.
+    pub(crate) fn stored_by_first_stage(&self, rows: &mut [f64], ratio: f64) {
         let (cells, rest) = rows.split_at_mut(self.model.plan.n_cells);
         let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
         surfaces.fill(0.0);

@@ -13,7 +13,7 @@ pub struct Gain<S> {
     /// Part radiated to the surfaces [W].
     radiant: S,
     /// Part radiated [-].
-    pub(crate) radiative: S,
+    radiative: S,
     schedule: Schedule,
 }
 
@@ -28,6 +28,11 @@ impl<S: Real> Gain<S> {
             radiative,
             schedule: Schedule::new(gain.schedule),
         }
+    }
+
+    /// Convective and radiant part [-].
+    pub(crate) fn parts(&self) -> [S; 2] {
+        [S::one() - self.radiative, self.radiative]
     }
 
     /// Heat given to the air and heat radiated to the surfaces in a forcing row [W].

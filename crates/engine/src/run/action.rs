@@ -4,7 +4,6 @@ use crate::balance::ledger::Ledger;
 use crate::error::EngineError;
 use crate::number::real::Real;
 use crate::run::options::Options;
-use crate::step::stage_solutions::Solution;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
@@ -39,25 +38,6 @@ impl Action {
                 stepper.balance_surfaces(state, &weather.at(0, 0))
             }
         }
-    }
-
-    /// Takes it along its solution, where that is known.
-    pub(crate) fn follow<S: Real>(
-        self,
-        stepper: &mut Stepper<'_, S>,
-        state: &mut State<S>,
-        weather: &Weather<'_>,
-        dt: f64,
-        solution: Option<Solution<'_>>,
-    ) -> Result<(), EngineError> {
-        let Some(solution) = solution else {
-            return self.take(stepper, state, weather, dt, &mut Ledger::new());
-        };
-        match self {
-            Self::WarmUp(step) | Self::Step(step) => stepper.follow_step(state, weather, step, dt, solution),
-            Self::Balance => stepper.follow_balance(state, &weather.at(0, 0), solution),
-        }
-        Ok(())
     }
 
     /// Row of the records that the state after it is written to.

@@ -2,16 +2,17 @@
 
 mod accept;
 mod energy;
-mod follow;
-mod following;
 mod guess;
 mod halving;
 pub(crate) mod ideal_loads;
+pub(crate) mod known_solution;
 mod limiter;
 mod linearisation;
 mod nested;
 pub(crate) mod newton;
 mod readings;
+#[cfg(test)]
+mod residual_tests;
 pub(crate) mod scheme;
 mod stage;
 pub(crate) mod stage_solutions;

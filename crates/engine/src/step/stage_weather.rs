@@ -14,7 +14,7 @@ use crate::weather::sun::SolarMeans;
 /// What acts on the building in the stage to be solved.
 #[derive(Debug, Clone)]
 pub(crate) struct StageWeather<'a, S: Real> {
-    index: WeatherIndex<S>,
+    pub(crate) index: WeatherIndex<S>,
     parameters: &'a [S],
     /// In the stage to be solved.
     pub(crate) conditions: Conditions<S>,

@@ -10,8 +10,6 @@ use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
-use crate::step::energy::StageHeat;
-use crate::step::following::Following;
 use crate::step::guess::Guess;
 use crate::step::halving::{Part, StepParts};
 use crate::step::ideal_loads::loads::IdealLoads;
@@ -38,44 +36,27 @@ pub struct Stepper<'a, S: Real> {
     pub(crate) ideal_loads: IdealLoads<S>,
     pub(crate) parts: StepParts<S>,
     pub(crate) known: StageSolutions<S>,
-    /// Only where slopes are carried along a known solution.
-    pub(super) following: Option<Box<Following<'a, S>>>,
+    #[cfg(test)]
+    pub(super) residuals: super::residual_tests::Residuals<S>,
 }
 
 impl<'a, S: Real> Stepper<'a, S> {
     /// Prepares a plan with a parameter vector.
     #[must_use]
     pub fn new(plan: &'a Plan, parameters: &'a [S], scheme: Scheme) -> Self {
-        let mut stepper = Self::with(plan, Coefficients::new(plan, parameters), parameters, scheme);
-        if S::DERIVATIVES {
-            stepper.following = Some(Box::new(Following::new(
-                &stepper.model,
-                parameters,
-                scheme.tableau(),
-                &stepper.solver.system.walls,
-            )));
-        }
-        stepper
-    }
-
-    /// Prepares a plan with coefficients; without parameters it can be driven by no weather.
-    pub(super) fn with(
-        plan: &'a Plan,
-        coefficients: Coefficients<S>,
-        parameters: &'a [S],
-        scheme: Scheme,
-    ) -> Self {
-        let (model, tableau) = (Model::new(plan, coefficients), scheme.tableau());
+        let (model, tableau) = (Model::new(plan, Coefficients::new(plan, parameters)), scheme.tableau());
         let solver = StageSolver::new(&model, tableau);
+        let weather = StageWeather::new(&model, parameters);
         Self {
-            weather: StageWeather::new(&model, parameters),
-            flows: FlowIndex::new(plan, &model.coefficients),
+            flows: FlowIndex::new(plan, &model.coefficients, &weather.index),
+            weather,
             ideal_loads: IdealLoads::new(&model, &solver.solution, tableau.weights.len()),
             solver,
             guess: Guess::none(),
             parts: StepParts::new(plan.zones.len()),
             known: StageSolutions::nothing(),
-            following: None,
+            #[cfg(test)]
+            residuals: super::residual_tests::Residuals::default(),
             model,
             scheme,
         }
@@ -219,7 +200,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             self.weather.set_stage(&self.model, weather, tableau, part, stage);
             let all = Search::Whole(S::Mask::splat(true));
             self.solve_stage(state, tableau.diagonal * length, (part.step, stage + 1), all)?;
-            self.heat().add_to(weight * length, &mut energy);
+            self.add_heat(weight * length, &mut energy);
         }
         Ok(energy)
     }
@@ -270,20 +251,8 @@ impl<'a, S: Real> Stepper<'a, S> {
         let stage = Stage { model, conditions, state, storage, length, place };
         let sound = self.solver.solve(&stage, search)?;
         self.known.keep(&self.solver.solution);
+        #[cfg(test)]
+        self.record_residual(state, length, place.1.saturating_sub(1));
         Ok(sound)
-    }
-
-    /// The stage just solved, to read its flows.
-    #[inline(always)]
-    pub(super) fn heat(&self) -> StageHeat<'_, 'a, S> {
-        StageHeat {
-            model: &self.model,
-            flows: &self.flows,
-            conditions: &self.weather.conditions,
-            laws: &self.solver.linearisation.laws,
-            system: &self.solver.system,
-            solution: &self.solver.solution,
-            load: &self.solver.start.load,
-        }
     }
 }

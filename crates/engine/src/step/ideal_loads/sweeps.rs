@@ -84,7 +84,7 @@ impl<S: Real> Stepper<'_, S> {
                 further -= 1;
                 active = S::Mask::splat(true);
             } else {
-                self.close(&mut energy, length);
+                self.close(state, &mut energy, length);
                 return Ok(energy);
             }
         }
@@ -186,8 +186,10 @@ impl<S: Real> Stepper<'_, S> {
                 ideal_loads.respond(model, &solver.system, index, (length_of_stage, tableau.ratio));
             }
             ideal_loads.keep(index, &mut solver.iterate, &solver.solution);
+            #[cfg(test)]
+            self.record_residual(state, length_of_stage, index);
             if again && index + 1 < weights.len() {
-                self.heat().add_to(weight * length, &mut energy);
+                self.add_heat(weight * length, &mut energy);
             }
         }
         Ok(Swept { energy, change, limited })
@@ -195,7 +197,8 @@ impl<S: Real> Stepper<'_, S> {
 
     /// Brings the airs onto their set points by the loads of the last stage, and adds its heat.
     #[inline(always)]
-    fn close(&mut self, energy: &mut Power<S>, length: f64) {
+    #[cfg_attr(not(test), allow(unused_variables, reason = "a test looks at the residual"))]
+    fn close(&mut self, state: &State<S>, energy: &mut Power<S>, length: f64) {
         let weights = self.scheme.weights();
         let weight = weights[weights.len() - 1];
         let Self { model, solver, ideal_loads, known, .. } = self;
@@ -208,7 +211,9 @@ impl<S: Real> Stepper<'_, S> {
         for (&correction, &zone) in ideal_loads.correction.iter().zip(&model.plan.ideal_loads) {
             solver.start.load[zone] += correction;
         }
-        self.heat().add_to(weight * length, energy);
+        #[cfg(test)]
+        self.record_residual(state, self.scheme.tableau().diagonal * length, weights.len() - 1);
+        self.add_heat(weight * length, energy);
         let Self { model, solver, ideal_loads, weather, .. } = self;
         ideal_loads.outdoor = [ideal_loads.outdoor[1], weather.conditions.outdoor_air];
         for (&correction, &zone) in ideal_loads.correction.iter().zip(&model.plan.ideal_loads) {

@@ -1,0 +1,93 @@
+//! Terms for the energy ledger: heat from the environment into the building, by flow.
+
+use crate::balance::ledger::{Flow, Power};
+use crate::building::ids::{BySurface, SurfaceId};
+use crate::number::real::Real;
+
+use super::Balances;
+use super::evaluation::{Evaluation, HeatSink};
+
+/// Heat of one flow through several surfaces, and its magnitudes [W].
+pub(crate) struct Sum<S> {
+    pub(crate) net: S,
+    pub(crate) magnitude: S,
+}
+
+impl<S: Real> Sum<S> {
+    #[inline(always)]
+    fn none() -> Self {
+        Self { net: S::zero(), magnitude: S::zero() }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, power: S) {
+        self.net += power;
+        self.magnitude += power.abs();
+    }
+}
+
+/// Flows through surfaces outdoors: sums of their own stay in registers.
+struct ExteriorSums<S> {
+    solar: Sum<S>,
+    convection: Sum<S>,
+    longwave: Sum<S>,
+}
+
+impl<S: Real> HeatSink<S> for ExteriorSums<S> {
+    #[inline(always)]
+    fn into_building(&mut self, flow: Flow, heat: S) {
+        match flow {
+            Flow::Solar => self.solar.add(heat),
+            Flow::Convection => self.convection.add(heat),
+            _ => self.longwave.add(heat),
+        }
+    }
+}
+
+/// All other flows; `flux` is the conduction from a surface into its wall [W/m2].
+struct OtherFlows<'a, S, F> {
+    power: &'a mut Power<S>,
+    flux: F,
+}
+
+impl<S: Real, F: Fn(SurfaceId) -> S> HeatSink<S> for OtherFlows<'_, S, F> {
+    #[inline(always)]
+    fn into_building(&mut self, flow: Flow, heat: S) {
+        self.power.book(flow, heat);
+    }
+
+    #[inline(always)]
+    fn impose(&mut self, surface: SurfaceId, area: S, _temperature: S) {
+        // The environment supplies whatever the wall conducts away.
+        self.power.book(Flow::Boundary, area * (self.flux)(surface));
+    }
+}
+
+impl<S: Real> Balances<'_, S> {
+    /// Heat into the building at temperatures of surfaces and airs [degC]; `flux` is the conduction from a surface into its
+    /// wall [W/m2].
+    #[inline(always)]
+    pub(crate) fn power(
+        &self,
+        surfaces: &BySurface<S>,
+        air: &[S],
+        flux: impl Fn(SurfaceId) -> S,
+    ) -> Power<S> {
+        let mut power = Power::none();
+        let heat = ExteriorSums { solar: Sum::none(), convection: Sum::none(), longwave: Sum::none() };
+        let mut exterior = Evaluation { cells: &[], surfaces, air, heat };
+        self.exterior_surfaces(&mut exterior);
+        power.book_sum(Flow::Solar, &exterior.heat.solar);
+        power.book_sum(Flow::Convection, &exterior.heat.convection);
+        power.book_sum(Flow::Longwave, &exterior.heat.longwave);
+        let heat = OtherFlows { power: &mut power, flux };
+        let mut others = Evaluation { cells: &[], surfaces, air, heat };
+        self.imposed_temperatures(&mut others);
+        self.windows(&mut others);
+        self.outdoor_air(&mut others);
+        self.gains(&mut others);
+        self.air_paths(&mut others);
+        self.ideal_loads(&mut others);
+        power
+    }
+}

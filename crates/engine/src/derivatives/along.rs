@@ -1,0 +1,171 @@
+//! Steps of numbers with derivatives along the known solutions of a plain run.
+//!
+//! At a known solution the slopes of the equations of a stage ([`super::equations`]) are all that is needed: the slopes of
+//! the solution follow from them by one solve with the plain matrix of the stage (implicit function theorem: Griewank &
+//! Walther (2008), ch. 15, doi:10.1137/1.9780898717761). Nothing is iterated, and nothing is eliminated with derivatives.
+
+use crate::balance::ledger::Ledger;
+use crate::balance::terms::Balances;
+use crate::building::plan::Plan;
+use crate::error::EngineError;
+use crate::linear::stage_matrix::StageMatrix;
+use crate::linear::unknowns::Unknowns;
+use crate::number::real::{Equations, Real};
+use crate::run::Action;
+use crate::step::known_solution::StagePlace;
+use crate::step::stage_solutions::Solution;
+use crate::step::state::State;
+use crate::step::{Scheme, Stepper};
+use crate::weather::conditions::{Instant, Weather};
+
+use super::equations::{Carries, EquationSlopes};
+
+/// A stepper whose numbers carry derivatives, with all that it needs to go along known solutions.
+#[derive(Debug, Clone)]
+pub(super) struct StepperAlong<'a, S: Real> {
+    pub(super) stepper: Stepper<'a, S>,
+    /// Matrices of the stages at their solutions, in plain numbers.
+    matrices: Vec<StageMatrix<'a>>,
+    equations: S::Equations,
+    carries: Carries,
+    /// The solution of the stage in hand: cells, surfaces, airs [degC].
+    at: Vec<f64>,
+    /// Responses of all unknowns to each ideal load [K/W].
+    responses: Vec<Vec<f64>>,
+    scratch: Vec<f64>,
+}
+
+impl<'a, S: Real> StepperAlong<'a, S> {
+    pub(super) fn new(plan: &'a Plan, numbers: &'a [S], scheme: Scheme) -> Self {
+        let stepper = Stepper::new(plan, numbers, scheme);
+        let plain: Vec<f64> = numbers.iter().map(|number| number.lane(0)).collect();
+        let matrix = StageMatrix::new(plan, &plain, scheme.tableau().diagonal);
+        let unknowns = plan.n_cells + plan.surfaces.len() + plan.zones.len();
+        Self {
+            matrices: vec![matrix; scheme.weights().len()],
+            equations: S::Equations::default(),
+            carries: Carries::new(&stepper),
+            at: vec![0.0; unknowns],
+            responses: vec![vec![0.0; unknowns]; plan.ideal_loads.len()],
+            scratch: Vec::new(),
+            stepper,
+        }
+    }
+
+    /// Takes an action along its solution; where that is not known, by itself.
+    pub(super) fn take(
+        &mut self,
+        action: Action,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        dt: f64,
+        solution: Option<Solution<'_>>,
+    ) -> Result<(), EngineError> {
+        let Some(solution) = solution else {
+            return action.take(&mut self.stepper, state, weather, dt, &mut Ledger::new());
+        };
+        match action {
+            Action::WarmUp(step) | Action::Step(step) => self.step(state, weather, step, dt, solution),
+            Action::Balance => self.balance_surfaces(state, &weather.at(0, 0), solution),
+        }
+        Ok(())
+    }
+
+    /// One step of length `dt` [s].
+    // One copy only: inlining multiplies compile time.
+    #[inline(never)]
+    fn step(
+        &mut self,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        step: usize,
+        dt: f64,
+        solution: Solution<'_>,
+    ) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                self.stepper.begin_known_step(state);
+                let plan = self.stepper.model.plan;
+                let controlled =
+                    !plan.ideal_loads.is_empty() && self.stepper.set_ideal_loads(weather, step, solution);
+                // Responses leave out the effect of a load on the convection expected in gaps: with windows its slope
+                // takes one more round.
+                let rounds = match (controlled, plan.windows.is_empty()) {
+                    (false, _) => 0,
+                    (true, true) => 1,
+                    (true, false) => 2,
+                };
+                for round in 0..=rounds {
+                    for (place, known) in self.stepper.stage_places(dt).zip(solution.stages) {
+                        if place.stage > 0 {
+                            self.stepper.carry_first_stage(state);
+                        }
+                        self.stepper.conditions_of_stage(weather, step, place.stage);
+                        self.stage(state, place, known);
+                    }
+                    if round < rounds {
+                        self.respond(dt);
+                        self.stepper.correct_ideal_loads();
+                    }
+                }
+                self.stepper.end_known_step(state);
+            },
+        );
+    }
+
+    /// Brings the surfaces of a state into balance with the weather.
+    fn balance_surfaces(&mut self, state: &mut State<S>, now: &Instant<'_>, solution: Solution<'_>) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                self.stepper.begin_known_step(state);
+                self.stepper.conditions_now(now);
+                self.stage(state, StagePlace::instant(), &solution.stages[0]);
+                self.stepper.end_known_balance(state);
+            },
+        );
+    }
+
+    /// One stage: the slopes of its equations at the solution, and from them the slopes of the solution.
+    #[inline(always)]
+    fn stage(&mut self, state: &State<S>, place: StagePlace, known: &Unknowns<f64>) {
+        let Self { stepper, matrices, equations, carries, at, .. } = self;
+        let matrix = &mut matrices[place.stage];
+        let new = matrix.factor_linear_walls(place.length);
+        stepper.locate(state, place, known, matrix, at);
+        stepper.linearise_known_stage(state, place, known);
+        let Balances { walls, laws, conditions, .. } = stepper.balances();
+        matrix.factor((laws, walls, &conditions.paths), place.length, new);
+        let mut slopes = EquationSlopes::new(&stepper.model, carries, equations, at);
+        stepper.balances().visit(&stepper.stage_of(state, place), &mut slopes);
+        stepper.take_solution(
+            #[inline(always)]
+            |solution| equations.solve(place.stage, matrix, at, solution),
+        );
+    }
+
+    /// Responses of the airs at the end of the step to each ideal load, by the matrices of the stages.
+    #[inline(always)]
+    fn respond(&mut self, dt: f64) {
+        let Self { stepper, matrices, responses, scratch, .. } = self;
+        let plan = stepper.model.plan;
+        let first_air = plan.n_cells + plan.surfaces.len();
+        for (p, (&zone, rows)) in plan.ideal_loads.iter().zip(responses).enumerate() {
+            rows.fill(0.0);
+            for (place, matrix) in stepper.stage_places(dt).zip(&*matrices) {
+                if place.stage > 0 {
+                    matrix.stored_by_first_stage(rows, place.ratio);
+                }
+                rows[first_air + zone] += 1.0;
+                matrix.solve_beside(rows, scratch);
+            }
+            stepper.set_response(p, &rows[first_air..]);
+        }
+    }
+
+    /// Weights on the equations of a stage from weights on its solution, in place.
+    pub(super) fn solve_transposed(&mut self, stage: usize, weights: &mut [f64]) {
+        self.matrices[stage].solve_transposed(weights, &mut self.scratch);
+    }
+}

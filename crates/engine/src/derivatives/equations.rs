@@ -1,0 +1,291 @@
+//! Slopes of the balances of a stage at its solution.
+//!
+//! Each term of each balance ([`crate::balance::terms`]) is differentiated by the product rule in the numbers that it is made of, the
+//! temperatures held at the solution. Equations count heat into a node as positive, in the order and scale of
+//! [`crate::linear::stage_matrix`]: of cells and of surfaces outside the zones per square metre, of all others whole; the equation
+//! of a surface held at a temperature is that temperature.
+
+use crate::balance::terms::{End, Held, Node, Origin, OutdoorRadiation, Sink};
+use crate::building::coefficients::{Coefficients, Matter};
+use crate::building::ids::SurfaceId;
+use crate::building::model::Model;
+use crate::building::plan::SurfaceRole;
+use crate::linear::building_system::is_held;
+use crate::linear::wall::{Link, Storage};
+use crate::number::line::Line;
+use crate::number::real::{Equations, Real};
+use crate::physics::longwave::Emission;
+use crate::step::Stepper;
+
+/// Which numbers that never change have derivatives: terms of the others need not be differentiated by them.
+#[derive(Debug, Clone)]
+pub(super) struct Carries {
+    /// By wall: conductances, heat capacities.
+    links: Vec<bool>,
+    capacity: Vec<bool>,
+    /// By zone: exchange areas between its surfaces, and the slope of a linear law of emission.
+    exchange: Vec<bool>,
+    emission: Vec<bool>,
+}
+
+/// Whether one of some numbers has derivatives.
+fn any<S: Real>(numbers: impl IntoIterator<Item = S>) -> bool {
+    numbers.into_iter().any(S::carries)
+}
+
+impl Carries {
+    pub(super) fn new<S: Real>(stepper: &Stepper<'_, S>) -> Self {
+        let Coefficients { walls, zones, .. } = &stepper.model.coefficients;
+        let heat = |matter: &Matter<S>| match *matter {
+            Matter::Solid { capacity, .. } => capacity,
+            Matter::Pcm(_) => S::zero(),
+        };
+        let cells = walls.iter().map(|wall| wall.cells.iter());
+        Self {
+            links: stepper
+                .solver
+                .system
+                .walls
+                .iter()
+                .map(|chain| any(chain.links.iter().map(|link| link.left)))
+                .collect(),
+            capacity: cells
+                .map(|mut cells| cells.any(|cell| cell.thickness.carries() || heat(&cell.matter).carries()))
+                .collect(),
+            exchange: zones.iter().map(|zone| any(zone.exchange.iter().copied())).collect(),
+            emission: zones
+                .iter()
+                .map(|zone| matches!(zone.emission, Emission::Linearised(reference) if reference.carries()))
+                .collect(),
+        }
+    }
+}
+
+/// Scale of an equation.
+#[derive(Debug, Clone, Copy)]
+enum Scale {
+    /// Heat per square metre [W/m2].
+    PerArea,
+    /// Heat [W].
+    Whole,
+    /// A temperature [degC].
+    Held,
+}
+
+/// Differentiates terms.
+pub(super) struct EquationSlopes<'a, S: Real> {
+    model: &'a Model<'a, S>,
+    carries: &'a Carries,
+    equations: &'a mut S::Equations,
+    /// The solution: cells, surfaces, airs [degC].
+    at: &'a [f64],
+    /// The wall and the zone in hand.
+    wall: usize,
+    zone: usize,
+}
+
+impl<'a, S: Real> EquationSlopes<'a, S> {
+    #[inline(always)]
+    pub(super) fn new(
+        model: &'a Model<'a, S>,
+        carries: &'a Carries,
+        equations: &'a mut S::Equations,
+        at: &'a [f64],
+    ) -> Self {
+        equations.begin(at.len());
+        Self { model, carries, equations, at, wall: 0, zone: 0 }
+    }
+
+    #[inline(always)]
+    fn row(&self, node: Node) -> usize {
+        match node {
+            Node::Cell(cell) => cell,
+            Node::Surface(surface) => self.model.plan.n_cells + surface.index(),
+            Node::Air(zone) => self.model.plan.n_cells + self.model.plan.surfaces.len() + zone,
+        }
+    }
+
+    #[inline(always)]
+    fn temperature(&self, node: Node) -> f64 {
+        self.at[self.row(node)]
+    }
+
+    #[inline(always)]
+    fn scale(&self, node: Node) -> Scale {
+        let Node::Surface(surface) = node else {
+            return if matches!(node, Node::Cell(_)) { Scale::PerArea } else { Scale::Whole };
+        };
+        if let SurfaceRole::Zone { .. } = self.model.plan.surfaces[surface].role {
+            return Scale::Whole;
+        }
+        if is_held(self.model, surface) { Scale::Held } else { Scale::PerArea }
+    }
+
+    /// `sign size heat` into a node, where `heat` has these slopes by these numbers.
+    #[inline(always)]
+    fn into<const N: usize>(&mut self, node: Node, sign: f64, size: S, heat: f64, slopes: [(S, f64); N]) {
+        let row = self.row(node);
+        match self.scale(node) {
+            Scale::Held => {}
+            Scale::PerArea => {
+                for (number, slope) in slopes {
+                    self.equations.add(row, number, sign * slope);
+                }
+            }
+            Scale::Whole => {
+                let whole = sign * size.lane(0);
+                for (number, slope) in slopes {
+                    self.equations.add(row, number, whole * slope);
+                }
+                self.equations.add(row, size, sign * heat);
+            }
+        }
+    }
+
+    /// The same from one node to another.
+    #[inline(always)]
+    fn between<const N: usize>(&mut self, ends: [Node; 2], size: S, heat: f64, slopes: [(S, f64); N]) {
+        self.into(ends[0], -1.0, size, heat, slopes);
+        self.into(ends[1], 1.0, size, heat, slopes);
+    }
+}
+
+impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
+    #[inline(always)]
+    fn begin_wall(&mut self, wall: usize) {
+        self.wall = wall;
+    }
+
+    #[inline(always)]
+    fn begin_zone(&mut self, zone: usize) {
+        self.zone = zone;
+    }
+
+    #[inline(always)]
+    fn store_heat(&mut self, node: Node, [area, thickness]: [S; 2], capacity: S, held: Held<S>) {
+        let heat = thickness.lane(0) * capacity.lane(0) / held.length;
+        let mut start = held.start.lane(0);
+        if held.ratio == 0.0 {
+            self.into(node, 1.0, area, heat * (start - self.temperature(node)), [(held.start, heat)]);
+        } else {
+            start += (held.first.lane(0) - start) * held.ratio;
+            let slopes = [(held.start, heat * (1.0 - held.ratio)), (held.first, heat * held.ratio)];
+            self.into(node, 1.0, area, heat * (start - self.temperature(node)), slopes);
+        }
+        if matches!(node, Node::Air(_)) || self.carries.capacity[self.wall] {
+            let rise = (start - self.temperature(node)) / held.length;
+            let row = self.row(node);
+            self.equations.add(row, capacity, thickness.lane(0) * rise);
+            self.equations.add(row, thickness, capacity.lane(0) * rise);
+        }
+    }
+
+    #[inline(always)]
+    fn store_enthalpy(
+        &mut self,
+        cell: usize,
+        [area, thickness]: [S; 2],
+        enthalpy: &Storage<S>,
+        held: Held<S>,
+    ) {
+        let rate = thickness.lane(0) / held.length;
+        let above = self.at[cell] - enthalpy.place.lane(0);
+        let mut start = held.start.lane(0);
+        if held.ratio != 0.0 {
+            start += (held.first.lane(0) - start) * held.ratio;
+            self.into(Node::Cell(cell), 1.0, area, 0.0, [(held.first, rate * held.ratio)]);
+        }
+        let reached = enthalpy.offset.lane(0) + enthalpy.capacity.lane(0) * above;
+        let slopes = [
+            (held.start, rate * (1.0 - held.ratio)),
+            (enthalpy.offset, -rate),
+            (enthalpy.capacity, -rate * above),
+            (thickness, (start - reached) / held.length),
+        ];
+        self.into(Node::Cell(cell), 1.0, area, 0.0, slopes);
+    }
+
+    #[inline(always)]
+    fn conduct(&mut self, ends: [Node; 2], area: S, conductance: S) {
+        let difference = self.temperature(ends[0]) - self.temperature(ends[1]);
+        let heat = conductance.lane(0) * difference;
+        if matches!(ends[0], Node::Air(_)) || self.carries.links[self.wall] {
+            self.between(ends, area, heat, [(conductance, difference)]);
+        } else {
+            self.between(ends, area, heat, []);
+        }
+    }
+
+    #[inline(always)]
+    fn conduct_linearised(&mut self, ends: [Node; 2], area: S, link: &Link<S>, places: [S; 2]) {
+        let left = self.temperature(ends[0]) - places[0].lane(0);
+        let right = self.temperature(ends[1]) - places[1].lane(0);
+        let heat = link.offset.lane(0) + link.left.lane(0) * left - link.right.lane(0) * right;
+        self.between(ends, area, heat, [(link.offset, 1.0), (link.left, left), (link.right, -right)]);
+    }
+
+    #[inline(always)]
+    fn exchange(&mut self, ends: [End<S>; 2], area: S, law: &Line<S>) {
+        let temperature = |end: End<S>| match end {
+            End::Node(node) => self.temperature(node),
+            End::Environment { temperature, .. } => temperature.lane(0),
+        };
+        let difference = temperature(ends[0]) - temperature(ends[1]);
+        let (heat, slope) = (Line::of(law).at(difference), law.slope.lane(0));
+        let slopes = [(law.offset, 1.0), (law.slope, difference)];
+        match ends {
+            [End::Node(from), End::Node(to)] => self.between([from, to], area, heat, slopes),
+            [End::Node(from), End::Environment { temperature, .. }] => {
+                let [by_offset, by_slope] = slopes;
+                self.into(from, -1.0, area, heat, [by_offset, by_slope, (temperature, -slope)]);
+            }
+            [End::Environment { temperature, .. }, End::Node(to)] => {
+                let [by_offset, by_slope] = slopes;
+                self.into(to, 1.0, area, heat, [by_offset, by_slope, (temperature, slope)]);
+            }
+            [End::Environment { .. }, End::Environment { .. }] => {}
+        }
+    }
+
+    #[inline(always)]
+    fn radiate(&mut self, surfaces: [SurfaceId; 2], area: S, [from, to]: [&Line<S>; 2]) {
+        let ends = surfaces.map(Node::Surface);
+        let [a, b] = ends.map(|node| self.temperature(node));
+        if self.carries.exchange[self.zone] {
+            self.between(ends, area, Line::of(from).at(a) - Line::of(to).at(b), []);
+        }
+        // An exact law depends on the solution alone. A linear one is the same at both ends: its offsets cancel.
+        if self.carries.emission[self.zone] {
+            let heat = area.lane(0) * (a - b);
+            for (node, sign) in ends.into_iter().zip([-1.0, 1.0]) {
+                let row = self.row(node);
+                self.equations.add(row, from.slope, sign * heat);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn radiate_outdoors(&mut self, surface: SurfaceId, area: S, radiation: &OutdoorRadiation<'_, S>) {
+        let node = Node::Surface(surface);
+        let (at, emissivity) = (self.temperature(node), radiation.emissivity.lane(0));
+        let emitted = Line::of(radiation.emission).at(at);
+        let slopes = [
+            (radiation.arriving, 1.0),
+            (radiation.emissivity, -emitted),
+            (radiation.emission.offset, -emissivity),
+            (radiation.emission.slope, -emissivity * at),
+        ];
+        self.into(node, 1.0, area, radiation.arriving.lane(0) - emissivity * emitted, slopes);
+    }
+
+    #[inline(always)]
+    fn release(&mut self, node: Node, size: S, heat: S, _origin: Origin<S>) {
+        self.into(node, 1.0, size, heat.lane(0), [(heat, 1.0)]);
+    }
+
+    #[inline(always)]
+    fn impose(&mut self, surface: SurfaceId, _area: S, temperature: S) {
+        let row = self.row(Node::Surface(surface));
+        self.equations.add(row, temperature, 1.0);
+    }
+}

@@ -1,0 +1,222 @@
+//! Steps along known solutions: what derivatives need of a stepper beside a run of plain numbers.
+//!
+//! At a known solution nothing is iterated. The laws are linearised there as ever; the slopes of the solution follow from
+//! those of the equations (`derivatives`).
+
+use crate::balance::terms::{Contents, Stage as StageContents};
+use crate::input::forcing::Forcing;
+use crate::linear::stage_matrix::StageMatrix;
+use crate::linear::unknowns::Unknowns;
+use crate::number::real::{Mask, Real};
+use crate::step::halving::Part;
+use crate::step::newton::StageSolver;
+use crate::step::scheme::Tableau;
+use crate::step::stage::Stage;
+use crate::step::stage_solutions::Solution;
+use crate::step::state::State;
+use crate::step::stepper::{INSTANT, Stepper};
+use crate::weather::conditions::{Instant, Weather};
+
+/// Position of a stage in its step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StagePlace {
+    pub(crate) stage: usize,
+    /// Effective length [s].
+    pub(crate) length: f64,
+    /// A stage starts from `T_n + ratio (T_1 - T_n)`: the start of the step and the solution of its first stage.
+    pub(crate) ratio: f64,
+}
+
+impl StagePlace {
+    /// The stage that brings surfaces into balance: too short for anything to be stored.
+    pub(crate) fn instant() -> Self {
+        Self { stage: 0, length: INSTANT, ratio: 0.0 }
+    }
+}
+
+impl<S: Real> Stepper<'_, S> {
+    /// Linearises all laws at 0 degC everywhere, in calm air, with schedules of zero.
+    pub(crate) fn linearise_at_rest(&mut self) {
+        let row = vec![0.0; self.model.plan.n_channels()];
+        if let Ok(forcing) = Forcing::new(&row, 1, row.len()) {
+            let weather = Weather::for_single_run(self.model.plan, &forcing);
+            self.conditions_now(&weather.at(0, 0));
+        }
+        let (solver, conditions) = (&mut self.solver, &self.weather.conditions);
+        solver.linearisation.linearise_surfaces(&self.model, conditions, &solver.iterate, true);
+    }
+
+    /// The stages of a step of a length [s].
+    pub(crate) fn stage_places(&self, dt: f64) -> impl Iterator<Item = StagePlace> + use<S> {
+        let Tableau { diagonal, ratio, weights, .. } = *self.scheme.tableau();
+        (0..weights.len()).map(move |stage| StagePlace {
+            stage,
+            length: diagonal * dt,
+            ratio: if stage > 0 { ratio } else { 0.0 },
+        })
+    }
+
+    /// A step begins at a state.
+    #[inline(always)]
+    pub(crate) fn begin_known_step(&mut self, state: &State<S>) {
+        self.forget();
+        self.solver.start.load.copy_from_slice(&state.load);
+        self.solver.linearisation.expect_gaps(&self.model, 0, &state.cells);
+    }
+
+    /// The weather of a stage.
+    #[inline(always)]
+    pub(crate) fn conditions_of_stage(&mut self, weather: &Weather<'_>, step: usize, stage: usize) {
+        let (tableau, part) = (self.scheme.tableau(), Part::whole(step));
+        self.weather.set_stage(&self.model, weather, tableau, part, stage);
+    }
+
+    /// The weather of an instant.
+    #[inline(always)]
+    pub(crate) fn conditions_now(&mut self, now: &Instant<'_>) {
+        self.weather.set_instant(&self.model, now);
+    }
+
+    /// Heat stored when a stage begins; after [`Self::carry_first_stage`] in the second one.
+    #[inline(always)]
+    pub(crate) fn stage_of<'s>(&'s self, state: &'s State<S>, place: StagePlace) -> StageContents<'s, S> {
+        let StageSolver { start, solution, .. } = &self.solver;
+        StageContents {
+            length: place.length,
+            ratio: place.ratio,
+            start: Contents { cells: &state.cells, enthalpy: &state.enthalpy, air: &state.air },
+            first: Contents { cells: &solution.cells, enthalpy: &start.enthalpy, air: &solution.air },
+        }
+    }
+
+    /// Linearises everything at the solution of a stage.
+    #[inline(always)]
+    pub(crate) fn linearise_known_stage(
+        &mut self,
+        state: &State<S>,
+        place: StagePlace,
+        known: &Unknowns<f64>,
+    ) {
+        let (model, conditions) = (&self.model, &self.weather.conditions);
+        let storage = self.scheme.tableau().storage;
+        let stage =
+            Stage { model, conditions, state, storage, length: place.length, place: (0, place.stage + 1) };
+        let StageSolver { linearisation, system, iterate, .. } = &mut self.solver;
+        iterate.set(known);
+        for &w in &model.parts.nonlinear_walls {
+            linearisation.linearise_wall(&stage, w, (iterate, None), &mut system.walls[w]);
+        }
+        linearisation.set_wind(model, conditions, true);
+        linearisation.linearise_surfaces(model, conditions, iterate, true);
+    }
+
+    /// The solution of a stage as one list: cells, surfaces, airs [degC]. The temperatures of the cells of constant walls
+    /// follow from the others; `matrix` has their factors.
+    #[inline(always)]
+    pub(crate) fn locate(
+        &self,
+        state: &State<S>,
+        place: StagePlace,
+        known: &Unknowns<f64>,
+        matrix: &StageMatrix<'_>,
+        at: &mut [f64],
+    ) {
+        let (cells, rest) = at.split_at_mut(self.model.plan.n_cells);
+        let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
+        surfaces.copy_from_slice(&known.surfaces);
+        air.copy_from_slice(&known.air);
+        cells.copy_from_slice(&known.cells);
+        for &w in &self.model.parts.linear_walls {
+            let (wall, chain) = (&self.model.plan.walls[w], &matrix.system.walls[w]);
+            let own = &mut cells[wall.first_cell..wall.first_cell + wall.len()];
+            for (i, cell) in own.iter_mut().enumerate() {
+                let k = wall.first_cell + i;
+                let start = state.cells[k].lane(0);
+                let held = start + (self.solver.solution.cells[k].lane(0) - start) * place.ratio;
+                *cell = chain.rate[i] * chain.storage[i].capacity * held;
+            }
+            chain.forward(own);
+            chain.back(known.surfaces.pair(w), own);
+        }
+    }
+
+    /// Takes the solution of a stage: `solve` writes it with its derivatives.
+    #[inline(always)]
+    pub(crate) fn take_solution(&mut self, solve: impl FnOnce([&mut [S]; 3])) {
+        let StageSolver { system, solution: Unknowns { cells, surfaces, air }, .. } = &mut self.solver;
+        solve([cells, surfaces, air]);
+        for &w in &self.model.parts.nonlinear_walls {
+            system.walls[w].arrive(&cells[self.model.cells(w)]);
+        }
+    }
+
+    /// What the second stage needs of the first.
+    #[inline(always)]
+    pub(crate) fn carry_first_stage(&mut self, state: &State<S>) {
+        let StageSolver { start, system, .. } = &mut self.solver;
+        for &w in &self.model.parts.nonlinear_walls {
+            let (wall, chain) = (&self.model.plan.walls[w], &system.walls[w]);
+            for (i, storage) in chain.storage.iter().enumerate() {
+                start.enthalpy[wall.first_cell + i] = storage.reached();
+                start.first_fraction[wall.first_cell + i] = chain.liquid_fraction(i);
+            }
+        }
+        if !self.model.plan.windows.is_empty() {
+            self.extrapolate_stage(state);
+        }
+    }
+
+    /// Takes the last stage as the new state.
+    #[inline(always)]
+    pub(crate) fn end_known_step(&mut self, state: &mut State<S>) {
+        self.accept_nonlinear(state);
+        let StageSolver { start, solution, .. } = &self.solver;
+        state.cells.copy_from_slice(&solution.cells);
+        state.surfaces.copy_from_slice(&solution.surfaces);
+        state.air.copy_from_slice(&solution.air);
+        state.load.copy_from_slice(&start.load);
+    }
+
+    /// Takes the balance of the surfaces at an instant as that of a state.
+    #[inline(always)]
+    pub(crate) fn end_known_balance(&mut self, state: &mut State<S>) {
+        state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
+        self.weather.average_instant();
+    }
+
+    /// Sets the ideal loads to those of the solution. False where none of them responds to the air.
+    #[inline(always)]
+    pub(crate) fn set_ideal_loads(
+        &mut self,
+        weather: &Weather<'_>,
+        step: usize,
+        solution: Solution<'_>,
+    ) -> bool {
+        let (last, all) = (self.scheme.weights().len() - 1, S::Mask::splat(true));
+        let load = &mut self.solver.start.load;
+        self.ideal_loads.begin(&self.model.coefficients.zones, weather.row(step, last), load, false);
+        for (load, &known) in load.iter_mut().zip(solution.load) {
+            *load = S::constant(known);
+        }
+        let reached = &solution.stages[last].air;
+        self.ideal_loads.ask(load, |zone| S::constant(reached[zone]));
+        self.ideal_loads.answering(0, all)
+    }
+
+    /// Sets the response of the airs at the end of the step to an ideal load [K/W].
+    #[inline(always)]
+    pub(crate) fn set_response(&mut self, ideal_load: usize, airs: &[f64]) {
+        if let Some(response) = self.ideal_loads.responses[ideal_load].stages.last_mut() {
+            for (air, &known) in response.air.iter_mut().zip(airs) {
+                *air = S::constant(known);
+            }
+        }
+    }
+
+    /// Corrects the ideal loads, and with them their slopes.
+    #[inline(always)]
+    pub(crate) fn correct_ideal_loads(&mut self) {
+        let StageSolver { start, solution, .. } = &mut self.solver;
+        self.ideal_loads.correct(&solution.air, &mut start.load, S::Mask::splat(true), true);
+    }
+}
