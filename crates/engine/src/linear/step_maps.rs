@@ -292,3 +292,6 @@ impl<S: Real> StepMaps<S> {
         (stored[0] + stored[1]) + (stored[2] + stored[3])
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,31 @@
+//! Readings over halved steps.
+
+mod common;
+#[path = "common/difficult.rs"]
+mod difficult;
+
+use common::relative;
+use difficult::steps;
+use mascarin_engine::ledger::Flow;
+use mascarin_engine::step::Scheme;
+
+/// The heating load over a step is the mean over the whole step, however often it was halved.
+#[test]
+fn the_load_over_a_halved_step_is_its_mean() {
+    let mut wrong = Vec::new();
+    let mut compared = 0;
+    for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
+        for step in steps(scheme, true) {
+            let mean = step.run.ledger.into[Flow::Heating as usize] / step.dt;
+            let load = step.run.state.load[0];
+            if step.run.counters.halvings > 0 && mean > 0.0 {
+                compared += 1;
+                if relative(load, mean) > 1e-9 {
+                    wrong.push(format!("{}: load {load} W, mean {mean} W", step.name));
+                }
+            }
+        }
+    }
+    assert!(compared > 3, "{compared} heated steps are halved");
+    assert!(wrong.is_empty(), "{} of {compared}:\n{}", wrong.len(), wrong.join("\n"));
+}

@@ -1,0 +1,64 @@
+//! What the nested iteration and halved steps arrive at.
+
+mod common;
+#[path = "common/difficult.rs"]
+mod difficult;
+
+use common::{try_run, values};
+use difficult::{all_steps, steps};
+use mascarin_engine::march::Options;
+use mascarin_engine::probe::Probe;
+use mascarin_engine::state::Initial;
+use mascarin_engine::step::Scheme;
+
+const SCHEMES: [Scheme; 2] = [Scheme::BackwardEuler, Scheme::Sdirk2];
+
+/// Without hysteresis the enthalpy of a state is that of its temperatures.
+#[test]
+fn enthalpies_are_those_of_the_temperatures() {
+    let mut wrong = Vec::new();
+    for scheme in SCHEMES {
+        for step in [false, true].into_iter().flat_map(|heated| all_steps(scheme, heated)) {
+            let enthalpies = |initial: Initial| {
+                let probes = (0..3).map(|surface| Probe::LayerEnthalpy { surface, layer: 0 }).collect();
+                let options = Options { initial, probes, ..step.options(1) };
+                try_run(&step.plan, &values(&step.plan), &step.rows, &options).unwrap()
+            };
+            let run = enthalpies(step.initial.clone());
+            let state = &run.state;
+            let (cells, surfaces, air) = (state.cells.clone(), state.surfaces.to_vec(), state.air.clone());
+            // A run starts with the enthalpies of its temperatures [J/m3].
+            let restarted = enthalpies(Initial::Given { cells, surfaces, air });
+            for (reached, of_temperature) in run.records[3..].iter().zip(&restarted.records) {
+                // Within 1e-6 K in a melting range of 2 mK.
+                if (reached - of_temperature).abs() > 1e5 {
+                    let (halved, nested) = (run.counters.halvings, run.counters.nested);
+                    wrong.push(format!(
+                        "{} (halved {halved}, nested {nested}): {reached:e} J/m3, of its temperatures {of_temperature:e}",
+                        step.name
+                    ));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Steps that Newton's iteration alone does not solve end near where 64 short ones end.
+#[test]
+fn difficult_steps_end_near_short_ones() {
+    let mut wrong = Vec::new();
+    for scheme in SCHEMES {
+        for step in steps(scheme, false) {
+            let short =
+                try_run(&step.plan, &values(&step.plan), &step.rows.repeat(64), &step.options(64)).unwrap();
+            let surfaces = step.run.state.surfaces.iter().zip(short.state.surfaces.iter());
+            let apart = surfaces.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+            if apart > 5.0 {
+                let (halved, nested) = (step.run.counters.halvings, step.run.counters.nested);
+                wrong.push(format!("{} (halved {halved}, nested {nested}): {apart} K", step.name));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
