@@ -1,7 +1,7 @@
 use super::*;
 use crate::common::{Builder, values};
 use crate::input::description::{Gain, OutdoorLongwave, ParamId, Parameter, ZoneLongwave};
-use crate::physics::longwave::{KELVIN, SIGMA};
+use crate::physics::constants::{KELVIN, SIGMA};
 
 /// One cell and one air: the matrices are those of the network of two capacities written by hand.
 #[test]

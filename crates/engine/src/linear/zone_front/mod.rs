@@ -320,13 +320,14 @@ impl<S: Real> ZoneFronts<S> {
         self.zone_fronts.iter().for_each(|front| front.exterior.laws.copy_to(laws));
     }
 
-    /// Writes the exterior surfaces as lines of the interior ones [degC], and how much they rise with heat [m2 K/W].
-    #[inline(never)]
+    /// Writes the laws of the surfaces in the zones.
     #[cfg(test)]
     pub(crate) fn laws_in_zones(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
-        self.fronts.iter().for_each(|front| front.inner.copy_to(laws));
+        self.zone_fronts.iter().for_each(|front| front.laws.copy_to(laws));
     }
 
+    /// Writes the exterior surfaces as lines of the interior ones [degC], and how much they rise with heat [m2 K/W].
+    #[inline(never)]
     pub(crate) fn tell_locals(&self, surfaces: &mut [ExteriorSurfaces<S>], inverses: &mut [S]) {
         for front in &self.zone_fronts {
             for (i, interior) in front.layout.walls.iter().enumerate() {
