@@ -1,6 +1,5 @@
 //! The energy ledger: heat that entered the building by flow, heat stored, and the energy-balance residual.
 
-use crate::balance::terms::booking::Sum;
 use crate::number::real::Real;
 
 /// Flows by which heat enters a building.
@@ -66,6 +65,25 @@ impl Flow {
             Self::Transmitted => "transmitted",
             Self::Glass => "glass",
         }
+    }
+}
+
+/// Heat of one flow through several surfaces, and its magnitudes [W].
+pub(crate) struct Sum<S> {
+    pub(crate) net: S,
+    pub(crate) magnitude: S,
+}
+
+impl<S: Real> Sum<S> {
+    #[inline(always)]
+    pub(crate) fn none() -> Self {
+        Self { net: S::zero(), magnitude: S::zero() }
+    }
+
+    #[inline(always)]
+    pub(crate) fn add(&mut self, power: S) {
+        self.net += power;
+        self.magnitude += power.abs();
     }
 }
 

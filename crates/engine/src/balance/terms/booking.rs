@@ -1,30 +1,11 @@
 //! Terms for the energy ledger: heat from the environment into the building, by flow.
 
-use crate::balance::ledger::{Flow, Power};
+use crate::balance::ledger::{Flow, Power, Sum};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::number::real::Real;
 
 use super::Balances;
 use super::evaluation::{Evaluation, HeatSink};
-
-/// Heat of one flow through several surfaces, and its magnitudes [W].
-pub(crate) struct Sum<S> {
-    pub(crate) net: S,
-    pub(crate) magnitude: S,
-}
-
-impl<S: Real> Sum<S> {
-    #[inline(always)]
-    fn none() -> Self {
-        Self { net: S::zero(), magnitude: S::zero() }
-    }
-
-    #[inline(always)]
-    fn add(&mut self, power: S) {
-        self.net += power;
-        self.magnitude += power.abs();
-    }
-}
 
 /// Flows through surfaces outdoors: sums of their own stay in registers.
 struct ExteriorSums<S> {

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::ParamId;
+use super::parameter::ParamId;
 
 /// Air that two zones exchange, the same flow in both directions.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

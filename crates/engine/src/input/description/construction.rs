@@ -2,7 +2,8 @@
 
 use serde::Deserialize;
 
-use super::{Glazing, ParamId};
+use super::glazing::Glazing;
+use super::parameter::ParamId;
 
 /// Layers from outside to inside, or a glazing.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::ParamId;
+use super::parameter::ParamId;
 
 /// Surface heat transfer coefficients [W/(m2 K)]; equations and sources in `physics/convection`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::ParamId;
+use super::parameter::ParamId;
 
 /// What a window is made of; equations and sources in `physics/optics` and `physics/window_gaps.rs`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

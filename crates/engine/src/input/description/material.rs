@@ -2,7 +2,8 @@
 
 use serde::Deserialize;
 
-use super::{ParamId, PcmLaw};
+use super::parameter::ParamId;
+use super::phase_change::PcmLaw;
 
 /// What a layer is made of.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::ParamId;
+use super::parameter::ParamId;
 
 /// How enthalpy depends on temperature.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::ParamId;
+use super::parameter::ParamId;
 
 /// Site constants that act in the engine. (Latitude and longitude act through the sun's path in the forcing.)
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -2,7 +2,8 @@
 
 use serde::Deserialize;
 
-use super::{Convection, ParamId};
+use super::convection::Convection;
+use super::parameter::ParamId;
 
 /// A plane wall or window between two sides. (A wall of the engine; "surfaces" of the engine are its two sides.)
 #[derive(Debug, Clone, PartialEq, Deserialize)]

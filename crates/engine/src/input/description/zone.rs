@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::ParamId;
+use super::parameter::ParamId;
 
 /// A volume of well-mixed air.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

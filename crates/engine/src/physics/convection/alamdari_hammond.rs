@@ -9,8 +9,9 @@
 //! Range: laminar to turbulent flow at the surfaces of rooms with still air. A surface counts as horizontal when its normal lies
 //! within 45 deg of the vertical.
 
+use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference, HORIZONTAL, blend, fifth_root_where, sixth_power};
-use super::{Correlation, Forced, Placement, WindPart};
+use super::wind::Forced;
 use crate::number::real::Real;
 
 /// `factor (laminar |d|^3/2 + turbulent d^2)^1/6`, but `factor stable |d|^1/5` where warm air lies on a horizontal surface.

@@ -1,7 +1,8 @@
 //! A constant surface heat transfer coefficient, also one that includes long-wave radiation.
 
+use super::correlation::{Correlation, WindPart};
 use super::natural::{Coefficient, Difference};
-use super::{Correlation, Forced, WindPart};
+use super::wind::Forced;
 use crate::number::real::Real;
 
 /// One number.

@@ -7,8 +7,10 @@
 //!
 //! Range: that of `MoWiTT`, extended to rough surfaces and to any inclination.
 
+use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference, cube_root};
-use super::{Correlation, Forced, Placement, Wind, WindPart, mowitt, tarp};
+use super::wind::{Forced, Wind};
+use super::{mowitt, tarp};
 use crate::number::real::Real;
 
 /// `n + roughness (sqrt(n^2 + (wind V^b)^2) - n)`, n TARP's natural part, windward and leeward, V at the mast.

@@ -10,8 +10,9 @@
 //!
 //! Range: still room air. The properties are those of air at 20 degC and the site's density.
 
+use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference, any_power, cube_root};
-use super::{Correlation, Forced, Placement, WindPart};
+use super::wind::Forced;
 use crate::number::real::{Mask, Real};
 use crate::physics::constants::{AIR_SPECIFIC_HEAT, GRAVITY};
 
@@ -133,8 +134,8 @@ impl<S: Real> WindPart<S> for Iso15099<S> {}
 
 #[cfg(test)]
 mod tests {
-    use super::Real;
     use crate::input::description::Convection;
+    use crate::number::real::Real;
     use crate::physics::convection::testing::{assert_close, coefficient, id, surface};
 
     /// In air of 1.2 kg/m3: Ra/(H^3 d) = 1.2^2 9.80665 1006 / (293.15 1.8205e-5 0.025621) = 1.03897e8 a K.

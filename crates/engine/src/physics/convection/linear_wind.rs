@@ -4,8 +4,9 @@
 //! below 5 m/s (Juerges' measurements on a vertical plate). Coefficients of this form include natural convection, and often
 //! long-wave radiation. The numbers are parameters.
 
+use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference};
-use super::{Correlation, Forced, Placement, Wind, WindPart};
+use super::wind::{Forced, Wind};
 use crate::number::real::Real;
 
 /// `constant + wind V`, V at the mast.

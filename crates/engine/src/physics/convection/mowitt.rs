@@ -6,12 +6,10 @@
 //!
 //! Range: very smooth, vertical surfaces (window glass) of low-rise buildings.
 
+use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference};
-use super::{Correlation, Forced, Placement, Wind, WindPart};
+use super::wind::{Forced, MOWITT_EXPONENTS, Wind};
 use crate::number::real::Real;
-
-/// Exponents of the wind, windward and leeward.
-pub(super) const EXPONENTS: [f64; 2] = [0.89, 0.617];
 
 /// `factor sqrt(0.84^2 |d|^2/3 + (wind V^b)^2)`, windward and leeward, V at the mast.
 #[derive(Debug, Clone)]
@@ -28,7 +26,7 @@ impl<S: Real> Mowitt<S> {
 
 /// Gains of the powers of the speed at the mast, windward and leeward.
 pub(super) fn wind_gains<S: Real>(wind_factor: S) -> [S; 2] {
-    let [windward, leeward] = EXPONENTS.map(|exponent| wind_factor.powf(S::constant(exponent)));
+    let [windward, leeward] = MOWITT_EXPONENTS.map(|exponent| wind_factor.powf(S::constant(exponent)));
     [windward.scale(3.26), leeward.scale(3.55)]
 }
 

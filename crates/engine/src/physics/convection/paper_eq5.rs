@@ -5,8 +5,9 @@
 //! is kept under its own name, so that results of the paper can be compared. It makes no difference between heat that flows up
 //! and heat that flows down.
 
+use super::correlation::{Correlation, WindPart};
 use super::natural::{Coefficient, Difference, blend, sixth_power};
-use super::{Correlation, Forced, WindPart};
+use super::wind::Forced;
 use crate::number::real::Real;
 
 /// `factor (laminar |d|^3/2 + turbulent d^2)^1/6`.

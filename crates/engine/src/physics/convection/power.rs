@@ -3,8 +3,9 @@
 //!
 //! The form of many published correlations; all numbers are parameters, and their source stands beside them in the description.
 
+use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference, any_power};
-use super::{Correlation, Forced, Placement, Wind, WindPart};
+use super::wind::{Forced, Wind};
 use crate::input::description::PowerLaw;
 use crate::input::values::Values;
 use crate::number::real::Real;

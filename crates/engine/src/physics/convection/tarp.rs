@@ -12,8 +12,9 @@
 //! Range: turbulent natural convection at surfaces of building size; forced part from a flat plate in parallel flow (Sparrow, Ramsey
 //! & Mass 1979, J. Heat Transfer 101(2), 199-204).
 
+use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference, cube_root};
-use super::{Correlation, Forced, Placement, Wind, WindPart};
+use super::wind::{Forced, Wind};
 use crate::number::real::Real;
 
 /// `natural |d|^1/3` where heat flows up and where it flows down; forced part per root of the wind at the mast.

@@ -1,8 +1,10 @@
 //! The wind, and its part of a surface heat transfer coefficient.
 
-use super::mowitt;
 use crate::input::description::Convection;
 use crate::number::real::Real;
+
+/// Exponents of the wind, windward and leeward.
+pub(super) const MOWITT_EXPONENTS: [f64; 2] = [0.89, 0.617];
 
 /// Wind speeds below this [m/s] count as this: `V^b` has an infinite slope at zero.
 const CALM: f64 = 1e-3;
@@ -70,7 +72,7 @@ impl Wind {
         Self {
             speed,
             root: Real::sqrt(moving),
-            mowitt: mowitt::EXPONENTS.map(power),
+            mowitt: MOWITT_EXPONENTS.map(power),
             logarithm: if terms.logarithm { Real::ln(moving) } else { 0.0 },
         }
     }

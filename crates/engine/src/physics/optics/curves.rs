@@ -2,7 +2,7 @@
 //!
 //! Source: Fritsch & Butland (1984), SIAM J. Sci. Stat. Comput. 5(2), doi:10.1137/0905021.
 
-use super::{Diffuse, Unit, cosine};
+use super::diffuse::{Diffuse, Unit, cosine};
 use crate::number::real::Real;
 
 /// Number of directions in a quarter of the horizon.

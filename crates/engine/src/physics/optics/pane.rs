@@ -104,7 +104,7 @@ fn coated<S: Real>(transmittance: S, reflectance: [S; 2], cosine: f64) -> Plate<
 
 #[cfg(test)]
 mod tests {
-    use super::super::cosine;
+    use super::super::diffuse::cosine;
     use super::*;
     use crate::input::description::ParamId;
 

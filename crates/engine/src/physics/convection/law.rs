@@ -1,0 +1,218 @@
+//! The correlation of a surface: any of those of this folder.
+
+use super::alamdari_hammond::AlamdariHammond;
+use super::constant::Constant;
+use super::correlation::{Correlation, Placement, WindPart};
+use super::doe2::Doe2;
+use super::iso15099::Iso15099;
+use super::linear_wind::LinearWind;
+use super::mowitt::Mowitt;
+use super::natural::{Coefficient, Difference};
+use super::paper_eq5::PaperEq5;
+use super::power::Power;
+use super::tarp::Tarp;
+use super::wind::{Forced, Wind};
+use crate::input::description::Convection;
+use crate::input::values::Values;
+use crate::number::real::Real;
+
+/// Heat flow from surface to air and its slope in `T_surface - T_air`.
+#[derive(Debug, Clone, Copy)]
+pub struct ConvectiveFlux<S> {
+    /// [W/m2].
+    pub flux: S,
+    /// [W/(m2 K)].
+    pub slope: S,
+}
+
+/// Defines `Law`, one variant for each correlation, and passes every question on to the correlation.
+macro_rules! laws {
+    ($($law:ident),*) => {
+        /// A correlation with its numbers.
+        #[derive(Debug, Clone)]
+        enum Law<S> {
+            $($law($law<S>),)*
+        }
+
+        impl<S> Law<S> {
+            #[inline(always)]
+            fn map<T>(&self, change: impl FnMut(&S) -> T) -> Law<T> {
+                match self {
+                    $(Self::$law(law) => Law::$law(law.map(change)),)*
+                }
+            }
+
+            #[inline(always)]
+            fn coefficient<V: Real>(
+                &self,
+                number: &impl Fn(&S) -> V,
+                upward: &S,
+                at: &Difference<V>,
+                forced: &Forced<V>,
+            ) -> Coefficient<V> {
+                match self {
+                    $(Self::$law(law) => law.coefficient(number, upward, at, forced),)*
+                }
+            }
+        }
+
+        impl<S: Real> Law<S> {
+            fn depends_on_wind(&self) -> bool {
+                match self {
+                    $(Self::$law(_) => <$law<S> as WindPart<S>>::DEPENDS_ON_WIND,)*
+                }
+            }
+
+            fn linear(&self) -> bool {
+                match self {
+                    $(Self::$law(_) => <$law<S> as WindPart<S>>::LINEAR,)*
+                }
+            }
+
+            #[inline(always)]
+            fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
+                match self {
+                    $(Self::$law(law) => law.forced(wind, windward),)*
+                }
+            }
+
+            fn calm(&self) -> Forced<S> {
+                match self {
+                    $(Self::$law(law) => law.calm(),)*
+                }
+            }
+        }
+    };
+}
+
+laws!(Constant, LinearWind, AlamdariHammond, PaperEq5, Tarp, Mowitt, Doe2, Iso15099, Power);
+
+impl<S: Real> Law<S> {
+    fn new(values: &Values<'_, S>, law: &Convection, surface: &Placement<S>) -> Self {
+        let get = |id| values.get(id);
+        match law {
+            Convection::Constant { coefficient } => Self::Constant(Constant::new(get(*coefficient))),
+            Convection::LinearWind { constant, wind } => {
+                Self::LinearWind(LinearWind::new(get(*constant), get(*wind), surface))
+            }
+            Convection::AlamdariHammond { length, factor } => {
+                Self::AlamdariHammond(AlamdariHammond::new(get(*length), get(*factor), surface))
+            }
+            Convection::PaperEq5 { length, factor } => {
+                Self::PaperEq5(PaperEq5::new(get(*length), get(*factor)))
+            }
+            Convection::Tarp { factor, roughness, perimeter } => {
+                let rough =
+                    roughness.zip(*perimeter).map(|(roughness, perimeter)| [get(roughness), get(perimeter)]);
+                Self::Tarp(Tarp::new(get(*factor), rough, surface))
+            }
+            Convection::Mowitt { factor } => Self::Mowitt(Mowitt::new(get(*factor), surface)),
+            Convection::Doe2 { factor, roughness } => {
+                Self::Doe2(Doe2::new(get(*factor), get(*roughness), surface))
+            }
+            Convection::Iso15099 { length, factor } => {
+                Self::Iso15099(Iso15099::new(get(*length), get(*factor), surface))
+            }
+            Convection::Power { upward, downward } => {
+                Self::Power(Power::new(values, [upward, downward], surface))
+            }
+        }
+    }
+}
+
+/// The correlation of a surface with its numbers.
+#[derive(Debug, Clone)]
+pub struct SurfaceConvection<S> {
+    law: Law<S>,
+    /// Upward component of the normal that points from the surface into the air [-].
+    upward: S,
+}
+
+impl<S> SurfaceConvection<S> {
+    /// The same correlation with other numbers.
+    #[inline(always)]
+    pub(crate) fn map<T>(&self, mut change: impl FnMut(&S) -> T) -> SurfaceConvection<T> {
+        let law = self.law.map(&mut change);
+        SurfaceConvection { law, upward: change(&self.upward) }
+    }
+
+    /// Whether another surface has the same correlation.
+    pub(crate) fn alike(&self, other: &Self) -> bool {
+        core::mem::discriminant(&self.law) == core::mem::discriminant(&other.law)
+    }
+
+    /// [`SurfaceConvection::flux`] of numbers that are still to be turned into those to compute with.
+    #[inline(always)]
+    pub(crate) fn flux_of<V: Real>(
+        &self,
+        number: impl Fn(&S) -> V,
+        d: V,
+        forced: &Forced<V>,
+    ) -> ConvectiveFlux<V> {
+        // q = h d, so q' = h + d h'.
+        let Coefficient { value, rise } =
+            self.law.coefficient(&number, &self.upward, &Difference::new(d), forced);
+        ConvectiveFlux { flux: value * d, slope: value + rise }
+    }
+}
+
+impl<S: Copy> SurfaceConvection<S> {
+    /// Surfaces of one correlation, their numbers side by side.
+    pub(crate) fn together(convections: &[&Self]) -> SurfaceConvection<Box<[S]>> {
+        let numbers = convections.iter().map(|convection| {
+            let mut numbers = Vec::new();
+            convection.map(|&number| numbers.push(number));
+            numbers
+        });
+        let numbers: Vec<_> = numbers.collect();
+        let mut place = 0..;
+        convections[0].map(|_| {
+            let place = place.next().unwrap_or(0);
+            numbers.iter().map(|convection| convection[place]).collect()
+        })
+    }
+}
+
+impl<S: Real> SurfaceConvection<S> {
+    /// Reads the numbers of a correlation for a surface.
+    pub fn new(values: &Values<'_, S>, law: &Convection, surface: &Placement<S>) -> Self {
+        Self { law: Law::new(values, law, surface), upward: surface.upward }
+    }
+
+    /// The coefficient, where it depends neither on temperature nor on wind.
+    pub fn constant(&self) -> Option<S> {
+        if let Law::Constant(law) = &self.law { Some(law.coefficient) } else { None }
+    }
+
+    /// Whether the heat flow is linear in the temperature difference.
+    pub fn straight(&self) -> bool {
+        self.law.linear()
+    }
+
+    /// Whether a part of the coefficient depends on the wind.
+    pub fn windy(&self) -> bool {
+        self.law.depends_on_wind()
+    }
+
+    /// The part of the coefficient without temperature; `windward`: where the wind blows onto the surface.
+    #[inline(always)]
+    pub fn forced(&self, wind: &Wind, windward: S::Mask) -> Forced<S> {
+        self.law.forced(wind, windward)
+    }
+
+    /// The part of the coefficient without temperature in calm air.
+    pub fn calm(&self) -> Forced<S> {
+        self.law.calm()
+    }
+
+    /// Heat flow at `d = T_surface - T_air` [K].
+    #[inline(always)]
+    pub fn flux(&self, d: S, forced: &Forced<S>) -> ConvectiveFlux<S> {
+        self.flux_of(
+            #[inline(always)]
+            |number| *number,
+            d,
+            forced,
+        )
+    }
+}
