@@ -10,11 +10,8 @@
 #[cfg(test)]
 extern crate self as mascarin_engine;
 #[cfg(test)]
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/engine/common/mod.rs"]
 mod common;
-#[cfg(test)]
-#[path = "../tests/common/random.rs"]
-mod random;
 
 pub mod balance;
 pub mod building;

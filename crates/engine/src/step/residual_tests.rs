@@ -3,11 +3,11 @@
 use crate::balance::ledger::Ledger;
 use crate::balance::terms::{Balances, Contents, Stage};
 use crate::building::plan::Plan;
+use crate::common::random::{Case, Contents as CaseContents};
 use crate::common::values;
 use crate::input::forcing::Forcing;
 use crate::number::lanes::Lanes;
 use crate::number::real::{Mask, Real};
-use crate::random::{Case, Contents as CaseContents};
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 

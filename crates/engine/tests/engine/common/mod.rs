@@ -1,11 +1,14 @@
 //! Small buildings and weathers for the tests of the engine.
 
-#![allow(dead_code, reason = "every test program uses its own part")]
+#![allow(dead_code, reason = "unit tests and tests of whole runs use parts of their own")]
 
 pub mod assorted;
 pub mod conditioned;
+pub mod difficult;
 pub mod glazed;
+pub mod glazed_box;
 pub mod melting;
+pub mod random;
 pub mod straight;
 
 use mascarin_engine::description::{

@@ -1,11 +1,7 @@
 //! What the nested iteration and halved steps arrive at.
 
-mod common;
-#[path = "common/difficult.rs"]
-mod difficult;
-
-use common::{try_run, values};
-use difficult::{all_steps, steps};
+use crate::common::difficult::{all_steps, steps};
+use crate::common::{try_run, values};
 use mascarin_engine::march::Options;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::state::Initial;

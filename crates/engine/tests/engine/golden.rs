@@ -5,17 +5,17 @@
 //! solver and the members that failed. Where answers change on purpose, run the tests and put the tables that they print
 //! in the place of the old ones.
 
-mod common;
-
 use core::fmt::Write as _;
 use std::process::Command;
 
-use common::assorted::{assorted_cell, assorted_weather, assorted_windows};
-use common::conditioned::{conditioned, conditioned_probes, conditioned_weather, plant};
-use common::glazed::{glazed_probes, glazed_rooms};
-use common::melting::{ceiling_weather, fine_ceiling, melting, melting_weather};
-use common::straight::{linear_cell, straight_cell};
-use common::{SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, values, weather};
+use crate::common::assorted::{assorted_cell, assorted_weather, assorted_windows};
+use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather, plant};
+use crate::common::glazed::{glazed_probes, glazed_rooms};
+use crate::common::melting::{ceiling_weather, fine_ceiling, melting, melting_weather};
+use crate::common::straight::{linear_cell, straight_cell};
+use crate::common::{
+    SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, values, weather,
+};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::jacobian::jacobian;
 use mascarin_engine::derivatives::trajectory::Trajectory;
@@ -709,7 +709,7 @@ fn ensembles_keep_their_bits() {
 fn narrower_lanes_keep_the_bits_of_ensembles() {
     for lanes in ["array", "avx2"] {
         let done = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "ensembles_keep_their_bits"])
+            .args(["--exact", "golden::ensembles_keep_their_bits"])
             .env(Level::VARIABLE, lanes)
             .output()
             .unwrap();

@@ -1,11 +1,7 @@
 //! Order of convergence in the step with a window in the building.
 
-mod common;
-#[path = "common/glazed_box.rs"]
-mod glazed_box;
-
-use common::{forcing, options, run};
-use glazed_box::glazed_box;
+use crate::common::glazed_box::glazed_box;
+use crate::common::{forcing, options, run};
 use mascarin_engine::forcing::channel;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;

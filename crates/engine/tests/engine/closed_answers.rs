@@ -5,9 +5,7 @@
     reason = "closed answers are computed with other functions than the engine's"
 )]
 
-mod common;
-
-use common::{Builder, facing, forcing, options, relative, run, set};
+use crate::common::{Builder, facing, forcing, options, relative, run, set};
 use core::f64::consts::TAU;
 use mascarin_engine::description::{Convection, Facing, ZoneLongwave};
 use mascarin_engine::forcing::channel;
@@ -330,7 +328,7 @@ fn maximum_principle() {
 /// Rows hold what the plan promises.
 #[test]
 fn unknown_parts_are_refused() {
-    let mut description = common::cell(0.04);
+    let mut description = crate::common::cell(0.04);
     description.surfaces[0].construction = 99;
     assert!(Plan::new(description).is_err());
 }

@@ -1,11 +1,7 @@
 //! Readings over halved steps.
 
-mod common;
-#[path = "common/difficult.rs"]
-mod difficult;
-
-use common::relative;
-use difficult::steps;
+use crate::common::difficult::steps;
+use crate::common::relative;
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::step::Scheme;
 

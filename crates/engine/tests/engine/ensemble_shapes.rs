@@ -1,8 +1,6 @@
 //! Ensembles of unusual shapes: without outputs, without members, without recorded rows.
 
-mod common;
-
-use common::{cell, cell_probes, cell_weather, forcing, options, run, values};
+use crate::common::{cell, cell_probes, cell_weather, forcing, options, run, values};
 use mascarin_engine::batch::{Ensemble, ensemble};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::{Options, Watch};

@@ -1,9 +1,7 @@
 //! Zones with plants, gains, ventilation, openings and paths: loads, lanes, derivatives, books.
 
-mod common;
-
-use common::conditioned::{conditioned, conditioned_probes, conditioned_weather, number, plant};
-use common::{Builder, facing, forcing, options, position, relative, run, try_run, values, warmup};
+use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather, number, plant};
+use crate::common::{Builder, facing, forcing, options, position, relative, run, try_run, values, warmup};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::description::{AirPath, Facing, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;

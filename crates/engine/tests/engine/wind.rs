@@ -1,8 +1,6 @@
 //! Which walls a wind blows onto.
 
-mod common;
-
-use common::{Builder, facing, forcing, options, position, set, values};
+use crate::common::{Builder, facing, forcing, options, position, set, values};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::description::{Convection, Exposure, Facing, OutdoorLongwave};
 use mascarin_engine::forcing::{Forcing, channel};

@@ -2,13 +2,10 @@
 //!
 //! `MASCARIN_PROPERTY_CASES` sets the number of buildings of each test; `MASCARIN_PROPERTY_SEED` runs one building only.
 
-mod common;
-#[path = "common/random.rs"]
-mod random;
-
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use common::{relative, try_run, values};
+use crate::common::random::{Case, Contents, Random, of_surface, of_zone, probes, reordered};
+use crate::common::{relative, try_run, values};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::jacobian::jacobian;
 use mascarin_engine::derivatives::trajectory::Trajectory;
@@ -17,7 +14,6 @@ use mascarin_engine::march::{Options, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::step::Scheme;
-use random::{Case, Contents, Random, of_surface, of_zone, probes, reordered};
 
 /// Buildings of each test, unless the environment asks for another number.
 const CASES: u64 = 40;

@@ -1,10 +1,8 @@
 //! Properties of whole runs of a cell with every film, two zones and a phase-change ceiling.
 
-mod common;
-
-use common::melting::{ceiling, ceiling_weather};
-use common::straight::straight_cell;
-use common::{
+use crate::common::melting::{ceiling, ceiling_weather};
+use crate::common::straight::straight_cell;
+use crate::common::{
     SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, position, run, try_run, values,
     warmup,
 };

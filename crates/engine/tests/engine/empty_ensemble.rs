@@ -1,8 +1,6 @@
 //! Ensembles at the ends: without outputs, without members.
 
-mod common;
-
-use common::{cell, cell_probes, cell_weather, forcing, options, values};
+use crate::common::{cell, cell_probes, cell_weather, forcing, options, values};
 use mascarin_engine::batch::{Ensemble, ensemble};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::Watch;

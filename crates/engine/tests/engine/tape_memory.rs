@@ -1,11 +1,9 @@
 //! Reverse derivatives leave no memory behind, whether they succeed, fail or panic.
 
-mod common;
-
 use core::sync::atomic::Ordering;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use common::{cell, cell_probes, cell_weather, forcing, options, values};
+use crate::common::{cell, cell_probes, cell_weather, forcing, options, values};
 use mascarin_engine::derivatives::trajectory::Trajectory;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;

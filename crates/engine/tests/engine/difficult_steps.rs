@@ -1,11 +1,7 @@
 //! Halved steps and the nested iteration: what they find, and slopes along them.
 
-mod common;
-#[path = "common/difficult.rs"]
-mod difficult;
-
-use common::{forcing, options, position, try_run, values};
-use difficult::{jumps, probes, sharp, steps};
+use crate::common::difficult::{jumps, probes, sharp, steps};
+use crate::common::{forcing, options, position, try_run, values};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::jacobian::jacobian;
 use mascarin_engine::derivatives::trajectory::Trajectory;

@@ -1,14 +1,8 @@
 //! Slopes along known solutions against slopes of the whole iteration, and against differences.
 
-mod common;
-#[path = "common/difficult.rs"]
-mod difficult;
-#[path = "common/glazed_box.rs"]
-mod glazed_box;
-
-use common::{Builder, cell, cell_probes, cell_weather, forcing, options, position, set, values};
-use difficult::{all_steps, jumps};
-use glazed_box::glazed_box;
+use crate::common::difficult::{all_steps, jumps};
+use crate::common::glazed_box::glazed_box;
+use crate::common::{Builder, cell, cell_probes, cell_weather, forcing, options, position, set, values};
 use mascarin_engine::derivatives::jacobian::jacobian;
 use mascarin_engine::derivatives::trajectory::Trajectory;
 use mascarin_engine::description::{Description, IdealLoad, SetPoint, ZoneLongwave};

@@ -1,9 +1,7 @@
 //! Rooms with windows, frames and shades: books, lanes, derivatives, order.
 
-mod common;
-
-use common::glazed::{glazed, glazed_probes, glazed_rooms};
-use common::{facing, forcing, options, position, run, try_run, values, warmup, weather};
+use crate::common::glazed::{glazed, glazed_probes, glazed_rooms};
+use crate::common::{facing, forcing, options, position, run, try_run, values, warmup, weather};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::description::{Facing, Glazing, ZoneSun};
 use mascarin_engine::forcing::Forcing;

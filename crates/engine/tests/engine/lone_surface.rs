@@ -1,8 +1,6 @@
 //! Surfaces that see no other surface of their zone.
 
-mod common;
-
-use common::{Builder, forcing, options, run};
+use crate::common::{Builder, forcing, options, run};
 use mascarin_engine::description::ZoneLongwave;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
@@ -22,7 +20,7 @@ fn walls_that_look_the_same_way_exchange_nothing() {
             b.surface(name, wall, [area, 90.0, 0.0], outside, inside);
         }
         let plan = Plan::new(b.describe()).unwrap();
-        let rows = forcing(&plan, Scheme::Sdirk2, 48, 900.0, common::weather);
+        let rows = forcing(&plan, Scheme::Sdirk2, 48, 900.0, crate::common::weather);
         let readings = |side| Probe::FaceTemperature { surface: 1, side };
         let probes = vec![Probe::AirTemperature { zone: 0 }, readings(0), readings(1)];
         run(&plan, &rows, &options(Scheme::Sdirk2, 900.0, probes)).records

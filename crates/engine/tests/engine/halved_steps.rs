@@ -1,10 +1,8 @@
 //! Steps that are made in parts.
 
-mod common;
-
-use common::conditioned::plant;
-use common::melting::{ceiling_weather, fine_ceiling};
-use common::{forcing, options, run};
+use crate::common::conditioned::plant;
+use crate::common::melting::{ceiling_weather, fine_ceiling};
+use crate::common::{forcing, options, run};
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;

@@ -1,10 +1,8 @@
 //! Single runs with the vector registers that the environment asks for: the same bits with all of them.
 
-mod common;
-
 use std::process::Command;
 
-use common::{cell, cell_probes, cell_weather, forcing, options, values};
+use crate::common::{cell, cell_probes, cell_weather, forcing, options, values};
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::{Watch, march};
@@ -38,7 +36,7 @@ fn child() {
 
 fn run_with(lanes: &str) -> String {
     let done = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "child", "--nocapture"])
+        .args(["--exact", "levels::child", "--nocapture"])
         .envs([(CHILD, "yes"), (Level::VARIABLE, lanes)])
         .output()
         .unwrap();

@@ -1,0 +1,25 @@
+//! Tests of whole runs through the public interface of the engine.
+//!
+//! One program for all of them: the engine is compiled for each kind of number once.
+
+mod common;
+
+mod closed_answers;
+mod difficult_steps;
+mod empty_ensemble;
+mod ensemble_shapes;
+mod golden;
+mod halved_steps;
+mod halving;
+mod hysteresis;
+mod levels;
+mod lone_surface;
+mod marching;
+mod nested_iteration;
+mod order_with_windows;
+mod properties;
+mod slopes_of_stages;
+mod tape_memory;
+mod wind;
+mod windows;
+mod zones;
