@@ -30,37 +30,12 @@ impl<S: Real> Chain<S> {
     /// The system of a wall, written once where its properties are constant.
     pub fn new(wall: &WallCoefficients<S>) -> Self {
         let n = wall.cells.len();
-        let none = Link { left: S::zero(), right: S::zero(), offset: S::zero() };
-        let mut system = Self {
-            links: vec![none; n + 1],
-            storage: vec![Storage::constant(S::zero()); n],
+        Self {
+            links: solid_links(wall),
+            storage: wall.cells.iter().map(|cell| Storage::constant(solid_capacity(&cell.matter))).collect(),
             rate: vec![S::zero(); n],
             elimination: Tridiagonal::new(n),
             phase_change: PhaseChange::new(wall),
-        };
-        system.link_solids(wall);
-        system
-    }
-
-    /// Links and storage that do not depend on temperature.
-    fn link_solids(&mut self, wall: &WallCoefficients<S>) {
-        for (storage, cell) in self.storage.iter_mut().zip(&wall.cells) {
-            if let Matter::Solid { capacity, .. } = cell.matter {
-                *storage = Storage::constant(capacity);
-            }
-        }
-        let half = |i: usize| match wall.cells[i].matter {
-            Matter::Solid { conductivity, .. } => Some(wall.cells[i].thickness.scale(0.5) / conductivity),
-            Matter::Pcm(_) => None,
-        };
-        let n = wall.cells.len();
-        for i in 0..=n {
-            let left = if i > 0 { half(i - 1) } else { Some(S::zero()) };
-            let right = if i < n { half(i) } else { Some(S::zero()) };
-            if let (Some(left), Some(right)) = (left, right) {
-                let conductance = S::one() / (left + wall.extra[i] + right);
-                self.links[i] = Link { left: conductance, right: conductance, offset: S::zero() };
-            }
         }
     }
 
@@ -239,6 +214,33 @@ impl Chain<f64> {
     pub(crate) fn forward_transposed(&self, surfaces: [f64; 2], cells: &mut [f64]) {
         self.elimination.forward_transposed(&self.links, surfaces, cells);
     }
+}
+
+/// Capacity of a cell that does not depend on temperature, else zero [J/(m3 K)].
+fn solid_capacity<S: Real>(matter: &Matter<S>) -> S {
+    match matter {
+        Matter::Solid { capacity, .. } => *capacity,
+        Matter::Pcm(_) => S::zero(),
+    }
+}
+
+/// Links that do not depend on temperature: half cells and massless layers in series. Other links are zero.
+fn solid_links<S: Real>(wall: &WallCoefficients<S>) -> Vec<Link<S>> {
+    let n = wall.cells.len();
+    let half = |i: usize| match wall.cells[i].matter {
+        Matter::Solid { conductivity, .. } => Some(wall.cells[i].thickness.scale(0.5) / conductivity),
+        Matter::Pcm(_) => None,
+    };
+    let link = |i: usize| {
+        let left = if i > 0 { half(i - 1) } else { Some(S::zero()) };
+        let right = if i < n { half(i) } else { Some(S::zero()) };
+        let conductance = match (left, right) {
+            (Some(left), Some(right)) => S::one() / (left + wall.extra[i] + right),
+            _ => S::zero(),
+        };
+        Link { left: conductance, right: conductance, offset: S::zero() }
+    };
+    (0..=n).map(link).collect()
 }
 
 #[cfg(test)]
