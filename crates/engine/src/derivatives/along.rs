@@ -158,7 +158,7 @@ impl<'a, S: Real> StepperAlong<'a, S> {
                     matrix.stored_by_first_stage(rows, place.ratio);
                 }
                 rows[first_air + zone] += 1.0;
-                matrix.solve_beside(rows, scratch);
+                matrix.solve_values(rows, scratch);
             }
             stepper.set_response(p, &rows[first_air..]);
         }

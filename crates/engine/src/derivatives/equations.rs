@@ -189,7 +189,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         held: Held<S>,
     ) {
         let rate = thickness.lane(0) / held.length;
-        let above = self.at[cell] - enthalpy.place.lane(0);
+        let above = self.at[cell] - enthalpy.reference.lane(0);
         let mut start = held.start.lane(0);
         if held.ratio != 0.0 {
             start += (held.first.lane(0) - start) * held.ratio;

@@ -13,8 +13,8 @@ use crate::linear::laws::{LinearisedLaws, StageInputs};
 use crate::linear::step_maps::StepMaps;
 use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces, SurfaceLaws, solve_pair};
 use crate::linear::unknowns::Unknowns;
-use crate::linear::wall::Chain;
-use crate::linear::zone_front::{Front, ZoneFronts};
+use crate::linear::wall::WallSystem;
+use crate::linear::zone_front::{Elimination, ZoneFronts};
 use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::weather::conditions::Conditions;
@@ -23,7 +23,7 @@ use crate::weather::conditions::Conditions;
 #[derive(Debug, Clone)]
 pub(crate) struct BuildingSystem<'a, S> {
     /// The linearised walls and their elimination.
-    pub(crate) walls: Vec<Chain<S>>,
+    pub(crate) walls: Vec<WallSystem<S>>,
     /// Steps of the linear walls.
     pub(crate) step_maps: StepMaps<S>,
     /// Heat into surface e of each wall by the temperature of surface o [W/(m2 K)].
@@ -44,7 +44,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
     /// The system of a building with its constant laws, for a scheme's diagonal coefficient.
     pub(crate) fn new(model: &Model<'a, S>, laws: &LinearisedLaws<S>, diagonal: f64) -> Self {
         let (plan, coefficients) = (model.plan, &model.coefficients);
-        let walls: Vec<_> = coefficients.walls.iter().map(Chain::new).collect();
+        let walls: Vec<_> = coefficients.walls.iter().map(WallSystem::new).collect();
         let count = plan.walls.len();
         Self {
             step_maps: StepMaps::new(plan, coefficients, &walls, diagonal),
@@ -69,10 +69,10 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
                 self.responses[w] = self.walls[w].factor(&model.coefficients.walls[w], length);
             }
             for &w in &model.parts.nonlinear_walls {
-                self.walls[w].pace(&model.coefficients.walls[w], length);
+                self.walls[w].set_stage_length(&model.coefficients.walls[w], length);
             }
             self.step_maps.factor(&self.walls);
-            self.zone_fronts.respond(&self.responses);
+            self.zone_fronts.set_responses(&self.responses);
             self.factored_length = length;
         }
         new
@@ -95,7 +95,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         } else {
             self.step_maps.second_sources(&mut self.sources);
         }
-        self.zone_fronts.begin(inputs.conditions, &self.sources);
+        self.zone_fronts.begin_stage(inputs.conditions, &self.sources);
         if !parts.nonlinear_balances {
             self.assemble_linear(inputs, matrix, Some(iterate));
         }
@@ -156,10 +156,10 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             self.resolve_linear_walls(model, solution);
         }
         if !model.parts.balances_stay() {
-            self.zone_fronts.tell_laws(laws);
+            self.zone_fronts.write_exterior_laws(laws);
         }
         if !model.plan.ideal_loads.is_empty() {
-            self.zone_fronts.tell_locals(&mut self.exterior, &mut self.inverses);
+            self.zone_fronts.write_exterior_surfaces(&mut self.exterior, &mut self.inverses);
         }
         let mut sum = S::zero();
         for &w in &model.parts.detached_walls {
@@ -185,8 +185,8 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         for &w in &parts.shared_walls {
             self.exterior[w] = self.eliminate_wall(inputs, w, matrix);
         }
-        let front = if matrix { Front::Whole } else { Front::Right };
-        self.zone_fronts.eliminate(iterate, front, parts.balances_stay(), &mut self.coupled);
+        let elimination = if matrix { Elimination::Full } else { Elimination::RightHandSide };
+        self.zone_fronts.eliminate(iterate, elimination, parts.balances_stay(), &mut self.coupled);
         if matrix {
             self.coupled.keep_matrix();
         }
@@ -303,7 +303,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
     fn resolve_linear_walls(&mut self, model: &Model<'_, S>, solution: &mut Unknowns<S>) {
         self.coupled.solve_first();
         let stays = model.parts.balances_stay();
-        self.zone_fronts.resolve(stays, &mut self.coupled.right, &mut solution.surfaces);
+        self.zone_fronts.solve(stays, &mut self.coupled.right, &mut solution.surfaces);
         for &w in &model.parts.shared_walls {
             let surfaces = self.resolve_surfaces(model, w);
             solution.surfaces.set_pair(w, surfaces);

@@ -148,7 +148,7 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
 impl CoupledSystem<'_, f64> {
     /// The solution for right-hand sides of another kind of number, with the factors at hand.
     #[inline(always)]
-    pub(crate) fn solve_beside<R: Real>(&self, right: &mut [R]) {
+    pub(crate) fn solve_values<R: Real>(&self, right: &mut [R]) {
         self.solve_with::<PlainMatrix, R>(right);
     }
 

@@ -11,7 +11,7 @@ use crate::building::plan::{Plan, SurfaceRole};
 use crate::linear::building_system::{BuildingSystem, exterior_balance, is_held};
 use crate::linear::laws::{LinearisedLaws, StageInputs};
 use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces};
-use crate::linear::wall::Chain;
+use crate::linear::wall::WallSystem;
 use crate::number::real::{LinearSystem, Real};
 use crate::weather::conditions::Conditions;
 use crate::weather::index::WeatherIndex;
@@ -30,7 +30,7 @@ pub(crate) struct StageMatrix<'a> {
 impl LinearSystem for StageMatrix<'_> {
     #[inline(always)]
     fn solve<R: Real>(&self, rows: &mut [R], scratch: &mut Vec<R>) {
-        self.solve_beside(rows, scratch);
+        self.solve_values(rows, scratch);
     }
 }
 
@@ -59,7 +59,7 @@ impl<'a> StageMatrix<'a> {
     #[inline(always)]
     pub(crate) fn factor<S: Real>(
         &mut self,
-        (laws, walls, paths): (&LinearisedLaws<S>, &[Chain<S>], &[S]),
+        (laws, walls, paths): (&LinearisedLaws<S>, &[WallSystem<S>], &[S]),
         length: f64,
         new: bool,
     ) {
@@ -70,12 +70,12 @@ impl<'a> StageMatrix<'a> {
         let Self { model, laws, conditions, zeros, system } = self;
         let inputs = StageInputs { model, conditions, laws, air: zeros, load: zeros, length };
         if !model.parts.balances_stay() || new {
-            system.zone_fronts.adopt(&laws.surfaces);
+            system.zone_fronts.copy_laws(&laws.surfaces);
             system.assemble_linear(&inputs, true, None);
-            system.zone_fronts.tell_locals(&mut system.exterior, &mut system.inverses);
+            system.zone_fronts.write_exterior_surfaces(&mut system.exterior, &mut system.inverses);
         }
         for &w in &model.parts.nonlinear_walls {
-            system.walls[w].adopt(&walls[w]);
+            system.walls[w].copy_values(&walls[w]);
             system.responses[w] = system.walls[w].factor(&model.coefficients.walls[w], length);
         }
         system.assemble_nonlinear(&inputs);
@@ -115,7 +115,7 @@ impl<'a> StageMatrix<'a> {
 
     /// Replaces the right-hand sides of all equations (cells, surfaces, airs) by their solution.
     #[inline(always)]
-    pub(crate) fn solve_beside<R: Real>(&self, rows: &mut [R], block: &mut Vec<R>) {
+    pub(crate) fn solve_values<R: Real>(&self, rows: &mut [R], block: &mut Vec<R>) {
         let (cells, rest) = rows.split_at_mut(self.model.plan.n_cells);
         let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
         block.clear();
@@ -152,9 +152,9 @@ impl<'a> StageMatrix<'a> {
         for (zone, &air) in self.model.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
-        self.system.zone_fronts.forward_beside(block);
-        self.system.coupled.solve_beside(block);
-        self.system.zone_fronts.back_beside(block);
+        self.system.zone_fronts.forward_values(block);
+        self.system.coupled.solve_values(block);
+        self.system.zone_fronts.back_values(block);
         for (zone, air) in self.model.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }
@@ -173,7 +173,7 @@ impl<'a> StageMatrix<'a> {
         }
     }
 
-    /// Replaces weights on all unknowns by weights on their equations: the transpose of [`Self::solve_beside`].
+    /// Replaces weights on all unknowns by weights on their equations: the transpose of [`Self::solve_values`].
     pub(crate) fn solve_transposed(&self, rows: &mut [f64], block: &mut Vec<f64>) {
         let (cells, rest) = rows.split_at_mut(self.model.plan.n_cells);
         let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());

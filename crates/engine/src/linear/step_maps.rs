@@ -13,7 +13,7 @@ use core::ops::Range;
 
 use crate::building::coefficients::Coefficients;
 use crate::building::plan::Plan;
-use crate::linear::wall::Chain;
+use crate::linear::wall::WallSystem;
 use crate::number::real::Real;
 use crate::number::simd::widened;
 
@@ -58,10 +58,10 @@ pub(crate) struct StepMaps<S> {
 }
 
 impl<S: Real> StepMap<S> {
-    /// Computes the maps from a factored wall, see [`Chain::factor`], column by column.
+    /// Computes the maps from a factored wall, see [`WallSystem::factor`], column by column.
     fn compute(
         &mut self,
-        chain: &Chain<S>,
+        chain: &WallSystem<S>,
         ratio: f64,
         from_cells: &mut [Rows<S>],
         from_surfaces: &mut [[Rows<S>; 4]],
@@ -127,7 +127,12 @@ fn with_wide_instructions<S: Real, R>(work: impl FnOnce() -> R) -> R {
 
 impl<S: Real> StepMaps<S> {
     /// Walls of a plan, for a scheme's diagonal coefficient.
-    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, chains: &[Chain<S>], diagonal: f64) -> Self {
+    pub(crate) fn new(
+        plan: &Plan,
+        numbers: &Coefficients<S>,
+        chains: &[WallSystem<S>],
+        diagonal: f64,
+    ) -> Self {
         let mut step_maps = Self {
             walls: Vec::new(),
             from_cells: Vec::new(),
@@ -166,7 +171,7 @@ impl<S: Real> StepMaps<S> {
     /// Computes all maps from the walls, factored for a stage length.
     #[cold]
     #[inline(never)]
-    pub(crate) fn factor(&mut self, chains: &[Chain<S>]) {
+    pub(crate) fn factor(&mut self, chains: &[WallSystem<S>]) {
         let (mut from_cells, mut from_surfaces) = (&mut self.from_cells[..], &mut self.from_surfaces[..]);
         for step_map in &mut self.walls {
             let [of_cells, of_surfaces] = step_map.blocks;
@@ -216,7 +221,7 @@ impl<S: Real> StepMaps<S> {
 
     /// Stores the temperatures of the surfaces at the end of the first stage.
     #[inline(always)]
-    pub(crate) fn hold_over(&mut self, surfaces: &[S]) {
+    pub(crate) fn set_first_surfaces(&mut self, surfaces: &[S]) {
         let (pairs, _) = surfaces.as_chunks::<2>();
         for step_map in &mut self.walls {
             step_map.first_surfaces = pairs[step_map.wall];

@@ -108,16 +108,19 @@ impl<S: Real> Tridiagonal<S> {
         let (mut first, mut first_outside, mut path) = (S::zero(), S::zero(), S::one());
         for i in 0..n {
             let (before, after) = (&links[i], &links[i + 1]);
-            let diagonal = storage(i) + before.right + after.left;
-            let inverse = S::one() / (diagonal - before.left * next);
+            let mut diagonal = storage(i) + before.right + after.left;
+            if const { RIGHT } || i > 0 {
+                diagonal = diagonal - before.left * next;
+            }
+            let inverse = S::one() / diagonal;
             if const { RIGHT } {
                 let right = heat(i) + before.offset - after.offset;
                 known = (right + before.left * known) * inverse;
                 first += path * known;
                 knowns[i] = known;
             }
-            to_outside = before.left * to_outside * inverse;
             next = after.right * inverse;
+            to_outside = before.left * to_outside * inverse;
             first_outside += path * to_outside;
             (inverses[i], nexts[i], to_outsides[i], paths[i]) = (inverse, next, to_outside, path);
             path = path * next;
@@ -153,7 +156,11 @@ impl<S: Real> Tridiagonal<S> {
     ) -> [R; 2] {
         let (mut first, mut before) = (R::zero(), R::zero());
         for (i, known) in known.iter_mut().enumerate() {
-            before = P::of(self.inverse[i], heat(i, *known) + P::of(links[i].left, before));
+            let mut right = heat(i, *known);
+            if i > 0 {
+                right += P::of(links[i].left, before);
+            }
+            before = P::of(self.inverse[i], right);
             *known = before;
             first += P::of(self.path[i], before);
         }

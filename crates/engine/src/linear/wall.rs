@@ -15,7 +15,7 @@ pub use crate::linear::wall_linearisation::{Iterate, Start, Storage, StorageRule
 
 /// The linearised wall of one Newton iteration and its elimination.
 #[derive(Debug, Clone)]
-pub struct Chain<S> {
+pub struct WallSystem<S> {
     /// Cells + 1 links; the first touches the outside surface, the last the inside surface.
     pub links: Vec<Link<S>>,
     /// Storage law of each cell.
@@ -26,41 +26,16 @@ pub struct Chain<S> {
     phase_change: PhaseChange<S>,
 }
 
-impl<S: Real> Chain<S> {
+impl<S: Real> WallSystem<S> {
     /// The system of a wall, written once where its properties are constant.
     pub fn new(wall: &WallCoefficients<S>) -> Self {
         let n = wall.cells.len();
-        let none = Link { left: S::zero(), right: S::zero(), offset: S::zero() };
-        let mut system = Self {
-            links: vec![none; n + 1],
-            storage: vec![Storage::constant(S::zero()); n],
+        Self {
+            links: solid_links(wall),
+            storage: wall.cells.iter().map(|cell| Storage::constant(solid_capacity(&cell.matter))).collect(),
             rate: vec![S::zero(); n],
             elimination: Tridiagonal::new(n),
             phase_change: PhaseChange::new(wall),
-        };
-        system.link_solids(wall);
-        system
-    }
-
-    /// Links and storage that do not depend on temperature.
-    fn link_solids(&mut self, wall: &WallCoefficients<S>) {
-        for (storage, cell) in self.storage.iter_mut().zip(&wall.cells) {
-            if let Matter::Solid { capacity, .. } = cell.matter {
-                *storage = Storage::constant(capacity);
-            }
-        }
-        let half = |i: usize| match wall.cells[i].matter {
-            Matter::Solid { conductivity, .. } => Some(wall.cells[i].thickness.scale(0.5) / conductivity),
-            Matter::Pcm(_) => None,
-        };
-        let n = wall.cells.len();
-        for i in 0..=n {
-            let left = if i > 0 { half(i - 1) } else { Some(S::zero()) };
-            let right = if i < n { half(i) } else { Some(S::zero()) };
-            if let (Some(left), Some(right)) = (left, right) {
-                let conductance = S::one() / (left + wall.extra[i] + right);
-                self.links[i] = Link { left: conductance, right: conductance, offset: S::zero() };
-            }
         }
     }
 
@@ -79,7 +54,7 @@ impl<S: Real> Chain<S> {
     /// Eliminates the cells for a stage of effective length `stage` [s]. Called again only when a coefficient changes.
     #[inline(always)]
     pub fn factor(&mut self, wall: &WallCoefficients<S>, stage: f64) -> [[S; 2]; 2] {
-        self.pace(wall, stage);
+        self.set_stage_length(wall, stage);
         let (storage, rate) = (&self.storage, &self.rate);
         self.elimination.factor(
             &self.links,
@@ -90,14 +65,14 @@ impl<S: Real> Chain<S> {
 
     /// Sets the stage length that cells are eliminated for by [`Self::condense`] [s].
     #[inline(always)]
-    pub fn pace(&mut self, wall: &WallCoefficients<S>, stage: f64) {
+    pub fn set_stage_length(&mut self, wall: &WallCoefficients<S>, stage: f64) {
         for (rate, cell) in self.rate.iter_mut().zip(&wall.cells) {
             *rate = cell.thickness.scale(1.0 / stage);
         }
     }
 
     /// Eliminates the cells, and with them the heat that they hold: `held` is the right-hand enthalpy [J/m3]. The stage length is
-    /// that of [`Self::pace`].
+    /// that of [`Self::set_stage_length`].
     #[inline(always)]
     pub fn condense(&mut self, held: &[S]) -> Condensed<S> {
         self.condense_with(
@@ -137,7 +112,7 @@ impl<S: Real> Chain<S> {
         for i in (0..cells.len()).rev() {
             change = self.elimination.cell(i, outside, change);
             self.storage[i].change = change;
-            cells[i] = self.storage[i].place + change;
+            cells[i] = self.storage[i].reference + change;
         }
     }
 
@@ -166,9 +141,9 @@ impl<S: Real> Chain<S> {
 
     /// Sets a solution that was found elsewhere.
     #[inline(always)]
-    pub(crate) fn arrive(&mut self, cells: &[S]) {
+    pub(crate) fn set_solution(&mut self, cells: &[S]) {
         for (storage, &cell) in self.storage.iter_mut().zip(cells) {
-            storage.change = cell - storage.place;
+            storage.change = cell - storage.reference;
         }
     }
 
@@ -182,7 +157,7 @@ impl<S: Real> Chain<S> {
 
     /// Liquid fraction of a phase-change cell at the solution, along the last tangent.
     #[inline(always)]
-    pub fn reached_fraction(&self, i: usize) -> S {
+    pub fn fraction_at_solution(&self, i: usize) -> S {
         self.phase_change.fraction_after(i, self.storage[i].change)
     }
 
@@ -194,10 +169,10 @@ impl<S: Real> Chain<S> {
 }
 
 /// A plain wall: what is solved with its factors may carry derivatives.
-impl Chain<f64> {
+impl WallSystem<f64> {
     /// Copies the values of another linearisation.
     #[inline(always)]
-    pub(crate) fn adopt<S: Real>(&mut self, other: &Chain<S>) {
+    pub(crate) fn copy_values<S: Real>(&mut self, other: &WallSystem<S>) {
         for (mine, theirs) in self.links.iter_mut().zip(&other.links) {
             (mine.left, mine.right) = (theirs.left.lane(0), theirs.right.lane(0));
         }
@@ -239,6 +214,33 @@ impl Chain<f64> {
     pub(crate) fn forward_transposed(&self, surfaces: [f64; 2], cells: &mut [f64]) {
         self.elimination.forward_transposed(&self.links, surfaces, cells);
     }
+}
+
+/// Capacity of a cell that does not depend on temperature, else zero [J/(m3 K)].
+fn solid_capacity<S: Real>(matter: &Matter<S>) -> S {
+    match matter {
+        Matter::Solid { capacity, .. } => *capacity,
+        Matter::Pcm(_) => S::zero(),
+    }
+}
+
+/// Links that do not depend on temperature: half cells and massless layers in series. Other links are zero.
+fn solid_links<S: Real>(wall: &WallCoefficients<S>) -> Vec<Link<S>> {
+    let n = wall.cells.len();
+    let half = |i: usize| match wall.cells[i].matter {
+        Matter::Solid { conductivity, .. } => Some(wall.cells[i].thickness.scale(0.5) / conductivity),
+        Matter::Pcm(_) => None,
+    };
+    let link = |i: usize| {
+        let left = if i > 0 { half(i - 1) } else { Some(S::zero()) };
+        let right = if i < n { half(i) } else { Some(S::zero()) };
+        let conductance = match (left, right) {
+            (Some(left), Some(right)) => S::one() / (left + wall.extra[i] + right),
+            _ => S::zero(),
+        };
+        Link { left: conductance, right: conductance, offset: S::zero() }
+    };
+    (0..=n).map(link).collect()
 }
 
 #[cfg(test)]

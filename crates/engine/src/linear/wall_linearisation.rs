@@ -15,14 +15,14 @@ use crate::linear::tridiagonal::Link;
 use crate::number::real::Real;
 use crate::physics::pcm::{PcmCoefficients, PcmMemory, PcmPoint};
 
-/// Enthalpy of a cell near the current iterate, `offset + capacity (T - place)` [J/m3].
+/// Enthalpy of a cell near the current iterate, `offset + capacity (T - reference)` [J/m3].
 ///
 /// The unknown of a phase-change cell is the change from its iterate, not the temperature: with a sharp melting range the
 /// capacity is so large that rounding of the temperature would show in the enthalpy.
 #[derive(Debug, Clone, Copy)]
 pub struct Storage<S> {
     /// Temperature that the tangent touches at; 0 where the capacity is constant [degC].
-    pub place: S,
+    pub reference: S,
 
     /// Enthalpy there [J/m3].
     pub offset: S,
@@ -38,18 +38,18 @@ impl<S: Real> Storage<S> {
     /// Constant properties.
     #[inline(always)]
     pub(super) fn constant(capacity: S) -> Self {
-        Self { place: S::zero(), offset: S::zero(), capacity, change: S::zero() }
+        Self { reference: S::zero(), offset: S::zero(), capacity, change: S::zero() }
     }
 
     /// A tangent; its slope is a constant for derivatives, because it counts only away from the solution.
     #[inline(always)]
-    fn tangent(place: S, offset: S, capacity: S) -> Self {
-        Self { place, offset, capacity: capacity.fixed(), change: S::zero() }
+    fn tangent(reference: S, offset: S, capacity: S) -> Self {
+        Self { reference, offset, capacity: capacity.fixed(), change: S::zero() }
     }
 
     /// Enthalpy at the solution.
     #[inline(always)]
-    pub fn reached(&self) -> S {
+    pub fn at_solution(&self) -> S {
         self.offset + self.capacity * self.change
     }
 }

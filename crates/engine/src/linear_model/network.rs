@@ -7,6 +7,7 @@ use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::linear::wall::{Link, Storage};
+use crate::number::dense::solve_many;
 use crate::number::line::Line;
 
 use super::{StateSpace, output_names, state_names};
@@ -157,7 +158,8 @@ impl<'a> Network<'a> {
         let (n, f, m) = (self.n_states, self.plan.surfaces.len(), self.inputs.len());
         let at = |row: usize, column: usize| self.conductance[row * self.n_nodes + column];
         let gain = |row: usize, input: usize| self.drive[row][input];
-        // Surfaces: -M_ff y = [M_fx | N_f] (x, u).
+        // Surfaces: -M_ff y = [M_fx | N_f] (x, u). What leaves a surface to other surfaces is a part of what leaves it to all
+        // nodes, and rows of held surfaces are those of the unit matrix: the matrix is diagonally dominant.
         let width = n + m;
         let mut matrix: Vec<f64> = (0..f * f).map(|k| -at(n + k / f, n + k % f)).collect();
         let mut response: Vec<f64> = (0..f * width)
@@ -166,7 +168,7 @@ impl<'a> Network<'a> {
                 if column < n { at(row, column) } else { gain(row, column - n) }
             })
             .collect();
-        solve(&mut matrix, &mut response, f, width);
+        solve_many(&mut matrix, &mut response, width);
         let mut rows = vec![0.0; n * width];
         for i in 0..n {
             for j in 0..width {
@@ -276,35 +278,5 @@ impl Sink<f64> for Network<'_> {
         let name = self.imposed_input(surface);
         let input = self.input((surface.index(), 1), &name);
         self.held.push((self.n_states + surface.index(), input));
-    }
-}
-
-/// Gaussian elimination with row pivoting, `width` right-hand sides in place.
-fn solve(matrix: &mut [f64], right: &mut [f64], n: usize, width: usize) {
-    for k in 0..n {
-        let pivot =
-            (k..n).max_by(|&a, &b| matrix[a * n + k].abs().total_cmp(&matrix[b * n + k].abs())).unwrap_or(k);
-        for column in 0..n {
-            matrix.swap(k * n + column, pivot * n + column);
-        }
-        for column in 0..width {
-            right.swap(k * width + column, pivot * width + column);
-        }
-        for i in (0..n).filter(|&i| i != k) {
-            let factor = matrix[i * n + k] / matrix[k * n + k];
-            if factor != 0.0 {
-                for column in k..n {
-                    matrix[i * n + column] -= factor * matrix[k * n + column];
-                }
-                for column in 0..width {
-                    right[i * width + column] -= factor * right[k * width + column];
-                }
-            }
-        }
-    }
-    for i in 0..n {
-        for column in 0..width {
-            right[i * width + column] /= matrix[i * n + i];
-        }
     }
 }

@@ -1,16 +1,20 @@
-//! Dense linear systems: Gaussian elimination without pivoting.
+//! Dense linear systems: Gaussian elimination without pivoting, the engine's only solver of such systems beside the fronts of
+//! zones, which are symmetric.
 //!
-//! Pivots are taken in the order of the rows. This is safe for the systems of this engine, whose matrices are diagonally
-//! dominant, and it keeps the order of all operations independent of the values: every lane of a pack computes the bits
-//! that it computes alone.
+//! Pivots are taken in the order of the rows, which keeps the order of all operations independent of the values: every
+//! lane of a pack computes the bits that it computes alone. This is safe where all leading principal minors are positive: for
+//! diagonally dominant matrices (exchange of radiation, surfaces of a linear model), for M-matrices and for the inverses of
+//! M-matrices (responses of airs to loads).
 
 use super::real::Real;
 
-/// Solves `matrix X = right` in place for `n` right-hand sides.
+/// Solves `matrix X = right` in place for `width` right-hand sides.
 ///
-/// Both arguments are `n` by `n`, row by row. `right` becomes the solution, `matrix` its upper triangular factor (with
-/// what the elimination leaves below the diagonal). The matrix has to be diagonally dominant: there is no pivoting.
-pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], n: usize) {
+/// The matrix is square, and both arguments stand row by row. `right` becomes the solution, `matrix` its upper triangular factor
+/// (with what the elimination leaves below the diagonal).
+#[inline(always)]
+pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], width: usize) {
+    let n = right.len() / width;
     for k in 0..n {
         let inverse = S::one() / matrix[k * n + k];
         for i in k + 1..n {
@@ -18,18 +22,18 @@ pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], n: usize) {
             for j in k + 1..n {
                 matrix[i * n + j] = matrix[i * n + j] - factor * matrix[k * n + j];
             }
-            for j in 0..n {
-                right[i * n + j] = right[i * n + j] - factor * right[k * n + j];
+            for j in 0..width {
+                right[i * width + j] = right[i * width + j] - factor * right[k * width + j];
             }
         }
     }
     for k in (0..n).rev() {
-        for j in 0..n {
-            let mut sum = right[k * n + j];
+        for j in 0..width {
+            let mut sum = right[k * width + j];
             for i in k + 1..n {
-                sum = sum - matrix[k * n + i] * right[i * n + j];
+                sum = sum - matrix[k * n + i] * right[i * width + j];
             }
-            right[k * n + j] = sum / matrix[k * n + k];
+            right[k * width + j] = sum / matrix[k * n + k];
         }
     }
 }
@@ -48,20 +52,40 @@ mod tests {
         }
     }
 
-    /// The product of a diagonally dominant matrix and the solution gives the right-hand sides again.
+    /// The product of a diagonally dominant matrix and the solution gives the right-hand sides again; each right-hand side
+    /// has the bits that it has alone.
     #[test]
     fn the_solution_satisfies_the_equations() {
-        let n = 7;
         let number = |k: usize| ((13 * k + 5) % 17) as f64 / 17.0;
-        let matrix: Vec<f64> = (0..n * n).map(|k| if k / n == k % n { 9.0 } else { -number(k) }).collect();
-        let right: Vec<f64> = (0..n * n).map(|k| number(3 * k + 1)).collect();
-        let (mut factor, mut solution) = (matrix.clone(), right.clone());
-        solve_many(&mut factor, &mut solution, n);
-        for i in 0..n {
-            for j in 0..n {
-                let product: f64 = (0..n).map(|k| matrix[i * n + k] * solution[k * n + j]).sum();
-                assert!((product - right[i * n + j]).abs() < 1e-14);
+        for (n, width) in (1..=40).map(|n| (n, [n, 1, 3][n % 3])) {
+            let entry = |k: usize| if k / n == k % n { 0.5 + n as f64 } else { -number(k) };
+            let matrix: Vec<f64> = (0..n * n).map(entry).collect();
+            let right: Vec<f64> = (0..n * width).map(|k| number(3 * k + 1)).collect();
+            let (mut factor, mut solution) = (matrix.clone(), right.clone());
+            solve_many(&mut factor, &mut solution, width);
+            for j in 0..width {
+                let column =
+                    |all: &[f64]| -> Vec<f64> { all.iter().skip(j).step_by(width).copied().collect() };
+                let (expected, found) = (column(&right), column(&solution));
+                for (row, expected) in matrix.chunks(n).zip(&expected) {
+                    let product: f64 = row.iter().zip(&found).map(|(a, x)| a * x).sum();
+                    assert!((product - expected).abs() < 1e-14, "{n} rows: {product} is not {expected}");
+                }
+                let mut alone = expected;
+                solve_many(&mut matrix.clone(), &mut alone, 1);
+                assert_eq!(alone, found, "bits of column {j} of {n} rows");
             }
+        }
+    }
+
+    /// Symmetric positive matrices need no dominance: the Hilbert matrix of 4 rows, and its inverse by hand.
+    #[test]
+    fn positive_minors_are_enough() {
+        let mut matrix: Vec<f64> = (0..16).map(|k| 1.0 / (k / 4 + k % 4 + 1) as f64).collect();
+        let mut right = [1.0, 0.0, 0.0, 0.0];
+        solve_many(&mut matrix, &mut right, 1);
+        for (found, expected) in right.iter().zip([16.0, -120.0, 240.0, -140.0]) {
+            assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
         }
     }
 }

@@ -38,10 +38,10 @@ impl<S: Real> Stepper<'_, S> {
             for (i, cell) in numbers.cells.iter().enumerate() {
                 let k = wall.first_cell + i;
                 let temperature = solver.solution.cells[k];
-                let mut enthalpy = chain.storage[i].reached();
+                let mut enthalpy = chain.storage[i].at_solution();
                 if let Matter::Pcm(law) = cell.matter {
                     let law = &numbers.pcm[law];
-                    let mut fraction = chain.reached_fraction(i);
+                    let mut fraction = chain.fraction_at_solution(i);
                     // Where the history matters: the point itself.
                     if law.remembers() || apparent {
                         let point = law.at(temperature, &state.memory[k]);

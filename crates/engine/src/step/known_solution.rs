@@ -146,7 +146,7 @@ impl<S: Real> Stepper<'_, S> {
         let StageSolver { system, solution: Unknowns { cells, surfaces, air }, .. } = &mut self.solver;
         solve([cells, surfaces, air]);
         for &w in &self.model.parts.nonlinear_walls {
-            system.walls[w].arrive(&cells[self.model.cells(w)]);
+            system.walls[w].set_solution(&cells[self.model.cells(w)]);
         }
     }
 
@@ -157,7 +157,7 @@ impl<S: Real> Stepper<'_, S> {
         for &w in &self.model.parts.nonlinear_walls {
             let (wall, chain) = (&self.model.plan.walls[w], &system.walls[w]);
             for (i, storage) in chain.storage.iter().enumerate() {
-                start.enthalpy[wall.first_cell + i] = storage.reached();
+                start.enthalpy[wall.first_cell + i] = storage.at_solution();
                 start.first_fraction[wall.first_cell + i] = chain.liquid_fraction(i);
             }
         }

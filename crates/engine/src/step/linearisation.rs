@@ -5,7 +5,7 @@ use crate::building::model::Model;
 use crate::building::plan::SurfaceRole;
 use crate::linear::laws::LinearisedLaws;
 use crate::linear::unknowns::Unknowns;
-use crate::linear::wall::{Chain, Iterate, Link, Start};
+use crate::linear::wall::{Iterate, Link, Start, WallSystem};
 use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::physics::air_flow;
@@ -60,7 +60,7 @@ impl<S: Real> Linearisation<S> {
         stage: &Stage<'_, S>,
         w: usize,
         (iterate, outer): (&Unknowns<S>, Option<&[S]>),
-        chain: &mut Chain<S>,
+        chain: &mut WallSystem<S>,
     ) {
         let (cells, state) = (stage.model.cells(w), stage.state);
         let numbers = &stage.model.coefficients.walls[w];

@@ -82,7 +82,7 @@ impl<S: Real> Stepper<'_, S> {
             let mut enthalpy = state.enthalpy.clone();
             for &w in &self.model.parts.nonlinear_walls {
                 for (i, storage) in self.solver.system.walls[w].storage.iter().enumerate() {
-                    enthalpy[self.model.plan.walls[w].first_cell + i] = storage.reached();
+                    enthalpy[self.model.plan.walls[w].first_cell + i] = storage.at_solution();
                 }
             }
             self.residuals.first = [cells.clone(), enthalpy, self.solver.solution.air.clone()];

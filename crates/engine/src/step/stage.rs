@@ -2,7 +2,7 @@
 
 use crate::building::model::Model;
 use crate::linear::unknowns::{Unknowns, copy_ranges, line};
-use crate::linear::wall::{Chain, StorageRule};
+use crate::linear::wall::{StorageRule, WallSystem};
 use crate::number::real::Real;
 use crate::step::state::State;
 use crate::weather::conditions::Conditions;
@@ -64,13 +64,13 @@ impl<S: Real> StageStart<S> {
         model: &Model<'_, S>,
         state: &State<S>,
         ratio: f64,
-        (walls, solution): (&[Chain<S>], &Unknowns<S>),
+        (walls, solution): (&[WallSystem<S>], &Unknowns<S>),
     ) {
         for &w in &model.parts.nonlinear_walls {
             let (wall, chain) = (&model.plan.walls[w], &walls[w]);
             for i in 0..wall.len() {
                 let k = wall.first_cell + i;
-                self.enthalpy[k] = line(state.enthalpy[k], chain.storage[i].reached(), ratio);
+                self.enthalpy[k] = line(state.enthalpy[k], chain.storage[i].at_solution(), ratio);
                 self.first_fraction[k] = chain.liquid_fraction(i);
             }
         }

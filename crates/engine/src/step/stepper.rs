@@ -222,7 +222,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     pub(super) fn begin_second_stage(&mut self, state: &State<S>) {
         let Self { model, solver, .. } = self;
         let StageSolver { system, start, solution, .. } = solver;
-        system.step_maps.hold_over(&solution.surfaces);
+        system.step_maps.set_first_surfaces(&solution.surfaces);
         start.go_on(model, state, self.scheme.tableau().ratio, (&system.walls, solution));
         self.extrapolate_stage(state);
     }

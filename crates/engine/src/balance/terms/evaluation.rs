@@ -65,7 +65,7 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
         enthalpy: &Storage<S>,
         held: Held<S>,
     ) {
-        let reached = enthalpy.offset + enthalpy.capacity * (self.cells[cell] - enthalpy.place);
+        let reached = enthalpy.offset + enthalpy.capacity * (self.cells[cell] - enthalpy.reference);
         let heat = area * thickness * (reached - held.value()).scale(1.0 / held.length);
         self.heat.into_node(Node::Cell(cell), area, -heat);
     }

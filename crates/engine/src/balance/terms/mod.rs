@@ -27,7 +27,7 @@ use crate::building::coefficients::Matter;
 use crate::building::ids::SurfaceId;
 use crate::building::model::Model;
 use crate::linear::laws::LinearisedLaws;
-use crate::linear::wall::{Chain, Link, Storage};
+use crate::linear::wall::{Link, Storage, WallSystem};
 use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::weather::conditions::Conditions;
@@ -179,7 +179,7 @@ pub(crate) struct Balances<'a, S: Real> {
     pub(crate) index: &'a FlowIndex<S>,
     pub(crate) conditions: &'a Conditions<S>,
     /// Linearised walls.
-    pub(crate) walls: &'a [Chain<S>],
+    pub(crate) walls: &'a [WallSystem<S>],
     /// Linearised laws of surfaces and zones.
     pub(crate) laws: &'a LinearisedLaws<S>,
     /// Ideal loads [W].
@@ -226,7 +226,7 @@ impl<S: Real> Balances<'_, S> {
                 link => Node::Cell(first + link - 1),
             };
             let place = |link: usize| {
-                if link == 0 || link == n + 1 { S::zero() } else { chain.storage[link - 1].place }
+                if link == 0 || link == n + 1 { S::zero() } else { chain.storage[link - 1].reference }
             };
             for (j, link) in chain.links.iter().enumerate() {
                 let ends = [node(j), node(j + 1)];

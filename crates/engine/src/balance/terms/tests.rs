@@ -34,7 +34,7 @@ fn at(plan: &Plan, surfaces: [f64; 2]) -> ([f64; 2], [f64; 2]) {
     let mut conditions = Conditions::new(plan, coefficients, &weather);
     conditions.surfaces[SurfaceId::outside(0)].temperature = OUTDOOR;
     conditions.surfaces[SurfaceId::inside(0)].temperature = IMPOSED;
-    let walls: Vec<_> = coefficients.walls.iter().map(Chain::new).collect();
+    let walls: Vec<_> = coefficients.walls.iter().map(WallSystem::new).collect();
     let balances = Balances {
         model: &model,
         index: &index,

@@ -100,7 +100,7 @@ fn random_m_matrices_are_solved_as_the_dense_solver_solves_them() {
             // Derivatives are solved like values.
             let mut duals = vec![Dual { value: f64::NAN, slope: [f64::NAN] }; before];
             duals.extend(right.iter().zip(&slopes).map(|(&value, &slope)| Dual { value, slope: [slope] }));
-            system.solve_beside(&mut duals);
+            system.solve_values(&mut duals);
             let found: Vec<f64> = duals[before..].iter().map(|dual| dual.slope[0]).collect();
             close(&found, &dense_solution(&matrix, &slopes), 1e-12, &format!("slopes of {size} unknowns"));
             assert!(duals[before..].iter().zip(&solved).all(|(dual, &bits)| dual.value.to_bits() == bits));
@@ -118,7 +118,7 @@ fn the_transpose_is_the_transpose() {
             let mut numbers = Numbers::new(size as u64 + 1);
             let (right, weights) = (numbers.line(size), numbers.line(size));
             let (mut solution, mut back) = (right.clone(), weights.clone());
-            system.solve_beside(&mut solution);
+            system.solve_values(&mut solution);
             system.solve_transposed(&mut back);
             adjoint((&weights, &solution), (&back, &right), &format!("{size} unknowns"));
         }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::StepMaps;
 use crate::building::coefficients::Coefficients;
 use crate::building::plan::Plan;
-use crate::linear::wall::Chain;
+use crate::linear::wall::WallSystem;
 
 /// Random numbers from 0 to 1 (multiplicative congruence with the factor of Knuth's MMIX).
 struct Random(u64);
@@ -134,7 +134,7 @@ fn compare(walls: &[Wall], random: &mut Random, diagonal: f64, dt: f64) {
     let plan = plan(walls);
     let numbers: Vec<f64> = plan.description.parameters.iter().map(|parameter| parameter.value).collect();
     let coefficients = Coefficients::new(&plan, &numbers);
-    let mut chains: Vec<_> = coefficients.walls.iter().map(Chain::new).collect();
+    let mut chains: Vec<_> = coefficients.walls.iter().map(WallSystem::new).collect();
     for (chain, wall) in chains.iter_mut().zip(&coefficients.walls) {
         chain.factor(wall, diagonal * dt);
     }
@@ -154,7 +154,7 @@ fn compare(walls: &[Wall], random: &mut Random, diagonal: f64, dt: f64) {
         maps.first_sources(&cells, &mut sources);
         for stage in 0..if diagonal < 1.0 { 2 } else { 1 } {
             if stage == 1 {
-                maps.hold_over(&first);
+                maps.set_first_surfaces(&first);
                 maps.second_sources(&mut sources);
             }
             expected.clear();
@@ -229,14 +229,14 @@ fn a_steady_state_stays() {
         let plan = plan(core::slice::from_ref(&wall));
         let numbers: Vec<f64> = plan.description.parameters.iter().map(|parameter| parameter.value).collect();
         let coefficients = Coefficients::new(&plan, &numbers);
-        let mut chain = Chain::new(&coefficients.walls[0]);
+        let mut chain = WallSystem::new(&coefficients.walls[0]);
         chain.factor(&coefficients.walls[0], diagonal * 600.0);
         let chains = [chain];
         let mut maps = StepMaps::new(&plan, &coefficients, &chains, diagonal);
         maps.factor(&chains);
         maps.begin();
         maps.first_sources(&cells, &mut [[0.0; 2]]);
-        maps.hold_over(&surfaces);
+        maps.set_first_surfaces(&surfaces);
         let heat = maps.finish(&surfaces, &mut cells);
         assert!((cells[0] - 25.0).abs() < 1e-13 && (cells[1] - 2.5).abs() < 1e-13, "{cells:?}");
         assert!(heat.abs() < 1e-13 * 3.0 * 0.1 * 2e6 * 30.0, "{heat}");

@@ -1,6 +1,6 @@
 //! A wall of solid layers: its steady state and its balances.
 
-use super::Chain;
+use super::WallSystem;
 use crate::building::coefficients::{Cell, Matter, WallCoefficients};
 use crate::linear::testing::{Numbers, close};
 
@@ -34,7 +34,7 @@ fn a_long_stage_gives_the_u_value() {
             Matter::Solid { conductivity, .. } => sum + cell.thickness / conductivity,
             Matter::Pcm(_) => f64::NAN,
         });
-        let response = Chain::new(&wall).factor(&wall, 1e18);
+        let response = WallSystem::new(&wall).factor(&wall, 1e18);
         let u = 1.0 / resistance;
         close(response.as_flattened(), &[-u, u, u, -u], 1e-9, &format!("{cells} cells"));
     }
@@ -45,8 +45,8 @@ fn a_long_stage_gives_the_u_value() {
 fn cells_and_surfaces_are_in_balance() {
     for cells in [0, 1, 2, 6, 20] {
         let wall = wall(cells);
-        let mut chain = Chain::<f64>::new(&wall);
-        chain.pace(&wall, STAGE);
+        let mut chain = WallSystem::<f64>::new(&wall);
+        chain.set_stage_length(&wall, STAGE);
         let mut numbers = Numbers::new(cells as u64);
         let (start, gains) = (numbers.line(cells), numbers.line(cells));
         let start: Vec<f64> = start.iter().map(|t| 20.0 + 5.0 * t).collect();
@@ -57,7 +57,7 @@ fn cells_and_surfaces_are_in_balance() {
         let mut found = vec![0.0; cells];
         chain.temperatures(surfaces, &mut found);
         for i in 0..cells {
-            let stored = (chain.storage[i].reached() - held[i]) * chain.rate[i];
+            let stored = (chain.storage[i].at_solution() - held[i]) * chain.rate[i];
             let inflow = chain.link_flux(i, surfaces) - chain.link_flux(i + 1, surfaces) + gains[i];
             assert!((stored - inflow).abs() < 1e-9, "cell {i} of {cells}: {stored} is not {inflow}");
         }
@@ -74,8 +74,8 @@ fn cells_and_surfaces_are_in_balance() {
 #[test]
 fn changes_are_differences_of_solutions() {
     let wall = wall(6);
-    let mut chain = Chain::<f64>::new(&wall);
-    chain.pace(&wall, STAGE);
+    let mut chain = WallSystem::<f64>::new(&wall);
+    chain.set_stage_length(&wall, STAGE);
     let mut numbers = Numbers::new(5);
     let (held, change): (Vec<f64>, Vec<f64>) =
         (0..6).map(|_| (2e7 * numbers.next::<f64>(), 1e6 * numbers.next::<f64>())).unzip();

@@ -125,14 +125,14 @@ fn storage_is_the_tangent_of_the_enthalpy() {
     for i in 0..2 {
         let mut tangent = storage[i];
         let slope = (law(CELLS[i] + STEP) - law(CELLS[i] - STEP)) / (2.0 * STEP);
-        assert_eq!((tangent.place, tangent.reached()), (CELLS[i], law(CELLS[i])));
+        assert_eq!((tangent.reference, tangent.at_solution()), (CELLS[i], law(CELLS[i])));
         assert!((tangent.capacity / slope - 1.0).abs() < 1e-7, "cell {i}: {} {slope}", tangent.capacity);
         assert!((split[i].offset / tangent.offset - 1.0).abs() < 1e-12, "{split:?}");
         assert!((split[i].capacity / tangent.capacity - 1.0).abs() < 1e-12, "{split:?}");
         tangent.change = 0.5;
-        assert_eq!(tangent.reached(), tangent.offset + 0.5 * tangent.capacity);
+        assert_eq!(tangent.at_solution(), tangent.offset + 0.5 * tangent.capacity);
     }
-    assert_eq!((storage[2].place, storage[2].capacity), (0.0, 8e5));
+    assert_eq!((storage[2].reference, storage[2].capacity), (0.0, 8e5));
 }
 
 /// `H_old + c(T_old) (T - T_old)`: the capacity stays that of the start.

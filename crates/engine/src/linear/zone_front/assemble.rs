@@ -4,7 +4,7 @@ use crate::number::line::Line;
 use crate::number::real::{Abreast, Real};
 
 use super::laws::Laws;
-use super::{Front, Layout, ZoneFront};
+use super::{Elimination, Layout, ZoneFront};
 
 /// The coefficients of a front. Unknowns are emissions, see the [module](super).
 #[derive(Debug, Clone)]
@@ -48,20 +48,20 @@ impl<S: Real> Equations<S> {
 impl<S: Real> ZoneFront<S> {
     /// Eliminates the exterior surfaces, and sums up what acts on the surfaces of the zone and on its air.
     #[inline(always)]
-    pub(super) fn assemble<V: Abreast<S>>(&mut self, front: Front) {
+    pub(super) fn assemble<V: Abreast<S>>(&mut self, elimination: Elimination) {
         let Layout { surfaces, eliminated, .. } = self.layout;
         for start in (0..surfaces).step_by(S::SIDE) {
             let (mut gain, mut right) = (V::zero(), part!(self.heat, start));
             if start < eliminated {
-                let from_walls: (V, V) = self.exterior.eliminate(front, start);
+                let from_walls: (V, V) = self.exterior.eliminate(elimination, start);
                 gain = from_walls.0;
                 right += from_walls.1;
             }
-            self.assemble_register(front, start, gain, right);
+            self.assemble_register(elimination, start, gain, right);
         }
         let equations = &mut self.equations;
         equations.right[surfaces] = sum(&equations.air_heat[..surfaces]);
-        if front == Front::Whole {
+        if elimination == Elimination::Full {
             equations.diagonal[surfaces] = sum(&equations.to_air[..eliminated]);
         }
     }
@@ -69,14 +69,20 @@ impl<S: Real> ZoneFront<S> {
     /// Adds convection and emission of the surfaces of one register. `gain`: heat from the wall by the surface's temperature
     /// [W/K], `right`: by nothing in the zone [W].
     #[inline(always)]
-    fn assemble_register<V: Abreast<S>>(&mut self, front: Front, start: usize, gain: V, mut right: V) {
+    fn assemble_register<V: Abreast<S>>(
+        &mut self,
+        elimination: Elimination,
+        start: usize,
+        gain: V,
+        mut right: V,
+    ) {
         let places = start..start + S::SIDE;
         let (laws, equations) = (&self.laws, &mut self.equations);
         let convection: Line<V> = laws.convection_at(start);
         let area: V = part!(self.area, start);
         let mut air_heat = area * convection.offset;
         right = right - air_heat;
-        if front == Front::Whole {
+        if elimination == Elimination::Full {
             let to_air = area * convection.slope;
             if laws.emission_is_nonlinear() {
                 let slope: V = part!(laws.emission[1], start);

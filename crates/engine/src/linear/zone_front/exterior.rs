@@ -12,7 +12,7 @@ use crate::physics::longwave::Emission;
 use crate::weather::conditions::Conditions;
 
 use super::laws::Laws;
-use super::{Front, Layout};
+use super::{Elimination, Layout};
 
 /// The exterior surfaces, by the place of the interior surface of their wall.
 #[derive(Debug, Clone)]
@@ -116,7 +116,7 @@ impl<S: Real> Exterior<S> {
     /// Eliminates the surfaces of one register: heat into the interior surfaces by their own temperature [W/K] and at 0 degC
     /// [W], the former only with a matrix.
     #[inline(always)]
-    pub(super) fn eliminate<V: Abreast<S>>(&mut self, front: Front, start: usize) -> (V, V) {
+    pub(super) fn eliminate<V: Abreast<S>>(&mut self, elimination: Elimination, start: usize) -> (V, V) {
         let places = start..start + S::SIDE;
         let (convection, emission): (Line<V>, Line<V>) =
             (self.laws.convection_at(start), self.laws.emission_at(start));
@@ -124,7 +124,7 @@ impl<S: Real> Exterior<S> {
         let to_interior: V = part!(self.responses[1], start);
         let emissivity: V = part!(self.emissivity, start);
         let mut gain = V::zero();
-        if front == Front::Whole {
+        if elimination == Elimination::Full {
             let slope = convection.slope + emissivity * emission.slope;
             let inverse = V::one() / (slope - part!(self.responses[3], start));
             let rise = part!(self.responses[2], start) * inverse;

@@ -91,11 +91,11 @@ pub(crate) struct ZoneFronts<S> {
 
 /// What is to be eliminated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Front {
+pub(crate) enum Elimination {
     /// The matrix with its right-hand side.
-    Whole,
+    Full,
     /// The right-hand side alone: the matrix is that of the last elimination.
-    Right,
+    RightHandSide,
 }
 
 impl<S: Real> ZoneFront<S> {
@@ -179,7 +179,7 @@ struct Eliminate<'r, S: Real> {
     zone_fronts: &'r mut [ZoneFront<S>],
     /// Iterate about which nonlinear laws are linearised; none: laws as they are.
     iterate: Option<&'r Unknowns<S>>,
-    front: Front,
+    elimination: Elimination,
     constant: bool,
 }
 
@@ -197,10 +197,10 @@ impl<S: Real> Task<S> for Eliminate<'_, S> {
                     laws.linearise::<V>(&iterate.surfaces);
                 }
             }
-            front.assemble::<V>(self.front);
+            front.assemble::<V>(self.elimination);
         }
         for front in self.zone_fronts {
-            if self.front == Front::Whole {
+            if self.elimination == Elimination::Full {
                 front.factors.eliminate::<V>(&front.equations, &front.layout);
                 if self.constant {
                     front.compute_influence();
@@ -239,7 +239,7 @@ impl<S: Real> ZoneFronts<S> {
     }
 
     /// Sets the responses of the walls: heat into surface e by the temperature of surface o [W/(m2 K)].
-    pub(crate) fn respond(&mut self, responses: &[[[S; 2]; 2]]) {
+    pub(crate) fn set_responses(&mut self, responses: &[[[S; 2]; 2]]) {
         for front in &mut self.zone_fronts {
             front.exterior.set_responses(&front.layout, responses);
         }
@@ -247,7 +247,7 @@ impl<S: Real> ZoneFronts<S> {
 
     /// Reads what drives a stage: conditions, and heat from the walls at surfaces of 0 degC [W/m2].
     #[inline(never)]
-    pub(crate) fn begin(&mut self, conditions: &Conditions<S>, sources: &[[S; 2]]) {
+    pub(crate) fn begin_stage(&mut self, conditions: &Conditions<S>, sources: &[[S; 2]]) {
         S::vectorised(
             #[inline(always)]
             || {
@@ -264,16 +264,16 @@ impl<S: Real> ZoneFronts<S> {
     pub(crate) fn eliminate(
         &mut self,
         iterate: Option<&Unknowns<S>>,
-        front: Front,
+        elimination: Elimination,
         constant: bool,
         coupled: &mut CoupledSystem<'_, S>,
     ) {
         S::vectorised(
             #[inline(always)]
             || {
-                S::abreast(Eliminate { zone_fronts: &mut self.zone_fronts, iterate, front, constant });
+                S::abreast(Eliminate { zone_fronts: &mut self.zone_fronts, iterate, elimination, constant });
                 for zone_front in &self.zone_fronts {
-                    zone_front.add_schur_complement(front, constant, coupled);
+                    zone_front.add_schur_complement(elimination, constant, coupled);
                 }
             },
         );
@@ -281,7 +281,7 @@ impl<S: Real> ZoneFronts<S> {
 
     /// Solves for the eliminated surfaces, once the other unknowns are known; surfaces are those of the building.
     #[inline(never)]
-    pub(crate) fn resolve(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
+    pub(crate) fn solve(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
         S::vectorised(
             #[inline(always)]
             || S::abreast(Solve { zone_fronts: &mut self.zone_fronts, constant, unknowns, surfaces }),
@@ -307,7 +307,7 @@ impl<S: Real> ZoneFronts<S> {
     }
 
     /// Copies laws that were linearised elsewhere.
-    pub(crate) fn adopt(&mut self, laws: &BySurface<SurfaceLaws<S>>) {
+    pub(crate) fn copy_laws(&mut self, laws: &BySurface<SurfaceLaws<S>>) {
         for front in &mut self.zone_fronts {
             front.laws.copy_from(laws);
             front.exterior.laws.copy_from(laws);
@@ -316,7 +316,7 @@ impl<S: Real> ZoneFronts<S> {
 
     /// Writes the laws of the exterior surfaces, which the energy balance needs.
     #[inline(never)]
-    pub(crate) fn tell_laws(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
+    pub(crate) fn write_exterior_laws(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
         self.zone_fronts.iter().for_each(|front| front.exterior.laws.copy_to(laws));
     }
 
@@ -328,7 +328,7 @@ impl<S: Real> ZoneFronts<S> {
 
     /// Writes the exterior surfaces as lines of the interior ones [degC], and how much they rise with heat [m2 K/W].
     #[inline(never)]
-    pub(crate) fn tell_locals(&self, surfaces: &mut [ExteriorSurfaces<S>], inverses: &mut [S]) {
+    pub(crate) fn write_exterior_surfaces(&self, surfaces: &mut [ExteriorSurfaces<S>], inverses: &mut [S]) {
         for front in &self.zone_fronts {
             for (i, interior) in front.layout.walls.iter().enumerate() {
                 let (line, inverse) = front.exterior.line_at(i);
@@ -343,22 +343,22 @@ impl<S: Real> ZoneFronts<S> {
 impl ZoneFronts<f64> {
     /// Eliminates the surfaces of the fronts from right-hand sides of any kind.
     #[inline(always)]
-    pub(crate) fn forward_beside<R: Real>(&self, right: &mut [R]) {
-        self.zone_fronts.iter().for_each(|front| front.forward_beside(right));
+    pub(crate) fn forward_values<R: Real>(&self, right: &mut [R]) {
+        self.zone_fronts.iter().for_each(|front| front.forward_values(right));
     }
 
     /// Solves for the eliminated surfaces of right-hand sides of any kind.
     #[inline(always)]
-    pub(crate) fn back_beside<R: Real>(&self, right: &mut [R]) {
-        self.zone_fronts.iter().for_each(|front| front.back_beside(right));
+    pub(crate) fn back_values<R: Real>(&self, right: &mut [R]) {
+        self.zone_fronts.iter().for_each(|front| front.back_values(right));
     }
 
-    /// The transpose of [`Self::back_beside`].
+    /// The transpose of [`Self::back_values`].
     pub(crate) fn back_transposed(&self, weights: &mut [f64]) {
         self.zone_fronts.iter().for_each(|front| front.back_transposed(weights));
     }
 
-    /// The transpose of [`Self::forward_beside`].
+    /// The transpose of [`Self::forward_values`].
     pub(crate) fn forward_transposed(&self, weights: &mut [f64]) {
         self.zone_fronts.iter().for_each(|front| front.forward_transposed(weights));
     }

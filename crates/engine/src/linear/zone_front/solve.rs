@@ -7,7 +7,7 @@ use crate::linear::coupled::CoupledSystem;
 use crate::linear::product::{PlainMatrix, Product, SameKind};
 use crate::number::real::{Abreast, Real};
 
-use super::{Front, Layout, ZoneFront};
+use super::{Elimination, Layout, ZoneFront};
 
 /// Influence coefficients of a constant matrix.
 #[derive(Debug, Clone)]
@@ -75,7 +75,7 @@ impl<S: Real> ZoneFront<S> {
     #[inline(always)]
     pub(super) fn add_schur_complement(
         &self,
-        front: Front,
+        elimination: Elimination,
         constant: bool,
         coupled: &mut CoupledSystem<'_, S>,
     ) {
@@ -86,7 +86,7 @@ impl<S: Real> ZoneFront<S> {
                 coupled.right[row] += self.equations.right[i] + self.influence.applied[i];
             }
         }
-        if front == Front::Right {
+        if elimination == Elimination::RightHandSide {
             return;
         }
         let air_row = retained_rows[surfaces - eliminated];
@@ -242,7 +242,7 @@ impl<S: Real> ZoneFront<S> {
 impl ZoneFront<f64> {
     /// [`ZoneFront::forward_in_building`] of values of any kind.
     #[inline(always)]
-    pub(super) fn forward_beside<R: Real>(&self, values: &mut [R]) {
+    pub(super) fn forward_values<R: Real>(&self, values: &mut [R]) {
         self.forward::<PlainMatrix, R>(
             values,
             #[inline(always)]
@@ -252,7 +252,7 @@ impl ZoneFront<f64> {
 
     /// [`ZoneFront::back_in_building`] of values of any kind.
     #[inline(always)]
-    pub(super) fn back_beside<R: Real>(&self, values: &mut [R]) {
+    pub(super) fn back_values<R: Real>(&self, values: &mut [R]) {
         self.back::<PlainMatrix, R>(
             values,
             #[inline(always)]

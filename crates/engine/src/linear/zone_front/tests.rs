@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::eliminate::Factors;
 use super::exterior::Exterior;
 use super::laws::Laws;
-use super::{Eliminate, Front, Layout, Solve, ZoneFront};
+use super::{Eliminate, Elimination, Layout, Solve, ZoneFront};
 use crate::building::ids::SurfaceId;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::SurfaceLaws;
@@ -71,23 +71,23 @@ fn front<S: Real>(surfaces: usize, eliminated: usize, nonlinear: bool) -> ZoneFr
 fn solve<S: Real>(
     zone: &mut ZoneFront<S>,
     coupled: &mut CoupledSystem<'_, S>,
-    front: Front,
+    elimination: Elimination,
     constant: bool,
 ) -> Vec<S> {
-    if front == Front::Whole {
+    if elimination == Elimination::Full {
         coupled.clear_matrix();
     }
     coupled.clear_right();
     for &row in &zone.layout.retained_rows {
-        if front == Front::Whole {
+        if elimination == Elimination::Full {
             coupled.add(row, row, S::constant(HELD));
         }
         coupled.right[row] += S::constant(WARMTH);
     }
     let zone_fronts = core::slice::from_mut(zone);
-    S::abreast(Eliminate { zone_fronts, iterate: None, front, constant });
-    zone_fronts[0].add_schur_complement(front, constant, coupled);
-    if front == Front::Whole {
+    S::abreast(Eliminate { zone_fronts, iterate: None, elimination, constant });
+    zone_fronts[0].add_schur_complement(elimination, constant, coupled);
+    if elimination == Elimination::Full {
         coupled.keep_matrix();
     }
     coupled.keep_right();
@@ -166,7 +166,7 @@ fn fronts_are_solved_as_the_dense_solver_solves_them() {
             let reach = reach(surfaces + 1 - eliminated);
             let mut front = front::<f64>(surfaces, eliminated, nonlinear);
             let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
-            let found = solve(&mut front, &mut coupled, Front::Whole, false);
+            let found = solve(&mut front, &mut coupled, Elimination::Full, false);
             let (matrix, right) = balances(&front);
             close(&found, &dense_solution(&matrix, &right), 1e-12, &context);
             // Another right-hand side with the same factors: heat at surfaces and air alone.
@@ -189,7 +189,7 @@ fn a_constant_matrix_is_kept() {
         let reach = reach(surfaces + 1 - eliminated);
         let mut front = front::<f64>(surfaces, eliminated, false);
         let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
-        for part in [Front::Whole, Front::Right, Front::Right] {
+        for part in [Elimination::Full, Elimination::RightHandSide, Elimination::RightHandSide] {
             let found = solve(&mut front, &mut coupled, part, true);
             let (matrix, right) = balances(&front);
             close(&found, &dense_solution(&matrix, &right), 1e-12, &context);
@@ -237,12 +237,12 @@ fn rows_in_registers_have_the_bits_of_rows_of_any_length() {
                 let reach = reach(surfaces + 1 - eliminated);
                 let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
                 let mut front = front::<S>(surfaces, eliminated, nonlinear);
-                solve(&mut front, &mut coupled, Front::Whole, false);
+                solve(&mut front, &mut coupled, Elimination::Full, false);
                 // Solving leaves temperatures in place of the right-hand side.
                 S::abreast(Eliminate {
                     zone_fronts: core::slice::from_mut(&mut front),
                     iterate: None,
-                    front: Front::Whole,
+                    elimination: Elimination::Full,
                     constant: false,
                 });
                 let [fixed, any] = S::abreast(EliminateBoth { front: &front });
@@ -266,7 +266,7 @@ fn all_fronts<S: Real>() -> Vec<S> {
             let reach = reach(surfaces + 1 - eliminated);
             let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
             let mut front = front::<S>(surfaces, eliminated, nonlinear);
-            all.extend(solve(&mut front, &mut coupled, Front::Whole, constant));
+            all.extend(solve(&mut front, &mut coupled, Elimination::Full, constant));
         }
     }
     all
@@ -295,15 +295,15 @@ fn the_transpose_is_the_transpose() {
         let reach = reach(surfaces + 1 - eliminated);
         let mut front = front::<f64>(surfaces, eliminated, true);
         let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
-        solve(&mut front, &mut coupled, Front::Whole, false);
+        solve(&mut front, &mut coupled, Elimination::Full, false);
         let (matrix, _) = balances(&front);
         let mut numbers = Numbers::new(surfaces as u64);
         let (right, weights) = (numbers.line(surfaces + 1), numbers.line(surfaces + 1));
         let mut forth: Vec<Dual<1>> =
             right.iter().zip(&weights).map(|(&value, &slope)| Dual { value, slope: [slope] }).collect();
-        front.forward_beside(&mut forth);
-        coupled.solve_beside(&mut forth);
-        front.back_beside(&mut forth);
+        front.forward_values(&mut forth);
+        coupled.solve_values(&mut forth);
+        front.back_values(&mut forth);
         let dense = |right: &[f64]| {
             let mut all = dense_solution(&matrix, &[right, &vec![0.0; eliminated]].concat());
             all.truncate(surfaces + 1);

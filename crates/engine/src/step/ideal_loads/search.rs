@@ -1,5 +1,6 @@
 //! The loads that bring the airs onto their set points, from the responses of the building: an active set.
 
+use crate::number::dense::solve_many;
 use crate::number::real::{Mask, Real};
 use crate::step::ideal_loads::loads::{IdealLoads, Limits};
 
@@ -93,30 +94,9 @@ impl<S: Real> IdealLoads<S> {
                     self.matrix[p * n + q] = S::select(mode.held, self.gain(p, q), unit);
                 }
             }
-            eliminate(&mut self.matrix, &mut self.right);
+            // Responses are the inverse of an M-matrix, whose principal minors are positive: no pivoting.
+            solve_many(&mut self.matrix, &mut self.right, 1);
             self.correction.copy_from_slice(&self.right);
         }
-    }
-}
-
-/// Gaussian elimination without pivoting: responses are inverses of M-matrices, whose principal minors are positive.
-#[inline(always)]
-fn eliminate<S: Real>(matrix: &mut [S], right: &mut [S]) {
-    let n = right.len();
-    for k in 0..n {
-        let inverse = S::one() / matrix[k * n + k];
-        for i in k + 1..n {
-            let factor = matrix[i * n + k] * inverse;
-            for j in k..n {
-                matrix[i * n + j] = matrix[i * n + j] - factor * matrix[k * n + j];
-            }
-            right[i] = right[i] - factor * right[k];
-        }
-    }
-    for k in (0..n).rev() {
-        for j in k + 1..n {
-            right[k] = right[k] - matrix[k * n + j] * right[j];
-        }
-        right[k] = right[k] / matrix[k * n + k];
     }
 }
