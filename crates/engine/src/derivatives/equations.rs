@@ -20,7 +20,8 @@ use crate::step::Stepper;
 /// Which numbers that never change have derivatives: terms of the others need not be differentiated by them.
 #[derive(Debug, Clone)]
 pub(super) struct Carries {
-    /// By wall: conductances, heat capacities.
+    /// By wall: its area, conductances, heat capacities.
+    area: Vec<bool>,
     links: Vec<bool>,
     capacity: Vec<bool>,
     /// By zone: exchange areas between its surfaces, and the slope of a linear law of emission.
@@ -42,6 +43,7 @@ impl Carries {
         };
         let cells = walls.iter().map(|wall| wall.cells.iter());
         Self {
+            area: walls.iter().map(|wall| wall.area.carries()).collect(),
             links: stepper
                 .solver
                 .system
@@ -79,6 +81,8 @@ pub(super) struct EquationSlopes<'a, S: Real> {
     equations: &'a mut S::Equations,
     /// The solution: cells, surfaces, airs [degC].
     at: &'a [f64],
+    /// Whether the size of the term in hand has derivatives: an area, a share, or the number 1.
+    size_carries: bool,
     /// The wall and the zone in hand.
     wall: usize,
     zone: usize,
@@ -93,7 +97,7 @@ impl<'a, S: Real> EquationSlopes<'a, S> {
         at: &'a [f64],
     ) -> Self {
         equations.begin(at.len());
-        Self { model, carries, equations, at, wall: 0, zone: 0 }
+        Self { model, carries, equations, at, size_carries: false, wall: 0, zone: 0 }
     }
 
     #[inline(always)]
@@ -123,7 +127,7 @@ impl<'a, S: Real> EquationSlopes<'a, S> {
 
     /// `sign size heat` into a node, where `heat` has these slopes by these numbers.
     #[inline(always)]
-    fn into<const N: usize>(&mut self, node: Node, sign: f64, size: S, heat: f64, slopes: [(S, f64); N]) {
+    fn add<const N: usize>(&mut self, node: Node, sign: f64, size: S, heat: f64, slopes: [(S, f64); N]) {
         let row = self.row(node);
         match self.scale(node) {
             Scale::Held => {}
@@ -137,7 +141,9 @@ impl<'a, S: Real> EquationSlopes<'a, S> {
                 for (number, slope) in slopes {
                     self.equations.add(row, number, whole * slope);
                 }
-                self.equations.add(row, size, sign * heat);
+                if self.size_carries {
+                    self.equations.add(row, size, sign * heat);
+                }
             }
         }
     }
@@ -145,8 +151,8 @@ impl<'a, S: Real> EquationSlopes<'a, S> {
     /// The same from one node to another.
     #[inline(always)]
     fn between<const N: usize>(&mut self, ends: [Node; 2], size: S, heat: f64, slopes: [(S, f64); N]) {
-        self.into(ends[0], -1.0, size, heat, slopes);
-        self.into(ends[1], 1.0, size, heat, slopes);
+        self.add(ends[0], -1.0, size, heat, slopes);
+        self.add(ends[1], 1.0, size, heat, slopes);
     }
 }
 
@@ -165,18 +171,21 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
     fn store_heat(&mut self, node: Node, [area, thickness]: [S; 2], capacity: S, held: Held<S>) {
         let heat = thickness.lane(0) * capacity.lane(0) / held.length;
         let mut start = held.start.lane(0);
+        self.size_carries = false;
         if held.ratio == 0.0 {
-            self.into(node, 1.0, area, heat * (start - self.temperature(node)), [(held.start, heat)]);
+            self.add(node, 1.0, area, heat * (start - self.temperature(node)), [(held.start, heat)]);
         } else {
             start += (held.first.lane(0) - start) * held.ratio;
             let slopes = [(held.start, heat * (1.0 - held.ratio)), (held.first, heat * held.ratio)];
-            self.into(node, 1.0, area, heat * (start - self.temperature(node)), slopes);
+            self.add(node, 1.0, area, heat * (start - self.temperature(node)), slopes);
         }
         if matches!(node, Node::Air(_)) || self.carries.capacity[self.wall] {
             let rise = (start - self.temperature(node)) / held.length;
             let row = self.row(node);
             self.equations.add(row, capacity, thickness.lane(0) * rise);
-            self.equations.add(row, thickness, capacity.lane(0) * rise);
+            if let Node::Cell(_) = node {
+                self.equations.add(row, thickness, capacity.lane(0) * rise);
+            }
         }
     }
 
@@ -193,7 +202,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         let mut start = held.start.lane(0);
         if held.ratio != 0.0 {
             start += (held.first.lane(0) - start) * held.ratio;
-            self.into(Node::Cell(cell), 1.0, area, 0.0, [(held.first, rate * held.ratio)]);
+            self.add(Node::Cell(cell), 1.0, area, 0.0, [(held.first, rate * held.ratio)]);
         }
         let reached = enthalpy.offset.lane(0) + enthalpy.capacity.lane(0) * above;
         let slopes = [
@@ -202,14 +211,16 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
             (enthalpy.capacity, -rate * above),
             (thickness, (start - reached) / held.length),
         ];
-        self.into(Node::Cell(cell), 1.0, area, 0.0, slopes);
+        self.add(Node::Cell(cell), 1.0, area, 0.0, slopes);
     }
 
     #[inline(always)]
     fn conduct(&mut self, ends: [Node; 2], area: S, conductance: S) {
         let difference = self.temperature(ends[0]) - self.temperature(ends[1]);
         let heat = conductance.lane(0) * difference;
-        if matches!(ends[0], Node::Air(_)) || self.carries.links[self.wall] {
+        let of_path = matches!(ends[0], Node::Air(_));
+        self.size_carries = !of_path && self.carries.area[self.wall];
+        if of_path || self.carries.links[self.wall] {
             self.between(ends, area, heat, [(conductance, difference)]);
         } else {
             self.between(ends, area, heat, []);
@@ -220,6 +231,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
     fn conduct_linearised(&mut self, ends: [Node; 2], area: S, link: &Link<S>, places: [S; 2]) {
         let left = self.temperature(ends[0]) - places[0].lane(0);
         let right = self.temperature(ends[1]) - places[1].lane(0);
+        self.size_carries = self.carries.area[self.wall];
         let heat = link.offset.lane(0) + link.left.lane(0) * left - link.right.lane(0) * right;
         self.between(ends, area, heat, [(link.offset, 1.0), (link.left, left), (link.right, -right)]);
     }
@@ -233,15 +245,20 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         let difference = temperature(ends[0]) - temperature(ends[1]);
         let (heat, slope) = (Line::of(law).at(difference), law.slope.lane(0));
         let slopes = [(law.offset, 1.0), (law.slope, difference)];
+        self.size_carries = match ends[0] {
+            End::Node(Node::Surface(surface)) => self.carries.area[surface.wall()],
+            // Outdoor air enters zones with no area.
+            _ => false,
+        };
         match ends {
             [End::Node(from), End::Node(to)] => self.between([from, to], area, heat, slopes),
             [End::Node(from), End::Environment { temperature, .. }] => {
                 let [by_offset, by_slope] = slopes;
-                self.into(from, -1.0, area, heat, [by_offset, by_slope, (temperature, -slope)]);
+                self.add(from, -1.0, area, heat, [by_offset, by_slope, (temperature, -slope)]);
             }
             [End::Environment { temperature, .. }, End::Node(to)] => {
                 let [by_offset, by_slope] = slopes;
-                self.into(to, 1.0, area, heat, [by_offset, by_slope, (temperature, slope)]);
+                self.add(to, 1.0, area, heat, [by_offset, by_slope, (temperature, slope)]);
             }
             [End::Environment { .. }, End::Environment { .. }] => {}
         }
@@ -252,6 +269,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         let ends = surfaces.map(Node::Surface);
         let [a, b] = ends.map(|node| self.temperature(node));
         if self.carries.exchange[self.zone] {
+            self.size_carries = true;
             self.between(ends, area, Line::of(from).at(a) - Line::of(to).at(b), []);
         }
         // An exact law depends on the solution alone. A linear one is the same at both ends: its offsets cancel.
@@ -275,12 +293,17 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
             (radiation.emission.offset, -emissivity),
             (radiation.emission.slope, -emissivity * at),
         ];
-        self.into(node, 1.0, area, radiation.arriving.lane(0) - emissivity * emitted, slopes);
+        self.add(node, 1.0, area, radiation.arriving.lane(0) - emissivity * emitted, slopes);
     }
 
     #[inline(always)]
-    fn release(&mut self, node: Node, size: S, heat: S, _origin: Origin<S>) {
-        self.into(node, 1.0, size, heat.lane(0), [(heat, 1.0)]);
+    fn release(&mut self, node: Node, size: S, heat: S, origin: Origin<S>) {
+        self.size_carries = match (node, origin) {
+            (_, Origin::RadiantGains { .. }) => true,
+            (Node::Surface(surface), _) => self.carries.area[surface.wall()],
+            (Node::Cell(_) | Node::Air(_), _) => false,
+        };
+        self.add(node, 1.0, size, heat.lane(0), [(heat, 1.0)]);
     }
 
     #[inline(always)]

@@ -259,7 +259,7 @@ impl<'a> Back<'a> {
             }
         }
         Tape::propagate(&mut self.weights, self.base, |stage, weights| {
-            along.solve_transposed(stage, weights)
+            along.solve_transposed(stage, weights);
         });
         let passed = &mut self.weights[self.base - self.state.len()..self.base];
         self.state.copy_from_slice(passed);

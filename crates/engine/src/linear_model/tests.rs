@@ -43,8 +43,8 @@ fn two_capacities() {
 
     let half = CONDUCTIVITY / (0.5 * THICKNESS);
     let kelvin = REFERENCE + KELVIN;
-    let slope = 4.0 * SIGMA * kelvin.powi(3);
-    let offset = SIGMA * kelvin.powi(4) - slope * REFERENCE;
+    let slope = 4.0 * SIGMA * (kelvin * kelvin * kelvin);
+    let offset = SIGMA * (kelvin * kelvin * kelvin * kelvin) - slope * REFERENCE;
     // A vertical wall sees half the sky; the part near the horizon is as warm as the air.
     let to_sky = 0.5 * 0.5_f64.sqrt();
     // Surfaces: `(half + outer) T = half T_cell + ...`, `(half + inner) T = half T_cell + inner T_air + ...`.

@@ -16,7 +16,7 @@ struct ExteriorSums<S> {
 
 impl<S: Real> HeatSink<S> for ExteriorSums<S> {
     #[inline(always)]
-    fn into_building(&mut self, flow: Flow, heat: S) {
+    fn add_to_building(&mut self, flow: Flow, heat: S) {
         match flow {
             Flow::Solar => self.solar.add(heat),
             Flow::Convection => self.convection.add(heat),
@@ -33,7 +33,7 @@ struct OtherFlows<'a, S, F> {
 
 impl<S: Real, F: Fn(SurfaceId) -> S> HeatSink<S> for OtherFlows<'_, S, F> {
     #[inline(always)]
-    fn into_building(&mut self, flow: Flow, heat: S) {
+    fn add_to_building(&mut self, flow: Flow, heat: S) {
         self.power.book(flow, heat);
     }
 

@@ -12,11 +12,11 @@ use super::{End, Held, Node, Origin, OutdoorRadiation, Sink};
 pub(crate) trait HeatSink<S: Real> {
     /// Heat [W] into a node, and the area, share or 1 that it was multiplied by.
     #[inline(always)]
-    fn into_node(&mut self, _node: Node, _size: S, _heat: S) {}
+    fn add_to_node(&mut self, _node: Node, _size: S, _heat: S) {}
 
     /// Heat from the environment into the building [W].
     #[inline(always)]
-    fn into_building(&mut self, _flow: Flow, _heat: S) {}
+    fn add_to_building(&mut self, _flow: Flow, _heat: S) {}
 
     /// A surface is held at a temperature [degC].
     #[inline(always)]
@@ -44,8 +44,8 @@ impl<S: Real, H: HeatSink<S>> Evaluation<'_, S, H> {
     /// Heat from one node to another.
     #[inline(always)]
     fn between(&mut self, [from, to]: [Node; 2], size: S, heat: S) {
-        self.heat.into_node(from, size, -heat);
-        self.heat.into_node(to, size, heat);
+        self.heat.add_to_node(from, size, -heat);
+        self.heat.add_to_node(to, size, heat);
     }
 }
 
@@ -54,7 +54,7 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
     fn store_heat(&mut self, node: Node, [area, thickness]: [S; 2], capacity: S, held: Held<S>) {
         let rise = self.temperature(node) - held.value();
         let heat = area * thickness * capacity * rise.scale(1.0 / held.length);
-        self.heat.into_node(node, area, -heat);
+        self.heat.add_to_node(node, area, -heat);
     }
 
     #[inline(always)]
@@ -67,7 +67,7 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
     ) {
         let reached = enthalpy.offset + enthalpy.capacity * (self.cells[cell] - enthalpy.reference);
         let heat = area * thickness * (reached - held.value()).scale(1.0 / held.length);
-        self.heat.into_node(Node::Cell(cell), area, -heat);
+        self.heat.add_to_node(Node::Cell(cell), area, -heat);
     }
 
     #[inline(always)]
@@ -76,8 +76,8 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
         let heat = area * (conductance * (from - to));
         self.between(ends, area, heat);
         if let [Node::Air(_), Node::Air(_)] = ends {
-            self.heat.into_building(Flow::Interzone, heat);
-            self.heat.into_building(Flow::Interzone, -heat);
+            self.heat.add_to_building(Flow::Interzone, heat);
+            self.heat.add_to_building(Flow::Interzone, -heat);
         }
     }
 
@@ -97,9 +97,9 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
         let heat = area * law.at(temperature(ends[0]) - temperature(ends[1]));
         for (end, heat) in ends.into_iter().zip([-heat, heat]) {
             match end {
-                End::Node(node) => self.heat.into_node(node, area, heat),
+                End::Node(node) => self.heat.add_to_node(node, area, heat),
                 // What the environment gives the building gets.
-                End::Environment { flow, .. } => self.heat.into_building(flow, -heat),
+                End::Environment { flow, .. } => self.heat.add_to_building(flow, -heat),
             }
         }
     }
@@ -114,19 +114,19 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
     fn radiate_outdoors(&mut self, surface: SurfaceId, area: S, radiation: &OutdoorRadiation<'_, S>) {
         let emitted = radiation.emissivity * radiation.emission.at(self.surfaces[surface]);
         let heat = area * (radiation.arriving - emitted);
-        self.heat.into_node(Node::Surface(surface), area, heat);
-        self.heat.into_building(Flow::Longwave, heat);
+        self.heat.add_to_node(Node::Surface(surface), area, heat);
+        self.heat.add_to_building(Flow::Longwave, heat);
     }
 
     #[inline(always)]
     fn release(&mut self, node: Node, size: S, heat: S, origin: Origin<S>) {
         let heat = size * heat;
-        self.heat.into_node(node, size, heat);
+        self.heat.add_to_node(node, size, heat);
         match origin {
-            Origin::Sun { .. } => self.heat.into_building(Flow::Solar, heat),
+            Origin::Sun { .. } => self.heat.add_to_building(Flow::Solar, heat),
             Origin::IdealLoad => {
-                self.heat.into_building(Flow::Heating, heat.max(S::zero()));
-                self.heat.into_building(Flow::Cooling, heat.min(S::zero()));
+                self.heat.add_to_building(Flow::Heating, heat.max(S::zero()));
+                self.heat.add_to_building(Flow::Cooling, heat.min(S::zero()));
             }
             Origin::Window | Origin::ConvectiveGains { .. } | Origin::RadiantGains { .. } => {}
         }
@@ -139,6 +139,6 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
 
     #[inline(always)]
     fn count(&mut self, flow: Flow, heat: S) {
-        self.heat.into_building(flow, heat);
+        self.heat.add_to_building(flow, heat);
     }
 }

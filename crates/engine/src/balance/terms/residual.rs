@@ -53,7 +53,7 @@ impl<S: Real> Imbalance<'_, S> {
 }
 
 impl<S: Real> HeatSink<S> for Imbalance<'_, S> {
-    fn into_node(&mut self, node: Node, _size: S, heat: S) {
+    fn add_to_node(&mut self, node: Node, _size: S, heat: S) {
         let density = heat / self.area(node);
         self.residual.largest_flow = self.residual.largest_flow.max(density.abs());
         match node {
