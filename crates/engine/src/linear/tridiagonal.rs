@@ -109,6 +109,7 @@ impl<S: Real> Tridiagonal<S> {
         for i in 0..n {
             let (before, after) = (&links[i], &links[i + 1]);
             let mut diagonal = storage(i) + before.right + after.left;
+            // Before the first cell `next` is zero. Numbers on a tape are spared the product where it is not in a hot loop.
             if const { RIGHT } || i > 0 {
                 diagonal = diagonal - before.left * next;
             }

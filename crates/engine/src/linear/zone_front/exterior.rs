@@ -1,7 +1,7 @@
 //! The exterior surfaces of the walls in a front: eliminated first, each onto the interior surface of its wall.
 //!
-//! The balance of an exterior surface is `heat + response_oe T_interior + response_oo T = (h + e slope) T + ...`, straight in
-//! both temperatures, so that `T = offset + slope T_interior`.
+//! With all laws as straight lines its balance holds for `T = offset + slope T_interior`. This is
+//! [`surface_balance`](crate::linear::surface_balance) for many walls side by side.
 
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::ids::{BySurface, SurfaceId};
