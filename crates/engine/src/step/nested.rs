@@ -24,22 +24,24 @@ impl<S: Real> StageSolver<'_, S> {
         let model = stage.model;
         let state = State { memory: complete_memory(model, stage.state), ..stage.state.clone() };
         let stage = &Stage { state: &state, ..*stage };
-        let enough = S::constant(TOLERANCE * TOLERANCE);
+        let enough = S::constant(TOLERANCE);
         let mut outer =
             Unknowns { cells: state.cells.clone(), surfaces: state.surfaces.clone(), air: state.air.clone() };
         self.iterate.copy_from(&outer);
         outer.cells.fill(S::constant(SOLID));
         for _ in 0..MAX_ITERATIONS {
+            let mut change = S::zero();
             for _ in 0..MAX_ITERATIONS {
                 self.solve_linearised(stage, Some(&outer.cells));
-                let converged = self.change(model).lt(enough);
+                change = self.change(model);
                 self.iterate.copy_from(&self.solution);
-                if converged.any() {
+                if change.lt(enough).any() {
                     break;
                 }
             }
             if self.distance(model, &outer).lt(enough).any() {
                 self.counters.nested += 1;
+                self.accept_change(change);
                 return self.finish(stage).any();
             }
             outer.copy_from(&self.solution);

@@ -14,11 +14,11 @@ use crate::step::linearisation::Linearisation;
 use crate::step::scheme::Tableau;
 use crate::step::stage::{Stage, StageStart};
 
-/// Root of the sum of squared changes in the last Newton iteration [K]. Convergence is quadratic: the error left is
-/// of the order of its square.
-pub(super) const TOLERANCE: f64 = 1e-6;
+/// Largest change of a temperature in the last Newton iteration [K]. Convergence is quadratic: the error left is of the
+/// order of its square, and does not depend on the size of the building.
+pub(super) const TOLERANCE: f64 = 5e-7;
 /// A solution is accepted without another iteration to confirm it where the next change is predicted to be below this [K].
-const PREDICTED: f64 = 1e-8;
+const PREDICTED: f64 = 5e-9;
 /// The prediction holds only for changes below this share of the melting range, and of 1 K.
 const PREDICTABLE: f64 = 0.05;
 /// Iterations before a step is given to the nested iteration, and rounds of that one before it is halved.
@@ -36,6 +36,8 @@ pub struct Counters<S> {
     /// Steps of phase-change cells with hysteresis in which melting and freezing followed each other: the memory, which
     /// changes at the end of a step, saw only the sum.
     pub reversals: S,
+    /// Largest change of a temperature in the last iteration of a stage that was accepted [K].
+    pub largest_change: S,
 }
 
 /// How a stage is solved.
@@ -56,7 +58,7 @@ pub(crate) struct StageSolver<'a, S: Real> {
     pub(crate) iterate: Unknowns<S>,
     /// Solution of the last linear solve.
     pub(crate) solution: Unknowns<S>,
-    /// Square of the largest change from which the next one is predicted [K2].
+    /// Largest change from which the next one is predicted [K].
     predictable: S,
     /// Lanes whose iteration failed: their numbers mean nothing any more.
     pub(crate) failed: S::Mask,
@@ -70,16 +72,21 @@ impl<'a, S: Real> StageSolver<'a, S> {
         let unknowns = Unknowns::zero(plan.n_cells, plan.surfaces.len(), plan.zones.len());
         let laws = model.coefficients.walls.iter().flat_map(|wall| &wall.pcm);
         let narrowest = laws.fold(S::one(), |narrowest, law| narrowest.min(law.width()));
-        let predictable = narrowest.scale(PREDICTABLE);
         Self {
             system: BuildingSystem::new(model, &linearisation.laws, tableau.diagonal),
             linearisation,
             start: StageStart::new(model),
             iterate: unknowns.clone(),
             solution: unknowns,
-            predictable: predictable * predictable,
+            predictable: narrowest.scale(PREDICTABLE),
             failed: S::Mask::splat(false),
-            counters: Counters { iterations: 0, nested: 0, halvings: 0, reversals: S::zero() },
+            counters: Counters {
+                iterations: 0,
+                nested: 0,
+                halvings: 0,
+                reversals: S::zero(),
+                largest_change: S::zero(),
+            },
         }
     }
 
@@ -138,7 +145,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
         active = active & !self.failed;
         // Numbers with derivatives make one more iteration at the solution: it gives their slopes.
         let mut further = S::DERIVATIVES;
-        // Square of the change before this one; zero where the next does not follow from it.
+        // The change before this one; zero where the next does not follow from it.
         let mut before = S::zero();
         for iteration in 0..MAX_ITERATIONS {
             self.solve_linearised(stage, None);
@@ -155,6 +162,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
                 further = false;
                 self.advance(stage, S::Mask::splat(true), 0);
             } else {
+                self.accept_change(change);
                 let lost = !(self.finish(stage) | self.failed);
                 return if lost.any() { self.fail(stage, lost) } else { Ok(()) };
             }
@@ -187,34 +195,40 @@ impl<'a, S: Real> StageSolver<'a, S> {
         Err(self.not_converged(stage, lanes))
     }
 
-    /// Where changes (squared) are small, or the next is predicted to be: Newton's iteration squares them.
+    /// Where changes are small, or the next is predicted to be: Newton's iteration squares them.
     #[inline(always)]
     pub(super) fn converged(&self, change: S, before: S) -> S::Mask {
-        let small = change.lt(S::constant(TOLERANCE * TOLERANCE));
-        // e2 = e1 (e1/e0)^2, in squares.
-        let predicted = (change * change * change).lt((before * before).scale(PREDICTED * PREDICTED));
-        small | (predicted & change.lt(self.predictable))
+        let small = change.lt(S::constant(TOLERANCE));
+        // e2 = e1 (e1/e0)^2
+        let predicted = (change * change * change).lt((before * before).scale(PREDICTED));
+        small | (predicted & change.lt(self.predictable) & before.lt(S::constant(f64::MAX)))
     }
 
-    /// Square of the change from the iterate to the solution, see [`Self::distance`].
+    /// Notes the last change of an accepted stage.
+    #[inline(always)]
+    pub(super) fn accept_change(&mut self, change: S) {
+        self.counters.largest_change = self.counters.largest_change.max(change);
+    }
+
+    /// Largest change from the iterate to the solution, see [`Self::distance`].
     #[inline(always)]
     pub(super) fn change(&self, model: &Model<'_, S>) -> S {
         self.distance(model, &self.iterate)
     }
 
-    /// Sum of the squared distances of the solution from an iterate where something is linearised, by lane [K2]. Not a
-    /// number when any part of it is not one.
+    /// Largest distance of the solution from an iterate where something is linearised, by lane [K]. Infinite when any part of
+    /// it is not a number.
     #[inline(always)]
     pub(super) fn distance(&self, model: &Model<'_, S>, iterate: &Unknowns<S>) -> S {
-        let mut sum = squared_distance(&self.solution.air, &iterate.air);
+        let mut distance = Distance { largest: S::zero(), sum: S::zero() };
+        distance.add(&self.solution.air, &iterate.air);
         for &surface in &model.parts.linearised {
-            let change = self.solution.surfaces[surface] - iterate.surfaces[surface];
-            sum += change * change;
+            distance.add_one(self.solution.surfaces[surface], iterate.surfaces[surface]);
         }
         for cells in &model.parts.nonlinear_cells {
-            sum += squared_distance(&self.solution.cells[cells.clone()], &iterate.cells[cells.clone()]);
+            distance.add(&self.solution.cells[cells.clone()], &iterate.cells[cells.clone()]);
         }
-        sum
+        distance.largest()
     }
 
     /// Names the part that changes most in the first lane that failed.
@@ -278,12 +292,52 @@ fn inputs<'s, S: Real>(
     }
 }
 
-/// Sum of squared differences.
-#[inline(always)]
-fn squared_distance<S: Real>(new: &[S], old: &[S]) -> S {
-    let mut sum = S::zero();
-    for (&a, &b) in new.iter().zip(old) {
-        sum += (a - b) * (a - b);
+/// Largest of some differences.
+struct Distance<S> {
+    largest: S,
+    /// Not finite when any difference is not a number: a maximum would leave it out.
+    sum: S,
+}
+
+impl<S: Real> Distance<S> {
+    #[inline(always)]
+    fn add_one(&mut self, new: S, old: S) {
+        let difference = new - old;
+        self.largest = self.largest.max(difference.abs());
+        self.sum += difference;
     }
-    sum
+
+    #[inline(always)]
+    fn add(&mut self, new: &[S], old: &[S]) {
+        for (&new, &old) in new.iter().zip(old) {
+            self.add_one(new, old);
+        }
+    }
+
+    #[inline(always)]
+    fn largest(&self) -> S {
+        let finite = self.sum.abs().lt(S::constant(f64::MAX));
+        S::select(finite, self.largest, S::constant(f64::INFINITY))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::lanes::Lanes;
+
+    /// The maximum norm, lane by lane: a part that is not a number shows wherever it stands.
+    #[test]
+    fn the_distance_is_the_largest_difference() {
+        let mut distance = Distance { largest: 0.0, sum: 0.0 };
+        distance.add(&[1.0, -3.0, 2.0], &[1.5, 1.0, 2.0]);
+        assert_eq!(distance.largest(), 4.0);
+        for place in 0..3 {
+            let mut new = [Lanes([1.0, 2.0]); 3];
+            new[place].0[1] = f64::NAN;
+            let mut distance = Distance { largest: Lanes([0.0; 2]), sum: Lanes([0.0; 2]) };
+            distance.add(&new, &[Lanes([0.25, 0.0]); 3]);
+            assert_eq!(distance.largest().0, [0.75, f64::INFINITY]);
+        }
+    }
 }

@@ -32,7 +32,7 @@ struct Sweep<S: Real> {
 struct Swept<S: Real> {
     /// Heat of all but the last stage.
     energy: Power<S>,
-    /// Square of the change [K2].
+    /// Largest change of a temperature in any stage [K].
     change: S,
     /// Where the change was limited.
     limited: S::Mask,
@@ -84,6 +84,7 @@ impl<S: Real> Stepper<'_, S> {
                 further -= 1;
                 active = S::Mask::splat(true);
             } else {
+                self.solver.accept_change(change);
                 self.close(state, &mut energy, length);
                 return Ok(energy);
             }
@@ -96,7 +97,7 @@ impl<S: Real> Stepper<'_, S> {
     fn loads_not_found(&self, active: S::Mask, step: usize) -> EngineError {
         let lane = (0..S::LANES).find(|&lane| active.lane(lane)).unwrap_or(0);
         let (zone, residual) = self.ideal_loads.worst(lane);
-        let place = format!("zone {} (load of its plant)", self.model.plan.description.zones[zone].name);
+        let place = format!("zone {} (ideal load)", self.model.plan.description.zones[zone].name);
         let (stage, iterations) = (self.scheme.weights().len(), MAX_SWEEPS);
         EngineError::NotConverged { step, stage, place, residual, iterations }
     }
@@ -181,7 +182,7 @@ impl<S: Real> Stepper<'_, S> {
             let search = if number < SINGLE_SWEEPS { Search::Once } else { Search::Whole(active) };
             let sound = solver.solve(&stage, search)?;
             known.keep(&solver.solution);
-            change += S::select(sound, solver.change(model), S::constant(f64::INFINITY));
+            change = change.max(S::select(sound, solver.change(model), S::constant(f64::INFINITY)));
             if answer {
                 ideal_loads.respond(model, &solver.system, index, (length_of_stage, tableau.ratio));
             }

@@ -1,0 +1,60 @@
+//! When Newton's iteration stops.
+
+mod common;
+
+use common::melting::ceiling_weather;
+use common::{Builder, SCHEMES, facing, forcing, options, run};
+use mascarin_engine::description::{Description, Facing, ZoneLongwave};
+use mascarin_engine::march::Run;
+use mascarin_engine::plan::Plan;
+use mascarin_engine::probe::Probe;
+use mascarin_engine::step::Scheme;
+
+const STEP: f64 = 900.0;
+
+/// The same zone under the same phase-change ceiling, so many times side by side.
+fn copies(count: usize) -> Description {
+    let mut b = Builder::new();
+    let board = b.solid("board", 0.16, 800.0, 1090.0);
+    let energain = b.energain(1.0);
+    let construction = b.construction("ceiling", &[(energain, 0.00526, 4), (board, 0.0125, 2)]);
+    let above = b.channel("above");
+    for copy in 0..count {
+        let room = b.zone(&format!("room_{copy}"), 27.0, 0.5, ZoneLongwave::None);
+        let out = b.film(4.0);
+        let film_in = b.power([0.3, 1.4, 0.3, 0.0, 1.0], [0.2, 0.6, 0.25, 0.0, 1.0]);
+        let inside = b.inside(room, film_in, 0.9);
+        let outside = facing(Facing::Measured { channel: above }, Some(out));
+        b.surface(&format!("ceiling_{copy}"), construction, [9.0, 0.0, 0.0], outside, inside);
+    }
+    b.describe()
+}
+
+fn march(count: usize, scheme: Scheme) -> Run<f64> {
+    let plan = Plan::new(copies(count)).unwrap();
+    let rows = forcing(&plan, scheme, 192, STEP, ceiling_weather);
+    run(&plan, &rows, &options(scheme, STEP, vec![Probe::AirTemperature { zone: 0 }]))
+}
+
+/// The criterion of convergence does not depend on the size of the building: many copies of a zone take the iterations of
+/// one, and end with its bits.
+#[test]
+fn copies_converge_as_one() {
+    for scheme in SCHEMES {
+        let (one, many) = (march(1, scheme), march(49, scheme));
+        assert_eq!(one.counters.iterations, many.counters.iterations, "{scheme:?}");
+        assert_eq!(one.counters.largest_change.to_bits(), many.counters.largest_change.to_bits());
+        for (a, b) in one.records.iter().zip(&many.records) {
+            assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}, {scheme:?}");
+        }
+    }
+}
+
+/// The last change of every stage is reported: so small that its square over the melting range counts no more.
+#[test]
+fn the_largest_last_change_is_small() {
+    for scheme in SCHEMES {
+        let change = march(1, scheme).counters.largest_change;
+        assert!(change > 1e-9 && change < 0.05, "{change} K with {scheme:?}");
+    }
+}
