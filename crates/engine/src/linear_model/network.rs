@@ -10,7 +10,7 @@ use crate::linear::wall::{Link, Storage};
 use crate::number::dense::solve_many;
 use crate::number::line::Line;
 
-use super::{StateSpace, output_names, state_names};
+use super::matrices::{StateSpace, output_names, state_names};
 
 /// Position of an input among all: the surface (or, after all surfaces, the zone) that names it first, and its rank there.
 type InputOrder = (usize, usize);

@@ -1,4 +1,6 @@
 use super::*;
+use crate::building::coefficients::Coefficients;
+use crate::building::plan::Plan;
 use crate::common::{Builder, values};
 use crate::input::description::{Gain, OutdoorLongwave, ParamId, Parameter, ZoneLongwave};
 use crate::physics::constants::{KELVIN, SIGMA};

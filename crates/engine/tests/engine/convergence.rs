@@ -1,9 +1,7 @@
 //! When Newton's iteration stops.
 
-mod common;
-
-use common::melting::ceiling_weather;
-use common::{Builder, SCHEMES, facing, forcing, options, run};
+use crate::common::melting::ceiling_weather;
+use crate::common::{Builder, SCHEMES, facing, forcing, options, run};
 use mascarin_engine::description::{Description, Facing, ZoneLongwave};
 use mascarin_engine::march::Run;
 use mascarin_engine::plan::Plan;

@@ -1,0 +1,91 @@
+//! Whether all laws of a building are linear and constant.
+
+use crate::building::coefficients::{Boundary, Coefficients};
+use crate::building::plan::Plan;
+use crate::error::EngineError;
+use crate::input::description::{Infiltration, Material};
+use crate::physics::longwave::Emission;
+
+fn refuse(what: &str, remedy: &str) -> Result<(), EngineError> {
+    Err(EngineError::Input(format!("no state space: {what} is not linear and constant; {remedy}")))
+}
+
+/// Names the first law that is not linear and constant.
+pub(super) fn require_linear(
+    plan: &Plan,
+    numbers: &[f64],
+    coefficients: &Coefficients<f64>,
+) -> Result<(), EngineError> {
+    for material in &plan.description.materials {
+        if let Material::Pcm { law: _, conductivity, .. } = material {
+            let path = &plan.description.parameters[conductivity[0].0 as usize].path;
+            let name = path.split('.').nth(1).unwrap_or(path);
+            return refuse(&format!("materials.{name} (phase change)"), "replace it by a solid");
+        }
+    }
+    if let Some(&window) = plan.windows.first() {
+        let name = &plan.description.surfaces[window].name;
+        return refuse(&format!("window {name}"), "replace it by a wall of a resistance");
+    }
+    require_linear_surfaces(plan, coefficients)?;
+    require_linear_zones(plan, numbers, coefficients)?;
+    if let Some(opening) = plan.description.openings.first() {
+        return refuse(&format!("opening {}", opening.name), "use ventilation without a schedule");
+    }
+    let paths = coefficients.paths.iter().zip(&plan.description.air_paths);
+    if let Some((_, path)) = paths.into_iter().find(|(path, _)| path.whole().is_none()) {
+        return refuse(&format!("air path {}", path.name), "remove its schedule");
+    }
+    Ok(())
+}
+
+fn require_linear_surfaces(plan: &Plan, coefficients: &Coefficients<f64>) -> Result<(), EngineError> {
+    for (index, surface) in coefficients.surfaces.entries() {
+        let name = plan.surface_name(index);
+        if surface.convection.as_ref().is_some_and(|convection| convection.constant().is_none()) {
+            return refuse(&format!("convection at {name}"), "use a constant coefficient");
+        }
+        if let Boundary::Outdoors(outdoors) = &surface.boundary
+            && matches!(outdoors.emission, Some(Emission::Exact))
+        {
+            return refuse(
+                &format!("long-wave exchange at {name}"),
+                "use `longwave: {kind: linearised, ...}`",
+            );
+        }
+    }
+    Ok(())
+}
+
+fn require_linear_zones(
+    plan: &Plan,
+    numbers: &[f64],
+    coefficients: &Coefficients<f64>,
+) -> Result<(), EngineError> {
+    for (zone, definition) in coefficients.zones.iter().zip(&plan.description.zones) {
+        if !zone.exchange.is_empty() && matches!(zone.emission, Emission::Exact) {
+            return refuse(
+                &format!("long-wave exchange in zone {}", definition.name),
+                "use `longwave: {kind: linearised, ...}`",
+            );
+        }
+        let Infiltration { temperature, wind, .. } = &definition.infiltration;
+        if [temperature, wind].iter().any(|id| numbers[id.0 as usize] != 0.0) {
+            return refuse(
+                &format!("infiltration of zone {}", definition.name),
+                "keep only its constant part",
+            );
+        }
+        if definition.heating.is_some() || definition.cooling.is_some() {
+            return refuse(&format!("the plant of zone {}", definition.name), "remove heating and cooling");
+        }
+        let flows = zone.ventilation.iter().zip(&definition.ventilation);
+        if let Some((_, flow)) = flows.into_iter().find(|(flow, _)| flow.whole().is_none()) {
+            return refuse(
+                &format!("ventilation {} of zone {}", flow.name, definition.name),
+                "remove its schedule",
+            );
+        }
+    }
+    Ok(())
+}
