@@ -5,6 +5,7 @@
 mod common;
 
 mod closed_answers;
+mod convergence;
 mod difficult_steps;
 mod empty_ensemble;
 mod ensemble_shapes;
