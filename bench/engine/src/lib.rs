@@ -73,6 +73,7 @@ impl Case {
                 probes: written.probes,
                 record_from: 0,
                 record_every: 1,
+                residuals: false,
             },
         }
     }

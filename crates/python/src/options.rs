@@ -73,6 +73,7 @@ impl RunOptions {
             probes,
             record_from: self.record_from,
             record_every: self.record_every,
+            residuals: false,
         })
     }
 }

@@ -73,6 +73,7 @@ mod tests {
                 probes: Vec::new(),
                 record_from,
                 record_every,
+                residuals: false,
             };
             let actions = core::iter::once(Action::Balance).chain((0..steps).map(Action::Step));
             let rows: Vec<usize> = actions.filter_map(|action| action.row(&options)).collect();

@@ -74,6 +74,9 @@ pub(crate) fn march_observed<'a, S: Real>(
     mut observe: impl FnMut(&Stepper<'a, S>, &State<S>, Action) -> Result<(), EngineError>,
 ) -> Result<Run<S>, EngineError> {
     let plan = stepper.model.plan;
+    if options.residuals {
+        stepper.evaluate_residuals();
+    }
     let mut state = stepper.begin(&options.initial);
     let (cycles, settled) = warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());

@@ -25,6 +25,9 @@ pub struct Options {
     pub record_from: usize,
     /// Record every so many steps.
     pub record_every: usize,
+    /// Evaluate the residuals of all stages, see [`Counters::largest_residual`](crate::step::Counters::largest_residual):
+    /// a run then takes longer.
+    pub residuals: bool,
 }
 
 /// A repeated first period, before the run.

@@ -22,6 +22,11 @@ impl<S: Real> Stepper<'_, S> {
         state.surfaces.copy_from_slice(&solution.surfaces);
         state.air.copy_from_slice(&solution.air);
         state.load.copy_from_slice(&self.solver.start.load);
+        if let (Some(residuals), Some(largest)) =
+            (&self.residuals, &mut self.solver.counters.largest_residual)
+        {
+            *largest = residuals.stages.iter().fold(*largest, |largest, &residual| largest.max(residual));
+        }
         ledger.book(energy, stored);
     }
 

@@ -4,6 +4,8 @@ use crate::balance::ledger::Power;
 use crate::balance::terms::Balances;
 use crate::building::ids::SurfaceId;
 use crate::number::real::Real;
+use crate::step::stage::Stage;
+use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
 impl<S: Real> Stepper<'_, S> {
@@ -27,6 +29,18 @@ impl<S: Real> Stepper<'_, S> {
         let solution = &self.solver.solution;
         let flux = |surface| self.flux_into_wall(surface);
         energy.add_for(duration, &self.balances().power(&solution.surfaces, &solution.air, flux));
+    }
+
+    /// Evaluates the residual of the stage just solved.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn record_residual(&mut self, state: &State<S>, length: f64, index: usize) {
+        let (model, conditions, tableau) = (&self.model, &self.weather.conditions, self.scheme.tableau());
+        let stage =
+            Stage { model, conditions, state, storage: tableau.storage, length, place: (0, index + 1) };
+        if let Some(residuals) = &mut self.residuals {
+            residuals.record(&self.solver, &self.flows, &stage, tableau.ratio);
+        }
     }
 
     /// Conduction from a surface into its wall [W/m2].

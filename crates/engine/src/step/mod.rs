@@ -11,6 +11,7 @@ mod linearisation;
 mod nested;
 pub(crate) mod newton;
 mod readings;
+mod residual;
 #[cfg(test)]
 mod residual_tests;
 pub(crate) mod scheme;

@@ -38,6 +38,9 @@ pub struct Counters<S> {
     pub reversals: S,
     /// Largest change of a temperature in the last iteration of a stage that was accepted [K].
     pub largest_change: S,
+    /// Largest residual of a heat balance at the end of a stage that was accepted, all laws evaluated there [W]; none where
+    /// it is not asked for.
+    pub largest_residual: Option<S>,
 }
 
 /// How a stage is solved.
@@ -86,6 +89,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
                 halvings: 0,
                 reversals: S::zero(),
                 largest_change: S::zero(),
+                largest_residual: None,
             },
         }
     }

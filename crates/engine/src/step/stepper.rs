@@ -14,6 +14,7 @@ use crate::step::guess::Guess;
 use crate::step::halving::{Part, StepParts};
 use crate::step::ideal_loads::loads::IdealLoads;
 use crate::step::newton::{Counters, Search, StageSolver};
+use crate::step::residual::StageResiduals;
 use crate::step::scheme::Scheme;
 use crate::step::stage::Stage;
 use crate::step::stage_solutions::StageSolutions;
@@ -36,8 +37,8 @@ pub struct Stepper<'a, S: Real> {
     pub(crate) ideal_loads: IdealLoads<S>,
     pub(crate) parts: StepParts<S>,
     pub(crate) known: StageSolutions<S>,
-    #[cfg(test)]
-    pub(super) residuals: super::residual_tests::Residuals<S>,
+    /// Only where residuals are asked for.
+    pub(super) residuals: Option<Box<StageResiduals<S>>>,
 }
 
 impl<'a, S: Real> Stepper<'a, S> {
@@ -55,8 +56,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             guess: Guess::none(),
             parts: StepParts::new(plan.zones.len()),
             known: StageSolutions::nothing(),
-            #[cfg(test)]
-            residuals: super::residual_tests::Residuals::default(),
+            residuals: None,
             model,
             scheme,
         }
@@ -70,6 +70,12 @@ impl<'a, S: Real> Stepper<'a, S> {
     /// What was spent since the start.
     pub fn counters(&self) -> Counters<S> {
         self.solver.counters
+    }
+
+    /// Evaluates the residuals of all stages from now on, see [`Counters::largest_residual`].
+    pub(crate) fn evaluate_residuals(&mut self) {
+        self.residuals = Some(Box::default());
+        self.solver.counters.largest_residual = Some(S::zero());
     }
 
     /// Lanes whose iteration failed: their numbers mean nothing any more.
@@ -251,8 +257,9 @@ impl<'a, S: Real> Stepper<'a, S> {
         let stage = Stage { model, conditions, state, storage, length, place };
         let sound = self.solver.solve(&stage, search)?;
         self.known.keep(&self.solver.solution);
-        #[cfg(test)]
-        self.record_residual(state, length, place.1.saturating_sub(1));
+        if self.residuals.is_some() && place.1 > 0 {
+            self.record_residual(state, length, place.1 - 1);
+        }
         Ok(sound)
     }
 }

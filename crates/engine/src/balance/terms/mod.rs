@@ -16,7 +16,6 @@
 
 pub(crate) mod booking;
 pub(crate) mod evaluation;
-#[cfg(test)]
 pub(crate) mod residual;
 #[cfg(test)]
 mod tests;

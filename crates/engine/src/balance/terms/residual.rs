@@ -2,6 +2,8 @@
 
 use crate::building::coefficients::Coefficients;
 use crate::building::ids::{BySurface, SurfaceId};
+use crate::building::model::Model;
+use crate::linear::building_system::is_held;
 use crate::number::real::Real;
 
 use super::evaluation::{Evaluation, HeatSink};
@@ -19,7 +21,34 @@ pub(crate) struct Residual<S> {
 }
 
 impl<S: Real> Residual<S> {
+    /// The largest residual of a balance as heat [W]. Infinite where one is not a number. Surfaces held at a temperature have
+    /// no balance.
+    pub(crate) fn largest_heat(&self, model: &Model<'_, S>) -> S {
+        let coefficients = &model.coefficients;
+        let mut largest = S::zero();
+        let mut add = |density: S, area: S| {
+            let heat = (density * area).abs();
+            largest =
+                largest.max(S::select(heat.lt(S::constant(f64::MAX)), heat, S::constant(f64::INFINITY)));
+        };
+        for (w, wall) in coefficients.walls.iter().enumerate() {
+            for &cell in &self.cells[model.cells(w)] {
+                add(cell, wall.area);
+            }
+        }
+        for (surface, &density) in self.surfaces.entries() {
+            if !is_held(model, surface) {
+                add(density, coefficients.walls[surface.wall()].area);
+            }
+        }
+        for (&density, zone) in self.air.iter().zip(&coefficients.zones) {
+            add(density, zone.areas.iter().fold(S::zero(), |sum, &area| sum + area));
+        }
+        largest
+    }
+
     /// The largest of all residuals.
+    #[cfg(test)]
     pub(crate) fn largest(&self) -> S {
         let all = self.cells.iter().chain(&self.surfaces).chain(&self.air);
         // A residual that is no number is larger than all others.

@@ -350,6 +350,7 @@ pub fn options(scheme: Scheme, dt: f64, probes: Vec<Probe>) -> Options {
         probes,
         record_from: 0,
         record_every: 1,
+        residuals: false,
     }
 }
 
