@@ -154,8 +154,9 @@ impl<'a, S: Real> StepperAlong<'a, S> {
         for (p, (&zone, rows)) in plan.ideal_loads.iter().zip(responses).enumerate() {
             rows.fill(0.0);
             for (place, matrix) in stepper.stage_places(dt).zip(&*matrices) {
-                if place.stage > 0 {
-                    matrix.stored_by_first_stage(rows, place.ratio);
+                if let Some(first) = place.stage.checked_sub(1) {
+                    // Heat capacities at the solution of the first stage, not of this one.
+                    matrices[first].stored_for_next_stage(rows, place.ratio);
                 }
                 rows[first_air + zone] += 1.0;
                 matrix.solve_values(rows, scratch);

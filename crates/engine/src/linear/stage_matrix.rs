@@ -235,8 +235,8 @@ impl<'a> StageMatrix<'a> {
         }
     }
 
-    /// Heat that changes of the first stage's solution leave stored for the second one: on its equations, in place.
-    pub(crate) fn stored_by_first_stage(&self, rows: &mut [f64], ratio: f64) {
+    /// Heat that changes of this stage's solution leave stored for the next one: on its equations, in place.
+    pub(crate) fn stored_for_next_stage(&self, rows: &mut [f64], ratio: f64) {
         let (cells, rest) = rows.split_at_mut(self.model.plan.n_cells);
         let (surfaces, air) = rest.split_at_mut(self.model.plan.surfaces.len());
         surfaces.fill(0.0);
