@@ -83,7 +83,7 @@ check-rust: $(ENVIRONMENT)
 		echo "error: cargo has no 'fmt' or no 'clippy'. With rustup: rustup component add rustfmt clippy" >&2; exit 1; }
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --package mascarin-engine --no-deps --locked --quiet
+	RUSTDOCFLAGS="-D warnings" cargo doc --package mascarin-engine --no-deps --document-private-items --locked --quiet
 	cargo test --workspace --release --locked --quiet
 
 check-python: $(BUILT)

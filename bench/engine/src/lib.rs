@@ -12,7 +12,7 @@ use mascarin_engine::march::{Options, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::state::Initial;
-use mascarin_engine::step::Scheme;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::{batch, dispatch};
 use serde::Deserialize;
 

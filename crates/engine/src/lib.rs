@@ -13,19 +13,19 @@ extern crate self as mascarin_engine;
 #[path = "../tests/engine/common/mod.rs"]
 mod common;
 
-pub mod balance;
-pub mod building;
+mod balance;
+mod building;
 pub mod derivatives;
 pub mod error;
-pub mod geometry;
-pub mod input;
-pub mod linear;
+mod geometry;
+mod input;
+mod linear;
 pub mod linear_model;
 pub mod number;
-pub mod physics;
-pub mod run;
-pub mod step;
-pub mod weather;
+mod physics;
+mod run;
+mod step;
+mod weather;
 
 pub use balance::ledger;
 pub use building::{coefficients, plan};
@@ -43,6 +43,7 @@ pub mod march {
     pub use crate::run::control::RunControl as Watch;
     pub use crate::run::march::{Run, march};
     pub use crate::run::options::{Options, Warmup};
+    pub use crate::step::{Counters, Scheme};
 }
 
 /// Quantities to record.

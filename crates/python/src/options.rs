@@ -1,9 +1,9 @@
 //! Options of a run as they come from Python.
 
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Warmup};
 use mascarin_engine::probe::Probe;
 use mascarin_engine::state::Initial;
-use mascarin_engine::step::Scheme;
 use pyo3::prelude::*;
 
 use crate::errors::EngineInputError;

@@ -1,7 +1,7 @@
 //! A linear building as matrices: `dx/dt = A x + B u`, `y = C x + D u`.
 //!
 //! States are cell and air temperatures; surfaces store no heat and are eliminated. The matrices come from the heat
-//! balances of [`crate::balance::terms`]. Only buildings whose laws are all linear and constant have such a form; for the
+//! balances of `balance::terms`. Only buildings whose laws are all linear and constant have such a form; for the
 //! others the error names the first law that is not.
 
 mod matrices;

@@ -81,7 +81,7 @@ mod tests {
     /// Symmetric positive matrices need no dominance: the Hilbert matrix of 4 rows, and its inverse by hand.
     #[test]
     fn positive_minors_are_enough() {
-        let mut matrix: Vec<f64> = (0..16).map(|k| 1.0 / (k / 4 + k % 4 + 1) as f64).collect();
+        let mut matrix: Vec<f64> = (0..16).map(|k| 1.0 / f64::from(k / 4 + k % 4 + 1)).collect();
         let mut right = [1.0, 0.0, 0.0, 0.0];
         solve_many(&mut matrix, &mut right, 1);
         for (found, expected) in right.iter().zip([16.0, -120.0, 240.0, -140.0]) {

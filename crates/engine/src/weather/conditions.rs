@@ -10,7 +10,7 @@ use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::sky_emission;
 use crate::weather::index::WeatherIndex;
 pub use crate::weather::instant::{Instant, Weather};
-pub use crate::weather::sun::{SolarConditions, SolarMeans, WindowConditions, ZoneSolar};
+pub use crate::weather::sun::SolarConditions;
 pub use crate::weather::surface::SurfaceConditions;
 use crate::weather::surface::{forced, imposed_temperature};
 use crate::weather::zone_conditions::ZoneConditions;
@@ -257,7 +257,7 @@ mod tests {
         }
         let night = conditions(&plan, &dark);
         assert!(night.surfaces.iter().all(|surface| surface.solar == 0.0));
-        let mut means = SolarMeans::new(&day.sun);
+        let mut means = crate::weather::sun::SolarMeans::new(&day.sun);
         means.add(&day.sun, 0.25);
         means.add(&night.sun, 0.75);
         assert_eq!(means.zones[0], 0.25 * day.sun.zones[0].transmitted);

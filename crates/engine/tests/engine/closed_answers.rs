@@ -9,11 +9,11 @@ use crate::common::{Builder, facing, forcing, options, relative, run, set};
 use core::f64::consts::TAU;
 use mascarin_engine::description::{Convection, Facing, ZoneLongwave};
 use mascarin_engine::forcing::channel;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::Warmup;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::state::Initial;
-use mascarin_engine::step::Scheme;
 
 const DAY: f64 = 86400.0;
 

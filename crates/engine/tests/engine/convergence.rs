@@ -3,10 +3,10 @@
 use crate::common::melting::ceiling_weather;
 use crate::common::{Builder, SCHEMES, facing, forcing, options, run};
 use mascarin_engine::description::{Description, Facing, ZoneLongwave};
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Run};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
-use mascarin_engine::step::Scheme;
 
 const STEP: f64 = 900.0;
 

@@ -6,9 +6,9 @@ use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::jacobian::jacobian;
 use mascarin_engine::derivatives::trajectory::Trajectory;
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
-use mascarin_engine::step::Scheme;
 
 const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
 /// Parameters of the slopes.

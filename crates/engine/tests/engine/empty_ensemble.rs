@@ -3,10 +3,10 @@
 use crate::common::{cell, cell_probes, cell_weather, forcing, options, values};
 use mascarin_engine::batch::{Ensemble, ensemble};
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::Watch;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
-use mascarin_engine::step::Scheme;
 
 fn members(count: usize, probes: Vec<Probe>) -> (Ensemble, usize) {
     let plan = Plan::new(cell(0.04)).unwrap();

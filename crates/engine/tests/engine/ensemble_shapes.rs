@@ -3,10 +3,10 @@
 use crate::common::{cell, cell_probes, cell_weather, forcing, options, run, values};
 use mascarin_engine::batch::{Ensemble, ensemble};
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Watch};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
-use mascarin_engine::step::Scheme;
 
 const STEP: f64 = 900.0;
 const STEPS: usize = 6;

@@ -22,13 +22,13 @@ use mascarin_engine::derivatives::trajectory::Trajectory;
 use mascarin_engine::description::{Description, HysteresisModel};
 use mascarin_engine::dispatch::Level;
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Run, Warmup, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::{Dual, Lanes, Mask, Real};
 use mascarin_engine::state::Initial;
 use mascarin_engine::state_space::state_space;
-use mascarin_engine::step::Scheme;
 use rayon::prelude::*;
 
 #[rustfmt::skip]
@@ -231,7 +231,9 @@ impl Hash {
     /// The count of some numbers and their bits.
     fn numbers(&mut self, numbers: &[f64]) {
         self.count(numbers.len());
-        numbers.iter().for_each(|&number| self.number(number));
+        for &number in numbers {
+            self.number(number);
+        }
     }
 
     /// The count of some numbers, and the values and slopes of all lanes that have not failed.
@@ -580,7 +582,9 @@ fn ensembles() -> Vec<Row> {
         let (mut answers, mut rest) = (Hash::new(), Hash::new());
         answers.numbers(&done.records);
         answers.numbers(&done.closure);
-        failed.iter().for_each(|&member| rest.count(member));
+        for &member in &failed {
+            rest.count(member);
+        }
         Row(format!("{}, {scheme:?}, ensemble", sample.name), [answers.0, rest.0])
     });
     rows.collect()
@@ -654,7 +658,9 @@ fn slopes() -> Vec<Row> {
     }
     for names in [&matrices.states, &matrices.inputs, &matrices.outputs] {
         rest.count(names.len());
-        names.iter().for_each(|name| rest.bytes(name.as_bytes()));
+        for name in names {
+            rest.bytes(name.as_bytes());
+        }
     }
     rows.push(Row("linear cell, matrices".to_owned(), [answers.0, rest.0]));
     rows

@@ -4,9 +4,9 @@ use crate::common::conditioned::plant;
 use crate::common::melting::{ceiling_weather, fine_ceiling};
 use crate::common::{forcing, options, run};
 use mascarin_engine::ledger::Flow;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
-use mascarin_engine::step::Scheme;
 
 const STEP: f64 = 900.0;
 

@@ -5,10 +5,10 @@ use std::process::Command;
 use crate::common::{cell, cell_probes, cell_weather, forcing, options, values};
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Watch, march};
 use mascarin_engine::number::simd::Level;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::step::Scheme;
 
 /// Says in which process the test below runs.
 const CHILD: &str = "MASCARIN_TEST_CHILD";

@@ -2,9 +2,9 @@
 
 use crate::common::{Builder, forcing, options, run};
 use mascarin_engine::description::ZoneLongwave;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
-use mascarin_engine::step::Scheme;
 
 /// Two walls that look the same way do not see each other: they exchange no long-wave radiation, as without any.
 #[test]

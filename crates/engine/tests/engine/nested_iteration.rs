@@ -3,9 +3,9 @@
 use crate::common::difficult::{all_steps, steps};
 use crate::common::{try_run, values};
 use mascarin_engine::march::Options;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::state::Initial;
-use mascarin_engine::step::Scheme;
 
 const SCHEMES: [Scheme; 2] = [Scheme::BackwardEuler, Scheme::Sdirk2];
 

@@ -3,10 +3,10 @@
 use crate::common::glazed_box::glazed_box;
 use crate::common::{forcing, options, run};
 use mascarin_engine::forcing::channel;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::Real;
-use mascarin_engine::step::Scheme;
 
 /// Steps [s].
 const STEPS: [f64; 6] = [3600.0, 1800.0, 900.0, 450.0, 225.0, 112.5];

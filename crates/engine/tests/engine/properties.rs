@@ -10,10 +10,10 @@ use mascarin_engine::batch::ensemble;
 use mascarin_engine::derivatives::jacobian::jacobian;
 use mascarin_engine::derivatives::trajectory::Trajectory;
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
-use mascarin_engine::step::Scheme;
 
 /// Buildings of each test, unless the environment asks for another number.
 const CASES: u64 = 40;

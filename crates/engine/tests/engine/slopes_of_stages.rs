@@ -7,11 +7,11 @@ use mascarin_engine::derivatives::jacobian::jacobian;
 use mascarin_engine::derivatives::trajectory::Trajectory;
 use mascarin_engine::description::{Description, IdealLoad, SetPoint, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::{Dual, Real};
-use mascarin_engine::step::Scheme;
 
 const SCHEMES: [Scheme; 2] = [Scheme::BackwardEuler, Scheme::Sdirk2];
 

@@ -7,10 +7,10 @@ use crate::common::{cell, cell_probes, cell_weather, forcing, options, values};
 use mascarin_engine::derivatives::trajectory::Trajectory;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::Watch;
 use mascarin_engine::number::tape;
 use mascarin_engine::plan::Plan;
-use mascarin_engine::step::Scheme;
 
 const STEPS: usize = 12;
 

@@ -4,11 +4,11 @@ use crate::common::{Builder, facing, forcing, options, position, set, values};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::description::{Convection, Exposure, Facing, OutdoorLongwave};
 use mascarin_engine::forcing::{Forcing, channel};
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::{Dual, Real};
-use mascarin_engine::step::Scheme;
 
 /// Orientations of walls and winds [deg].
 const ANGLES: usize = 24;

@@ -6,11 +6,11 @@ use mascarin_engine::batch::ensemble;
 use mascarin_engine::description::{AirPath, Facing, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::{Dual, Real};
-use mascarin_engine::step::Scheme;
 
 const STEP: f64 = 900.0;
 const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];

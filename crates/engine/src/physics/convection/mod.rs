@@ -50,5 +50,5 @@ mod testing;
 pub(crate) mod wind;
 
 pub use correlation::Placement;
-pub use law::{ConvectiveFlux, SurfaceConvection};
+pub use law::SurfaceConvection;
 pub use wind::{Forced, Wind, WindTerms};

@@ -19,6 +19,5 @@ mod diffuse;
 mod pane;
 mod unit;
 
-pub use curves::Curves;
 pub use diffuse::Diffuse;
 pub use unit::Optics;

@@ -6,12 +6,12 @@ use mascarin_engine::description::{
     Convection, Description, IdealLoad, MeltingCurve, PcmLaw, SetPoint, ZoneLongwave,
 };
 use mascarin_engine::forcing::channel;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Run};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::Real;
 use mascarin_engine::state::Initial;
-use mascarin_engine::step::Scheme;
 
 use crate::common::{Builder, forcing, options, set, try_run, values, weather};
 

@@ -18,12 +18,12 @@ use mascarin_engine::description::{
 };
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Run, Warmup, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::Real;
 use mascarin_engine::state::Initial;
-use mascarin_engine::step::Scheme;
 
 /// All schemes.
 pub const SCHEMES: [Scheme; 3] = [Scheme::Sdirk2, Scheme::BackwardEuler, Scheme::ApparentCapacity];

@@ -11,11 +11,11 @@ use mascarin_engine::description::{
 };
 use mascarin_engine::forcing::channel;
 use mascarin_engine::march::Options;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::real::Real;
 use mascarin_engine::state::Initial;
-use mascarin_engine::step::Scheme;
 
 use crate::common::{Builder, LayerOf, facing, forcing, options, set, weather};
 
