@@ -3,47 +3,8 @@
 use crate::number::line::Line;
 use crate::number::real::{Abreast, Real};
 
-use super::laws::Laws;
-use super::{Elimination, Layout, ZoneFront};
-
-/// The coefficients of a front. Unknowns are emissions, see the [module](super).
-#[derive(Debug, Clone)]
-pub(super) struct Equations<S> {
-    /// Exchange areas: what a surface loses by its own emission and gains by that of others [m2]; symmetric.
-    pub(super) exchange: Vec<S>,
-    /// One for eliminated surfaces, else zero; and this over the slope of the emission [m2 K/W]: the temperature of a retained
-    /// surface is an unknown of the coupled system, which its convection is assembled into.
-    eliminated: Vec<S>,
-    pub(super) inverse_slope: Vec<S>,
-    /// Convective conductance to the air [W/K], the same per emission [m2], and heat into the air that depends on no
-    /// temperature [W].
-    pub(super) to_air: Vec<S>,
-    pub(super) to_air_by_emission: Vec<S>,
-    air_heat: Vec<S>,
-    /// What the diagonal has beside the exchange [m2], for the air [W/K]; right-hand side [W].
-    pub(super) diagonal: Vec<S>,
-    pub(super) right: Vec<S>,
-}
-
-impl<S: Real> Equations<S> {
-    /// Equations without exchange.
-    pub(super) fn new(layout: &Layout, laws: &Laws<S>) -> Self {
-        let zeros = || vec![S::zero(); layout.stride];
-        let mut eliminated = zeros();
-        eliminated[..layout.eliminated].fill(S::one());
-        let slopes = eliminated.iter().zip(&laws.emission[1]);
-        Self {
-            exchange: vec![S::zero(); layout.stride * layout.stride],
-            inverse_slope: slopes.map(|(&flag, &slope)| flag / slope).collect(),
-            eliminated,
-            to_air: zeros(),
-            to_air_by_emission: zeros(),
-            air_heat: zeros(),
-            diagonal: zeros(),
-            right: zeros(),
-        }
-    }
-}
+use super::front::ZoneFront;
+use super::layout::{Elimination, Layout};
 
 impl<S: Real> ZoneFront<S> {
     /// Eliminates the exterior surfaces, and sums up what acts on the surfaces of the zone and on its air.

@@ -6,8 +6,8 @@
 
 use crate::number::real::{Abreast, Real};
 
-use super::Layout;
-use super::assemble::Equations;
+use super::equations::Equations;
+use super::layout::Layout;
 
 /// Runs a block for every number below 16, each a constant of the compiler.
 macro_rules! each {

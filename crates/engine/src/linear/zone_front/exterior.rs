@@ -12,7 +12,7 @@ use crate::physics::longwave::Emission;
 use crate::weather::conditions::Conditions;
 
 use super::laws::Laws;
-use super::{Elimination, Layout};
+use super::layout::{Elimination, Layout};
 
 /// The exterior surfaces, by the place of the interior surface of their wall.
 #[derive(Debug, Clone)]

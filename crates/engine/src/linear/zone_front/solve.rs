@@ -7,26 +7,8 @@ use crate::linear::coupled::CoupledSystem;
 use crate::linear::product::{PlainMatrix, Product, SameKind};
 use crate::number::real::{Abreast, Real};
 
-use super::{Elimination, Layout, ZoneFront};
-
-/// Influence coefficients of a constant matrix.
-#[derive(Debug, Clone)]
-pub(super) struct Influence<S> {
-    /// By right-hand side of an eliminated surface (rows): temperatures of the eliminated surfaces, then what is added to the
-    /// right-hand sides of the retained unknowns.
-    of_right: Vec<S>,
-    /// By retained unknown (rows): temperatures of the eliminated surfaces.
-    of_retained: Vec<S>,
-    /// Influence of the right-hand side at hand.
-    applied: Vec<S>,
-}
-
-impl<S: Real> Influence<S> {
-    pub(super) fn new(stride: usize) -> Self {
-        let zeros = |count| vec![S::zero(); count];
-        Self { of_right: zeros(stride * stride), of_retained: zeros(stride * stride), applied: zeros(stride) }
-    }
-}
+use super::front::ZoneFront;
+use super::layout::{Elimination, Layout};
 
 impl<S: Real> ZoneFront<S> {
     /// Computes the influence coefficients, column by column of the inverse.

@@ -5,8 +5,10 @@ use core::ops::Range;
 
 use super::eliminate::Factors;
 use super::exterior::Exterior;
+use super::front::ZoneFront;
+use super::fronts::{Eliminate, Solve};
 use super::laws::Laws;
-use super::{Eliminate, Elimination, Layout, Solve, ZoneFront};
+use super::layout::{Elimination, Layout};
 use crate::building::ids::SurfaceId;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::SurfaceLaws;

@@ -1,0 +1,209 @@
+//! The fronts of all zones: their part in the linear system of a stage.
+
+use crate::building::coefficients::Coefficients;
+use crate::building::ids::BySurface;
+use crate::building::plan::Plan;
+use crate::linear::coupled::CoupledSystem;
+use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
+use crate::linear::unknowns::Unknowns;
+use crate::number::real::{Abreast, Real, Task};
+use crate::weather::conditions::Conditions;
+
+use super::front::ZoneFront;
+use super::layout::Elimination;
+
+/// The fronts of all zones.
+#[derive(Debug, Clone)]
+pub(crate) struct ZoneFronts<S> {
+    zone_fronts: Vec<ZoneFront<S>>,
+}
+
+/// The elimination of all fronts.
+pub(super) struct Eliminate<'r, S: Real> {
+    pub(super) zone_fronts: &'r mut [ZoneFront<S>],
+    /// Iterate about which nonlinear laws are linearised; none: laws as they are.
+    pub(super) iterate: Option<&'r Unknowns<S>>,
+    pub(super) elimination: Elimination,
+    pub(super) constant: bool,
+}
+
+impl<S: Real> Task<S> for Eliminate<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Abreast<S>>(self) {
+        for (zone, front) in self.zone_fronts.iter_mut().enumerate() {
+            if let Some(iterate) = self.iterate {
+                if front.laws.convection_is_nonlinear() {
+                    front.laws.air.fill(iterate.air[zone]);
+                }
+                // A loop: one copy of all correlations only, inlining multiplies compile time.
+                for laws in [&mut front.laws, &mut front.exterior.laws] {
+                    laws.linearise::<V>(&iterate.surfaces);
+                }
+            }
+            front.assemble::<V>(self.elimination);
+        }
+        for front in self.zone_fronts {
+            if self.elimination == Elimination::Full {
+                front.factors.eliminate::<V>(&front.equations, &front.layout);
+                if self.constant {
+                    front.compute_influence();
+                }
+            }
+            if self.constant {
+                front.apply_influence::<V>();
+            }
+        }
+    }
+}
+
+/// Solution for all eliminated surfaces.
+pub(super) struct Solve<'r, S: Real> {
+    pub(super) zone_fronts: &'r mut [ZoneFront<S>],
+    pub(super) constant: bool,
+    pub(super) unknowns: &'r mut [S],
+    pub(super) surfaces: &'r mut [S],
+}
+
+impl<S: Real> Task<S> for Solve<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Abreast<S>>(self) {
+        for front in self.zone_fronts {
+            front.solve::<V>(self.constant, self.unknowns, self.surfaces);
+        }
+    }
+}
+
+// Large functions, not inlined: one copy only, inlining multiplies compile time.
+impl<S: Real> ZoneFronts<S> {
+    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, laws: &BySurface<SurfaceLaws<S>>) -> Self {
+        let zones = 0..plan.zones.len();
+        Self { zone_fronts: zones.map(|zone| ZoneFront::new(plan, numbers, laws, zone)).collect() }
+    }
+
+    /// Sets the responses of the walls: heat into surface e by the temperature of surface o [W/(m2 K)].
+    pub(crate) fn set_responses(&mut self, responses: &[[[S; 2]; 2]]) {
+        for front in &mut self.zone_fronts {
+            front.exterior.set_responses(&front.layout, responses);
+        }
+    }
+
+    /// Reads what drives a stage: conditions, and heat from the walls at surfaces of 0 degC [W/m2].
+    #[inline(never)]
+    pub(crate) fn begin_stage(&mut self, conditions: &Conditions<S>, sources: &[[S; 2]]) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                for (front, zone) in self.zone_fronts.iter_mut().zip(&conditions.zones) {
+                    front.begin(conditions, zone.radiant, sources);
+                }
+            },
+        );
+    }
+
+    /// Eliminates the surfaces of all fronts and adds the Schur complement to the coupled system. Nonlinear laws are taken along
+    /// their tangents at an iterate; without one as they are. `constant`: the matrix changes only with the stage length.
+    #[inline(never)]
+    pub(crate) fn eliminate(
+        &mut self,
+        iterate: Option<&Unknowns<S>>,
+        elimination: Elimination,
+        constant: bool,
+        coupled: &mut CoupledSystem<'_, S>,
+    ) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                S::abreast(Eliminate { zone_fronts: &mut self.zone_fronts, iterate, elimination, constant });
+                for zone_front in &self.zone_fronts {
+                    zone_front.add_schur_complement(elimination, constant, coupled);
+                }
+            },
+        );
+    }
+
+    /// Solves for the eliminated surfaces, once the other unknowns are known; surfaces are those of the building.
+    #[inline(never)]
+    pub(crate) fn solve(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
+        S::vectorised(
+            #[inline(always)]
+            || S::abreast(Solve { zone_fronts: &mut self.zone_fronts, constant, unknowns, surfaces }),
+        );
+    }
+
+    /// Eliminates the surfaces of the fronts from another right-hand side.
+    #[inline(never)]
+    pub(crate) fn forward(&self, right: &mut [S]) {
+        S::vectorised(
+            #[inline(always)]
+            || self.zone_fronts.iter().for_each(|front| front.forward_in_building(right)),
+        );
+    }
+
+    /// Solves for the eliminated surfaces of another right-hand side.
+    #[inline(never)]
+    pub(crate) fn back(&self, right: &mut [S]) {
+        S::vectorised(
+            #[inline(always)]
+            || self.zone_fronts.iter().for_each(|front| front.back_in_building(right)),
+        );
+    }
+
+    /// Copies laws that were linearised elsewhere.
+    pub(crate) fn copy_laws(&mut self, laws: &BySurface<SurfaceLaws<S>>) {
+        for front in &mut self.zone_fronts {
+            front.laws.copy_from(laws);
+            front.exterior.laws.copy_from(laws);
+        }
+    }
+
+    /// Writes the laws of the exterior surfaces, which the energy balance needs.
+    #[inline(never)]
+    pub(crate) fn write_exterior_laws(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
+        self.zone_fronts.iter().for_each(|front| front.exterior.laws.copy_to(laws));
+    }
+
+    /// Writes the laws of the surfaces in the zones.
+    #[cfg(test)]
+    pub(crate) fn laws_in_zones(&self, laws: &mut BySurface<SurfaceLaws<S>>) {
+        self.zone_fronts.iter().for_each(|front| front.laws.copy_to(laws));
+    }
+
+    /// Writes the exterior surfaces as lines of the interior ones [degC], and how much they rise with heat [m2 K/W].
+    #[inline(never)]
+    pub(crate) fn write_exterior_surfaces(&self, surfaces: &mut [ExteriorSurfaces<S>], inverses: &mut [S]) {
+        for front in &self.zone_fronts {
+            for (i, interior) in front.layout.walls.iter().enumerate() {
+                let (line, inverse) = front.exterior.line_at(i);
+                surfaces[interior.wall()] = ExteriorSurfaces::One { side: interior.opposite().side(), line };
+                inverses[interior.wall()] = inverse;
+            }
+        }
+    }
+}
+
+/// A plain matrix: right-hand sides may carry derivatives, and there is a transpose.
+impl ZoneFronts<f64> {
+    /// Eliminates the surfaces of the fronts from right-hand sides of any kind.
+    #[inline(always)]
+    pub(crate) fn forward_values<R: Real>(&self, right: &mut [R]) {
+        self.zone_fronts.iter().for_each(|front| front.forward_values(right));
+    }
+
+    /// Solves for the eliminated surfaces of right-hand sides of any kind.
+    #[inline(always)]
+    pub(crate) fn back_values<R: Real>(&self, right: &mut [R]) {
+        self.zone_fronts.iter().for_each(|front| front.back_values(right));
+    }
+
+    /// The transpose of [`Self::back_values`].
+    pub(crate) fn back_transposed(&self, weights: &mut [f64]) {
+        self.zone_fronts.iter().for_each(|front| front.back_transposed(weights));
+    }
+
+    /// The transpose of [`Self::forward_values`].
+    pub(crate) fn forward_transposed(&self, weights: &mut [f64]) {
+        self.zone_fronts.iter().for_each(|front| front.forward_transposed(weights));
+    }
+}

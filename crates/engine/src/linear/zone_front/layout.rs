@@ -1,0 +1,36 @@
+//! The unknowns of a front: which are eliminated, which are retained, and where they stand.
+
+use crate::building::ids::SurfaceId;
+
+/// The unknowns of a front and where they stand.
+#[derive(Debug, Clone)]
+pub(super) struct Layout {
+    /// Number of surfaces, the eliminated ones first. The air stands behind them, then the right-hand side.
+    pub(super) surfaces: usize,
+    /// Number of eliminated surfaces.
+    pub(super) eliminated: usize,
+    /// Numbers in a row: all unknowns and the right-hand side, and as many more as fill the last register.
+    pub(super) stride: usize,
+    /// Row of the first eliminated surface among the unknowns of the building, and rows of the retained unknowns.
+    pub(super) first_row: usize,
+    pub(super) retained_rows: Vec<usize>,
+    /// The eliminated surfaces.
+    pub(super) walls: Vec<SurfaceId>,
+}
+
+impl Layout {
+    /// Row of an unknown of the front among the unknowns of the building.
+    #[inline(always)]
+    pub(super) fn row(&self, i: usize) -> usize {
+        if i < self.eliminated { self.first_row + i } else { self.retained_rows[i - self.eliminated] }
+    }
+}
+
+/// What is to be eliminated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Elimination {
+    /// The matrix with its right-hand side.
+    Full,
+    /// The right-hand side alone: the matrix is that of the last elimination.
+    RightHandSide,
+}
