@@ -1,17 +1,29 @@
-//! Linear systems of walls, zones and the building.
+//! Linear systems: the temperatures of all cells, surfaces and airs of a building in one implicit stage.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `unknowns`, `laws` | temperatures, and all laws as straight lines |
+//! | `tridiagonal` | a chain of cells eliminated onto its two ends |
+//! | `wall_linearisation`, `wall` | tangents of phase change, and a wall eliminated onto its two surfaces |
+//! | `step_maps` | a whole step of a wall of constant properties as one linear map |
+//! | `surface_balance` | balances of surfaces, exterior surfaces eliminated |
+//! | `zone_front` | the surfaces of one zone eliminated together, a small dense system |
+//! | `coupled` | what is left: airs and shared surfaces, a sparse system of known pattern |
+//! | `building_system`, `stage_matrix` | all of them together: assembly and solution, other right-hand sides and the transpose |
+//! | `product` | right-hand sides of any kind of number |
 
-pub mod building_system;
-pub mod coupled;
-pub mod laws;
+pub(crate) mod building_system;
+pub(crate) mod coupled;
+pub(crate) mod laws;
 pub(crate) mod product;
-pub mod stage_matrix;
-pub mod step_maps;
-pub mod surface_balance;
+pub(crate) mod stage_matrix;
+pub(crate) mod step_maps;
+pub(crate) mod surface_balance;
 pub(crate) mod tridiagonal;
-pub mod unknowns;
-pub mod wall;
+pub(crate) mod unknowns;
+pub(crate) mod wall;
 pub(crate) mod wall_linearisation;
-pub mod zone_front;
+pub(crate) mod zone_front;
 
 #[cfg(test)]
 mod testing;

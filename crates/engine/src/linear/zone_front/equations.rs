@@ -1,10 +1,11 @@
-//! The equations of a front before they are eliminated.
+//! The coefficients of a front, before its elimination.
+
+use crate::number::real::Real;
 
 use super::laws::Laws;
 use super::layout::Layout;
-use crate::number::real::Real;
 
-/// The coefficients of a front. Unknowns are emissions, see the [module](super).
+/// The coefficients of a front. Unknowns are emissions, see [`zone_front`](super).
 #[derive(Debug, Clone)]
 pub(super) struct Equations<S> {
     /// Exchange areas: what a surface loses by its own emission and gains by that of others [m2]; symmetric.

@@ -1,11 +1,5 @@
-//! The front of one zone: what it is made of, and what drives it in a stage.
+//! The front of one zone: all that its equations are made of.
 
-use super::eliminate::Factors;
-use super::equations::Equations;
-use super::exterior::Exterior;
-use super::influence::Influence;
-use super::laws::Laws;
-use super::layout::Layout;
 use crate::building::coefficients::Coefficients;
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::Plan;
@@ -13,6 +7,12 @@ use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::real::Real;
 use crate::physics::longwave::Emission;
 use crate::weather::conditions::Conditions;
+
+use super::eliminate::Factors;
+use super::equations::Equations;
+use super::exterior::Exterior;
+use super::laws::Laws;
+use super::layout::Layout;
 
 /// The front of a zone.
 #[derive(Debug, Clone)]
@@ -30,6 +30,25 @@ pub(super) struct ZoneFront<S> {
     pub(super) influence: Influence<S>,
     /// Emissions of the unknowns while they are solved for, then temperatures of the exterior surfaces.
     pub(super) scratch: Vec<S>,
+}
+
+/// Influence coefficients of a constant matrix.
+#[derive(Debug, Clone)]
+pub(super) struct Influence<S> {
+    /// By right-hand side of an eliminated surface (rows): temperatures of the eliminated surfaces, then what is added to the
+    /// right-hand sides of the retained unknowns.
+    pub(super) of_right: Vec<S>,
+    /// By retained unknown (rows): temperatures of the eliminated surfaces.
+    pub(super) of_retained: Vec<S>,
+    /// Influence of the right-hand side at hand.
+    pub(super) applied: Vec<S>,
+}
+
+impl<S: Real> Influence<S> {
+    fn new(stride: usize) -> Self {
+        let zeros = |count| vec![S::zero(); count];
+        Self { of_right: zeros(stride * stride), of_retained: zeros(stride * stride), applied: zeros(stride) }
+    }
 }
 
 impl<S: Real> ZoneFront<S> {

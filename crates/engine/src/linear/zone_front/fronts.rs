@@ -1,7 +1,5 @@
-//! The fronts of all zones of a building.
+//! The fronts of all zones: their part in the linear system of a stage.
 
-use super::front::ZoneFront;
-use super::layout::Elimination;
 use crate::building::coefficients::Coefficients;
 use crate::building::ids::BySurface;
 use crate::building::plan::Plan;
@@ -10,6 +8,9 @@ use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Abreast, Real, Task};
 use crate::weather::conditions::Conditions;
+
+use super::front::ZoneFront;
+use super::layout::Elimination;
 
 /// The fronts of all zones.
 #[derive(Debug, Clone)]

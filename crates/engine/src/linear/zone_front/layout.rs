@@ -1,4 +1,4 @@
-//! Which unknowns a front has, and what is eliminated of them.
+//! The unknowns of a front: which are eliminated, which are retained, and where they stand.
 
 use crate::building::ids::SurfaceId;
 

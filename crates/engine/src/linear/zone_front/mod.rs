@@ -4,7 +4,7 @@
 //! ([`exterior`]): it is a straight line of the interior one. The interior surfaces of these walls are the *eliminated*
 //! unknowns of the zone's front. Its *retained* unknowns are the zone's other surfaces (of nonlinear walls, or of walls
 //! between zones) and its air. With the right-hand side as one more column the front is assembled ([`assemble`]) and
-//! eliminated ([`eliminate`]); the Schur complement of the retained unknowns goes to the [`CoupledSystem`](super::coupled::CoupledSystem) ([`solve`]).
+//! eliminated ([`eliminate`]); the Schur complement of the retained unknowns goes to the [`CoupledSystem`](crate::linear::coupled::CoupledSystem) ([`solve`]).
 //!
 //! The unknowns of a front are the emissions of its surfaces along the tangent of their law, `E = offset + slope T` [W/m2],
 //! and the temperature of its air. Surfaces are then coupled by exchange areas, which never change and are symmetric: only
@@ -25,7 +25,6 @@ mod equations;
 mod exterior;
 mod front;
 mod fronts;
-mod influence;
 mod laws;
 mod layout;
 mod solve;
