@@ -46,7 +46,11 @@ def module_of(file: Path) -> tuple[str, ...]:
 
 
 def is_test(file: Path) -> bool:
-    return file.stem.split("_")[-1] in ("tests", "testing") or file.stem.startswith("test_") or "tests" in file.relative_to(SOURCE).parts
+    return (
+        file.stem.split("_")[-1] in ("tests", "testing")
+        or file.stem.startswith("test_")
+        or "tests" in file.relative_to(SOURCE).parts
+    )
 
 
 def code_of(file: Path) -> str:

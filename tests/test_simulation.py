@@ -209,7 +209,9 @@ def test_lanes_of_every_kind_give_the_same_bits(
         assert records.tobytes() == widest.tobytes(), lanes
         assert same.tobytes() == closure.tobytes(), lanes
     monkeypatch.setenv("MASCARIN_LANES", "wide")
-    with pytest.raises(InputError, match="MASCARIN_LANES: found 'wide', expected avx512, avx2, neon or array"):
+    with pytest.raises(
+        InputError, match="MASCARIN_LANES: found 'wide', expected avx512, avx2, neon or array"
+    ):
         run.ensemble(samples)
 
 
