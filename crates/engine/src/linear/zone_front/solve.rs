@@ -176,7 +176,7 @@ impl<S: Real> ZoneFront<S> {
         let rows = self.factors.rows.chunks_exact(stride).zip(pivots);
         for (k, (row, (&inverse, &below))) in rows.enumerate().take(eliminated) {
             let known = P::of(inverse, values[place(k)]);
-            for (i, &entry) in row.iter().enumerate().take(surfaces).skip(k + 1) {
+            for (i, &entry) in (k + 1..surfaces).zip(&row[k + 1..surfaces]) {
                 let at = place(i);
                 values[at] = values[at] - P::of(entry, known);
             }
@@ -192,8 +192,8 @@ impl<S: Real> ZoneFront<S> {
         let rows = self.factors.rows.chunks_exact(stride).zip(&self.factors.inverse_pivots);
         for (k, (row, &inverse)) in rows.enumerate().take(eliminated).rev() {
             let mut sum = values[place(k)] - P::of(row[surfaces], values[place(surfaces)]);
-            let entries = row.iter().zip(&self.laws.emission[1]).enumerate();
-            for (j, (&entry, &slope)) in entries.take(surfaces).skip(k + 1) {
+            let entries = row[k + 1..surfaces].iter().zip(&self.laws.emission[1][k + 1..surfaces]);
+            for (j, (&entry, &slope)) in (k + 1..surfaces).zip(entries) {
                 sum = sum - P::of_both(entry, slope, values[place(j)]);
             }
             values[place(k)] = P::of_both(self.equations.inverse_slope[k], inverse, sum);
