@@ -71,7 +71,7 @@ def climate(frame: pd.DataFrame) -> Climate:
 
 
 def test_channels_are_those_of_the_engine(repository: Path) -> None:
-    source = (repository / "crates" / "engine" / "src" / "forcing.rs").read_text(encoding="utf-8")
+    source = (repository / "crates" / "engine" / "src" / "input" / "forcing.rs").read_text(encoding="utf-8")
     for place, name in enumerate(CHANNELS):
         assert f"pub const {name.upper()}: usize = {place};" in source
     assert f"CLIMATE_CHANNELS: usize = {len(CHANNELS)};" in source

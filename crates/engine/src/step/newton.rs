@@ -16,9 +16,9 @@ use crate::step::stage::{Stage, StageStart};
 
 /// Largest change of a temperature in the last Newton iteration [K]. Convergence is quadratic: the error left is of the
 /// order of its square, and does not depend on the size of the building.
-pub(super) const TOLERANCE: f64 = 5e-7;
+pub(super) const TOLERANCE: f64 = 1e-6;
 /// A solution is accepted without another iteration to confirm it where the next change is predicted to be below this [K].
-const PREDICTED: f64 = 5e-9;
+const PREDICTED: f64 = 1e-8;
 /// The prediction holds only for changes below this share of the melting range, and of 1 K.
 const PREDICTABLE: f64 = 0.05;
 /// Iterations before a step is given to the nested iteration, and rounds of that one before it is halved.

