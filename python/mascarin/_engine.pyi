@@ -13,6 +13,7 @@ __all__ = [
     "EngineSolverError",
     "Plan",
     "Trajectory",
+    "_panic",
 ]
 
 _Array = npt.NDArray[np.float64]
