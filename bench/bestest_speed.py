@@ -29,13 +29,13 @@ from typing import Any
 
 import numpy as np
 
-from mascarin.climate import Climate
-from mascarin.model import load
-from mascarin.simulation import Simulation
-from mascarin.validation.bestest.catalogue import CASES
-from mascarin.validation.bestest.quantities import HOURS, Year, quantities
-from mascarin.validation.bestest.running import outputs
-from mascarin.validation.bestest.weather import read
+from mascarin.building import load
+from mascarin.simulation.simulation import Simulation
+from mascarin.verification.bestest.catalogue import CASES
+from mascarin.verification.bestest.quantities import HOURS, Year, quantities
+from mascarin.verification.bestest.running import outputs
+from mascarin.verification.bestest.weather import read
+from mascarin.weather import Climate
 
 CASE = CASES["900"]
 

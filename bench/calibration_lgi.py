@@ -27,8 +27,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.signal import lfilter
 
 from mascarin.calibration import CalibrationProblem, Cost, Evaluator, Rules, solve
+from mascarin.calibration.least_squares import derivative, least_squares
 from mascarin.calibration.rules import SLOPES
-from mascarin.calibration.squares import derivative, least_squares
 
 Floats = NDArray[np.float64]
 

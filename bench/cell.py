@@ -11,9 +11,9 @@ from __future__ import annotations
 import pandas as pd
 
 import mascarin as mc
-from mascarin.climate import Climate
+from mascarin.building import Building
 from mascarin.examples import FOLDER
-from mascarin.model import Building
+from mascarin.weather import Climate
 
 SIGMA = 5.670374419e-8
 SKY_EMISSIVITY = 0.85

@@ -24,12 +24,12 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from mascarin.climate import CHANNELS, Climate
-from mascarin.model import Building
-from mascarin.model.envelope import Side, Surface
-from mascarin.model.geometry import Polygon, parents, view_factors
-from mascarin.model.material import PhaseChangeMaterial, Resistance, phase
-from mascarin.model.settling import enclosure, faces_of, outlines
+from mascarin.building import Building
+from mascarin.building.derived import enclosure, faces_of, outlines
+from mascarin.building.geometry import Polygon, parents, view_factors
+from mascarin.building.material import PhaseChangeMaterial, Resistance, phase
+from mascarin.building.surface import Side, Surface
+from mascarin.weather import CHANNELS, Climate
 
 Array = npt.NDArray[np.float64]
 Objects = dict[str, Any]

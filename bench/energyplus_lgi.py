@@ -39,10 +39,10 @@ import numpy.typing as npt
 import page
 import pandas as pd
 
-from mascarin.climate import Climate
-from mascarin.model import Building
-from mascarin.model.mesh import choose
-from mascarin.simulation import Simulation
+from mascarin.building import Building
+from mascarin.building.mesh import choose
+from mascarin.simulation.simulation import Simulation
+from mascarin.weather import Climate
 
 Array = npt.NDArray[np.float64]
 QUARTER = 900.0

@@ -26,12 +26,12 @@ import numpy.typing as npt
 import page
 import pandas as pd
 
-from mascarin.climate import Climate
-from mascarin.model import Building
-from mascarin.model.material import PhaseChangeMaterial
-from mascarin.model.mesh import choose
-from mascarin.results import Results
-from mascarin.simulation import Simulation
+from mascarin.building import Building
+from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.mesh import choose
+from mascarin.simulation.results import Results
+from mascarin.simulation.simulation import Simulation
+from mascarin.weather import Climate
 
 Array = npt.NDArray[np.float64]
 Numbers = dict[str, Any]

@@ -16,12 +16,12 @@ from pathlib import Path
 import numpy as np
 from engine_speed import MODELS, climate, samples, simulation
 
-from mascarin.climate import Climate
-from mascarin.model import load
-from mascarin.simulation import Simulation
-from mascarin.validation.bestest.catalogue import CASES
-from mascarin.validation.bestest.running import outputs
-from mascarin.validation.bestest.weather import read
+from mascarin.building import load
+from mascarin.simulation.simulation import Simulation
+from mascarin.verification.bestest.catalogue import CASES
+from mascarin.verification.bestest.running import outputs
+from mascarin.verification.bestest.weather import read
+from mascarin.weather import Climate
 
 #: Members of a pack: the lanes of the engine.
 WIDTH = 8

@@ -30,11 +30,11 @@ import page
 import pandas as pd
 
 import mascarin as mc
-from mascarin.climate import Climate
+from mascarin.building import Building
 from mascarin.examples import FOLDER
-from mascarin.model import Building
-from mascarin.results import Results
-from mascarin.simulation import Simulation
+from mascarin.simulation.results import Results
+from mascarin.simulation.simulation import Simulation
+from mascarin.weather import Climate
 
 START = pd.Timestamp("2010-08-01")
 OUTPUTS = (

@@ -22,7 +22,7 @@ import page
 import pandas as pd
 from engine_speed import MODELS, OUTPUTS, START, VARIED, building, climate
 
-from mascarin.sweep import Statistic, sweep_into
+from mascarin.ensemble import Statistic, sweep_into
 
 ASKED = 1.0  # GiB
 OBJECTIVES = {"mean": "mean:room.air_temperature", "hottest": "max:room.air_temperature"}

@@ -17,11 +17,11 @@ from pvlib import irradiance, location
 from scipy.integrate import solve_ivp
 from scipy.sparse import lil_matrix
 
-from mascarin.model import Building
-from mascarin.model.air import SPECIFIC_HEAT, density
-from mascarin.model.geometry import view_factors
-from mascarin.model.material import PhaseChangeMaterial, Resistance, phase
-from mascarin.model.settling import enclosure, faces_of
+from mascarin.building import Building
+from mascarin.building.air import SPECIFIC_HEAT, density
+from mascarin.building.derived import enclosure, faces_of
+from mascarin.building.geometry import view_factors
+from mascarin.building.material import PhaseChangeMaterial, Resistance, phase
 
 Array = npt.NDArray[np.float64]
 SIGMA = 5.670374419e-8

@@ -13,9 +13,9 @@ import time
 
 import cell
 
-from mascarin.results import Results
-from mascarin.simulation import Simulation
-from mascarin.validation.cases import melting
+from mascarin.simulation.results import Results
+from mascarin.simulation.simulation import Simulation
+from mascarin.verification.analytical import melting
 
 MOST = 1.5
 TRIALS = 7

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import cell
 
 from mascarin.errors import SolverError
-from mascarin.results import Results
-from mascarin.simulation import Simulation
-from mascarin.validation.cases import melting
-from mascarin.validation.cases.phase import stefan
+from mascarin.simulation.results import Results
+from mascarin.simulation.simulation import Simulation
+from mascarin.verification.analytical import melting
+from mascarin.verification.analytical.phase import stefan
 
 GAMMAS = (0.01, 0.04, 0.2, 1.0, 5.0, 25.0, 100.0)
 STEPS = (60.0, 300.0, 900.0, 1800.0, 3600.0)

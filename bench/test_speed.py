@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from engine_speed import MODELS, VARIED, samples, simulation
 
-from mascarin.simulation import Simulation
+from mascarin.simulation.simulation import Simulation
 
 DAYS = int(os.environ.get("MASCARIN_BENCH_DAYS", "92"))
 MEMBERS, STEPS_A_DAY = 16, 96

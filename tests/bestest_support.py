@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.validation.bestest.catalogue import CASES, Case
-from mascarin.validation.bestest.quantities import (
+from mascarin.verification.bestest.catalogue import CASES, Case
+from mascarin.verification.bestest.quantities import (
     HOURS,
     ONTO_GLASS,
     ORIENTATIONS,
@@ -17,7 +17,7 @@ from mascarin.validation.bestest.quantities import (
 )
 
 if TYPE_CHECKING:
-    from mascarin.validation.bestest.quantities import Array
+    from mascarin.verification.bestest.quantities import Array
 
 
 def wave(low: float, high: float) -> Array:

@@ -15,7 +15,7 @@ from typing import IO, Any
 import pytest
 
 from mascarin.genopt.program import Program, Result, RunFailed
-from mascarin.optimise import Point
+from mascarin.optimization import Point
 
 HOOKE_JEEVES = """
     Main = GPSHookeJeeves;

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.model import load
+from mascarin.building import load
 from mascarin.report.payload import Column, Series
 
 if TYPE_CHECKING:
-    from mascarin.model import Building
+    from mascarin.building import Building
 
 Array = npt.NDArray[np.float64]
 LGI = Path(__file__).resolve().parent.parent / "python" / "mascarin" / "examples" / "lgi"

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from mascarin.climate import Climate
-from mascarin.model import Building, load
+from mascarin.building import Building, load
+from mascarin.weather import Climate
 
 LINEAR = """\
 name: linear

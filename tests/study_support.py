@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from mascarin.climate import Climate, Measurements
-from mascarin.model import load
-from mascarin.simulation import Simulation
+from mascarin.building import load
+from mascarin.simulation.simulation import Simulation
+from mascarin.weather import Climate, Measurements
 
 BUILDING = """\
 name: Test wall

@@ -1,8 +1,9 @@
-"""A room imports only from the rooms before it (docs/architecture.md)."""
+"""Packages import only from packages before them, and no modules import each other in a circle."""
 
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -10,72 +11,154 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "python" / "mascarin"
 
-# From first to last; rooms on one line may use each other.
+# From first to last (docs/architecture.md). Entries of one line may use each other, without circles.
 ORDER = [
-    {"errors", "progress", "_engine"},
+    {"errors", "progress", "_engine", "_io"},
     {"materials"},
-    {"model"},
-    {"climate"},
-    {"simulation", "results", "start", "state_space"},
-    {"sweep", "derivatives"},
-    {"sensitivity", "optimise", "calibration", "validation"},
-    {"genopt"},
+    {"building"},
+    {"weather"},
+    {"simulation"},
+    {"ensemble"},
+    {"sensitivity", "optimization", "validation"},
+    {"calibration"},
+    {"verification"},
     {"examples"},
     {"study"},
-    {"coupling"},
+    {"genopt"},
     {"report"},
     {"commands", "cli"},
 ]
-LEVEL = {room: level for level, rooms in enumerate(ORDER) for room in rooms}
+LEVEL = {name: level for level, names in enumerate(ORDER) for name in names}
 
 MODULES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
+MOST_LINES_OF_A_FILE = 500
+MOST_LINES_OF_A_FUNCTION = 60
+REASON = "Long because "
 
 
-def room_of(path: Path) -> str:
+def dotted(path: Path) -> str:
+    """Name of the module in the file `path`."""
+    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+NAMES = {dotted(path) for path in MODULES}
+
+
+def package_of(path: Path) -> str:
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-def full_name(path: Path, dots: int, module: str | None) -> str:
-    """Name of the module that ``from <dots><module> import`` in the file `path` speaks of."""
-    if dots == 0:
-        return module or ""
-    package = ["mascarin", *path.relative_to(PACKAGE).parts[:-1]]
-    return ".".join([*package[: len(package) - dots + 1], *([module] if module else [])])
-
-
-def imported_rooms(path: Path) -> set[str]:
-    """Rooms that the module imports, anywhere in it, for types alone included."""
-    names: set[str] = set()
+@cache
+def imported(path: Path) -> frozenset[str]:
+    """Modules of the package that a module imports: anywhere in it, in functions and for types as well."""
+    found: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            origin = full_name(path, node.level, node.module)
-            names |= {f"{origin}.{alias.name}" for alias in node.names}
-    parts = [name.split(".") for name in names]
-    return {part[1] for part in parts if part[0] == "mascarin" and len(part) > 1 and part[1] in LEVEL}
+            assert node.level == 0, f"{path.name}:{node.lineno}: a relative import; write the whole name"
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                found.add(inner if inner in NAMES else node.module or "")
+    return frozenset(name for name in found if name.startswith("mascarin."))
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_a_room_imports_only_from_rooms_before_it(path: Path) -> None:
-    room = room_of(path)
-    assert room in LEVEL, f"'{room}' is not in the plan: give it a place here and in docs/architecture.md"
-    later = {other for other in imported_rooms(path) if LEVEL[other] > LEVEL[room]}
-    assert not later, f"'{room}' imports {sorted(later)}, which come after it"
+def circles(graph: dict[str, frozenset[str]]) -> list[list[str]]:
+    """Groups of modules that reach each other (strongly connected components, Tarjan 1972)."""
+    order: dict[str, int] = {}
+    lowest: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(name: str) -> None:
+        order[name] = lowest[name] = len(order)
+        stack.append(name)
+        for other in sorted(graph[name] & graph.keys()):
+            if other not in order:
+                visit(other)
+                lowest[name] = min(lowest[name], lowest[other])
+            elif other in stack:
+                lowest[name] = min(lowest[name], order[other])
+        if lowest[name] == order[name]:
+            group = stack[stack.index(name) :]
+            del stack[stack.index(name) :]
+            if len(group) > 1 or name in graph[name]:
+                found.append(sorted(group))
+
+    for name in sorted(graph):
+        if name not in order:
+            visit(name)
+    return found
 
 
-def test_relative_imports_are_understood() -> None:
-    path = PACKAGE / "model" / "mesh.py"
-    assert full_name(path, 0, "mascarin.errors") == "mascarin.errors"
-    assert full_name(path, 1, "site") == "mascarin.model.site"
-    assert full_name(path, 2, "climate") == "mascarin.climate"
-    assert full_name(path, 2, None) == "mascarin"
+@pytest.mark.parametrize("path", MODULES, ids=dotted)
+def test_a_package_imports_only_from_packages_before_it(path: Path) -> None:
+    package = package_of(path)
+    assert package in LEVEL, f"'{package}' has no place in ORDER and in docs/architecture.md"
+    others = {name.split(".")[1] for name in imported(path)}
+    later = {other for other in others if LEVEL[other] > LEVEL[package]}
+    assert not later, f"'{package}' imports {sorted(later)}, which come after it"
 
 
-def test_every_room_is_described() -> None:
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    assert circles({dotted(path): imported(path) for path in MODULES}) == []
+
+
+def test_circles_are_found() -> None:
+    graph = {"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}, "e": {"e"}}
+    assert circles({name: frozenset(others) for name, others in graph.items()}) == [["a", "b", "c"], ["e"]]
+
+
+@pytest.mark.parametrize("path", MODULES, ids=dotted)
+def test_files_and_functions_are_short_or_say_why_not(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    lines = text.splitlines()
+    if len(lines) > MOST_LINES_OF_A_FILE:
+        assert any(REASON in line for line in lines[:12]), f"{path.name} has {len(lines)} lines and no reason"
+    for node in ast.walk(ast.parse(text)):
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            continue
+        length = (node.end_lineno or node.lineno) - node.lineno + 1 - docstring_lines(node)
+        if length > MOST_LINES_OF_A_FUNCTION:
+            inside = lines[node.lineno - 2 : node.end_lineno]
+            assert any(REASON in line for line in inside), f"{path.name}: {node.name} has {length} lines"
+
+
+def docstring_lines(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    first = node.body[0]
+    if ast.get_docstring(node) is None or first.end_lineno is None:
+        return 0
+    return first.end_lineno - first.lineno + 1
+
+
+@pytest.mark.parametrize("path", MODULES, ids=dotted)
+def test_no_module_reads_private_names_of_another(path: Path) -> None:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    own = {"self", "cls"}
+    imports = {
+        alias.asname or alias.name.split(".")[0]
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for alias in node.names
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("mascarin"):
+            private = [a.name for a in node.names if a.name.startswith("_") and a.name not in PRIVATE_MODULES]
+            assert not private, f"{path.name}:{node.lineno} imports {private}"
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            hidden = node.attr.startswith("_") and not node.attr.startswith("__")
+            name = node.value.id
+            assert not (hidden and name in imports - own), f"{path.name}:{node.lineno}: {name}.{node.attr}"
+
+
+PRIVATE_MODULES = {"_engine", "_io", "__version__"}
+
+
+def test_every_package_is_described() -> None:
     text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-    for room in {room_of(path) for path in MODULES}:
-        assert f"`{room}/`" in text or f"`{room}.py`" in text
+    for package in {package_of(path) for path in MODULES}:
+        assert f"`{package}/`" in text or f"`{package}.py`" in text, package
 
 
 def test_the_engine_knows_no_python() -> None:

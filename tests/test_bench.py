@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, Rules, solve
-from mascarin.simulation import Simulation
+from mascarin.simulation.simulation import Simulation
 
 
 @pytest.fixture
@@ -194,7 +194,7 @@ def test_the_shipped_weather_as_a_year(tmp_path: Path) -> None:
     import cell
     import through_python  # type: ignore[import-not-found]
 
-    from mascarin.climate import Climate
+    from mascarin.weather import Climate
 
     file = tmp_path / "year.epw"
     through_python.year_of_weather(file)

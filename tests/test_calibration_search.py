@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mascarin.calibration import CalibrationProblem, Fit, FitParameter, FitSensor, Rules, solve
 from mascarin.errors import InputError, SolverError
-from mascarin.optimise import NelderMead
+from mascarin.optimization import NelderMead
 
 Floats = NDArray[np.float64]
 

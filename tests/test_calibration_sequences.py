@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from mascarin.calibration import METHODS, CalibrationProblem, FitParameter, FitSensor, Rules, solve
 from mascarin.errors import InputError, SolverError
-from mascarin.optimise import Evaluation, Optimiser, Point, Space
-from mascarin.optimise.base import Steps
+from mascarin.optimization import Evaluation, Optimiser, Point, Space
+from mascarin.optimization.base import Steps
 
 Floats = NDArray[np.float64]
 

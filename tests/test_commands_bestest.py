@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mascarin import cli
-from mascarin.validation.bestest.catalogue import CASES
+from mascarin.verification.bestest.catalogue import CASES
 
 WEATHER = Path("bestest") / "725650TYCST.epw"
 

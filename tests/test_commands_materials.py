@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from building_samples import ROOM
 from dsc_samples import LATENT, heat, temperatures, write
 from mascarin import cli
-from model_samples import ROOM
 
 
 def run(capsys: pytest.CaptureFixture[str], *words: str, code: int = 0) -> tuple[str, str]:

@@ -124,7 +124,7 @@ def test_a_failure_while_writing_leaves_the_older_file(
         raise OSError(28, "No space left on device", str(path))
 
     Path("box.nc").write_text("older", encoding="utf-8")
-    monkeypatch.setattr("mascarin.results.Results.to_netcdf", fail)
+    monkeypatch.setattr("mascarin.simulation.results.Results.to_netcdf", fail)
     assert cli.main([*call, "-o", "box.nc"]) == 2
     assert "No space left" in capsys.readouterr().err
     assert Path("box.nc").read_text(encoding="utf-8") == "older"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from mascarin import cli
-from mascarin.sweep import Store
+from mascarin.ensemble import Store
 from test_commands_run import BOX, PERIOD
 
 FILM = "surfaces.facade.inside.convection.coefficient"

@@ -75,7 +75,7 @@ def test_a_law_and_an_output_are_added_by_the_page(copy: Path) -> None:
 def test_the_law_is_known_to_the_description_language(copy: Path) -> None:
     code = (
         "from pydantic import TypeAdapter\n"
-        "from mascarin.model.convection import SOURCES, Convection, Khalifa\n"
+        "from mascarin.building.convection import SOURCES, Convection, Khalifa\n"
         "law = TypeAdapter(Convection).validate_python({'kind': 'khalifa'})\n"
         "assert isinstance(law, Khalifa) and 'khalifa' in SOURCES\n"
     )

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from mascarin.building import Building, load
+from mascarin.building.geometry import Polygon, view_factors, volume
 from mascarin.examples import STUDIES
-from mascarin.model import Building, load
-from mascarin.model.geometry import Polygon, view_factors, volume
 
 FOLDER = STUDIES["lgi"].parent
 SHA256 = "f148c2fc65ce14ee8cadda7b3ce04cdce9d4fc38abcd97bdc1402ee9edd31f96"
@@ -143,8 +143,8 @@ BIAS = 0.3  # K, what the sensors allow
 
 def test_the_identified_cell_holds_on_days_it_has_not_seen(tmp_path: Path) -> None:
     """The identification as the study does it, on five days; its numbers frozen on all the others."""
-    from mascarin.study.keeping import Workspace
     from mascarin.study.pipeline import Study, Teller
+    from mascarin.study.storage import Workspace
 
     study = Study(STUDIES["lgi"])
     with Workspace(tmp_path, study.inputs()) as workspace:

@@ -11,7 +11,7 @@ from genopt_support import TWO_CONTINUOUS, write_project
 from mascarin.errors import InputError
 from mascarin.genopt import load
 from mascarin.genopt.program import Program, RunFailed, _word_behind
-from mascarin.optimise import Point
+from mascarin.optimization import Point
 
 POINT = Point((0.25, -0.5))
 LINES = ["5, 1.2345, 11", "6, 12.345, 22"]

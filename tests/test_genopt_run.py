@@ -25,7 +25,7 @@ from mascarin.errors import InputError, SolverError
 from mascarin.genopt import Options, optimise
 from mascarin.genopt.program import Result, RunFailed
 from mascarin.genopt.run import check, interrupted, log_path
-from mascarin.optimise import Point
+from mascarin.optimization import Point
 
 WIDE = """
     Parameter { Name = x1; Min = -4; Ini = 2.5; Max = 4; Step = 0.5; }

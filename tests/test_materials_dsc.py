@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from building_samples import ROOM
 from dsc_samples import CENTRE, LATENT, LIQUID, RATE, SOLID, WIDTH, enthalpy, heat, temperatures, write
+from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.phase_change import TableLaw
+from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from mascarin.materials.dsc import DscMaterial, from_dsc, to_yaml
-from mascarin.model.material import PhaseChangeMaterial
-from mascarin.model.melting import TableLaw
-from mascarin.model.reading import parse
-from model_samples import ROOM
 
 
 def is_the_known_one(material: DscMaterial, direction: str = "heating") -> None:

@@ -10,8 +10,8 @@ import pytest
 
 from bestest_support import years
 from mascarin.report.bestest import render, write
-from mascarin.validation.bestest.catalogue import CASES
-from mascarin.validation.bestest.quantities import quantities
+from mascarin.verification.bestest.catalogue import CASES
+from mascarin.verification.bestest.quantities import quantities
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -10,11 +10,11 @@ import pytest
 
 import mascarin as mc
 from mascarin import cli
-from mascarin.climate import Climate, Measurements
+from mascarin.building import Building
 from mascarin.errors import InputError, SolverError
-from mascarin.model import Building
-from mascarin.simulation import Simulation, globe_temperature, simulate, unreached
-from mascarin.validation.cases import bench, zones
+from mascarin.simulation.simulation import Simulation, globe_temperature, simulate, unreached
+from mascarin.verification.analytical import setup, zones
+from mascarin.weather import Climate, Measurements
 from simulation_samples import LINEAR, hours, measured, read, weather
 
 
@@ -30,12 +30,12 @@ def climate() -> Climate:
 
 @pytest.fixture(scope="module")
 def everything() -> Building:
-    return bench.building(zones.EVERYTHING)
+    return setup.building(zones.EVERYTHING)
 
 
 @pytest.fixture(scope="module")
 def island() -> Climate:
-    return bench.climate(bench.HOUR, zones.island_weather(4))
+    return setup.climate(setup.HOUR, zones.island_weather(4))
 
 
 # --- period, step, outputs ---
@@ -277,7 +277,7 @@ def test_weather_as_the_engine_saw_it(linear: Building, climate: Climate) -> Non
 
 def test_heat_into_a_zone_is_in_joules(tmp_path: Path) -> None:
     """100 W/m2 on 2 m2 of absorptance 0.5 for an hour, with next to no film: 360 kJ, and stored."""
-    text = bench.SITE + (
+    text = setup.SITE + (
         "materials: {slab: {conductivity: 1, density: 2000, specific_heat: 1000}}\n"
         "constructions: {slab: {layers: [{material: slab, thickness: 0.1}]}}\n"
         "surfaces:\n  slab: {construction: slab, area: 2, tilt: 90, inside: {adiabatic: true},\n"
@@ -286,7 +286,7 @@ def test_heat_into_a_zone_is_in_joules(tmp_path: Path) -> None:
     )
     text = text.replace("1e-9", "0.001")
     run = simulate(
-        read(text, tmp_path), bench.climate(3600.0, {"sun": np.full(2, 100.0)}), step=60, initial=20.0,
+        read(text, tmp_path), setup.climate(3600.0, {"sun": np.full(2, 100.0)}), step=60, initial=20.0,
         end="2001-01-01 01:00", outputs=["slab.outside_flux"],
     )  # fmt: skip
     assert run.energy.into["solar"] == pytest.approx(360e3, rel=1e-12)

@@ -10,13 +10,13 @@ import pandas as pd
 import pytest
 from numpy.typing import NDArray
 
-from mascarin.climate import Climate
+from mascarin.building import Building
+from mascarin.building.air import SPECIFIC_HEAT, density
+from mascarin.building.reading import parse
 from mascarin.errors import InputError
-from mascarin.model import Building
-from mascarin.model.air import SPECIFIC_HEAT, density
-from mascarin.model.reading import parse
-from mascarin.results import Results
-from mascarin.simulation import Simulation, simulate
+from mascarin.simulation.results import Results
+from mascarin.simulation.simulation import Simulation, simulate
+from mascarin.weather import Climate
 from simulation_samples import hours
 
 #: Thickness over conductivity, and both films: what a square metre of wall lets through [W/(m2 K)].

@@ -406,7 +406,7 @@ def test_a_variant_may_hold_dots_in_its_name(quick: Bench, capsys: pytest.Captur
 
 def test_two_studies_do_not_share_a_folder(quick: Bench, capsys: pytest.CaptureFixture[str]) -> None:
     from mascarin.study import Study
-    from mascarin.study.keeping import Workspace
+    from mascarin.study.storage import Workspace
 
     study = Study(quick.study)
     out = quick.folder / "out"
@@ -459,8 +459,8 @@ def test_a_mask_is_shown_and_only_acts_on_sensors(quick: Bench, capsys: pytest.C
 KILLED = """
 import os, signal, sys
 from mascarin import cli
-from mascarin.calibration.record import Evaluator
-from mascarin.study import keeping, screening
+from mascarin.calibration.evaluations import Evaluator
+from mascarin.study import sensitivity_step as screening, storage as keeping
 
 where, count = sys.argv[1], int(sys.argv[2])
 screening.CHUNK_SECONDS = 0.02  # many pieces, also on a fast machine
@@ -556,7 +556,7 @@ def test_interrupted_it_ends_with_130_and_keeps_its_work(long: Bench) -> None:
 
 
 def test_chunks_of_work_last_about_a_second() -> None:
-    from mascarin.study.screening import CHUNK_SECONDS, _Pace
+    from mascarin.study.sensitivity_step import CHUNK_SECONDS, _Pace
 
     assert CHUNK_SECONDS <= 1.0
     pace = _Pace()

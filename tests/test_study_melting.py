@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mascarin.climate import Climate, Measurements
+from mascarin.building import load
+from mascarin.building.gamma import peak_capacity
 from mascarin.examples import STUDIES
-from mascarin.model import load
-from mascarin.model.gamma import peak_capacity
-from mascarin.simulation import Simulation
-from mascarin.study.melting import law_curve, melting_layers, path
+from mascarin.simulation.simulation import Simulation
+from mascarin.study.phase_change import law_curve, melting_layers, path
+from mascarin.weather import Climate, Measurements
 
 CELL = load(STUDIES["lgi"].with_name("building.yaml"))
 TABLE = STUDIES["lgi"].with_name("lgi_virtual.csv")

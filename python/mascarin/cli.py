@@ -41,16 +41,16 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
     "Describe": (
         Command(
             "init",
-            "mascarin.commands.start:init",
+            "mascarin.commands.new_study:init",
             "Start a study of your own from one that comes with Mascarin.",
         ),
         Command(
-            "schema", "mascarin.commands.model:schema", "Print the JSON Schema of a building description."
+            "schema", "mascarin.commands.building:schema", "Print the JSON Schema of a building description."
         ),
         Command(
-            "check", "mascarin.commands.model:check", "Check a building description and say what it holds."
+            "check", "mascarin.commands.building:check", "Check a building description and say what it holds."
         ),
-        Command("parameters", "mascarin.commands.model:parameters", "List every parameter of a building."),
+        Command("parameters", "mascarin.commands.building:parameters", "List every parameter of a building."),
         Command(
             "materials",
             "mascarin.commands.materials:materials",
@@ -61,7 +61,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "mascarin.commands.materials:dsc",
             "Make a phase-change material from a calorimeter's file.",
         ),
-        Command("cite", "mascarin.commands.model:cite", "List the sources that a building rests on."),
+        Command("cite", "mascarin.commands.building:cite", "List the sources that a building rests on."),
     ),
     "Run": (
         Command("run", "mascarin.commands.run:run", "Run a building in a climate."),
@@ -97,12 +97,12 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         ),
         Command(
             "genopt",
-            "mascarin.commands.coupling:genopt",
+            "mascarin.commands.genopt_export:genopt",
             "Write a study's identification as a GenOpt project.",
         ),
         Command(
             "cost",
-            "mascarin.commands.coupling:cost",
+            "mascarin.commands.genopt_export:cost",
             "Evaluate the cost of a study's identification once.",
         ),
     ),

@@ -6,12 +6,12 @@ evaluated in batches, `solve` finds the parameters, and the `Fit` says how certa
 
 from __future__ import annotations
 
-from mascarin.calibration.buildings import Sensor, calibrate, fit_parameter
+from mascarin.calibration.building_problem import Sensor, calibrate, fit_parameter
 from mascarin.calibration.cost import Cost
+from mascarin.calibration.evaluations import Evaluator, Trace
 from mascarin.calibration.fit import Fit, Minimum
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor, require_known
 from mascarin.calibration.profile import Profile, profiles
-from mascarin.calibration.record import Evaluator, Trace
 from mascarin.calibration.rules import METHODS, MethodName, Rules
 from mascarin.calibration.search import solve
 from mascarin.calibration.uncertainty import Uncertainty

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost, CostName
+from mascarin.calibration.evaluations import Trace
 from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.record import Trace
 from mascarin.calibration.uncertainty import METHOD, Uncertainty
 
 if TYPE_CHECKING:

@@ -26,9 +26,9 @@ from mascarin.calibration.uncertainty import symmetric_power
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
+    from mascarin.calibration.evaluations import Evaluator
     from mascarin.calibration.fit import Fit
     from mascarin.calibration.problem import CalibrationProblem
-    from mascarin.calibration.record import Evaluator
     from mascarin.calibration.rules import Rules
 
 Floats = NDArray[np.float64]

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
-from mascarin.calibration.squares import derivative, scale_of
+from mascarin.calibration.least_squares import derivative, scale_of
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:

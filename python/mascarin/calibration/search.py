@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost, CostName
+from mascarin.calibration.evaluations import Evaluator
 from mascarin.calibration.fit import Fit, Minimum
+from mascarin.calibration.least_squares import least_squares, sensed
 from mascarin.calibration.posterior import sampled
 from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.record import Evaluator
 from mascarin.calibration.rules import METHODS, WITH_SQUARES, MethodName, Rules
 from mascarin.calibration.sequences import Make, maker, multi_start
-from mascarin.calibration.squares import least_squares, sensed
 from mascarin.calibration.uncertainty import estimate, on_bounds, warnings
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.optimise import Optimiser, Space
+from mascarin.optimization import Optimiser, Space
 
 Floats = NDArray[np.float64]
 

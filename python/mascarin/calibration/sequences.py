@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
+from mascarin.calibration.evaluations import Evaluator
 from mascarin.calibration.fit import Minimum
 from mascarin.calibration.problem import CalibrationProblem
-from mascarin.calibration.record import Evaluator
 from mascarin.calibration.rules import Rules
 from mascarin.errors import SolverError
-from mascarin.optimise import (
+from mascarin.optimization import (
     CovarianceSearch,
     Evaluation,
     HookeJeeves,

@@ -15,8 +15,8 @@ from mascarin.commands.output import number, print_json, print_table
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    from mascarin.validation.bestest.quantities import Quantity
-    from mascarin.validation.bestest.reference import Range
+    from mascarin.verification.bestest.quantities import Quantity
+    from mascarin.verification.bestest.reference import Range
 
 PAGE = "bestest.html"
 SUFFIXES = (".yaml", ".yml")
@@ -56,7 +56,7 @@ def bestest(
     int
         0, or 1 if a number is outside.
     """
-    from mascarin.validation.bestest.catalogue import CASES, chosen
+    from mascarin.verification.bestest.catalogue import CASES, chosen
 
     own = [Path(word) for word in dict.fromkeys(cases) if word.endswith(SUFFIXES)]
     wanted = chosen([word for word in cases if not word.endswith(SUFFIXES)] if cases else list(CASES))
@@ -71,9 +71,9 @@ def bestest(
     if workers < 1:
         raise InputError(f"--workers: found {workers}; expected 1 or more")
     from mascarin.progress import Progress
-    from mascarin.validation.bestest.quantities import quantities, quantities_of
-    from mascarin.validation.bestest.running import run
-    from mascarin.validation.bestest.weather import read
+    from mascarin.verification.bestest.quantities import quantities, quantities_of
+    from mascarin.verification.bestest.running import run
+    from mascarin.verification.bestest.weather import read
 
     climate = read(weather)
     started = time.monotonic()

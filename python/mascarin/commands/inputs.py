@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    from mascarin.model import Building
+    from mascarin.building import Building
 
 Flag: Final = Parameter(negative="", show_default=False)
 """An option that is there or not."""
@@ -41,7 +41,7 @@ def read_building(file: Path, settings: Sequence[str] | None) -> Building:
     InputError
         If the description or a setting cannot be used.
     """
-    from mascarin.model import load
+    from mascarin.building import load
 
     building = load(file)
     values = dict(_setting(text) for text in settings or ())
@@ -76,6 +76,6 @@ def seconds(text: str) -> float:
     InputError
         If it is no such text, or not positive.
     """
-    from mascarin.climate.table import seconds_of
+    from mascarin.weather.table import seconds_of
 
     return seconds_of(text, "--step")

@@ -15,10 +15,10 @@ from mascarin.commands.output import print_json, print_table, writing
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
-    from mascarin.climate import Climate
-    from mascarin.model import Building
-    from mascarin.results import Results
-    from mascarin.simulation import Simulation
+    from mascarin.building import Building
+    from mascarin.simulation.results import Results
+    from mascarin.simulation.simulation import Simulation
+    from mascarin.weather import Climate
 
 FORMATS = (".nc", ".csv")
 
@@ -65,7 +65,7 @@ def run(
     described = read_building(building, settings)
     if out is not None:
         _can_be_written(out)
-    from mascarin.simulation import Simulation
+    from mascarin.simulation.simulation import Simulation
 
     simulation = Simulation(
         described,
@@ -92,7 +92,7 @@ def run(
 
 def _tell(building: Building, simulation: Simulation) -> None:
     """Warn of what may be wrong, and say how much was assumed."""
-    from mascarin.model import check
+    from mascarin.building import check
 
     lines = check(building, simulation.step_seconds)
     for line in lines:
@@ -111,7 +111,7 @@ def read_weather(file: Path) -> Climate:
     InputError
         If it is neither EPW nor TMY3, or damaged.
     """
-    from mascarin.climate import Climate
+    from mascarin.weather import Climate
 
     match file.suffix.lower():
         case ".epw":

@@ -71,9 +71,9 @@ def sensitivity(
     method : str
         In the place of the study's; all but spectral need the package SALib.
     """
-    from mascarin.study import parts
+    from mascarin.study import steps
 
-    content = parts.sensitivity(_open(file), out, method=method)
+    content = steps.sensitivity(_open(file), out, method=method)
     if as_json:
         print_json(content)
         return
@@ -107,9 +107,9 @@ def calibrate(
     out : Path
         Folder for calibration.json, tables, and unfinished work.
     """
-    from mascarin.study import parts
+    from mascarin.study import steps
 
-    content = parts.calibration(_open(file), out)
+    content = steps.calibration(_open(file), out)
     if as_json:
         print_json(content)
     else:
@@ -144,9 +144,9 @@ def validate(
     out : Path
         Folder for validation.json and tables. Default: nothing is written.
     """
-    from mascarin.study import parts
+    from mascarin.study import steps
 
-    content = parts.validation(_open(file), out)
+    content = steps.validation(_open(file), out)
     if as_json:
         print_json(content)
     else:

@@ -16,8 +16,8 @@ from mascarin.errors import InputError, SolverError
 if TYPE_CHECKING:
     import pandas as pd
 
-    from mascarin.model import Building
-    from mascarin.sweep import Store
+    from mascarin.building import Building
+    from mascarin.ensemble import Store
 
 
 def sweep(
@@ -71,8 +71,8 @@ def sweep(
     workers : int
         Processes that share the work. Default: the threads of this one.
     """
+    from mascarin.ensemble import Statistic, sweep_into
     from mascarin.progress import Progress
-    from mascarin.sweep import Statistic, sweep_into
 
     described = read_building(building, settings)
     table = _samples(described, samples, draw, seed, vary)
@@ -108,7 +108,7 @@ def _samples(
         raise InputError("expected either --samples FILE or --draw NUMBER")
     if file is not None:
         return _read(file)
-    from mascarin.sweep import latin_hypercube
+    from mascarin.ensemble import latin_hypercube
 
     return latin_hypercube(building, draw or 0, seed=seed, paths=vary)
 

@@ -10,7 +10,7 @@ from mascarin.commands.inputs import AsJson, Flag
 from mascarin.commands.output import number, print_json, print_table
 
 if TYPE_CHECKING:
-    from mascarin.validation.cases import Check
+    from mascarin.verification.analytical import Check
 
 
 def verify(*, pcm: Annotated[bool, Flag] = False, as_json: AsJson = False) -> int:
@@ -32,7 +32,7 @@ def verify(*, pcm: Annotated[bool, Flag] = False, as_json: AsJson = False) -> in
         0, or 1 if a number leaves its bounds.
     """
     from mascarin.progress import Progress
-    from mascarin.validation.cases import run
+    from mascarin.verification.analytical import run
 
     with Progress("cases") as progress:
         rows = run("pcm" if pcm else "building", progress)

@@ -12,7 +12,7 @@ from mascarin.genopt import functions
 from mascarin.genopt.numbers import double_text, parse_double
 from mascarin.genopt.project import Project, single_rounding
 from mascarin.genopt.syntax import Block, Entry, Report, ordered
-from mascarin.optimise import (
+from mascarin.optimization import (
     ArmijoGradient,
     ArmijoRules,
     Continuous,
@@ -34,7 +34,7 @@ from mascarin.optimise import (
     SwarmThenPattern,
     uniform_starts,
 )
-from mascarin.optimise.line import fibonacci_points, golden_points
+from mascarin.optimization.line import fibonacci_points, golden_points
 
 _MULTI = ["MultiStart", "Seed", "NumberOfInitialPoint"]
 _DECREASE = ["Zeta", "Phi", "Alpha"]

@@ -15,7 +15,7 @@ from mascarin.genopt.algorithm import Built
 from mascarin.genopt.program import RUN_PREFIX, Result, RunFailed
 from mascarin.genopt.project import Project
 from mascarin.genopt.records import Key, Log, Record, Replay
-from mascarin.optimise import Evaluation, Point
+from mascarin.optimization import Evaluation, Point
 
 _SAME = 1e-12
 FAILURES = "failed-runs"

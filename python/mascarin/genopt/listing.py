@@ -12,7 +12,7 @@ from mascarin import __version__
 from mascarin.errors import SolverError
 from mascarin.genopt.numbers import double_text
 from mascarin.genopt.project import Project
-from mascarin.optimise import Evaluation, Observer
+from mascarin.optimization import Evaluation, Observer
 
 MAIN_NAME = "OutputListingMain.txt"
 ALL_NAME = "OutputListingAll.txt"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mascarin.genopt.algorithm import Algorithm, Context, Keys
-from mascarin.optimise import CovarianceSearch, DifferentialEvolution, Optimiser
+from mascarin.optimization import CovarianceSearch, DifferentialEvolution, Optimiser
 
 
 def _differential(context: Context, keys: Keys) -> Optimiser:

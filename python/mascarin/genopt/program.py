@@ -20,7 +20,7 @@ from mascarin.errors import InputError, MascarinError, did_you_mean
 from mascarin.genopt import functions
 from mascarin.genopt.numbers import double_text, parse_double
 from mascarin.genopt.project import FileEntry, Objective, Project
-from mascarin.optimise import Point
+from mascarin.optimization import Point
 
 RUN_PREFIX = "tmp-genopt-run-"
 SEPARATORS = ":;,"

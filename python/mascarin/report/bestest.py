@@ -14,8 +14,8 @@ from markupsafe import Markup
 from mascarin import __version__
 from mascarin.report import text
 from mascarin.report.svg import Axis, Chart
-from mascarin.validation.bestest.catalogue import CASES, IN_DEPTH, MAIN, Case
-from mascarin.validation.bestest.quantities import (
+from mascarin.verification.bestest.catalogue import CASES, IN_DEPTH, MAIN, Case
+from mascarin.verification.bestest.quantities import (
     COLDEST_BIN,
     MONTHS,
     ORIENTATIONS,
@@ -28,10 +28,10 @@ from mascarin.validation.bestest.quantities import (
     months,
     when,
 )
-from mascarin.validation.bestest.reference import PROGRAMS, Range, ranges
+from mascarin.verification.bestest.reference import PROGRAMS, Range, ranges
 
 if TYPE_CHECKING:
-    from mascarin.validation.bestest.quantities import Array
+    from mascarin.verification.bestest.quantities import Array
 
 _WORDS: Final = {
     "annual_heating": "Annual heating",

@@ -6,7 +6,7 @@ One call, `plan`, for all methods; each plan knows its runs and how to analyse t
 
 from __future__ import annotations
 
-from mascarin.sensitivity.buildings import factors_of, screen
+from mascarin.sensitivity.building_analysis import factors_of, screen
 from mascarin.sensitivity.factors import Factor
 from mascarin.sensitivity.methods import METHODS, MethodName, plan
 from mascarin.sensitivity.result import Sensitivity

@@ -5,10 +5,10 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Final
 
-from mascarin.calibration.buildings import DEAD, MOST_DEAD
+from mascarin.calibration.building_problem import DEAD, MOST_DEAD
 from mascarin.errors import InputError, did_you_mean
-from mascarin.study.fitting import free_parameter
-from mascarin.study.screening import check_plan
+from mascarin.study.calibration_step import free_parameter
+from mascarin.study.sensitivity_step import check_plan
 from mascarin.validation.observation import PERIODS, require_comparable
 
 if TYPE_CHECKING:
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from mascarin.model import Building
+    from mascarin.building import Building
+    from mascarin.study.locations import Faults
     from mascarin.study.pipeline import Study
-    from mascarin.study.places import Faults
 
 #: Measured temperatures of a building lie between these. [degC]
 _TEMPERATURES: Final = (-100.0, 200.0)

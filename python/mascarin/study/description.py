@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
+from mascarin.building.initial_state import Degrees, GivenStart
+from mascarin.building.names import Name
+from mascarin.building.number import problem
+from mascarin.building.part import Part, fault, insist
 from mascarin.calibration.rules import WITH_SQUARES, SlopesName
 from mascarin.calibration.rules import MethodName as FitMethod
 from mascarin.errors import InputError, did_you_mean
-from mascarin.model.names import Name
-from mascarin.model.number import problem
-from mascarin.model.part import Part, fault, insist
-from mascarin.model.start import Degrees, GivenStart
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.validation.criteria import Criterion
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 def _duration(text: str) -> str:
     """A length of time that can be read."""
-    from mascarin.climate.table import seconds_of
+    from mascarin.weather.table import seconds_of
 
     try:
         seconds_of(text)
@@ -41,7 +41,7 @@ def _seconds(given: Any) -> Any:
 
 def _timezone(text: object) -> object:
     """A time zone that exists."""
-    from mascarin.climate.timezones import parse_timezone
+    from mascarin.weather.timezones import parse_timezone
 
     try:
         parse_timezone(text)
@@ -442,6 +442,6 @@ def read_study(path: str | Path) -> StudyFile:
     InputError
         File, line, path, what was found, what was expected, what to do.
     """
-    from mascarin.model.reading import read
+    from mascarin.building.reading import read
 
     return read(path, StudyFile, "a study")

@@ -10,24 +10,24 @@ import numpy as np
 
 from mascarin import __version__
 from mascarin.examples import STUDIES
-from mascarin.study.foresight import band_entry, band_table
-from mascarin.study.melting import law_curve, melting_layers, path
+from mascarin.study.phase_change import law_curve, melting_layers, path
 from mascarin.study.pipeline import scores_of
+from mascarin.study.prediction_intervals import band_entry, band_table
+from mascarin.validation.error_sources import words
 from mascarin.validation.observation import PERIODS
-from mascarin.validation.shortfall import words
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
+    from mascarin.building import Building
     from mascarin.calibration import Fit, Profile
-    from mascarin.model import Building
     from mascarin.sensitivity import Sensitivity
     from mascarin.sensitivity.spectral import SpectralSensitivity
     from mascarin.study.description import IdentificationPlan, StudyFile
-    from mascarin.study.foresight import Band
-    from mascarin.study.melting import MeltingLayer
+    from mascarin.study.phase_change import MeltingLayer
     from mascarin.study.pipeline import Findings, ModelRun, Study
+    from mascarin.study.prediction_intervals import Band
     from mascarin.validation.criteria import Verdict
 
 #: Parameters named in the spectra and shares over the day.

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.sensitivity.buildings import factors_of
+from mascarin.sensitivity.building_analysis import factors_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import numpy.typing as npt
 
-    from mascarin.results import Results
-    from mascarin.simulation import Simulation
+    from mascarin.simulation.results import Results
+    from mascarin.simulation.simulation import Simulation
     from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]

@@ -14,39 +14,39 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import __version__
+from mascarin.building import Building, load
 from mascarin.calibration import CalibrationProblem, Fit, Profile, profiles
-from mascarin.climate import Climate, Measurements
-from mascarin.climate.quality import mask
-from mascarin.climate.table import file_hash, seconds_of
-from mascarin.climate.timezones import moment
 from mascarin.errors import InputError
-from mascarin.model import Building, load
 from mascarin.progress import Progress
-from mascarin.results import Results
-from mascarin.simulation import Simulation
-from mascarin.start import Initial, MeasuredStart
+from mascarin.simulation.initial import Initial, MeasuredStart
+from mascarin.simulation.results import Results
+from mascarin.simulation.simulation import Simulation
+from mascarin.study.calibration_step import fit_parameters, identify, independent_weight, problem
 from mascarin.study.description import IdentificationPlan, SensitivityPlan, StudyFile, Variant, read_study
 from mascarin.study.effects import Effects
-from mascarin.study.fitting import fit_parameters, identify, independent_weight, problem
-from mascarin.study.foresight import Band, answers, band, band_words
-from mascarin.study.keeping import Workspace
-from mascarin.study.melting import melting_layers
-from mascarin.study.places import Faults, Places
-from mascarin.study.screening import factors, screen
-from mascarin.study.sources import filled, find, open_climate, open_measurements, require_one_clock
+from mascarin.study.inputs import filled, find, open_climate, open_measurements, require_one_clock
+from mascarin.study.locations import Faults, Places
+from mascarin.study.phase_change import melting_layers
+from mascarin.study.prediction_intervals import Band, answers, band, band_words
+from mascarin.study.sensitivity_step import factors, screen
+from mascarin.study.storage import Workspace
 from mascarin.validation.criteria import Criterion, Verdict, judge
+from mascarin.validation.error_sources import Shortfall, shortfall
 from mascarin.validation.metrics import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
 from mascarin.validation.residuals import Examination, diagnose, examine
-from mascarin.validation.shortfall import Shortfall, shortfall
+from mascarin.weather import Climate, Measurements
+from mascarin.weather.quality import mask
+from mascarin.weather.table import file_hash, seconds_of
+from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    from mascarin.climate.grid import Grid
-    from mascarin.climate.quality import Stretch
     from mascarin.sensitivity import Sensitivity
+    from mascarin.weather.grid import Grid
+    from mascarin.weather.quality import Stretch
 
     Flags = npt.NDArray[np.bool_]
 
@@ -477,7 +477,7 @@ class Study:
         Findings
             Also written to the folder: study.json, tables, figures and the report.
         """
-        from mascarin.study.writing import write_all
+        from mascarin.study.outputs import write_all
 
         _ = self.sought
         with Workspace(Path(out), self.inputs()) as workspace:

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
-from mascarin.climate.table import epoch_seconds
 from mascarin.errors import InputError
+from mascarin.weather.table import epoch_seconds
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    from mascarin.climate import Measurements
-    from mascarin.simulation import Simulation
+    from mascarin.simulation.simulation import Simulation
+    from mascarin.weather import Measurements
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]

@@ -1,0 +1,233 @@
+"""What the user may leave open and the rest of the description decides: areas, lengths, heights, volumes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
+from mascarin.building.number import Number, Remark
+from mascarin.building.part import Location, fault, insist, refuse, settled
+from mascarin.building.surface import Side, Surface
+from mascarin.building.window import Window, WindowOutside
+from mascarin.building.zone import Zone
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from mascarin.building.geometry import Polygon
+    from mascarin.building.window import Shade, Vertices
+
+_FROM_VERTICES = Remark("from the vertices")
+#: Roughness of plaster, concrete and brick in Walton 1983.
+_USUAL_ROUGHNESS = 1.52
+
+
+def outlines(surfaces: Mapping[str, Surface]) -> dict[str, Polygon]:
+    """Polygons of the surfaces that have vertices, as seen from outside."""
+    return _outlines("surfaces", {name: surface.vertices for name, surface in surfaces.items()})
+
+
+def _outlines(section: str, given: Mapping[str, Vertices | None]) -> dict[str, Polygon]:
+    drawn = {name: vertices for name, vertices in given.items() if vertices is not None}
+    if not drawn:
+        return {}
+    from mascarin.building.geometry import Polygon
+
+    found, faults = {}, []
+    for name, vertices in drawn.items():
+        try:
+            found[name] = Polygon.of(name, vertices)
+        except InputError as error:
+            faults.append(fault((section, name, "vertices"), *_sentence(error)))
+    insist(*faults)
+    return found
+
+
+def faces_of(zone: str, surfaces: Mapping[str, Surface]) -> list[tuple[str, str]]:
+    """Faces of a zone as (surface, side), in the order of the description, outside before inside."""
+    return [
+        (name, side)
+        for name, surface in surfaces.items()
+        for side in ("outside", "inside")
+        if getattr(surface, side).zone == zone
+    ]
+
+
+def enclosure(zone: str, surfaces: Mapping[str, Surface]) -> list[Polygon] | None:
+    """Faces of a zone as polygons that look into it; none unless every one of them has vertices."""
+    faces = faces_of(zone, surfaces)
+    if not faces or any(surfaces[name].vertices is None for name, _ in faces):
+        return None
+    drawn = outlines({name: surfaces[name] for name, _ in faces})
+    return [drawn[name] if side == "outside" else drawn[name].reversed() for name, side in faces]
+
+
+def settle_surfaces(surfaces: Mapping[str, Surface]) -> dict[str, Surface]:
+    """Give every surface its area and direction, and its faces their lengths and heights."""
+    drawn, areas = outlines(surfaces), drawn_areas(surfaces)
+    return {name: _settled_surface(one, drawn.get(name), areas.get(name)) for name, one in surfaces.items()}
+
+
+def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
+    """Areas of the surfaces that have vertices, less those of the surfaces that lie in them [m2]."""
+    drawn = outlines(surfaces)
+    if not drawn:
+        return {}
+    from mascarin.building.geometry import net_areas
+
+    try:
+        return dict(zip(drawn, map(float, net_areas(list(drawn.values()))), strict=True))
+    except InputError as error:
+        refuse(fault(("surfaces",), *_sentence(error)))
+
+
+def _settled_surface(surface: Surface, polygon: Polygon | None, area: float | None) -> Surface:
+    shape: dict[str, Number] = {}
+    if polygon is not None and area is not None:
+        derived = {"area": area, "tilt": polygon.tilt, "azimuth": polygon.azimuth}
+        shape = {
+            key: settled(Surface, key, value, _FROM_VERTICES)
+            for key, value in derived.items()
+            if getattr(surface, key) is None
+        }
+    elif surface.azimuth is None:
+        shape = {
+            "azimuth": settled(
+                Surface, "azimuth", 0.0, Remark("not written: the direction does not act here")
+            )
+        }
+    placed = surface.model_copy(update=shape)
+    sides = {name: _settled_side(getattr(placed, name), placed, polygon) for name in ("outside", "inside")}
+    return placed.model_copy(update=sides)
+
+
+def _settled_side(side: Side, surface: Surface, polygon: Polygon | None) -> Side:
+    update: dict[str, object] = {}
+    if side.convection is not None:
+        area, tilt = float(surface.area or 0.0), float(surface.tilt or 0.0)
+        update["convection"] = _settled_convection(side.convection, bool(side.outdoors), area, tilt, polygon)
+    if polygon is not None and side.outdoors and side.height is None and polygon.centroid[2] > 0.0:
+        update["height"] = settled(
+            Side, "height", float(polygon.centroid[2]), Remark("centroid of the vertices")
+        )
+    return side.model_copy(update=update)
+
+
+def _settled_convection(
+    convection: Convection, outdoors: bool, area: float, tilt: float, polygon: Polygon | None
+) -> Convection:
+    match convection:
+        case AlamdariHammond(length=None) | PaperEq5(length=None) | Iso15099(length=None):
+            length, source = _length(area, tilt, polygon)
+            kind = type(convection)
+            return convection.model_copy(update={"length": settled(kind, "length", length, source)})
+        case Tarp() if outdoors:
+            return convection.model_copy(update=_wind_facts(convection, area, polygon))
+        case Doe2(roughness=None) if outdoors:
+            return convection.model_copy(update=_usual_roughness(Doe2))
+    return convection
+
+
+def _length(area: float, tilt: float, polygon: Polygon | None) -> tuple[float, str]:
+    """Height of a vertical face, 4 A/P of a horizontal one [m]; both are the edge of a square."""
+    if polygon is None:
+        return math.sqrt(area), Remark("edge of a square of this area")
+    if 45.0 < tilt < 135.0:
+        heights = polygon.points[:, 2]
+        return float(heights.max() - heights.min()), Remark("height of the vertices")
+    return 4.0 * polygon.area / polygon.perimeter, Remark("4 area/perimeter of the vertices")
+
+
+def _wind_facts(tarp: Tarp, area: float, polygon: Polygon | None) -> dict[str, Number]:
+    facts: dict[str, Number] = {}
+    if tarp.roughness is None:
+        facts |= _usual_roughness(Tarp)
+    if tarp.perimeter is None:
+        edge = 4.0 * math.sqrt(area)
+        facts["perimeter"] = (
+            settled(Tarp, "perimeter", edge, Remark("perimeter of a square of this area"))
+            if polygon is None
+            else settled(Tarp, "perimeter", polygon.perimeter, _FROM_VERTICES)
+        )
+    return facts
+
+
+def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:
+    source = "Walton 1983: medium rough, as plaster, concrete and brick"
+    return {"roughness": settled(film, "roughness", _USUAL_ROUGHNESS, source, assumed=True)}
+
+
+def settle_windows(windows: Mapping[str, Window], surfaces: Mapping[str, Surface]) -> dict[str, Window]:
+    """Give every window its area, and its faces and gaps their lengths and heights."""
+    drawn = window_outlines(windows)
+    return {
+        name: _settled_window(window, surfaces[window.surface], drawn.get(name))
+        for name, window in windows.items()
+    }
+
+
+def window_outlines(windows: Mapping[str, Window]) -> dict[str, Polygon]:
+    """Polygons of the windows that have vertices, as seen from outside."""
+    return _outlines("windows", {name: window.vertices for name, window in windows.items()})
+
+
+def shade_outlines(shades: Mapping[str, Shade]) -> dict[str, Polygon]:
+    """Polygons of the shades."""
+    return _outlines("shades", {name: shade.vertices for name, shade in shades.items()})
+
+
+def _settled_window(window: Window, wall: Surface, polygon: Polygon | None) -> Window:
+    update: dict[str, object] = {}
+    area = float(window.area or (polygon.area if polygon is not None else 0.0))
+    if window.area is None:
+        update["area"] = settled(Window, "area", area, _FROM_VERTICES)
+    if window.cavity_height is None:
+        high, source = _length(area, 90.0, polygon)
+        update["cavity_height"] = settled(Window, "cavity_height", high, source)
+    outside, inside = window.outside, window.inside
+    films = {
+        side: _settled_convection(film, side == "outside", area, float(wall.tilt or 0.0), polygon)
+        for side, film in (("outside", outside.convection), ("inside", inside.convection))
+    }
+    height = outside.height
+    if height is None and polygon is not None and polygon.centroid[2] > 0.0:
+        source = Remark("centroid of the vertices")
+        height = settled(WindowOutside, "height", float(polygon.centroid[2]), source)
+    elif height is None and wall.outside.height is not None:
+        height = settled(WindowOutside, "height", wall.outside.height, Remark("that of the wall"))
+    update["outside"] = outside.model_copy(update={"convection": films["outside"], "height": height})
+    update["inside"] = inside.model_copy(update={"convection": films["inside"]})
+    return window.model_copy(update=update)
+
+
+def settle_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> dict[str, Zone]:
+    """Give every zone its volume."""
+    return {
+        name: zone if zone.volume is not None else zone.model_copy(update={"volume": _volume(name, surfaces)})
+        for name, zone in zones.items()
+    }
+
+
+def _volume(zone: str, surfaces: Mapping[str, Surface]) -> Number:
+    at: Location = ("zones", zone, "volume")
+    faces = enclosure(zone, surfaces)
+    if faces is None:
+        refuse(
+            fault(
+                at, "nothing", "Volume of air, above 0 [m3]", "Add 'volume:' (or vertices to every surface)."
+            )
+        )
+    from mascarin.building.geometry import volume
+
+    try:
+        return settled(Zone, "volume", volume(faces), _FROM_VERTICES)
+    except InputError as error:
+        refuse(fault(at, *_sentence(error)))
+
+
+def _sentence(error: InputError) -> tuple[str, str, str]:
+    """Split 'found; expected ...; do ...' into its three parts."""
+    found, _, rest = str(error).partition("; expected ")
+    expected, _, advice = rest.partition("; ")
+    return found, expected or "a sound geometry", f"{advice[:1].upper()}{advice[1:]}." if advice else ""

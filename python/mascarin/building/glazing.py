@@ -1,0 +1,339 @@
+"""Glazings: panes with gaps between them, or a unit by its rated values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic_core import InitErrorDetails
+
+from mascarin.building import quantities as q
+from mascarin.building.number import Number, Remark
+from mascarin.building.part import Pair, Part, fault, insist
+
+ISO_15099 = "ISO 15099:2003, 5.3 and annex B"
+_FIT = "Karlsson & Roos 2000, doi:10.1016/S0038-092X(00)00083-9"
+_RATED = "ISO 10292:1994 and EN 673"
+#: Transmitted, reflected and absorbed shares may miss one by the rounding of a table, hemispherical ones by
+#: the few angles they are integrated from [-].
+SUM_LIMIT, DIFFUSE_LIMIT = 0.006, 0.015
+
+
+class TwoFaces(Pair):
+    """A property of the outer and of the inner face of a pane; short form ``[outside, inside]``."""
+
+
+class PaneEmissivities(TwoFaces):
+    """Long-wave emissivity of the outer and of the inner face; short form ``[outside, inside]``."""
+
+    outside: q.Emissivity
+    inside: q.Emissivity
+
+
+class PaneReflectances(TwoFaces):
+    """Solar reflectance of a coated pane from outside and from inside; short form ``[outside, inside]``."""
+
+    outside: q.Reflectance
+    inside: q.Reflectance
+
+
+def _one_or_two(raw: Any) -> str:
+    pair = isinstance(raw, list | tuple | TwoFaces) or (isinstance(raw, Mapping) and "value" not in raw)
+    return "faces" if pair else "both"
+
+
+_EITHER = Discriminator(_one_or_two)
+EmissivityByFace = Annotated[
+    Annotated[q.Emissivity, Tag("both")] | Annotated[PaneEmissivities, Tag("faces")], _EITHER
+]
+ReflectanceByFace = Annotated[
+    Annotated[q.Reflectance, Tag("both")] | Annotated[PaneReflectances, Tag("faces")], _EITHER
+]
+
+
+class Pane(Part):
+    """A pane that no long-wave radiation passes.
+
+    Its solar optics at normal incidence are needed unless the unit has a table of its own. One reflectance
+    means plain glass, which behaves as a homogeneous plate at other angles; two mean a coating. A pane
+    without density and specific heat holds no heat.
+    """
+
+    thickness: q.PaneThickness
+    conductivity: q.Conductivity = Number(1.0, source="EN 673:2011, soda-lime glass")
+    emissivity: EmissivityByFace = Field(description="One value, or [outside, inside]")
+    transmittance: q.Transmittance | None = None
+    reflectance: ReflectanceByFace | None = Field(
+        None, description="One value for plain glass, or [outside, inside] for coated glass"
+    )
+    density: q.Density | None = None
+    specific_heat: q.SpecificHeat | None = None
+
+    @model_validator(mode="after")
+    def _sound(self) -> Pane:
+        pairs = (("transmittance", "reflectance"), ("density", "specific_heat"))
+        insist(*(one for pair in pairs for one in self._together(*pair)), *self._optics())
+        return self
+
+    def _together(self, first: str, second: str) -> Iterator[InitErrorDetails]:
+        given = [key for key in (first, second) if getattr(self, key) is not None]
+        if len(given) == 1:
+            missing = second if given == [first] else first
+            yield fault(
+                (missing,),
+                "nothing",
+                f"{missing} beside {given[0]}",
+                f"Add '{missing}:' or remove the other.",
+            )
+
+    def _optics(self) -> Iterator[InitErrorDetails]:
+        if self.transmittance is None or self.reflectance is None:
+            return
+        for reflectance in both(self.reflectance):
+            total = self.transmittance + reflectance
+            if total > 1.0:
+                yield fault(
+                    ("reflectance",),
+                    f"transmittance {self.transmittance:g} and reflectance {reflectance:g}, {total:g} in all",
+                    "at most 1 in all: the rest is absorbed",
+                    "Correct one of them.",
+                )
+
+
+def both(value: Any) -> tuple[float, float]:
+    """Values of the outer and the inner face."""
+    if isinstance(value, PaneEmissivities | PaneReflectances):
+        return (value.outside, value.inside)
+    return (value, value)
+
+
+class FilledGap(Part):
+    """A gap filled with gas: convection by correlation, long-wave radiation between the panes exactly."""
+
+    thickness: q.GapThickness
+    gas: Literal["air", "argon", "krypton", "xenon"] = Field("air", description="What fills it")
+    pressure: q.GapPressure = Number(101325.0, source=f"{ISO_15099}: sealed at sea level")
+
+
+class GivenGap(Part):
+    """A gap of known conductance, convection and radiation together."""
+
+    conductance: q.GapConductance
+
+
+def _gap_kind(raw: Any) -> str:
+    given = "conductance" in raw if isinstance(raw, Mapping) else isinstance(raw, GivenGap)
+    return "given" if given else "filled"
+
+
+Gap = Annotated[
+    Annotated[FilledGap, Tag("filled")] | Annotated[GivenGap, Tag("given")], Discriminator(_gap_kind)
+]
+
+
+class DiffuseOptics(Part):
+    """Optics of a unit for diffuse sun from outside."""
+
+    transmittance: q.CurveOptic
+    reflectance: q.CurveOptic | None = None
+    absorptance: tuple[q.CurveOptic, ...] = Field(description="Of each pane, outside to inside")
+
+
+class Angular(Part):
+    """Optics of a unit over the angle of incidence, for sun from outside."""
+
+    angles: tuple[q.CurveAngle, ...] = Field(description="Rising from 0 to 90")
+    transmittance: tuple[q.CurveOptic, ...] = Field(description="At each angle")
+    reflectance: tuple[q.CurveOptic, ...] | None = Field(None, description="At each angle; a check only")
+    absorptance: tuple[tuple[q.CurveOptic, ...], ...] = Field(
+        description="Of each pane, outside to inside: one list a pane, a value at each angle"
+    )
+    diffuse: DiffuseOptics | None = Field(None, description="Hemispherical values; none: integrated")
+    transmittance_scale: q.OpticScale = Number(1.0, source=Remark("the table as it is"))
+    absorptance_scale: q.OpticScale = Number(1.0, source=Remark("the table as it is"))
+
+    @model_validator(mode="after")
+    def _sound(self) -> Angular:
+        angles = list(self.angles)
+        if len(angles) < 2 or angles[0] != 0.0 or angles[-1] != 90.0 or sorted(set(angles)) != angles:
+            insist(
+                fault(
+                    ("angles",),
+                    f"angles {', '.join(f'{angle:g}' for angle in angles)}",
+                    "angles that rise from 0 to 90 deg",
+                    "At 90 deg nothing is transmitted and nothing absorbed.",
+                )
+            )
+        lengths = {"transmittance": len(self.transmittance)}
+        lengths |= {"reflectance": len(self.reflectance)} if self.reflectance is not None else {}
+        lengths |= {f"absorptance of pane {k}": len(pane) for k, pane in enumerate(self.absorptance, start=1)}
+        insist(
+            *(
+                fault(
+                    (key.split()[0],),
+                    f"{count} values of {key}",
+                    f"{len(angles)}: one for each angle",
+                    "Complete the list.",
+                )
+                for key, count in lengths.items()
+                if count != len(angles)
+            )
+        )
+        insist(*self._sums())
+        return self
+
+    def _sums(self) -> Iterator[InitErrorDetails]:
+        rows = [
+            (f"at {angle:g} deg", self.transmittance[k], sum(pane[k] for pane in self.absorptance))
+            for k, angle in enumerate(self.angles)
+        ]
+        reflected = list(self.reflectance or [None] * len(rows))
+        if self.diffuse is not None:
+            rows.append(("diffuse", self.diffuse.transmittance, sum(self.diffuse.absorptance)))
+            reflected.append(self.diffuse.reflectance)
+        for (where, through, absorbed), back in zip(rows, reflected, strict=True):
+            total = through + absorbed + (back or 0.0)
+            limit = DIFFUSE_LIMIT if where == "diffuse" else SUM_LIMIT
+            if total > 1.0 + limit or (back is not None and total < 1.0 - limit):
+                yield fault(
+                    ("transmittance",),
+                    f"shares that sum to {total:.3f} ({where})",
+                    "transmitted, reflected and absorbed shares that sum to 1",
+                    "Check the row.",
+                )
+
+
+class PaneGlazing(Part):
+    """Panes and the gaps between them, outside to inside."""
+
+    kind: Literal["panes"]
+    panes: tuple[Pane, ...] = Field(description="Outside to inside")
+    gaps: tuple[Gap, ...] = Field((), description="Between the panes, outside to inside")
+    angular: Angular | None = Field(
+        None, description="Optics of the whole unit; none: calculated from those of the panes"
+    )
+    source: str | None = Field(None, description="Where the properties come from")
+
+    @model_validator(mode="after")
+    def _sound(self) -> PaneGlazing:
+        insist(*self._counts(), *self._optics())
+        return self
+
+    def _counts(self) -> Iterator[InitErrorDetails]:
+        if not self.panes:
+            yield fault(("panes",), "no panes", "at least one pane", "List them from outside to inside.")
+        elif len(self.gaps) != len(self.panes) - 1:
+            yield fault(
+                ("gaps",),
+                f"{len(self.gaps)} gaps between {len(self.panes)} panes",
+                f"{len(self.panes) - 1}",
+                "One gap lies between two panes.",
+            )
+        table = self.angular
+        diffuse = table.diffuse.absorptance if table is not None and table.diffuse is not None else None
+        for absorbed in (table.absorptance if table is not None else None, diffuse):
+            if absorbed is not None and len(absorbed) != len(self.panes):
+                yield fault(
+                    ("angular", "absorptance"),
+                    f"{len(absorbed)} absorbing panes",
+                    f"{len(self.panes)}: one for each pane",
+                    "Write one list (or value) for each pane, outside to inside.",
+                )
+
+    def _optics(self) -> Iterator[InitErrorDetails]:
+        for index, pane in enumerate(self.panes):
+            if self.angular is None and pane.transmittance is None:
+                yield fault(
+                    ("panes", index, "transmittance"),
+                    "nothing",
+                    "solar transmittance of the pane at normal incidence [-]",
+                    "Add 'transmittance:' and 'reflectance:', or an 'angular:' table of the unit.",
+                )
+            if self.angular is not None and pane.transmittance is not None:
+                yield fault(
+                    ("panes", index, "transmittance"),
+                    "optics of the pane beside those of the unit",
+                    "one of the two",
+                    "Remove 'transmittance:' and 'reflectance:', or 'angular:'.",
+                )
+
+
+class SimpleGlazing(Part):
+    """A unit known by its rated U value and solar heat gain only.
+
+    Transmittance at normal incidence by Arasteh et al. 2009, change with the angle by Karlsson & Roos 2000.
+    """
+
+    kind: Literal["simple"]
+    u_value: q.GlazingU
+    solar_heat_gain: q.SolarHeatGain
+    panes: q.PaneCount = Number(2.0, source=f"{_FIT}: double glazing", assumed=True)
+    category: q.GlassCategory = Number(4.0, source=f"{_FIT}: clear glass without coating", assumed=True)
+    outside_film: q.FilmResistance = Number(0.04, source=_RATED)
+    inside_film: q.FilmResistance = Number(0.13, source=_RATED)
+    emissivity: q.Emissivity = Number(0.84, source="EN 673:2011: 0.837, glass without coating")
+    source: str | None = Field(None, description="Where the values come from")
+
+    @model_validator(mode="after")
+    def _resists(self) -> SimpleGlazing:
+        most = 1.0 / (self.outside_film + self.inside_film)
+        if self.u_value >= most:
+            insist(
+                fault(
+                    ("u_value",),
+                    f"{self.u_value:g} W/(m2 K)",
+                    f"less than {most:.2f} W/(m2 K), which the rated films alone let through",
+                    "Correct it, or describe the unit by 'kind: panes'.",
+                )
+            )
+        return self
+
+    @property
+    def resistance(self) -> float:
+        """From face to face [m2 K/W]."""
+        return 1.0 / self.u_value - self.outside_film - self.inside_film
+
+
+Glazing = Annotated[PaneGlazing | SimpleGlazing, Field(discriminator="kind")]
+
+#: Conductivity of the gases at 10 degC [W/(m K)] (ISO 15099, annex B).
+_CONDUCTIVITY = {"air": 0.0248, "argon": 0.0169, "krypton": 0.0089, "xenon": 0.0053}
+#: Black-body exchange at 10 degC, 4 sigma T^3 [W/(m2 K)].
+_RADIATION = 5.15
+
+
+def face_resistance(glazing: Glazing) -> float:
+    """Resistance from face to face; gas at 10 degC that does not move.
+
+    Parameters
+    ----------
+    glazing : PaneGlazing or SimpleGlazing
+        The glazing.
+
+    Returns
+    -------
+    float
+        Resistance. [m2 K/W]
+    """
+    if isinstance(glazing, SimpleGlazing):
+        return glazing.resistance
+    resistance = sum(pane.thickness / pane.conductivity for pane in glazing.panes)
+    for index, gap in enumerate(glazing.gaps):
+        if isinstance(gap, GivenGap):
+            resistance += 1.0 / gap.conductance
+            continue
+        outer, inner = both(glazing.panes[index].emissivity)[1], both(glazing.panes[index + 1].emissivity)[0]
+        radiation = _RADIATION / (1.0 / outer + 1.0 / inner - 1.0)
+        resistance += 1.0 / (_CONDUCTIVITY[gap.gas] / gap.thickness + radiation)
+    return resistance
+
+
+#: Where the methods come from, by what uses them.
+SOURCES = {
+    "panes": "Duffie & Beckman 2013, doi:10.1002/9781118671603, ch. 5 (optics of panes)",
+    "coated": "Finlayson et al. 1993, WINDOW 4.0, LBL-33943 (angular behaviour of coated panes)",
+    "filled": f"{ISO_15099} (convection in gaps)",
+    "simple": "Arasteh, Kohler & Griffith 2009, LBNL-2804E (transmittance by U and solar heat gain)",
+    "angle": f"{_FIT} (angular behaviour of a unit by U and solar heat gain)",
+}

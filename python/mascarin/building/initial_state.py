@@ -1,0 +1,415 @@
+"""Where a run starts from: temperatures that are known, and straight lines to all others.
+
+Inside a wall a straight line is one over thermal resistance, by the values of the building as described: what
+a wall of constant properties settles to between two temperatures that stay.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import accumulate
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from mascarin.building.glazing import GivenGap, Glazing, SimpleGlazing
+from mascarin.building.material import PhaseChangeMaterial, Resistance, phase
+from mascarin.building.part import Part, fault, refuse
+from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from mascarin.building.building import Building
+    from mascarin.building.outputs import Output
+    from mascarin.building.surface import Side
+
+#: Films on a face to the weather, and to the air of a room (ISO 6946:2017, horizontal flow). [m2 K/W]
+FILMS: Final = (0.04, 0.13)
+#: A filled gap between panes, near enough for nodes that hold little (ISO 6946:2017, 15 mm). [m2 K/W]
+_GAP: Final = 0.17
+#: What rated films leave of a frame's resistance is no less than this, as in the engine. [m2 K/W]
+_LEAST: Final = 1e-3
+#: Places closer than this are one. [m2 K/W]
+_SAME: Final = 1e-9
+
+#: Temperatures of a building lie between these. [degC]
+LIMITS: Final = (-100.0, 200.0)
+Degrees = Annotated[float, Field(gt=LIMITS[0], lt=LIMITS[1], strict=True)]
+
+
+def _one_or_two(raw: Any) -> str:
+    return "both" if isinstance(raw, list | tuple) else "one"
+
+
+Faces = Annotated[
+    Annotated[Degrees, Tag("one")] | Annotated[tuple[Degrees, Degrees], Tag("both")],
+    Discriminator(_one_or_two),
+]
+
+
+class GivenStart(Part):
+    """Temperatures at the start. All others lie on straight lines between these and what is beside them."""
+
+    zones: dict[str, Degrees] = Field(
+        default_factory=dict, description="Zone -> temperature of its air [degC]"
+    )
+    surfaces: dict[str, Faces] = Field(
+        default_factory=dict,
+        description="Surface or window -> temperature throughout, or [outside, inside] of its faces [degC]",
+    )
+    default: Degrees | None = Field(
+        None, description="Air of the zones that are not named; the mean of those that are when absent [degC]"
+    )
+
+    @model_validator(mode="after")
+    def _some(self) -> GivenStart:
+        if not self.zones and not self.surfaces and self.default is None:
+            hint = "Write zones: {room: 21}, or default: 21."
+            refuse(fault(("zones",), "no temperature", "one at least", hint))
+        return self
+
+
+class StartError(InputError):
+    """A start that cannot be made.
+
+    Attributes
+    ----------
+    place : tuple of str
+        Which entry it is about.
+    """
+
+    def __init__(self, place: tuple[str, ...], text: str) -> None:
+        super().__init__(f"{'.'.join(place)}: {text}")
+        self.place = place
+
+
+@dataclass(frozen=True)
+class Known:
+    """Temperatures that are known at the start.
+
+    Attributes
+    ----------
+    zones : mapping of str to float
+        Of the airs. [degC]
+    points : mapping of str to sequence of (float, float)
+        By surface or window: thermal resistance from the outside face, and the temperature there.
+        [m2 K/W, degC]
+    default : float or None
+        Of the other airs; their mean when None. [degC]
+    words : str
+        The same in words.
+    """
+
+    zones: Mapping[str, float]
+    points: Mapping[str, Sequence[tuple[float, float]]]
+    default: float | None = None
+    words: str = ""
+
+
+@dataclass(frozen=True)
+class Ambient:
+    """What surrounds the building at the start.
+
+    Attributes
+    ----------
+    outdoors : float
+        Outdoor air. [degC]
+    day : float
+        Day of the year, from 0.
+    columns : mapping of str to float
+        Measured columns. [degC where a side faces them]
+    """
+
+    outdoors: float
+    day: float
+    columns: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Temperatures that a run starts from, in the order of the engine.
+
+    Attributes
+    ----------
+    cells, faces, air : tuple of float
+        Of finite volumes, faces and zone airs; faces follow from the rest and are only guessed. [degC]
+    words : str
+        Where they come from.
+    """
+
+    cells: tuple[float, ...]
+    faces: tuple[float, ...]
+    air: tuple[float, ...]
+    words: str
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A surface, window or frame along its thermal resistance, counted from the outside face.
+
+    Attributes
+    ----------
+    name : str
+        Of the surface or window; of a frame none.
+    sides : tuple of Side
+        Outside, inside.
+    layers : tuple of (float, float)
+        Thickness, 0 where it has none, and resistance. [m, m2 K/W]
+    cells : tuple of float
+        Places of the finite volumes. [m2 K/W]
+    """
+
+    name: str
+    sides: tuple[Side, Side]
+    layers: tuple[tuple[float, float], ...]
+    cells: tuple[float, ...]
+    edges: tuple[float, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Add up the layers."""
+        edges = tuple(accumulate((resistance for _, resistance in self.layers), initial=0.0))
+        object.__setattr__(self, "edges", edges)
+
+    @property
+    def whole(self) -> float:
+        """Resistance from face to face. [m2 K/W]"""
+        return self.edges[-1]
+
+    def middle(self, layer: int) -> float:
+        """Place of the middle of a layer. [m2 K/W]"""
+        return 0.5 * (self.edges[layer] + self.edges[layer + 1])
+
+    def at_depth(self, depth: float) -> float:
+        """Place at a depth [m], on the outer side of a layer without thickness. [m2 K/W]"""
+        place, before = 0.0, 0.0
+        for thickness, resistance in self.layers:
+            part = min(max((depth - before) / thickness, 0.0), 1.0) if thickness else float(before < depth)
+            place, before = place + part * resistance, before + thickness
+        return place
+
+
+def walls(building: Building, nodes: Mapping[tuple[str, str], int]) -> list[Wall]:
+    """All surfaces, then the windows, then their frames: the order of the engine.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    nodes : mapping of (str, str) to int
+        Finite volumes by construction and layer.
+    """
+    found = [_opaque(building, name, nodes) for name in building.surfaces]
+    for name, window in building.windows.items():
+        found.append(
+            _glazed(name, building.glazings[window.glazing], building.surfaces[window.surface].sides)
+        )
+    for window in building.windows.values():
+        if window.frame is not None:
+            resistance = max(1.0 / window.frame.u_value - sum(FILMS), _LEAST)
+            found.append(Wall("", building.surfaces[window.surface].sides, ((0.0, resistance),), ()))
+    return found
+
+
+def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int]) -> Wall:
+    surface = building.surfaces[name]
+    layers: list[tuple[float, float]] = []
+    cells: list[float] = []
+    for layer in building.constructions[surface.construction].layers:
+        material = building.materials[layer.material]
+        before = sum(resistance for _, resistance in layers)
+        if isinstance(material, Resistance) or layer.thickness is None:
+            layers.append((0.0, float(getattr(material, "resistance", 0.0))))
+            continue
+        # Of solid and liquid the mean: which of the two it is depends on the profile itself.
+        both = [phase(material.conductivity, one) for one in ("solid", "liquid")]
+        resistance = float(layer.thickness) / (0.5 * sum(both))
+        count = nodes[surface.construction, layer.name]
+        cells += [before + (i + 0.5) / count * resistance for i in range(count)]
+        layers.append((float(layer.thickness), resistance))
+    return Wall(name, surface.sides, tuple(layers), tuple(cells))
+
+
+def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> Wall:
+    """Lay out a window as the engine does: nodes are faces on gaps, and middles of panes that hold heat."""
+    if isinstance(glazing, SimpleGlazing):
+        films = glazing.outside_film + glazing.inside_film
+        return Wall(name, sides, ((0.0, 1.0 / glazing.u_value - films),), ())
+    layers: list[tuple[float, float]] = []
+    cells: list[float] = []
+    for k, pane in enumerate(glazing.panes):
+        before, own = sum(r for _, r in layers), float(pane.thickness / pane.conductivity)
+        last = k + 1 == len(glazing.panes)
+        marks = [(0.0, k > 0), (0.5, pane.density is not None), (1.0, not last)]
+        cells += [before + part * own for part, node in marks if node]
+        layers.append((float(pane.thickness), own))
+        if not last:
+            gap = glazing.gaps[k]
+            layers.append((0.0, 1.0 / gap.conductance if isinstance(gap, GivenGap) else _GAP))
+    return Wall(name, sides, tuple(layers), tuple(cells))
+
+
+def given(start: GivenStart, found: Sequence[Wall], building: Building) -> Known:
+    """What a user gave.
+
+    Raises
+    ------
+    StartError
+        A zone or surface that does not exist.
+    """
+    known = {wall.name: wall for wall in found if wall.name}
+    points, said = {}, []
+    for section, names, there in (
+        ("zones", start.zones, building.zones),
+        ("surfaces", start.surfaces, known),
+    ):
+        for name in names:
+            if name not in there:
+                raise StartError(
+                    ("initial", section, name),
+                    f"found '{name}', expected the name of a {_SINGULAR[section]} of the building. "
+                    f"{did_you_mean(name, there)}".rstrip(),
+                )
+    said += [f"{name} {value:g}" for name, value in start.zones.items()]
+    for name, faces in start.surfaces.items():
+        outside, inside = faces if isinstance(faces, tuple) else (faces, faces)
+        points[name] = ((0.0, outside), (known[name].whole, inside))
+        said.append(f"{name} {outside:g}" + (f" to {inside:g}" if inside != outside else ""))
+    if start.default is not None:
+        said.append(f"{'other ' if start.zones else ''}zones {start.default:g}")
+    return Known(start.zones, points, start.default, f"given: {', '.join(said)} degC")
+
+
+_SINGULAR: Final = {"zones": "zone", "surfaces": "surface or window"}
+
+
+def located(output: Output, found: Sequence[Wall], building: Building) -> tuple[str, float | None] | None:
+    """Where an output is a temperature of the state: zone and None, or surface and place; else None.
+
+    Parameters
+    ----------
+    output : Output
+        An output of the building.
+    found : sequence of Wall
+        Its walls.
+    building : Building
+        The building.
+    """
+    if output.kind == "air_temperature" and output.zone is not None:
+        return list(building.zones)[output.zone], None
+    if output.kind == "sensor" and output.sensor is not None:
+        sensor = list(building.sensors.values())[output.sensor]
+        wall = next(wall for wall in found if wall.name == sensor.surface)
+        return wall.name, wall.at_depth(float(sensor.depth))
+    if output.surface is None:
+        return None
+    wall = found[output.surface]
+    if output.kind == "face_temperature":
+        return wall.name, wall.whole if output.side else 0.0
+    if output.kind == "interface_temperature" and output.interface is not None:
+        return wall.name, wall.edges[output.interface]
+    if output.kind == "layer_temperature" and output.layer is not None:
+        return wall.name, wall.middle(output.layer)
+    return None
+
+
+def profile(building: Building, found: Sequence[Wall], known: Known, ambient: Ambient) -> Profile:
+    """Temperatures everywhere from those that are known.
+
+    Airs that are not known take the default, or the mean of the others. A wall follows straight lines through
+    the points known in it; a face that is not known has the film of ISO 6946 and what is beside it behind
+    that. Beside an adiabatic face there is nothing: the line ends flat.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    found : sequence of Wall
+        Its walls.
+    known : Known
+        What is known.
+    ambient : Ambient
+        What surrounds it.
+
+    Raises
+    ------
+    StartError
+        There are zones, and no temperature of any air.
+    """
+    import numpy as np
+
+    air = _airs(building, known)
+    cells: list[float] = []
+    faces: list[float] = []
+    for wall in found:
+        # The frame of a window bears no name: nothing is known of it.
+        points = _points(wall, known.points.get(wall.name, ()) if wall.name else (), air, ambient)
+        places, values = zip(*points, strict=True)
+        cells += np.interp(wall.cells, places, values).tolist()
+        faces += np.interp([0.0, wall.whole], places, values).tolist()
+    return Profile(tuple(cells), tuple(faces), tuple(air.values()), known.words + _rest(building))
+
+
+def _airs(building: Building, known: Known) -> dict[str, float]:
+    rest = known.default
+    if rest is None and known.zones:
+        rest = sum(known.zones.values()) / len(known.zones)
+    if rest is None and building.zones:
+        raise StartError(
+            ("initial",),
+            f"found no temperature of the air in {', '.join(building.zones)}, expected that of one zone at "
+            "least: add it under zones, or give a default",
+        )
+    return {name: float(known.zones.get(name, rest or 0.0)) for name in building.zones}
+
+
+def _points(
+    wall: Wall, inside: Sequence[tuple[float, float]], air: Mapping[str, float], ambient: Ambient
+) -> list[tuple[float, float]]:
+    """Places and temperatures that the lines of a wall run through, from outside to inside."""
+    points = _merged(inside)
+    outer, inner = (_beside(side, air, ambient) for side in wall.sides)
+    if outer is not None and not (points and points[0][0] < _SAME):
+        points.insert(0, (-outer[0], outer[1]))
+    if inner is not None and not (points and points[-1][0] > wall.whole - _SAME):
+        points.append((wall.whole + inner[0], inner[1]))
+    # Between two adiabatic faces nothing but the air of the building is near.
+    return points or [(0.0, sum(air.values()) / len(air) if air else ambient.outdoors)]
+
+
+def _merged(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Points in order; of several at one place the mean."""
+    together: dict[int, list[tuple[float, float]]] = defaultdict(list)
+    for point in points:
+        together[round(point[0] / _SAME)].append(point)
+    groups = [together[key] for key in sorted(together)]
+    return [(group[0][0], sum(value for _, value in group) / len(group)) for group in groups]
+
+
+def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[float, float] | None:
+    """Film of a face and the temperature behind it; None where nothing flows. [m2 K/W, degC]"""
+    if side.adiabatic:
+        return None
+    if side.outdoors:
+        return FILMS[0], ambient.outdoors
+    film = 0.0 if side.convection is None else FILMS[1]
+    if side.zone is not None:
+        return film, air[side.zone]
+    if side.ground is not None:
+        ground = side.ground
+        angle = 2.0 * math.pi * (ambient.day - ground.coldest_day) / 365.0
+        return film, float(ground.mean - ground.amplitude * math.cos(angle))
+    return film, ambient.columns[str(side.measured)]
+
+
+def _rest(building: Building) -> str:
+    said = "; all else on straight lines between what is known beside it"
+    melts = any(isinstance(material, PhaseChangeMaterial) for material in _used(building))
+    return said + ("; what melts has come from below" if melts else "")
+
+
+def _used(building: Building) -> Iterator[Any]:
+    for surface in building.surfaces.values():
+        for layer in building.constructions[surface.construction].layers:
+            yield building.materials[layer.material]

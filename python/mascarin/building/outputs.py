@@ -1,0 +1,182 @@
+"""The results that a run of a building can give, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+from mascarin.building.material import PhaseChangeMaterial
+from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from mascarin.building.building import Building
+
+Kind = Literal[
+    "air_temperature",
+    "mean_radiant_temperature",
+    "operative_temperature",
+    "globe_temperature",
+    "face_temperature",
+    "face_flux",
+    "interface_temperature",
+    "layer_flux",
+    "layer_temperature",
+    "liquid_fraction",
+    "layer_enthalpy",
+    "sensor",
+    "heating_load",
+    "cooling_load",
+    "air_changes",
+    "incident_solar",
+    "transmitted_solar",
+    "zone_transmitted_solar",
+    "zone_lost_solar",
+    "sky_temperature",
+]
+
+_ZONE_KINDS: tuple[Kind, ...] = (
+    "air_temperature",
+    "mean_radiant_temperature",
+    "operative_temperature",
+    "globe_temperature",
+)
+#: Units of means: over the step, or whatever other interval, that ends at the time of the record.
+_MEANS = ("W", "W/m2")
+_SIDES = ("outside", "inside")
+
+
+@dataclass(frozen=True)
+class Output:
+    """A result of a run.
+
+    The mean radiant temperature of a zone is the mean of the temperatures of its faces, weighted by area:
+    no view factors to a point and no emissivities enter. The operative temperature is the mean of air and
+    mean radiant temperature; the globe temperature is that of a black globe of 0.15 m between the two.
+
+    Heating and cooling loads are what ideal plants give and take, neither below 0, as means over the step
+    that ends at the record. Air changes count all outdoor air: infiltration, ventilation and openings.
+
+    Sun is given as means over the step that ends at the time: on the outside of a surface or window after
+    shading [W/m2], let in by a window or by all windows of a zone, and lost by a zone through its windows
+    again [W].
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    unit : str
+        Its unit.
+    kind : str
+        What it is.
+    zone, surface, sensor : int or None
+        Position of the zone, surface or sensor in the description.
+    side : int or None
+        0 for an outside face, 1 for an inside face.
+    layer : int or None
+        Position of the layer, counted from outside.
+    interface : int or None
+        Number of layers outside the interface, at least 1.
+    aliases : tuple of str
+        Other names.
+    """
+
+    name: str
+    unit: str
+    kind: Kind
+    zone: int | None = None
+    surface: int | None = None
+    side: int | None = None
+    layer: int | None = None
+    interface: int | None = None
+    sensor: int | None = None
+    aliases: tuple[str, ...] = ()
+
+    @property
+    def mean(self) -> bool:
+        """Whether a record is the mean over the interval that it ends, and no state at its time."""
+        return self.unit in _MEANS
+
+    @property
+    def place(self) -> dict[str, int]:
+        """The positions that belong to this kind, by name."""
+        keys = ("zone", "surface", "side", "layer", "interface", "sensor")
+        return {key: value for key in keys if (value := getattr(self, key)) is not None}
+
+
+def outputs(building: Building) -> list[Output]:
+    """All results of a building: zones, surfaces, sensors, in the order of the description."""
+    found = [
+        Output(f"{name}.{kind}", "degC", kind, zone=index)
+        for index, name in enumerate(building.zones)
+        for kind in _ZONE_KINDS
+    ]
+    for index, (name, zone) in enumerate(building.zones.items()):
+        for which in zone.plants:
+            kind: Kind = "heating_load" if which == "heating" else "cooling_load"
+            found.append(Output(f"{name}.{kind}", "W", kind, zone=index))
+        found.append(Output(f"{name}.air_changes", "1/h", "air_changes", zone=index))
+    for index, name in enumerate(building.surfaces):
+        found += _of_surface(building, index, name)
+        if building.surfaces[name].outside.outdoors:
+            found.append(Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index))
+    found += _of_windows(building)
+    found.append(Output("sky_temperature", "degC", "sky_temperature"))
+    for index, name in enumerate(building.sensors):
+        found.append(Output(f"{name}.temperature", "degC", "sensor", sensor=index))
+    return found
+
+
+def _of_windows(building: Building) -> Iterator[Output]:
+    first = len(building.surfaces)
+    for index, name in enumerate(building.windows, start=first):
+        for side, word in enumerate(_SIDES):
+            yield Output(f"{name}.{word}_temperature", "degC", "face_temperature", surface=index, side=side)
+        yield Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index)
+        yield Output(f"{name}.transmitted_solar", "W", "transmitted_solar", surface=index)
+    lit = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
+    for index, name in enumerate(building.zones):
+        if name in lit:
+            yield Output(f"{name}.transmitted_solar", "W", "zone_transmitted_solar", zone=index)
+            yield Output(f"{name}.lost_solar", "W", "zone_lost_solar", zone=index)
+
+
+def find(building: Building, name: str) -> Output:
+    """One result by its name or alias; see :meth:`Building.output`."""
+    known = {}
+    for output in reversed(building.outputs()):
+        known.update(dict.fromkeys((*output.aliases, output.name), output))
+    if name not in known:
+        raise InputError(
+            f"{name}: found no such output; expected one of the {len(known)} of this building. "
+            f"{did_you_mean(name, known)}".rstrip()
+        )
+    return known[name]
+
+
+def _of_surface(building: Building, index: int, name: str) -> Iterator[Output]:
+    layers = building.constructions[building.surfaces[name].construction].layers
+    for side, word in enumerate(_SIDES):
+        yield Output(f"{name}.{word}_temperature", "degC", "face_temperature", surface=index, side=side)
+    for number, (outer, inner) in enumerate(pairwise(layers), start=1):
+        yield Output(
+            f"{name}.interface_{number}_temperature",
+            "degC",
+            "interface_temperature",
+            surface=index,
+            interface=number,
+            aliases=(f"{name}.{outer.name}_{inner.name}_temperature",),
+        )
+    for side, word in enumerate(_SIDES):
+        yield Output(f"{name}.{word}_flux", "W/m2", "face_flux", surface=index, side=side)
+    for position, layer in enumerate(layers):
+        kinds: list[tuple[str, str, Kind]] = [("flux", "W/m2", "layer_flux")]
+        if isinstance(building.materials[layer.material], PhaseChangeMaterial):
+            kinds += [
+                ("temperature", "degC", "layer_temperature"),
+                ("liquid_fraction", "-", "liquid_fraction"),
+                ("enthalpy", "J/m3", "layer_enthalpy"),
+            ]
+        for word, unit, kind in kinds:
+            yield Output(f"{name}.{layer.name}_{word}", unit, kind, surface=index, layer=position)

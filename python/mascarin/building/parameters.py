@@ -1,0 +1,138 @@
+"""The language of parameters: every numeric leaf of a description has a path.
+
+Sensitivity, calibration, sweeps and GenOpt files all name numbers by these paths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from mascarin.building.inactive import without_effect
+from mascarin.building.leaves import leaves
+from mascarin.building.number import Number
+from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from mascarin.building.building import Building
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One numeric leaf of a building.
+
+    Attributes
+    ----------
+    path : str
+        Dotted path in the description.
+    value : float
+        Nominal value. [unit]
+    unit : str
+        Unit of all its numbers.
+    lower, upper : float
+        Hard limits; may be infinite. [unit]
+    low, high : float
+        Believable range: as written in the description, else by default for the quantity. [unit]
+    description : str
+        What the number is.
+    source : str or None
+        Where the value comes from.
+    assumed : bool
+        Whether nobody measured it or looked it up.
+    structural : bool
+        Whether it shapes the calculation itself, so that changing it means a new plan.
+    reason : str or None
+        Why it is structural or has no effect in this building; none: it acts.
+    range_reason : str
+        Why the range is as wide as it is.
+    """
+
+    path: str
+    value: float
+    unit: str
+    lower: float
+    upper: float
+    low: float
+    high: float
+    description: str
+    source: str | None
+    assumed: bool
+    structural: bool
+    reason: str | None
+    range_reason: str
+
+    @property
+    def varies(self) -> bool:
+        """Whether a sensitivity analysis can vary it and see something."""
+        return self.reason is None and self.low < self.high
+
+
+def parameters(building: Building) -> list[Parameter]:
+    """All numeric leaves of a building, in the order of the description."""
+    idle = without_effect(building)
+    return [_parameter(path, number, source, idle.get(path)) for path, number, source in leaves(building)]
+
+
+def _parameter(path: str, number: Number, source: str, idle: str | None) -> Parameter:
+    quantity = number.quantity
+    if quantity is None:
+        raise TypeError(f"{path} measures no quantity")
+    low, high = number.believable
+    if not low < high:
+        idle = idle or "its default range has no width: write a range"
+    return Parameter(
+        path=path,
+        value=float(number),
+        unit=quantity.unit,
+        lower=quantity.limits.lower,
+        upper=quantity.limits.upper,
+        low=low,
+        high=high,
+        description=quantity.description,
+        source=source or None,
+        assumed=number.assumed,
+        structural=number.structural,
+        reason=quantity.spread.reason if number.structural else idle,
+        range_reason=quantity.spread.reason if number.range is None else "written in the description",
+    )
+
+
+def resolve(building: Building, path: str, known: Mapping[str, Any]) -> str:
+    """Find the path that a user means: itself, or one of the short ways to write it.
+
+    Raises
+    ------
+    InputError
+        If nothing goes by that path; the text names the nearest ones.
+    """
+    found = lookup(building, path, known)
+    if found is None:
+        raise InputError(
+            f"{path}: found no such parameter; expected a path as listed by 'mascarin parameters'. "
+            f"{did_you_mean(path, known)}".rstrip()
+        )
+    return found
+
+
+def lookup(building: Building, path: str, known: Mapping[str, Any]) -> str | None:
+    """Find the path that a user means, or nothing."""
+    return next((one for one in (path, *_aliases(building, path)) if one in known), None)
+
+
+def _aliases(building: Building, path: str) -> Iterator[str]:
+    match path.split("."):
+        case ["constructions", construction, "layers", layer, *rest] if (
+            construction in building.constructions
+        ):
+            for one in building.constructions[construction].layers:
+                if one.name == layer:
+                    yield ".".join(["materials", one.material, *rest])
+        case ["surfaces", _, _, "convection"]:
+            yield f"{path}.coefficient"
+        case ["zones", _, "infiltration"]:
+            yield f"{path}.constant"
+        case ["zones", _, "heating" | "cooling", "setpoint"]:
+            yield f"{path}.temperature"
+        case ["surfaces", _, _, "ground", "temperature"]:
+            yield f"{path.removesuffix('temperature')}mean"

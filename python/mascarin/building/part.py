@@ -1,0 +1,217 @@
+"""What the parts of a description have in common: frozen, no unknown keys, errors that help."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NoReturn, Self, get_args
+
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
+
+from mascarin.building.number import Number, Quantity, noted_form, problem, shown
+from mascarin.errors import did_you_mean
+
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ModelWrapValidatorHandler
+    from pydantic.fields import FieldInfo
+    from pydantic.json_schema import JsonSchemaValue
+
+Location = tuple[int | str, ...]
+
+
+class Part(BaseModel):
+    """A piece of a description: immutable, and deaf to keys it does not know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _explain(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Put pydantic's complaints into words: found, expected, what to do."""
+        try:
+            return handler(data)
+        except ValidationError as error:
+            raise merged([*cls._explained(error)]) from None
+
+    @classmethod
+    def _explained(cls, error: ValidationError) -> Iterator[InitErrorDetails]:
+        faults = error.errors(include_url=False)
+        unknown = {str(fault["loc"][-1]) for fault in faults if fault["type"] == "extra_forbidden"}
+        for fault in faults:
+            mistyped = fault["type"] == "missing" and did_you_mean(str(fault["loc"][-1]), unknown)
+            if not mistyped or not mistyped.startswith("Did you mean"):
+                yield InitErrorDetails(
+                    type=cls._in_words(dict(fault)), loc=fault["loc"], input=fault.get("input")
+                )
+
+    @classmethod
+    def _in_words(cls, fault: dict[str, Any]) -> PydanticCustomError:
+        context, key, found = fault.get("ctx", {}), str((*fault["loc"], "")[0]), shown(fault["input"])
+        match fault["type"]:
+            case "input":
+                return problem(context["found"], context["expected"], context["help"])
+            case "extra_forbidden":
+                known = [name for name in cls.model_fields if name != "kind"]
+                return problem(f"the key '{key}'", "a key that exists here", did_you_mean(key, known))
+            case "missing" if len(fault["loc"]) == 1:
+                return problem("nothing", cls._meaning(key), f"Add '{key}:'.")
+            case "missing" | "too_short" | "too_long":
+                return problem("another number of items", cls._meaning(key), "Count them.")
+            case "union_tag_not_found" | "union_tag_invalid":
+                return _choice(f"kind: {context.get('tag', 'not given')}", context.get("expected_tags", ""))
+            case "literal_error":
+                return _choice(found, context["expected"])
+            case "model_type" | "model_attributes_type" | "dict_type":
+                return problem(found, "a mapping (key: value)", "Write keys, one per line.")
+            case "tuple_type" | "list_type":
+                return problem(found, f"a list: {cls._meaning(key)}", "Write [a, b, ...].")
+            case _:
+                return problem(found, _lowered(fault["msg"]), "Correct the value.")
+
+    @classmethod
+    def _meaning(cls, key: str) -> str:
+        """Say what a field holds."""
+        field = cls.model_fields.get(key)
+        if field is None:
+            return f"'{key}'"
+        quantity = quantity_of(field)
+        if quantity is not None:
+            return quantity.expectation
+        return f"{key} ({field.description})" if field.description else key
+
+    def _settle(self, **values: Any) -> None:
+        """Fill in what the user left open; only while the part is being made."""
+        self.__dict__.update(values)
+
+
+def _or_list(schema: dict[str, Any]) -> None:
+    """Allow the short form of a :class:`Pair` in its JSON Schema."""
+    written, values = dict(schema), list(schema["properties"].values())
+    schema.clear()
+    schema["anyOf"] = [written, {"type": "array", "prefixItems": values, "minItems": 2, "items": False}]
+
+
+class Pair(Part):
+    """Two values of one property, such as those of a solid and a liquid; short form ``[one, other]``."""
+
+    model_config = ConfigDict(json_schema_extra=_or_list)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_list(cls, raw: Any) -> Any:
+        if not isinstance(raw, list | tuple):
+            return raw
+        names = tuple(cls.model_fields)
+        if len(raw) != len(names):
+            raise problem(f"{len(raw)} values", f"[{', '.join(names)}]", "Write one value for each.")
+        return dict(zip(names, raw, strict=True))
+
+
+def quantity_of(field: FieldInfo) -> Quantity | None:
+    """Find the quantity in the annotation of a numeric field."""
+    annotations = [field, *get_args(field.annotation)]
+    notes = (
+        note for one in annotations for note in getattr(one, "metadata", getattr(one, "__metadata__", ()))
+    )
+    return next((note for note in notes if isinstance(note, Quantity)), None)
+
+
+def settled(part: type[Part], key: str, value: float, source: str, *, assumed: bool = False) -> Number:
+    """Make the value of a field that the user left open.
+
+    Parameters
+    ----------
+    part : type of Part
+        The kind of part the field belongs to.
+    key : str
+        Name of the field.
+    value : float
+        The value. [unit of the field]
+    source : str
+        What the value follows from.
+    assumed : bool
+        Whether it is a guess and no consequence of the description.
+    """
+    return Number(
+        value, source=source, assumed=assumed, settled=True, quantity=quantity_of(part.model_fields[key])
+    )
+
+
+def merged(faults: list[InitErrorDetails]) -> ValidationError:
+    """Bundle several faults of one part."""
+    return ValidationError.from_exception_data("description", faults)
+
+
+def fault(location: Location, found: str, expected: str, help_: str) -> InitErrorDetails:
+    """Describe one fault below the part that is being validated."""
+    return InitErrorDetails(type=problem(found, expected, help_), loc=location, input=None)
+
+
+def refuse(*faults: InitErrorDetails) -> NoReturn:
+    """Raise the faults."""
+    raise merged(list(faults))
+
+
+def insist(*faults: InitErrorDetails) -> None:
+    """Raise the faults, if there are any."""
+    if faults:
+        refuse(*faults)
+
+
+def _choice(found: str, options: str) -> PydanticCustomError:
+    """Build the error of a word that is none of the options."""
+    words = options.replace("'", "").replace(" or ", ", ").split(", ") if options else ["a kind"]
+    help_ = did_you_mean(found.removeprefix("kind: ").strip("'"), words)
+    return problem(found, f"one of {', '.join(words)}" if len(words) > 1 else words[0].lower(), help_)
+
+
+def _lowered(message: str) -> str:
+    text = message.removeprefix("Input should be ")
+    return text[:1].lower() + text[1:]
+
+
+@dataclass(frozen=True)
+class Shorthand:
+    """Annotation: a mapping may be written as one word, its kind, or as one number.
+
+    Parameters
+    ----------
+    word : str, optional
+        Key that a bare word stands for; none: no bare word.
+    number : str, optional
+        Key that a bare number stands for; none: no bare number.
+    kind : str, optional
+        Kind that goes with a bare number.
+    """
+
+    word: str | None = None
+    number: str | None = None
+    kind: str | None = None
+
+    def expand(self, raw: Any) -> Any:
+        """Write the mapping out."""
+        if self.number is not None and (is_number(raw) or (isinstance(raw, str) and self.word is None)):
+            return {self.number: raw} | ({"kind": self.kind} if self.kind else {})
+        if self.word is not None and isinstance(raw, str):
+            return {self.word: raw}
+        return raw
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Expand first, then validate the mapping."""
+        return core_schema.no_info_before_validator_function(self.expand, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Allow the short forms beside the mapping."""
+        number, word = {"type": "number"}, {"type": "string"}
+        short = [number, noted_form(number)] if self.number is not None else []
+        return {"anyOf": [handler(schema), *short, *([word] if self.word is not None else [])]}
+
+
+def is_number(raw: object) -> bool:
+    """Tell whether a piece of the description is one number, plain or with notes."""
+    return isinstance(raw, int | float) or (isinstance(raw, Mapping) and "value" in raw)

@@ -1,0 +1,297 @@
+"""What a phase-change material cannot be: falling enthalpy, curves that cross, numbers in another unit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final
+
+from pydantic_core import InitErrorDetails
+
+from mascarin.building.number import Number
+from mascarin.building.part import Location, fault
+from mascarin.building.phase_change import CUT, CapacityLaw, ClosedLaw, FractionLaw, FractionsLaw, TableLaw
+
+if TYPE_CHECKING:
+    from mascarin.building.material import PhaseChangeMaterial
+
+#: How far a latent heat may be from what its table holds [-].
+AGREEMENT: Final = 0.10
+#: Round-off of a liquid fraction.
+_EPSILON: Final = 1e-9
+_POINTS: Final = 800
+#: (largest or smallest value that can be meant, factor, unit meant, unit written) by property.
+_SLIPS: Final = {
+    "conductivity": (60.0, 1e-3, "W/(m K)", "mW/(m K)"),
+    "density": (20.0, 1e3, "kg/m3", "g/cm3"),
+    "specific_heat": (50.0, 1e3, "J/(kg K)", "kJ/(kg K)"),
+    "latent_heat": (1000.0, 1e3, "J/kg", "kJ/kg"),
+}
+
+
+def missing_or_idle(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+    """Find what the law needs and is not there, and what could not act beside it."""
+    law, kind = material.law, material.law.kind
+    table = isinstance(law, TableLaw | CapacityLaw)
+    faults = []
+    if material.latent_heat is None and not table:
+        faults.append(_needed("latent_heat", kind))
+    if isinstance(law, ClosedLaw) and material.melting_temperature is None:
+        faults.append(_needed("melting_temperature", kind))
+    if not isinstance(law, ClosedLaw) and material.melting_temperature is not None:
+        faults.append(
+            fault(
+                ("melting_temperature",),
+                f"{material.melting_temperature:g}",
+                f"no value: the {kind} law says where it melts",
+                "Remove 'melting_temperature:', or vary the law's temperature_shift.",
+            )
+        )
+    return [*faults, *_hysteresis_fits(material)]
+
+
+def _needed(key: str, kind: str, path: Location = ()) -> InitErrorDetails:
+    return fault((*path, key), "nothing", f"{key}: needed by the {kind} law", f"Add '{key}:'.")
+
+
+def _hysteresis_fits(material: PhaseChangeMaterial) -> Iterator[InitErrorDetails]:
+    hysteresis, law = material.hysteresis, material.law
+    if hysteresis is None:
+        return
+    if isinstance(law, TableLaw | CapacityLaw):
+        yield fault(
+            ("law",),
+            f"the law {law.kind} with hysteresis",
+            "a law of the liquid fraction alone: the enthalpy must follow from temperature and fraction",
+            "Write 'law: {kind: fractions, temperatures: [...], fractions: [0, ..., 1]}' and 'latent_heat:'.",
+        )
+        return
+    cooling = hysteresis.law or law
+    if isinstance(cooling, FractionsLaw):
+        if hysteresis.freezing_temperature is not None:
+            yield fault(
+                ("hysteresis", "freezing_temperature"),
+                f"{hysteresis.freezing_temperature:g}",
+                "no value: the fractions law says where it freezes",
+                "Remove it, or vary the law's temperature_shift.",
+            )
+        if hysteresis.law is None:
+            yield fault(
+                ("hysteresis", "law"),
+                "nothing",
+                "law: the cooling curve; the fractions above are the heating curve",
+                "Add 'law: {kind: fractions, ...}' below hysteresis.",
+            )
+    elif hysteresis.freezing_temperature is None:
+        yield _needed("freezing_temperature", cooling.kind, ("hysteresis",))
+
+
+# --- units --------------------------------------------------------------------------------------------------
+
+
+def unit_slips(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+    """Find numbers that no phase-change material has, but would have in another unit."""
+    faults = []
+    for key in _SLIPS:
+        held: Any = getattr(material, key)
+        if held is None:
+            continue
+        values = {(): held} if isinstance(held, Number) else {(p,): getattr(held, p) for p in _PHASES}
+        faults += [_slip(key, (key, *part), value) for part, value in values.items() if _odd(key, value)]
+    law = material.law
+    faults += [
+        fault(
+            path,
+            f"{value:g}",
+            "a temperature in degC below 200: nothing in a building melts above",
+            f"{value:g} K are {value - 273.15:.2f} degC.",
+        )
+        for path, value in _temperatures(material)
+        if value > 200.0
+    ]
+    if isinstance(law, TableLaw | CapacityLaw) and 0.0 < law.rise(*law.melting) < _SLIPS["latent_heat"][0]:
+        rise = law.rise(*law.melting)
+        column = "enthalpies" if isinstance(law, TableLaw) else "capacities"
+        unit = "J/kg, not kJ/kg" if column == "enthalpies" else "J/(kg K), not kJ/(kg K)"
+        faults.append(
+            fault(
+                ("law", column),
+                f"{rise:g} J/kg over the melting range",
+                "at least 1000 J/kg: what melts takes up heat",
+                f"Write the table in {unit}.",
+            )
+        )
+    return faults
+
+
+_PHASES: Final = ("solid", "liquid")
+
+
+def _temperatures(material: PhaseChangeMaterial) -> Iterator[tuple[Location, float]]:
+    hysteresis = material.hysteresis
+    if material.melting_temperature is not None:
+        yield ("melting_temperature",), material.melting_temperature
+    if hysteresis is not None and hysteresis.freezing_temperature is not None:
+        yield ("hysteresis", "freezing_temperature"), hysteresis.freezing_temperature
+    for path, law in ((("law",), material.law), (("hysteresis", "law"), hysteresis and hysteresis.law)):
+        if isinstance(law, TableLaw | CapacityLaw | FractionsLaw):
+            yield (*path, "temperatures", 0), law.temperatures[0]
+
+
+def _odd(key: str, value: float) -> bool:
+    limit = _SLIPS[key][0]
+    return value > limit if key == "conductivity" else 0.0 < value < limit
+
+
+def _slip(key: str, path: Location, value: float) -> InitErrorDetails:
+    limit, factor, unit, other = _SLIPS[key]
+    side = "at most" if key == "conductivity" else "at least"
+    return fault(
+        path,
+        f"{value:g}",
+        f"{side} {limit:g} {unit} in a phase-change material",
+        f"{value:g} {other} are {value * factor:g} {unit}.",
+    )
+
+
+# --- enthalpy -----------------------------------------------------------------------------------------------
+
+
+def falling_enthalpy(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+    """Find where ``dH/dT = C_s + D xi + xi' (L + D (T - Tr))`` is not positive."""
+    curves = _curves(material)
+    solid, liquid = material.heat_capacities
+    difference = liquid - solid
+    latent = solid_density(material) * (material.latent_heat or 0.0)
+    for key, (curve, low, high) in curves.items():
+        small = (high - low) * 1e-5
+        for i in range(_POINTS + 1):
+            at = low + (high - low) * i / _POINTS
+            fraction = curve(at)
+            slope = max(curve(at + small) - curve(at - small), 0.0) / (2.0 * small)
+            jump = latent + difference * (at - material.reference)
+            capacity = solid + difference * fraction + slope * jump
+            if capacity > 0.0 and (jump > 0.0 or len(curves) == 1):
+                continue
+            found = f"dH/dT = {capacity:.3g} J/(m3 K)" if capacity <= 0.0 else f"{jump:.3g} J/m3 to melt it"
+            return [
+                fault(
+                    key,
+                    f"{found} at {at:.2f} degC",
+                    "an enthalpy that rises with temperature and with the liquid fraction",
+                    "The difference of the heat capacities outweighs the latent heat over this width: "
+                    "check specific_heat of both phases, latent_heat and the width.",
+                )
+            ]
+    return []
+
+
+def solid_density(material: PhaseChangeMaterial) -> float:
+    """Density that the heat is counted by [kg/m3]."""
+    from mascarin.building.material import phase
+
+    return phase(material.density, "solid")
+
+
+def contradicted_latent_heat(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+    """Find a latent heat that the table beside it does not hold."""
+    law = material.law
+    if material.latent_heat is None or not isinstance(law, TableLaw | CapacityLaw):
+        return []
+    low, high = law.melting
+    solid, liquid = (heat / solid_density(material) for heat in material.heat_capacities)
+    held = law.rise(low, high) - 0.5 * (solid + liquid) * (high - low)
+    if abs(material.latent_heat - held) <= AGREEMENT * max(held, 0.0):
+        return []
+    return [
+        fault(
+            ("latent_heat",),
+            f"{material.latent_heat:g}",
+            f"{held:g} J/kg within {100 * AGREEMENT:g} %: what the table rises between {low:g} and {high:g} "
+            f"degC less the sensible heat of {0.5 * (solid + liquid):g} J/(kg K)",
+            "Correct the table, its melting_range, specific_heat, or leave latent_heat out: the table acts.",
+        )
+    ]
+
+
+# --- two curves ---------------------------------------------------------------------------------------------
+
+
+def _curves(
+    material: PhaseChangeMaterial,
+) -> dict[Location, tuple[Callable[[float], float], float, float]]:
+    """Heating curve, and the cooling curve if there is one, with the range in which each rises [degC]."""
+    if isinstance(material.law, TableLaw | CapacityLaw):
+        return {}
+    cooling = material.cooling
+    if cooling is None:
+        law, centre = material.law, material.centre
+        low, high = law.reach
+        if law.tails:  # beyond thrice the reach nothing is left of them
+            low, high = 3.0 * low, 3.0 * high
+        return {("law",): (lambda at: law.fraction(at - centre), centre + low, centre + high)}
+    return {
+        ("law",): _compact(material.law, material.centre),
+        ("hysteresis",): _compact(*cooling),
+    }
+
+
+def _compact(law: FractionLaw, centre: float) -> tuple[Callable[[float], float], float, float]:
+    """A curve with its tails cut off and the rest stretched to 0..1, as hysteresis takes it."""
+    low, high = law.reach
+
+    def curve(at: float) -> float:
+        fraction = law.fraction(at - centre)
+        return min(max((fraction - CUT) / (1.0 - 2.0 * CUT), 0.0), 1.0) if law.tails else fraction
+
+    return curve, centre + low, centre + high
+
+
+def crossing_curves(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+    """Find where there is more liquid on heating than on cooling: cycles would make heat useful again."""
+    if material.cooling is None:
+        return []
+    (heating, *_), (cooling, *_) = _curves(material).values()
+    excess, at = max((heating(t) - cooling(t), t) for t in _grid(material))
+    if excess <= _EPSILON:
+        return []
+    melted, left = 100.0 * heating(at), 100.0 * cooling(at)
+    return [
+        fault(
+            ("hysteresis",),
+            f"{melted:.3g} % liquid on heating and {left:.3g} % on cooling at {at:.2f} degC",
+            "never more liquid on heating than on cooling",
+            "Exchange the two curves, lower freezing_temperature, or narrow the wider curve.",
+        )
+    ]
+
+
+def unordered_slopes(material: PhaseChangeMaterial) -> tuple[float, float] | None:
+    """Where small cycles of curve_scale would make entropy vanish.
+
+    A cycle between two temperatures melts in proportion to the slopes of the heating curve and freezes in
+    proportion to those of the cooling curve. It melts at higher temperatures than it freezes wherever the
+    ratio of the slopes rises with temperature (the likelihood ratio order of the two curves).
+
+    Returns
+    -------
+    tuple of float or None
+        First and last temperature between which the ratio falls; none where it nowhere does. [degC]
+    """
+    if material.hysteresis is None or material.hysteresis.model != "curve_scale" or material.cooling is None:
+        return None
+    (heating, *_), (cooling, *_) = _curves(material).values()
+    grid = _grid(material)
+    rises = [(b, heating(b) - heating(a), cooling(b) - cooling(a)) for a, b in pairwise(grid)]
+    falling = [
+        at
+        for (_, h0, c0), (at, h1, c1) in pairwise(rises)
+        if h1 * c0 - h0 * c1 < -1e-6 * max(h1 * c0, h0 * c1) and min(c0, c1, h0) > _EPSILON
+    ]
+    return (falling[0], falling[-1]) if falling else None
+
+
+def _grid(material: PhaseChangeMaterial) -> list[float]:
+    ends = [end for _, *both in _curves(material).values() for end in both]
+    low, high = min(ends), max(ends)
+    return [low + (high - low) * i / _POINTS for i in range(_POINTS + 1)]

@@ -1,0 +1,178 @@
+"""What a building rests on: the sources of its numbers, and who the methods are by that a run of it uses."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mascarin.building.convection import SOURCES
+from mascarin.building.glazing import SOURCES as GLASS
+from mascarin.building.glazing import FilledGap, SimpleGlazing, TwoFaces
+from mascarin.building.inactive import faces, has_height, without_effect
+from mascarin.building.leaves import leaves
+from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.number import Number, Remark
+from mascarin.building.phase_change import FractionsLaw, TableLaw
+from mascarin.building.site import ASHRAE_WIND, CLARK, MARTIN
+from mascarin.building.zone import ASHRAE_OPENING, TracedSun
+from mascarin.building.zone_surfaces import closed, zone_faces
+
+if TYPE_CHECKING:
+    from mascarin.building.building import Building
+
+_TIME_STEPS = "Alexander 1977, doi:10.1137/0714068 (time steps: SDIRK2)"
+_SUN = "Reda & Andreas 2004, doi:10.1016/j.solener.2003.12.003 (sun position)"
+_PVLIB = "Anderson et al. 2023, doi:10.21105/joss.05994 (pvlib, which computes it)"
+_EXTRATERRESTRIAL = "Kopp & Lean 2011, doi:10.1029/2010GL045777 (solar constant)"
+_AIR_MASS = "Kasten & Young 1989, doi:10.1364/AO.28.004735 (air mass)"
+_DIFFUSE = {
+    "perez": "Perez et al. 1990, doi:10.1016/0038-092X(90)90055-H (diffuse radiation on a plane)",
+    "hay_davies": "Hay & Davies 1980, Proc. First Canadian Solar Radiation Data Workshop "
+    "(diffuse radiation on a plane)",
+    "isotropic": "Liu & Jordan 1963, doi:10.1016/0038-092X(63)90006-9 (diffuse radiation on a plane)",
+}
+_SKIES = {
+    "martin_berdahl": (MARTIN,),
+    "clark_allen": (CLARK,),
+    "brunt": (
+        "Brunt 1932, doi:10.1002/qj.49705824704 (emissivity of the clear sky)",
+        "Alduchov & Eskridge 1996, doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2 (vapour pressure)",
+    ),
+}
+_SKY_SPLIT = "Walton 1983, NBSIR 83-2655 (split of the sky by height above the horizon)"
+_ENCLOSURE = "Hottel & Sarofim 1967, Radiative Transfer, ch. 3 (exchange between the faces of a zone)"
+_EXACT_VIEW = "Sparrow 1963, doi:10.1115/1.3686058 (view factors of polygons)"
+_AREA_VIEW = (
+    "Carroll 1980, Proc. 2nd Systems Simulation and Economic Analysis Conference, San Diego "
+    "(view factors approximated by areas)"
+)
+_ATMOSPHERE = "ICAO Doc 7488, Manual of the ICAO Standard Atmosphere (density of the air)"
+_PLANT = "Hintermueller, Ito & Kunisch 2002, doi:10.1137/S1052623401383558 (loads of ideal plants)"
+_SHADOWS = "Sutherland & Hodgman 1974, doi:10.1145/360767.360802 (shadows and sun patches as polygons)"
+_CURVE = "Fritsch & Butland 1984, doi:10.1137/0905021 (monotone interpolation of enthalpy tables)"
+
+#: What marks the text beside an assumed number as the name of a work.
+_NAMES_A_WORK = re.compile(
+    r"\b(1[89]|20)\d\d\b|\bdoi\b|[A-Z]{2,}|\b(table|sec\.|ch\.|fig\.|eq\.) ?\d|(data|product) sheet"
+)
+
+
+def sources(building: Building) -> list[str]:
+    """Where the numbers and methods of a building come from, without repetition.
+
+    Only what acts in this building is listed: of its numbers, those on which a result depends; of the
+    methods, those of a run with the default scheme. Remarks on why a number was left at its default are no
+    sources. Beside a number marked as assumed, a text counts where it names a work: by a year, a DOI,
+    capital letters such as ISO, a numbered table or section, a data sheet.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+
+    Returns
+    -------
+    list of str
+        Sources of numbers in the order of the description, then of methods.
+    """
+    return list(dict.fromkeys([*_of_numbers(building), *_of_methods(building)]))
+
+
+def _of_numbers(building: Building) -> Iterator[str]:
+    idle = without_effect(building)
+    if not _sunlit(building):
+        idle |= dict.fromkeys(("site.latitude", "site.longitude"), "no face takes the sun from the climate")
+    for path, number, source in leaves(building):
+        # A direction that "only decides" between cases still acts.
+        acts = path not in idle or idle[path].startswith("it only decides")
+        if acts and _is_source(number, source):
+            yield source
+
+
+def _is_source(number: Number, source: str) -> bool:
+    if not source or isinstance(source, Remark):
+        return False
+    return not number.assumed or _NAMES_A_WORK.search(source) is not None
+
+
+def _of_methods(building: Building) -> Iterator[str]:
+    yield from _of_sun(building)
+    yield from _of_sky(building)
+    yield from _of_zones(building)
+    films = (face.side.convection for face in faces(building))
+    kinds = dict.fromkeys(film.kind for film in films if film is not None)
+    yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
+    if any(face.windy and has_height(face.side) for face in faces(building)):
+        yield ASHRAE_WIND
+    if building.openings:
+        yield ASHRAE_OPENING
+    if any(zone.plants for zone in building.zones.values()):
+        yield _PLANT
+    yield from _of_glazings(building)
+    if building.shades or any(isinstance(zone.sun, TracedSun) for zone in building.zones.values()):
+        yield _SHADOWS
+    if _tabulated(building):
+        yield _CURVE
+    yield _TIME_STEPS
+
+
+def _sunlit(building: Building) -> bool:
+    return any(face.sunlit for face in faces(building))
+
+
+def _of_sun(building: Building) -> Iterator[str]:
+    if not _sunlit(building):
+        return
+    kind = building.site.diffuse
+    yield from (_SUN, _PVLIB, _DIFFUSE[kind])
+    if kind != "isotropic":
+        yield _EXTRATERRESTRIAL
+    if kind == "perez":
+        yield _AIR_MASS
+
+
+def _of_sky(building: Building) -> Iterator[str]:
+    if not any(face.sees_sky for face in faces(building)):
+        return
+    kind = building.site.sky.kind
+    yield from _SKIES.get(kind, ())
+    if kind in _SKIES:
+        yield CLARK  # the cloud factor acts on an emissivity only
+    yield _SKY_SPLIT
+
+
+def _of_zones(building: Building) -> Iterator[str]:
+    if building.zones and building.site.air_density is None:
+        yield _ATMOSPHERE
+    for name, zone in building.zones.items():
+        faces = zone_faces(name, building.surfaces, building.windows)
+        if zone.longwave.kind == "none" or len(faces) < 2:
+            continue
+        yield _ENCLOSURE
+        if zone.view_factors is None:
+            yield _EXACT_VIEW if closed(faces) else _AREA_VIEW
+
+
+def _of_glazings(building: Building) -> Iterator[str]:
+    for name in dict.fromkeys(window.glazing for window in building.windows.values()):
+        glass = building.glazings[name]
+        if isinstance(glass, SimpleGlazing):
+            yield from (GLASS[key] for key in ("simple", "angle"))
+            continue
+        coated = [isinstance(pane.reflectance, TwoFaces) for pane in glass.panes]
+        if glass.angular is None:
+            laws = {"panes": not all(coated), "coated": any(coated)}
+            yield from (GLASS[key] for key, acts in laws.items() if acts)
+        if any(isinstance(gap, FilledGap) for gap in glass.gaps):
+            yield GLASS["filled"]
+
+
+def _tabulated(building: Building) -> bool:
+    built = {surface.construction for surface in building.surfaces.values()}
+    used = {layer.material for name in built for layer in building.constructions[name].layers}
+    materials = (building.materials[name] for name in used)
+    return any(
+        isinstance(one, PhaseChangeMaterial) and isinstance(one.law, TableLaw | FractionsLaw)
+        for one in materials
+    )

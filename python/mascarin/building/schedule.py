@@ -1,0 +1,252 @@
+"""Schedules: how a fraction or a temperature runs through days, weeks and holidays."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from datetime import date
+from typing import Annotated, ClassVar, Final, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import InitErrorDetails
+
+from mascarin.building import quantities as q
+from mascarin.building.number import problem, shown
+from mascarin.building.part import Part, fault, insist
+
+DAYS: Final = ("monday", "tuesday", "wednesday", "thursday", "friday", "saturday", "sunday")
+"""Names of the days of the week, in the order of `datetime.date.weekday`."""
+
+#: Start and end of a piece of a day [min], value at its start and at its end.
+Piece = tuple[float, float, float, float]
+
+_DAY_MINUTES: Final = 1440.0
+
+
+def _clock_time(text: str) -> str:
+    if not re.fullmatch(r"([01]\d|2[0-3]):[0-5]\d", text):
+        raise problem(shown(text), 'a time of day, "00:00" to "23:59"', 'Write it as at: "07:30".')
+    return text
+
+
+def _holiday(text: str) -> str:
+    try:
+        # 2000 is a leap year: "02-29" is a day.
+        date.fromisoformat(text if len(text) > len("12-25") else f"2000-{text}")
+    except ValueError:
+        raise problem(
+            shown(text),
+            'a date: "12-25" in every year, or "2024-05-20"',
+            "Write month and day with two digits.",
+        ) from None
+    return text
+
+
+ClockTime = Annotated[str, AfterValidator(_clock_time)]
+Holiday = Annotated[str, AfterValidator(_holiday)]
+
+
+class FractionPoint(Part):
+    """A fraction from a time of day on."""
+
+    at: ClockTime = Field(description='Time of day, "07:30"')
+    value: q.ScheduledFraction
+    ramp_to: q.ScheduledFraction | None = Field(
+        None, description="Value reached on a straight line at the next point"
+    )
+
+
+class TemperaturePoint(Part):
+    """A temperature from a time of day on."""
+
+    at: ClockTime = Field(description='Time of day, "07:30"')
+    value: q.ScheduledTemperature
+    ramp_to: q.ScheduledTemperature | None = Field(
+        None, description="Value reached on a straight line at the next point"
+    )
+
+
+Point = FractionPoint | TemperaturePoint
+
+
+class _Days(Part):
+    """Profiles by kind of day; the closest name counts: monday before weekdays before all."""
+
+    @model_validator(mode="after")
+    def _sound(self) -> _Days:
+        insist(*self._faults())
+        return self
+
+    def _faults(self) -> Iterator[InitErrorDetails]:
+        for key in type(self).model_fields:
+            points: tuple[Point, ...] | None = getattr(self, key)
+            if points is not None:
+                yield from _in_order(key, points)
+        missing = [day for day in DAYS if self.profile(DAYS.index(day)) is None]
+        if missing:
+            yield fault(
+                (missing[0],),
+                f"no profile for {', '.join(missing)}",
+                "a profile for every day of the week",
+                "Add 'all:', 'weekdays:', 'weekends:' or the days themselves.",
+            )
+
+    def profile(self, weekday: int, *, holiday: bool = False) -> tuple[Point, ...] | None:
+        """Points of a day of the week (0: Monday), or of a holiday."""
+        group = "weekends" if weekday >= 5 else "weekdays"
+        keys = (*(("holidays",) if holiday else ()), DAYS[weekday], group, "all")
+        found = (getattr(self, key) for key in keys)
+        return next((points for points in found if points is not None), None)
+
+
+class FractionDays(_Days):
+    """Profiles of a fraction by kind of day."""
+
+    all: tuple[FractionPoint, ...] | None = None
+    weekdays: tuple[FractionPoint, ...] | None = None
+    weekends: tuple[FractionPoint, ...] | None = None
+    monday: tuple[FractionPoint, ...] | None = None
+    tuesday: tuple[FractionPoint, ...] | None = None
+    wednesday: tuple[FractionPoint, ...] | None = None
+    thursday: tuple[FractionPoint, ...] | None = None
+    friday: tuple[FractionPoint, ...] | None = None
+    saturday: tuple[FractionPoint, ...] | None = None
+    sunday: tuple[FractionPoint, ...] | None = None
+    holidays: tuple[FractionPoint, ...] | None = None
+
+
+class TemperatureDays(_Days):
+    """Profiles of a temperature by kind of day."""
+
+    all: tuple[TemperaturePoint, ...] | None = None
+    weekdays: tuple[TemperaturePoint, ...] | None = None
+    weekends: tuple[TemperaturePoint, ...] | None = None
+    monday: tuple[TemperaturePoint, ...] | None = None
+    tuesday: tuple[TemperaturePoint, ...] | None = None
+    wednesday: tuple[TemperaturePoint, ...] | None = None
+    thursday: tuple[TemperaturePoint, ...] | None = None
+    friday: tuple[TemperaturePoint, ...] | None = None
+    saturday: tuple[TemperaturePoint, ...] | None = None
+    sunday: tuple[TemperaturePoint, ...] | None = None
+    holidays: tuple[TemperaturePoint, ...] | None = None
+
+
+class _Schedule(Part):
+    """What all schedules have in common."""
+
+    WAYS: ClassVar = ("value", "days", "column")
+
+    column: str | None = Field(None, description="Measured column that holds the values")
+    holidays: tuple[Holiday, ...] = Field(
+        (), description='Holidays: "12-25" in every year, or dates such as "2024-05-20"'
+    )
+
+    @model_validator(mode="after")
+    def _sound(self) -> _Schedule:
+        given = [way for way in self.WAYS if getattr(self, way) is not None]
+        if len(given) != 1:
+            raise problem(
+                " and ".join(given) or "a schedule without values",
+                f"exactly one of {', '.join(self.WAYS)}",
+                "A schedule is one value, profiles of days, or a measured column.",
+            )
+        insist(*self._idle_holidays())
+        return self
+
+    def _idle_holidays(self) -> Iterator[InitErrorDetails]:
+        profiles = self.profiles
+        own = profiles is not None and profiles.profile(0, holiday=True) is not profiles.profile(0)
+        if self.holidays and not own:
+            yield fault(
+                ("holidays",),
+                "dates, but no profile for them",
+                "days.holidays as well",
+                "Add it or remove them.",
+            )
+        if own and not self.holidays:
+            yield fault(
+                ("days", "holidays"), "a profile, but no dates", "the dates under 'holidays:'", "List them."
+            )
+
+    @property
+    def profiles(self) -> FractionDays | TemperatureDays | None:
+        """Profiles by kind of day, if that is what the schedule is made of."""
+        days: FractionDays | TemperatureDays | None = getattr(self, "days", None)
+        return days
+
+    def pieces(self, weekday: int, *, holiday: bool = False) -> list[Piece]:
+        """One day as straight pieces; none for a measured column.
+
+        Parameters
+        ----------
+        weekday : int
+            Day of the week, 0 for Monday.
+        holiday : bool
+            Whether it is a holiday.
+
+        Returns
+        -------
+        list of (start, end, value at the start, value at the end)
+            In order, from 0 to 1440. [min, min, unit of the schedule, likewise]
+        """
+        value = getattr(self, "value", None)
+        if value is not None:
+            return [(0.0, _DAY_MINUTES, float(value), float(value))]
+        points = self.profiles.profile(weekday, holiday=holiday) if self.profiles is not None else None
+        if points is None:
+            return []
+        starts = [_minutes(point.at) for point in points]
+        ends = [*starts[1:], _DAY_MINUTES]
+        return [
+            (start, end, float(point.value), float(point.value if point.ramp_to is None else point.ramp_to))
+            for start, end, point in zip(starts, ends, points, strict=True)
+        ]
+
+    def is_holiday(self, day: date) -> bool:
+        """Tell whether a date is one of the holidays."""
+        return f"{day:%m-%d}" in self.holidays or day.isoformat() in self.holidays
+
+
+class FractionSchedule(_Schedule):
+    """A fraction from 0 to 1 over time: its mean over a step acts."""
+
+    kind: Literal["fraction"]
+    value: q.ScheduledFraction | None = None
+    days: FractionDays | None = Field(None, description="Profiles by kind of day")
+
+
+class TemperatureSchedule(_Schedule):
+    """A temperature over time: its value at the end of a step acts."""
+
+    kind: Literal["temperature"]
+    value: q.ScheduledTemperature | None = None
+    days: TemperatureDays | None = Field(None, description="Profiles by kind of day")
+
+
+Schedule = Annotated[FractionSchedule | TemperatureSchedule, Field(discriminator="kind")]
+
+
+def _minutes(at: str) -> float:
+    hours, minutes = at.split(":")
+    return 60.0 * int(hours) + int(minutes)
+
+
+def _in_order(key: str, points: Sequence[Point]) -> Iterator[InitErrorDetails]:
+    if not points:
+        yield fault((key,), "no points", 'at least one, at "00:00"', "List {at: ..., value: ...}.")
+        return
+    if points[0].at != "00:00":
+        yield fault(
+            (key, 0, "at"),
+            f'"{points[0].at}"',
+            'the first point of a day at "00:00"',
+            "Say how the day begins.",
+        )
+    for index in range(1, len(points)):
+        if not points[index - 1].at < points[index].at:
+            yield fault(
+                (key, index, "at"),
+                f'"{points[index].at}" after "{points[index - 1].at}"',
+                "points in the order of the day, each time once",
+                "Sort them.",
+            )

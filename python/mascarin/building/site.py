@@ -1,0 +1,158 @@
+"""Where the building stands: position, wind profile, sky, ground."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+
+from mascarin.building import quantities as q
+from mascarin.building.number import Number, Remark, problem
+from mascarin.building.part import Part, Shorthand
+from mascarin.errors import did_you_mean
+
+ASHRAE_WIND = "ASHRAE Handbook of Fundamentals 2017, ch. 24, table 1"
+MARTIN = "Martin & Berdahl 1984, doi:10.1016/0038-092X(84)90162-2"
+CLARK = "Clark & Allen 1978, Proc. 2nd National Passive Solar Conference, Philadelphia"
+_LI = "Li, Jiang & Coimbra 2017, doi:10.1016/j.solener.2017.01.006"
+
+#: Exponent and thickness [m] of the boundary layer over a kind of terrain.
+TERRAINS = {"open": (0.14, 270.0), "suburb": (0.22, 370.0), "city": (0.33, 460.0), "sea": (0.10, 210.0)}
+
+
+class Wind(Part):
+    """Power-law profile that carries the wind from the mast to a face that has a height."""
+
+    terrain: Literal["open", "suburb", "city", "sea"] = Field(
+        "open", description="Terrain around the building: gives exponent and layer where they are not written"
+    )
+    mast_height: q.MastHeight = Number(10.0, source="WMO-No. 8: standard height of anemometers")
+    mast_exponent: q.WindExponent = Number(0.14, source=f"{ASHRAE_WIND}: open terrain")
+    mast_layer: q.BoundaryLayer = Number(270.0, source=f"{ASHRAE_WIND}: open terrain")
+    exponent: q.WindExponent | None = None
+    layer: q.BoundaryLayer | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_terrain(cls, raw: Any) -> Any:
+        if not isinstance(raw, dict) or raw.get("terrain", "open") not in TERRAINS:
+            return raw
+        terrain = raw.get("terrain", "open")
+        exponent, layer = (
+            Number(value, source=f"{ASHRAE_WIND}: {terrain}", settled=True) for value in TERRAINS[terrain]
+        )
+        return {"exponent": exponent, "layer": layer} | raw
+
+
+class MeasuredSky(Part):
+    """Horizontal infrared of the climate, times a scale."""
+
+    kind: Literal["measured"]
+    scale: q.SkyScale = Number(1.0, source=Remark("the measurement as it is"))
+
+
+class ClarkAllenSky(Part):
+    """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K."""
+
+    kind: Literal["clark_allen"]
+    a: q.SkyCoefficient = Number(0.787, source=CLARK)
+    b: q.SkyCoefficient = Number(0.764, source=CLARK)
+
+
+class MartinBerdahlSky(Part):
+    """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC."""
+
+    kind: Literal["martin_berdahl"]
+    a: q.SkyCoefficient = Number(0.711, source=MARTIN)
+    b: q.SkyCoefficient = Number(0.56, source=MARTIN)
+    c: q.SkyCoefficient = Number(0.73, source=MARTIN)
+
+
+class BruntSky(Part):
+    """Emissivity ``a + b sqrt(pw)`` of the clear sky, vapour pressure in hPa."""
+
+    kind: Literal["brunt"]
+    a: q.SkyCoefficient = Number(0.618, source=_LI)
+    b: q.SkyCoefficient = Number(0.056, source=_LI)
+
+
+class OffsetSky(Part):
+    """Sky temperature a constant depression below the air temperature."""
+
+    kind: Literal["offset"]
+    depression: q.SkyDepression = Number(
+        11.0, source="ISO 13790:2008: between tropics and subpolar zones", assumed=True
+    )
+
+
+Sky = Annotated[
+    MartinBerdahlSky | ClarkAllenSky | BruntSky | OffsetSky | MeasuredSky,
+    Field(discriminator="kind"),
+    Shorthand(word="kind"),
+]
+
+
+class Cloud(Part):
+    """Factor ``1 + c1 N + c2 N^2 + c3 N^3`` on the clear sky's emissivity, cloud cover N in tenths."""
+
+    c1: q.CloudCoefficient = Number(0.0224, source=CLARK)
+    c2: q.CloudCoefficient = Number(-0.0035, source=CLARK)
+    c3: q.CloudCoefficient = Number(0.00028, source=CLARK)
+
+
+def _timezone(text: str) -> str:
+    """Accept an IANA name or a fixed offset such as ``UTC+4`` or ``UTC-03:30``."""
+    if utc_offset_minutes(text) is not None:
+        return text
+    from zoneinfo import ZoneInfo
+
+    try:
+        ZoneInfo(text)
+    except (KeyError, ValueError, OSError):
+        raise problem(
+            f"'{text}'", "an IANA time zone such as Europe/Paris, or UTC+4", _nearest(text)
+        ) from None
+    return text
+
+
+def _nearest(text: str) -> str:
+    from zoneinfo import available_timezones
+
+    return (
+        did_you_mean(text, available_timezones()) or "Local clock time without a zone cannot place the sun."
+    )
+
+
+def utc_offset_minutes(text: str) -> int | None:
+    """Minutes that a fixed zone such as ``UTC+4`` is ahead of UTC; none if the text is no such zone."""
+    match = re.fullmatch(r"UTC(?:([+-])(\d{1,2})(?::(\d{2}))?)?", text)
+    if match is None:
+        return None
+    sign, hours, minutes = match.groups()
+    total = 60 * int(hours or 0) + int(minutes or 0)
+    return None if total > 14 * 60 or int(minutes or 0) > 59 else (-total if sign == "-" else total)
+
+
+class Site(Part):
+    """Where the building stands."""
+
+    latitude: q.Latitude
+    longitude: q.Longitude
+    altitude: q.Altitude
+    air_density: q.AirDensity | None = None
+    timezone: Annotated[str, AfterValidator(_timezone)] = Field(
+        description="Time zone of the building's clock: an IANA name such as Europe/Paris, or UTC+4"
+    )
+    ground_reflectance: q.GroundReflectance = Number(
+        0.2, source="Liu & Jordan 1963, doi:10.1016/0038-092X(63)90006-9"
+    )
+    wind: Wind = Field(default_factory=lambda: Wind(), description="Wind profile")
+    sky: Sky = Field(
+        default_factory=lambda: MartinBerdahlSky(kind="martin_berdahl"),
+        description="Long-wave emission of the sky",
+    )
+    cloud: Cloud = Field(default_factory=Cloud, description="Effect of clouds on the sky's emissivity")
+    diffuse: Literal["perez", "hay_davies", "isotropic"] = Field(
+        "perez", description="Model of diffuse short-wave radiation on a tilted plane"
+    )

@@ -1,0 +1,181 @@
+"""Least squares from several starts, with derivatives by differences made in one batch, or exact ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration.evaluations import Evaluator
+from mascarin.calibration.fit import Minimum
+from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.rules import Rules
+from mascarin.errors import SolverError
+
+Floats = NDArray[np.float64]
+
+#: Rows that are worked on at a time.
+_BLOCK: Final = 256
+
+
+def least_squares(
+    problem: CalibrationProblem, evaluator: Evaluator, rules: Rules, seed: int
+) -> tuple[list[Minimum], str]:
+    """One trust-region search from each start: where they ended, and why the searching ended."""
+    from scipy import optimize
+
+    minima = []
+    skipped = 0
+    for k, z in enumerate(_hypercube(problem, rules.starts, seed)):
+        if k and not np.isfinite(evaluator.residuals(problem.values(z[None]))).all():
+            skipped += 1
+            continue
+        squares = Squares(problem, evaluator, rules)
+        tight = rules.tolerance
+        found = optimize.least_squares(
+            squares.size,
+            z,
+            jac=squares.condensed,
+            bounds=(0.0, 1.0),
+            method="trf",
+            ftol=tight,
+            xtol=tight,
+            gtol=tight,
+            max_nfev=100,
+        )
+        # The method stays a hair's breadth inside its bounds; what it means is the bound.
+        end = np.where(found.x < 1e-6, 0.0, np.where(found.x > 1.0 - 1e-6, 1.0, found.x))
+        x = problem.values(end[None])[0]
+        cost = float(evaluator.costs(x[None])[0])
+        minima.append(Minimum(k, problem.values(z[None])[0], x, cost, squares.asked, str(found.message)))
+    text = f"{len(minima)} start{'s' * (len(minima) != 1)} searched"
+    return minima, text + (f", {skipped} skipped because the model fails there" if skipped else "")
+
+
+def scale_of(problem: CalibrationProblem) -> Floats:
+    """Factors that turn compared residuals (n,) into those of the likelihood. [1/unit]"""
+    weight = np.array([s.weight for s in problem.sensors])
+    return np.asarray(np.where(problem.mask, np.sqrt(weight) / problem.sigma, 0.0)[problem.mask])
+
+
+class Squares:
+    """Weighted residuals and their derivative by the positions z.
+
+    A search is handed no more of the residuals r (n,) than their size, and of their Jacobian J no more than
+    P + 1 rows that have the same J'J and J'r: all that it needs, whatever the number of samples. With a long
+    matrix the libraries below share the work among threads, which wait for one another on a busy machine.
+    """
+
+    def __init__(self, problem: CalibrationProblem, evaluator: Evaluator, rules: Rules) -> None:
+        self._problem = problem
+        self._evaluator = evaluator
+        self._exact = rules.slopes == "exact"
+        self._difference = rules.difference
+        self._scale = scale_of(problem)
+        self.asked = 0
+
+    def size(self, z: Floats) -> Floats:
+        """The norm of the residuals, then P zeros."""
+        return np.concatenate([[np.linalg.norm(self.residuals(z))], np.zeros(z.size)])
+
+    def condensed(self, z: Floats) -> Floats:
+        """The Jacobian (P + 1, P) that goes with `size`: of R in [r J] = Q R all but the first column."""
+        long = np.column_stack([self.weighted(z[None])[0], self.jacobian(z)])
+        rows = max(_BLOCK, long.shape[1])
+        count = -(-len(long) // rows)
+        blocks = np.zeros((count * rows, long.shape[1]))
+        blocks[: len(long)] = long
+        parts = _triangles(blocks.reshape(count, rows, -1))
+        found = _triangles(parts.reshape(-1, long.shape[1]))
+        return np.asarray(np.copysign(1.0, found[0, 0]) * found[:, 1:])
+
+    def residuals(self, z: Floats) -> Floats:
+        """Residuals over their uncertainty, then those of the priors."""
+        # The neighbours are wanted next, unless the step is refused; together they fill a batch.
+        points = z[None] if self._exact else np.concatenate([z[None], self._neighbours(z)])
+        self.asked += points.shape[0]
+        values: Floats = self.weighted(points)[0]
+        return values
+
+    def jacobian(self, z: Floats) -> Floats:
+        """Exact, or forward differences, backward at the upper bound or where the model fails ahead."""
+        if self._exact:
+            # Counted as differences are: a run for each parameter.
+            self.asked += z.size
+            data = exact(self._problem, self._evaluator, z)[self._problem.mask] * self._scale[:, None]
+            return np.concatenate([data, self._evaluator.cost.prior_slopes(z)])
+        points = np.concatenate([z[None], self._neighbours(z)])
+        values = self.weighted(points)
+        for i in np.flatnonzero(~np.isfinite(values[1:]).all(axis=1)):
+            points[1 + i, i] = 2.0 * z[i] - points[1 + i, i]
+            if not 0.0 <= points[1 + i, i] <= 1.0:
+                points[1 + i, i] = z[i]
+            values[1 + i] = self.weighted(points[1 + i : 2 + i])[0]
+            self.asked += 1
+        steps = np.diagonal(points[1:]) - z
+        if not np.isfinite(values).all() or np.any(steps == 0.0):
+            where = self._problem.values(z[None])[0]
+            text = ", ".join(f"{p} = {v:g}" for p, v in zip(self._problem.paths, where, strict=True))
+            msg = f"the model cannot be evaluated in the neighbourhood of {text}: no derivative there"
+            raise SolverError(msg)
+        return np.asarray(((values[1:] - values[0]) / steps[:, None]).T)
+
+    def _neighbours(self, z: Floats) -> Floats:
+        step = np.where(z + self._difference <= 1.0, self._difference, -self._difference)
+        return np.asarray(z + np.diag(step))
+
+    def weighted(self, z: Floats) -> Floats:
+        """Residuals over their uncertainty, then those of the priors, of members (M, P)."""
+        x = self._problem.values(z)
+        residuals = self._evaluator.residuals(x)[:, self._problem.mask] * self._scale
+        priors = self._evaluator.cost.prior_residuals(x)
+        return np.asarray(np.concatenate([residuals, priors], axis=1), dtype=np.float64)
+
+
+def _triangles(rows: Floats) -> Floats:
+    """R of Q R of each matrix (..., m, n), shape (..., n, n)."""
+    return np.asarray(np.linalg.qr(rows, mode="r"), dtype=np.float64)
+
+
+def _hypercube(problem: CalibrationProblem, count: int, seed: int) -> Iterator[Floats]:
+    """The given start, then a Latin hypercube over the ranges."""
+    from scipy.stats import qmc
+
+    yield problem.positions(np.array([p.first for p in problem.parameters]))
+    if count > 1:
+        yield from qmc.LatinHypercube(len(problem.parameters), rng=np.random.default_rng(seed)).random(
+            count - 1
+        )
+
+
+def exact(problem: CalibrationProblem, evaluator: Evaluator, z: Floats) -> Floats:
+    """Exact derivatives of the residuals by the positions z (P,), shape (T, S, P). [unit of the sensor]"""
+    return np.asarray(evaluator.slopes(problem.values(z[None])[0]) * problem.rates(z))
+
+
+def sensed(
+    problem: CalibrationProblem, evaluator: Evaluator, z: Floats, rules: Rules
+) -> tuple[Floats, Floats]:
+    """Residuals (T, S) at a minimum and their derivatives by z (T, S, P), as the rules take slopes."""
+    if rules.slopes == "exact":
+        return evaluator.residuals(problem.values(z[None]))[0], exact(problem, evaluator, z)
+    return derivative(problem, z, rules.difference)
+
+
+def derivative(problem: CalibrationProblem, z: Floats, difference: float) -> tuple[Floats, Floats]:
+    """Residuals (T, S) and their central differences by z (T, S, P), one-sided at a bound, in one batch."""
+    n = z.size
+    ahead = np.minimum(z + difference, 1.0)
+    behind = np.maximum(z - difference, 0.0)
+    points = np.tile(z, (2 * n + 1, 1))
+    for i in range(n):
+        points[1 + i, i] = ahead[i]
+        points[1 + n + i, i] = behind[i]
+    values = problem.residuals(problem.values(points))
+    if not np.isfinite(values).all():
+        msg = "the model cannot be evaluated in the neighbourhood of the minimum: no uncertainty can be given"
+        raise SolverError(msg)
+    jacobian = (values[1 : 1 + n] - values[1 + n :]) / (ahead - behind)[:, None, None]
+    return values[0], np.moveaxis(jacobian, 0, -1)

@@ -1,0 +1,139 @@
+"""Commands that look at a description without running it."""
+
+from __future__ import annotations
+
+import sys
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from mascarin.commands.inputs import AsJson, Flag, Settings, Step, read_building, seconds
+from mascarin.commands.output import print_json, print_table
+from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+
+
+def schema() -> None:
+    """Print the JSON Schema of a building description.
+
+    Give it to an editor, and it completes and checks building files while they are written.
+    """
+    from mascarin.building import json_schema
+
+    print_json(json_schema())
+
+
+def check(
+    building: Path, /, *, step: Step = "15min", settings: Settings = None, as_json: AsJson = False
+) -> None:
+    """Check a building description and say what it holds.
+
+    Zones, surfaces with their U value, constructions with their mesh, then warnings, and everything that
+    is assumed rather than known.
+
+    Parameters
+    ----------
+    building : Path
+        Description of a building.
+    """
+    from mascarin.building import check as findings
+
+    lines = findings(read_building(building, settings), seconds(step))
+    if not as_json:
+        print("\n".join(lines))
+        return
+    sorted_lines: dict[str, list[str]] = {"summary": [], "warning": [], "assumed": []}
+    for line in lines:
+        kind, colon, text = line.partition(": ")
+        if colon and kind in ("warning", "assumed"):
+            sorted_lines[kind].append(text)
+        else:
+            sorted_lines["summary"].append(line)
+    print_json(sorted_lines)
+
+
+def parameters(
+    building: Path,
+    /,
+    *patterns: str,
+    varying: Annotated[bool, Flag] = False,
+    reach: Annotated[bool, Flag] = False,
+    weather: Path | None = None,
+    settings: Settings = None,
+    as_json: AsJson = False,
+) -> None:
+    """List every parameter of a building.
+
+    Each with its path, value, unit and the range in which its true value is believed to lie. A note says
+    why a parameter has no effect or cannot vary. With --reach each one is moved a little in a run of three
+    days, and only those are listed that no output and no flow of heat depends on.
+
+    Parameters
+    ----------
+    building : Path
+        Description of a building.
+    patterns : str
+        Only paths like these, such as "surfaces.roof.*".
+    varying : bool
+        Only parameters that have a range and act on a result.
+    reach : bool
+        Only parameters that nothing depended on when they were moved; needs --weather.
+    weather : Path
+        Weather file for --reach: EPW, or TMY3 as CSV.
+    """
+    from mascarin.building import parameter_table
+
+    described = read_building(building, settings)
+    table = parameter_table(described)
+    if reach:
+        idle = _unreached(described, weather)
+        table = [row | {"reason": idle[row["path"]]} for row in table if row["path"] in idle]
+        print(f"{len(described.parameters())} parameters, {len(table)} without effect", file=sys.stderr)
+    shown = [row for row in table if _matches(row["path"], patterns)]
+    if not shown and not reach:
+        paths = [row["path"] for row in table]
+        hint = did_you_mean(patterns[0], paths) if patterns else ""
+        raise InputError(f"found no parameter like {' '.join(patterns)}; expected a path. {hint}".rstrip())
+    if varying:
+        shown = [row for row in shown if described.parameter(row["path"]).varies]
+    if as_json:
+        print_json(shown)
+        return
+    rows = [
+        (row["path"], row["value"], row["unit"], row["low"], row["high"], row["reason"] or "")
+        for row in shown
+    ]
+    print_table(("path", "value", "unit", "low", "high", "note"), rows)
+
+
+def _unreached(building: Building, weather: Path | None) -> dict[str, str]:
+    """Parameters that nothing depends on, each with the reason."""
+    if weather is None:
+        raise InputError("--reach: found no --weather; expected a weather file to run the building in")
+    from mascarin.commands.run import read_weather
+    from mascarin.simulation.simulation import unreached
+
+    return unreached(building, read_weather(weather))
+
+
+def _matches(path: str, patterns: tuple[str, ...]) -> bool:
+    return not patterns or any(fnmatchcase(path, pattern) for pattern in patterns)
+
+
+def cite(building: Path, /, *, as_json: AsJson = False) -> None:
+    """List the sources that a building rests on.
+
+    Where its numbers come from, and who the correlations it uses are by.
+
+    Parameters
+    ----------
+    building : Path
+        Description of a building.
+    """
+    sources = read_building(building, None).sources()
+    if as_json:
+        print_json(sources)
+    else:
+        print("\n".join(sources))

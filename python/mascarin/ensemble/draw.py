@@ -1,0 +1,59 @@
+"""Members drawn from the ranges of the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.building import Building
+
+
+def latin_hypercube(
+    building: Building, members: int, *, seed: int, paths: Sequence[str] | None = None
+) -> pd.DataFrame:
+    """Draw members evenly over the believable ranges of parameters.
+
+    Parameters
+    ----------
+    building : Building
+        Whose parameters they are.
+    members : int
+        How many.
+    seed : int
+        Seed: the same one gives the same members.
+    paths : sequence of str, optional
+        Parameters to draw; default all that are not structural and whose range is not empty.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each member, a column for each path. [unit of each]
+
+    Raises
+    ------
+    InputError
+        Unknown or structural path, no members.
+
+    References
+    ----------
+    McKay, Beckman & Conover (1979), Technometrics 21(2), doi:10.1080/00401706.1979.10489755.
+    """
+    import pandas as pd
+    from scipy.stats import qmc
+
+    if members < 1:
+        raise InputError(f"members: found {members}; expected 1 or more")
+    chosen = [building.parameter(path) for path in paths] if paths else building.parameters()
+    for parameter in chosen if paths else ():
+        if parameter.structural:
+            raise InputError(f"{parameter.path}: is structural and not drawn; give it in a table of samples")
+    free = [p for p in chosen if not p.structural and p.low < p.high]
+    if not free:
+        raise InputError("no parameter to draw: all ranges are empty")
+    unit = qmc.LatinHypercube(len(free), seed=seed).random(members)
+    return pd.DataFrame({p.path: p.low + (p.high - p.low) * unit[:, k] for k, p in enumerate(free)})

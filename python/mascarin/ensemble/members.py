@@ -1,0 +1,151 @@
+"""The members of an ensemble: what varies between them, checked before anything runs."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.building import Building
+
+    Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Members:
+    """Samples by column.
+
+    Attributes
+    ----------
+    numbers : mapping of str to ndarray, each of shape (M,)
+        Parameters that only change numbers: these travel together in lanes. [unit of each]
+    shapes : mapping of str to list, each of length M
+        What makes another plan: structural parameters, and parts of the description that are replaced whole.
+        Members of the same shape are run together.
+    """
+
+    numbers: Mapping[str, Array]
+    shapes: Mapping[str, list[Any]]
+
+    @property
+    def count(self) -> int:
+        """Number of members."""
+        columns: list[Any] = [*self.numbers.values(), *self.shapes.values()]
+        return len(columns[0])
+
+    @property
+    def paths(self) -> list[str]:
+        """Paths of all columns."""
+        return [*self.numbers, *self.shapes]
+
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each numeric column: the mesh is chosen for the worst end."""
+        return {path: (float(v.min()), float(v.max())) for path, v in self.numbers.items()}
+
+    def part(self, first: int, last: int) -> Members:
+        """Members from `first` to before `last`."""
+        return Members(
+            {path: values[first:last] for path, values in self.numbers.items()},
+            {path: values[first:last] for path, values in self.shapes.items()},
+        )
+
+    def groups(self) -> list[tuple[dict[str, Any], list[int]]]:
+        """Members by shape: what is replaced, and the places of those that share it."""
+        found: dict[str, tuple[dict[str, Any], list[int]]] = {}
+        for member in range(self.count):
+            shape = {path: values[member] for path, values in self.shapes.items()}
+            found.setdefault(json.dumps(shape, sort_keys=True), (shape, []))[1].append(member)
+        return list(found.values())
+
+    def digest(self) -> str:
+        """Hash of all samples."""
+        whole = hashlib.sha256()
+        for path, values in self.numbers.items():
+            whole.update(path.encode())
+            whole.update(np.ascontiguousarray(values).tobytes())
+        whole.update(json.dumps(dict(self.shapes), sort_keys=True).encode())
+        return whole.hexdigest()
+
+
+def members(building: Building, samples: Mapping[str, Any] | pd.DataFrame) -> Members:
+    """Read samples by column.
+
+    Parameters
+    ----------
+    building : Building
+        Whose members they are.
+    samples : Mapping or pandas.DataFrame
+        Path -> values, one for each member. Values of a structural parameter may be numbers or whatever the
+        description takes there; a path of a whole part takes what the YAML file would hold.
+        [unit of each]
+
+    Raises
+    ------
+    InputError
+        No column, columns of different lengths, an unknown path, a value that the parameter cannot have.
+    """
+    numbers: dict[str, Array] = {}
+    shapes: dict[str, list[Any]] = {}
+    for key, given in samples.items():
+        path, values = str(key), np.asarray(given)
+        if values.ndim != 1 or not len(values):
+            raise InputError(f"samples: {path} has shape {values.shape}; expected one value for each member")
+        if _is_plain(building, path, values):
+            numbers[building.parameter(path).path] = _numbers(building, path, values)
+        else:
+            # As given: an array of mixed values would make text of the numbers.
+            whole = values.tolist() if values.dtype.kind in "fiub" else list(given)
+            shapes[path] = [_native(building, path, value) for value in whole]
+    _same_length({**numbers, **shapes})
+    found = Members(numbers, shapes)
+    for shape, places in found.groups() if shapes else []:
+        try:
+            building.replace(shape)
+        except InputError as error:
+            raise InputError(f"samples: member {places[0]}: {error}") from None
+    return found
+
+
+def _is_plain(building: Building, path: str, values: npt.NDArray[Any]) -> bool:
+    """Whether a column only changes a number that is no part of the plan."""
+    if values.dtype.kind not in "fiu":
+        return False
+    return not building.parameter(path).structural
+
+
+def _native(building: Building, path: str, value: Any) -> Any:
+    """A whole number stays one where the description holds one: a number of nodes, read from a table."""
+    if isinstance(value, float) and value.is_integer() and not building.parameter(path).value % 1:
+        return int(value)
+    return value
+
+
+def _numbers(building: Building, path: str, values: npt.NDArray[Any]) -> Array:
+    column: Array = values.astype(np.float64)
+    parameter = building.parameter(path)
+    bad = np.flatnonzero(~((column >= parameter.lower) & (column <= parameter.upper)))
+    if bad.size:
+        raise InputError(
+            f"samples: {path} of member {bad[0]} is {column[bad[0]]:g} {parameter.unit}; expected a "
+            f"value from {parameter.lower:g} to {parameter.upper:g}"
+        )
+    return column
+
+
+def _same_length(columns: Mapping[str, Any]) -> None:
+    if not columns:
+        raise InputError("samples: no columns; give values by parameter path")
+    lengths = {path: len(values) for path, values in columns.items()}
+    if len(set(lengths.values())) > 1:
+        raise InputError(f"samples: found {lengths} values; expected the same number for every path")

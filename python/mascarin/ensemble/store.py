@@ -1,0 +1,299 @@
+"""A folder that an ensemble grows in: results in Parquet, and a manifest that says of what.
+
+``manifest.json`` says what is run; ``pieces/`` holds stretches of members as they are finished, each written
+whole or not at all; when none is missing they become ``members.parquet``, one row a member, whose bytes do
+not depend on how often the work was cut off or on how it was cut into stretches.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
+    import xarray as xr
+
+    from mascarin.ensemble.members import Members
+    from mascarin.ensemble.work import Piece
+
+MANIFEST: Final = "manifest.json"
+RESULTS: Final = "members.parquet"
+_PIECE: Final = re.compile(r"(\d+)-(\d+)\.parquet")
+#: Numbers in a row group of the finished file: so much is in memory when it is written and read in part.
+_GROUP: Final = 2**20
+#: What keeps two stores apart; the rest of a manifest describes.
+_SAME: Final = ("mascarin_version", "identity", "samples", "members", "kept")
+
+
+class Store:
+    """Results of an ensemble on disk.
+
+    Parameters
+    ----------
+    path : Path
+        Its folder.
+
+    Attributes
+    ----------
+    path : Path
+        Its folder.
+    manifest : dict
+        Version, hashes of building, climate and options (`identity`) and of the samples, seed, outputs or
+        objectives, units, times, and whether it is complete.
+
+    Raises
+    ------
+    InputError
+        There is no manifest, or it cannot be read.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = Path(path)
+        place = self.path / MANIFEST
+        try:
+            self.manifest: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise InputError(
+                f"{place}: found no readable manifest ({error}); expected the folder of an ensemble, as "
+                "sweep_into() or 'mascarin sweep --out' makes it"
+            ) from None
+
+    @classmethod
+    def begin(cls, path: Path, manifest: Mapping[str, Any]) -> Store:
+        """Start a store, or go on with one of the same ensemble.
+
+        Raises
+        ------
+        InputError
+            The folder holds something else, or another ensemble; or pyarrow is not installed.
+        """
+        _require_parquet()
+        path = Path(path)
+        if (path / MANIFEST).exists():
+            store = cls(path)
+            other = [key for key in _SAME if store.manifest.get(key) != manifest[key]]
+            if other:
+                raise InputError(
+                    f"{path}: found an ensemble that differs in {', '.join(other)}; expected the same one, "
+                    "to go on with it. Choose another folder, or remove this one"
+                )
+            return store
+        if path.exists() and any(path.iterdir()):
+            raise InputError(f"{path}: found a folder that is not empty and no ensemble; choose another")
+        (path / "pieces").mkdir(parents=True, exist_ok=True)
+        _write(path / MANIFEST, json.dumps({**manifest, "complete": False}, indent=1) + "\n")
+        return cls(path)
+
+    @property
+    def count(self) -> int:
+        """Members of the ensemble."""
+        return int(self.manifest["members"])
+
+    @property
+    def complete(self) -> bool:
+        """Whether every member has been run."""
+        return bool(self.manifest["complete"])
+
+    @property
+    def done(self) -> int:
+        """Members that have been run."""
+        return self.count - sum(last - first for first, last in self.gaps())
+
+    def gaps(self) -> list[tuple[int, int]]:
+        """Stretches that have not been run: first member and the one behind the last."""
+        if self.complete:
+            return []
+        gaps, at = [], 0
+        for first, last in sorted(self._pieces()):
+            if first > at:
+                gaps.append((at, first))
+            at = max(at, last)
+        return gaps if at >= self.count else [*gaps, (at, self.count)]
+
+    def add(self, piece: Piece, members: Members) -> None:
+        """Keep a stretch: written whole or not at all.
+
+        Parameters
+        ----------
+        piece : Piece
+            Its results.
+        members : Members
+            Its samples.
+        """
+        import pyarrow.parquet as pq
+
+        last = piece.first + len(piece.closure)
+        target = self.path / "pieces" / f"{piece.first:012d}-{last:012d}.parquet"
+        part = target.with_suffix(".part")
+        pq.write_table(self._table(piece, members), part)
+        part.replace(target)
+
+    def finish(self) -> None:
+        """Join the stretches to one file and mark the store as complete."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        if self.complete:
+            return
+        part = self.path / f"{RESULTS}.part"
+        rows = max(_GROUP // self._width(), 1)
+        held: list[pa.Table] = []
+        writer: pq.ParquetWriter | None = None
+        for table in self._ordered():
+            writer = writer or pq.ParquetWriter(part, table.schema)
+            held.append(table)
+            joined = pa.concat_tables(held)
+            whole = len(joined) // rows * rows
+            for at in range(0, whole, rows):
+                writer.write_table(joined.slice(at, rows).combine_chunks(), row_group_size=rows)
+            held = [joined.slice(whole)]
+        if writer is not None:
+            rest = pa.concat_tables(held)
+            if len(rest):
+                writer.write_table(rest.combine_chunks(), row_group_size=rows)
+            writer.close()
+        part.replace(self.path / RESULTS)
+        self.manifest["complete"] = True
+        _write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
+        shutil.rmtree(self.path / "pieces", ignore_errors=True)
+
+    def table(self) -> pd.DataFrame:
+        """Samples, objectives, closure and reasons of failure by member; no series."""
+        import pandas as pd
+        import pyarrow.parquet as pq
+
+        series = {*self.manifest["outputs"]} if not self.manifest["objectives"] else set()
+        found = []
+        for file in self._files():
+            names = [name for name in pq.read_schema(file).names if name not in series]
+            found.append(pq.read_table(file, columns=names).to_pandas())
+        whole: pd.DataFrame = pd.concat(found).drop_duplicates("member")
+        return whole.sort_values("member").set_index("member")
+
+    def dataset(self, first: int = 0, last: int | None = None) -> xr.Dataset:
+        """Members from `first` to before `last`, as `sweep` gives them.
+
+        Raises
+        ------
+        InputError
+            Some of them have not been run yet.
+        """
+        import pandas as pd
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+        import xarray as xr
+
+        until = self.count if last is None else last
+        wanted = [("member", ">=", first), ("member", "<", until)]
+        table = pa.concat_tables([pq.read_table(file, filters=wanted) for file in self._files()])
+        table = table.sort_by("member")
+        members = table.column("member").to_numpy()
+        if not np.array_equal(members, np.arange(first, until)):
+            raise InputError(
+                f"{self.path}: members {first} to {until - 1} are not all there; {self.done} of {self.count} "
+                "have been run. Run the sweep again: it goes on"
+            )
+        dims = ("member",) if self.manifest["objectives"] else ("member", "time")
+        data: dict[str, Any] = {}
+        for name, unit in self.manifest["kept"].items():
+            values = table.column(name).combine_chunks()
+            numbers = values.to_numpy(zero_copy_only=False) if len(dims) == 1 else _matrix(values)
+            data[name] = xr.DataArray(numbers, dims=dims, attrs={"units": unit} if unit else {})
+        for path in self.manifest["paths"]:
+            data[f"sample: {path}"] = ("member", table.column(f"sample: {path}").to_pandas().to_numpy())
+        data["closure"] = ("member", table.column("closure").to_numpy())
+        reasons = zip(members, table.column("failure").to_pylist(), strict=True)
+        coords: dict[str, Any] = {"member": members}
+        if len(dims) > 1:
+            coords["time"] = pd.DatetimeIndex(self.manifest["time"])
+        attributes = {
+            "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
+            "timezone": self.manifest["timezone"],
+        }
+        return xr.Dataset(data, coords=coords, attrs=attributes)
+
+    def _width(self) -> int:
+        """Numbers in a row."""
+        kept = len(self.manifest["kept"])
+        rows = 1 if self.manifest["objectives"] else len(self.manifest["time"])
+        return kept * rows + len(self.manifest["paths"]) + 3
+
+    def _pieces(self) -> list[tuple[int, int]]:
+        names = (_PIECE.fullmatch(file.name) for file in (self.path / "pieces").glob("*.parquet"))
+        return [(int(name[1]), int(name[2])) for name in names if name]
+
+    def _files(self) -> list[Path]:
+        if self.complete:
+            return [self.path / RESULTS]
+        found = sorted((self.path / "pieces").glob("*.parquet"))
+        if not found:
+            raise InputError(f"{self.path}: no member has been run yet")
+        return found
+
+    def _ordered(self) -> Iterator[pa.Table]:
+        """Tables of the stretches in the order of the members, each member once."""
+        import pyarrow.parquet as pq
+
+        at = 0
+        for first, last in sorted(self._pieces()):
+            if last <= at:
+                continue
+            table = pq.read_table(self.path / "pieces" / f"{first:012d}-{last:012d}.parquet")
+            yield table.slice(max(at - first, 0))
+            at = last
+
+    def _table(self, piece: Piece, members: Members) -> pa.Table:
+        import pyarrow as pa
+
+        count = len(piece.closure)
+        numbers = range(piece.first, piece.first + count)
+        columns: dict[str, Any] = {"member": pa.array(numbers, pa.int64())}
+        for path, values in members.numbers.items():
+            columns[f"sample: {path}"] = pa.array(values)
+        for path, shapes in members.shapes.items():
+            columns[f"sample: {path}"] = pa.array([json.dumps(shape, sort_keys=True) for shape in shapes])
+        for k, name in enumerate(self.manifest["kept"]):
+            column = np.ascontiguousarray(piece.kept[..., k]) if piece.kept.size else None
+            columns[name] = self._column(column, count)
+        columns["closure"] = pa.array(piece.closure)
+        columns["failure"] = pa.array([piece.failures.get(member) for member in numbers], pa.string())
+        return pa.table(columns)
+
+    def _column(self, values: Any, count: int) -> Any:
+        """Objectives, or series as lists of a fixed length; no number where all members failed."""
+        import pyarrow as pa
+
+        rows = 1 if self.manifest["objectives"] else len(self.manifest["time"])
+        flat = np.full(count * rows, np.nan) if values is None else values.reshape(-1)
+        column = pa.array(flat)
+        return column if self.manifest["objectives"] else pa.FixedSizeListArray.from_arrays(column, rows)
+
+
+def _matrix(column: Any) -> Any:
+    rows = column.type.list_size
+    return column.flatten().to_numpy(zero_copy_only=False).reshape(-1, rows)
+
+
+def _write(target: Path, text: str) -> None:
+    part = target.with_name(f"{target.name}.part")
+    part.write_text(text, encoding="utf-8")
+    part.replace(target)
+
+
+def _require_parquet() -> None:
+    try:
+        import pyarrow.parquet  # noqa: F401
+    except ImportError:
+        raise InputError(
+            "a store needs pyarrow, which is not installed: pip install 'mascarin[parquet]'"
+        ) from None

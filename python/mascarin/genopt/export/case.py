@@ -1,0 +1,362 @@
+"""A study compiled for evaluations one at a time, each in a process of its own.
+
+A case holds what the engine needs for the identification period, the measured series, and the cost. It is
+kept as one file of plain arrays beside the project, so that an evaluation reads neither the weather nor
+the description again. It is used only as long as every file that it was made from is the same.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+
+from mascarin import __version__, _engine
+from mascarin.calibration.cost import Cost, CostName
+from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
+from mascarin.errors import InputError, SolverError, did_you_mean
+from mascarin.simulation.simulation import _derive
+from mascarin.validation.observation import _instants, _means
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Array = npt.NDArray[np.float64]
+
+_FORMAT: Final = 1
+_PACKAGE: Final = Path(__file__).resolve().parent.parent
+_ARRAYS: Final = ("forcing", "values", "positions", "place", "measured", "mask")
+
+
+@dataclass(frozen=True)
+class Costs:
+    """What one evaluation gives.
+
+    Attributes
+    ----------
+    total : float
+        What is minimised: the sum of the others. [unit of the cost]
+    parts : dict of str to float
+        Cost of each sensor by its name, then that of the priors when there are any. [unit of the cost]
+    kept : tuple of str
+        Parameters that were not given and kept the value of the study.
+    """
+
+    total: float
+    parts: dict[str, float]
+    kept: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Run:
+    """What the engine is asked for.
+
+    Attributes
+    ----------
+    description : str
+        The building as JSON.
+    options : dict
+        Step, scheme, start and probes.
+    recipes : list
+        How each output follows from the records: kind and columns.
+    columns : list of int
+        Output of each sensor. [-]
+    kinds : list of str
+        ``instant`` or ``mean`` for each sensor.
+    reach : float
+        Interval of means. [steps]
+    """
+
+    description: str
+    options: dict[str, Any]
+    recipes: list[tuple[str, tuple[int, ...]]]
+    columns: list[int]
+    kinds: list[str]
+    reach: float
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A compiled study.
+
+    Attributes
+    ----------
+    run : Run
+        What the engine is asked for.
+    forcing : ndarray, shape (steps, stages, channels)
+        Weather and measured boundaries. [unit of each channel]
+    values : ndarray, shape (P,)
+        Nominal parameter vector. [unit of each]
+    positions : ndarray of int, shape (F,)
+        Where the free parameters stand in it. [-]
+    place : ndarray, shape (n,)
+        Where the compared instants lie. [steps]
+    parameters : tuple of FitParameter, length F
+        The free parameters.
+    sensors : tuple of FitSensor
+        The measured series at those instants.
+    cost : str
+        Name of the cost.
+    step : float
+        Time between the instants. [s]
+    inputs : dict
+        What it was made from, see `inputs_of`.
+    """
+
+    run: Run
+    forcing: Array
+    values: Array
+    positions: npt.NDArray[np.int64]
+    place: Array
+    parameters: tuple[FitParameter, ...]
+    sensors: tuple[FitSensor, ...]
+    cost: CostName
+    step: float
+    inputs: dict[str, Any]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the costs in the order in which they are written: the total first."""
+        priors = ["priors"] if any(p.prior is not None for p in self.parameters) else []
+        return ["cost", *(f"cost_{name}" for name in (*(s.name for s in self.sensors), *priors))]
+
+    @cached_property
+    def problem(self) -> CalibrationProblem:
+        """The identification as calibration sees it."""
+        return CalibrationProblem(self.parameters, self.sensors, self._model, step=self.step)
+
+    @cached_property
+    def _plan(self) -> _engine.Plan:
+        with _told():
+            return _engine.Plan(self.run.description)
+
+    @cached_property
+    def _reasons(self) -> list[str]:
+        """Why the members of the last batch failed."""
+        return []
+
+    def _model(self, x: Array) -> Array:
+        vectors = np.tile(self.values, (len(x), 1))
+        vectors[:, self.positions] = x
+        with _told():
+            raw, _, failed = self._plan.ensemble(vectors, self.forcing, self.run.options, None)
+        self._reasons[:] = [reason for _, reason in failed]
+        records = _derive(raw, self.run.recipes)
+        series = [
+            _instants(records[..., c], self.place)
+            if kind == "instant"
+            else _means(records[..., c], self.place, self.run.reach)
+            for c, kind in zip(self.run.columns, self.run.kinds, strict=True)
+        ]
+        return np.stack(series, axis=-1)
+
+    def vector(self, given: Mapping[str, float]) -> tuple[Array, tuple[str, ...]]:
+        """Values of the free parameters, and the paths of those that were not given.
+
+        Raises
+        ------
+        InputError
+            An unknown path, or a value that the parameter cannot have.
+        """
+        known = [p.path for p in self.parameters]
+        for path in given:
+            if path not in known:
+                raise InputError(
+                    f"found: parameter '{path}'; expected one that the study identifies. "
+                    f"{did_you_mean(path, known)} Or add it to identification.parameters of the study."
+                )
+        x = np.empty(len(self.parameters))
+        for k, parameter in enumerate(self.parameters):
+            x[k] = given.get(parameter.path, self.values[self.positions[k]])
+            low, high = parameter.limits
+            if not low <= x[k] <= high:
+                unit = f" {parameter.unit}" if parameter.unit else ""
+                raise InputError(
+                    f"{parameter.path}: found {x[k]:g}, expected {low:g} .. {high:g}{unit}, which is what it "
+                    "can be at all: narrow Min and Max of the command file"
+                )
+        return x, tuple(path for path in known if path not in given)
+
+    def evaluate(self, given: Mapping[str, float]) -> Costs:
+        """Cost of one set of values.
+
+        Parameters
+        ----------
+        given : mapping of str to float
+            Path -> value; those that are missing keep the value of the study. [unit of each]
+
+        Raises
+        ------
+        InputError
+            A value that cannot be used.
+        SolverError
+            The building cannot be simulated with these values.
+        """
+        x, kept = self.vector(given)
+        cost = Cost(self.problem, self.cost)
+        of_sensors = cost.of_sensors(self.problem.residuals(x[None]))
+        total = float(cost.total(x[None], of_sensors)[0])
+        if not np.isfinite(total):
+            at = ", ".join(f"{p.path}={v:g}" for p, v in zip(self.parameters, x, strict=True))
+            reason = self._reasons[0] if self._reasons else "the model gives no number for a sensor."
+            raise SolverError(f"{reason} Parameters: {at}")
+        parts = {s.name: float(c) for s, c in zip(self.sensors, of_sensors[0], strict=True)}
+        if "cost_priors" in self.names:
+            parts["priors"] = 0.5 * float(np.sum(cost.prior_residuals(x[None]) ** 2))
+        return Costs(total, parts, kept)
+
+    # --- the file -----------------------------------------------------------------------------------------
+
+    def save(self, path: Path) -> None:
+        """Write the case; the file appears when it is complete, also beside others that write it."""
+        header = {
+            "format": _FORMAT,
+            "run": asdict(self.run),
+            "parameters": [asdict(p) for p in self.parameters],
+            "sensors": [[s.name, s.uncertainty, s.relative, s.unit, s.weight] for s in self.sensors],
+            "cost": self.cost,
+            "step": self.step,
+            "inputs": self.inputs,
+        }
+        buffer = io.BytesIO()
+        np.savez(
+            buffer,
+            header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8),
+            forcing=self.forcing,
+            values=self.values,
+            positions=self.positions,
+            place=self.place,
+            measured=self.problem.measured,
+            mask=self.problem.mask,
+        )
+        # Of one process alone: several runs at a time may find that there is no case yet.
+        draft = path.with_name(f"{path.name}.{os.getpid()}.part")
+        try:
+            draft.write_bytes(buffer.getvalue())
+            draft.replace(path)
+        finally:
+            draft.unlink(missing_ok=True)
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Engine errors as Mascarin's."""
+    try:
+        yield
+    except _engine.EngineInputError as error:
+        raise InputError(str(error)) from None
+    except _engine.EngineSolverError as error:
+        raise SolverError(str(error)) from None
+
+
+def open_case(path: Path, study: str) -> Case | None:
+    """Read a kept case, None when there is none or when anything it was made from has changed.
+
+    Parameters
+    ----------
+    path : Path
+        File of the case.
+    study : str
+        The study it must belong to: absolute path of its file.
+    """
+    try:
+        # From memory, because numpy leaves the file open when it turns out to be no archive.
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
+            header = json.loads(file["header"].tobytes())
+            inputs = header["inputs"]
+            if header["format"] != _FORMAT or inputs != inputs_of(study, inputs["files"]):
+                return None
+            arrays = {name: file[name] for name in _ARRAYS}
+        return _case(header, arrays)
+    except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+        # Whatever is wrong with it, it can be made again.
+        return None
+
+
+def _case(header: Mapping[str, Any], arrays: Mapping[str, Any]) -> Case:
+    run = header["run"]
+    recipes = [(kind, tuple(columns)) for kind, columns in run["recipes"]]
+    sensors = tuple(
+        FitSensor(
+            name,
+            arrays["measured"][:, s],
+            uncertainty,
+            relative,
+            unit,
+            use=arrays["mask"][:, s],
+            weight=weight,
+        )
+        for s, (name, uncertainty, relative, unit, weight) in enumerate(header["sensors"])
+    )
+    return Case(
+        run=Run(**{**run, "recipes": recipes}),
+        forcing=arrays["forcing"],
+        values=arrays["values"],
+        positions=arrays["positions"],
+        place=arrays["place"],
+        parameters=tuple(_parameter(p) for p in header["parameters"]),
+        sensors=sensors,
+        cost=cast("CostName", header["cost"]),
+        step=header["step"],
+        inputs=header["inputs"],
+    )
+
+
+def _parameter(fields: Mapping[str, Any]) -> FitParameter:
+    limits, prior = tuple(fields["limits"]), fields["prior"]
+    return FitParameter(**{**fields, "limits": limits, "prior": None if prior is None else tuple(prior)})
+
+
+def inputs_of(study: str, files: Sequence[str] | Mapping[str, Any]) -> dict[str, Any]:
+    """What a case depends on.
+
+    Parameters
+    ----------
+    study : str
+        Absolute path of the study file.
+    files : sequence of str
+        Absolute paths of all files that were read.
+
+    Returns
+    -------
+    dict
+        Version and state of the program, the study, where data are looked for, and the hash of each file.
+
+    Raises
+    ------
+    OSError
+        A file is gone.
+    """
+    return {
+        "version": __version__,
+        "program": _program_state(),
+        "study": study,
+        "data": os.environ.get("MASCARIN_DATA", ""),
+        "files": {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in files},
+    }
+
+
+def _program_state() -> str:
+    """Hash of sizes and times of all code: a case outlives no other version, not even one under work."""
+    digest = hashlib.sha256()
+    stack, found = [str(_PACKAGE)], []
+    while stack:
+        with os.scandir(stack.pop()) as entries:
+            for entry in entries:
+                if entry.is_dir(follow_symlinks=False):
+                    stack.append(entry.path)
+                elif entry.name.endswith((".py", ".so", ".pyd")):
+                    state = entry.stat()
+                    found.append(f"{entry.path[len(str(_PACKAGE)) :]} {state.st_size} {state.st_mtime_ns}")
+    digest.update("\n".join(sorted(found)).encode("utf-8", "surrogateescape"))
+    return digest.hexdigest()

@@ -1,0 +1,90 @@
+"""Makes the compiled case of a study."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mascarin.genopt.export.case import Case, Run, inputs_of, open_case
+from mascarin.simulation.simulation import _probes
+from mascarin.study import Study
+from mascarin.study.inputs import find
+from mascarin.weather.table import epoch_seconds
+
+if TYPE_CHECKING:
+    from mascarin.study.description import StudyFile
+
+
+def compiled(study: Path, kept: Path | None = None) -> Case:
+    """The case of a study: the kept one while it is valid, else a new one, which is then kept.
+
+    Parameters
+    ----------
+    study : Path
+        The study file.
+    kept : Path, optional
+        Where the case is kept.
+
+    Raises
+    ------
+    InputError
+        The study cannot be used.
+    """
+    name = str(study.resolve())
+    case = None if kept is None else open_case(kept, name)
+    if case is None:
+        case = compile_study(Study(study))
+        if kept is not None:
+            case.save(kept)
+    return case
+
+
+def compile_study(study: Study) -> Case:
+    """Compile the identification of a study.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+
+    Raises
+    ------
+    InputError
+        A parameter or a sensor that cannot be used.
+    """
+    problem, simulation, observation = study.problem(), study.short(), study.observation
+    probes, recipes = _probes(simulation.outputs)
+    seconds, at = epoch_seconds(simulation.index), epoch_seconds(observation.times)
+    step = seconds[1] - seconds[0]
+    columns = [observation.names.index(sensor.name) for sensor in problem.sensors]
+    run = Run(
+        description=simulation._description.json,
+        options=simulation._options(probes, 0, 1),
+        recipes=recipes,
+        columns=columns,
+        kinds=[observation.kinds[c] for c in columns],
+        reach=float(observation.interval / step),
+    )
+    return Case(
+        run=run,
+        forcing=simulation._forcing,
+        values=simulation.values,
+        positions=np.array([simulation.position(path) for path in problem.paths], dtype=np.int64),
+        place=((at - seconds[0]) / step)[np.flatnonzero(study.during["identification"])],
+        parameters=problem.parameters,
+        sensors=problem.sensors,
+        cost=study.sought.cost,
+        step=observation.interval,
+        inputs=inputs_of(str(study.path.resolve()), _files(study.path, study.file)),
+    )
+
+
+def _files(path: Path, file: StudyFile) -> list[str]:
+    """Every file that a study reads."""
+    climate = file.climate
+    measured = None if climate.measured is None else climate.measured.table
+    names = [file.building, climate.epw, climate.tmy, measured, file.measurements.table]
+    found = [path, *(find(name, path.parent) for name in names if name is not None)]
+    return sorted({str(one.resolve()) for one in found})

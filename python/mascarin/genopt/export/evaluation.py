@@ -1,0 +1,106 @@
+"""One evaluation of a study for an optimisation program: files in, files out."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mascarin import __version__
+from mascarin.errors import InputError, MascarinError
+from mascarin.genopt.export.exchange import COMPILED, FAILURE, read_parameters, read_settings, result_lines
+
+if TYPE_CHECKING:
+    from mascarin.genopt.export.case import Case
+
+
+def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = None) -> list[str]:
+    """Evaluate the parameters of one file and write the costs to another.
+
+    Parameters
+    ----------
+    parameters : Path
+        Parameter file.
+    out : Path
+        File for the costs; one from before is removed first, so that a failure leaves none.
+    log : Path
+        File for what was done, or for what went wrong; always written.
+    study : Path, optional
+        The study, in place of that of the project that the parameter file names.
+
+    Returns
+    -------
+    list of str
+        The lines of the result.
+
+    Raises
+    ------
+    InputError
+        Something given cannot be used.
+    SolverError
+        The building cannot be simulated with these values.
+    """
+    if len({path.absolute() for path in (parameters, out, log)}) < 3:
+        raise InputError(f"'{parameters}', '{out}' and '{log}' must be three different files")
+    try:
+        out.unlink(missing_ok=True)
+        lines, remarks = _evaluated(parameters, study)
+        out.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+        _write_log(log, [*lines, *remarks])
+    except MascarinError as error:
+        _write_log(log, _failure(str(error)))
+        raise
+    except Exception as error:
+        _write_log(log, _failure(f"{type(error).__name__}: {error}"))
+        raise
+    return lines
+
+
+def _evaluated(parameters: Path, study: Path | None) -> tuple[list[str], list[str]]:
+    """Lines of the result, and remarks for the log."""
+    request = read_parameters(parameters)
+    try:
+        costs = _case(request.project, study, parameters).evaluate(request.values)
+    except InputError as error:
+        if str(parameters) in str(error):
+            raise
+        raise InputError(f"{parameters}: {error}") from None
+    remarks = [f"kept the value of the study: {', '.join(costs.kept)}"] if costs.kept else []
+    return result_lines(costs), remarks
+
+
+def _case(project: Path | None, study: Path | None, parameters: Path) -> Case:
+    from mascarin.genopt.export.case import open_case
+
+    if study is None and project is None:
+        raise InputError(
+            f"{parameters}: names no study; add a line 'project = FOLDER' as 'mascarin genopt' does, or "
+            "give --study"
+        )
+    if study is not None or project is None:
+        kept, chosen = None, study
+    else:
+        kept, chosen = project / COMPILED, read_settings(project)
+    if chosen is None:
+        raise InputError(f"{parameters}: names no study")
+    if kept is not None:
+        case = open_case(kept, str(chosen.resolve()))
+        if case is not None:
+            return case
+    # Only here, because it imports everything that reads studies.
+    from mascarin.genopt.export.compiling import compiled
+
+    return compiled(chosen, kept)
+
+
+def _failure(text: str) -> list[str]:
+    """What the log says of a failure; the mark stands on the first line, which optimisation programs show."""
+    first, *others = text.splitlines() or [""]
+    return [f"{FAILURE}: {first}", *others]
+
+
+def _write_log(log: Path, lines: list[str]) -> None:
+    # A log that cannot be written must not hide what was to be written there.
+    with contextlib.suppress(OSError):
+        text = "\n".join([f"mascarin {__version__} cost", *lines])
+        log.write_text(text + "\n", encoding="utf-8", newline="\n")

@@ -1,0 +1,172 @@
+"""The start of a run: as it is asked for, and what it comes to in a building and a climate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from pydantic import ValidationError
+
+from mascarin.building.initial_state import (
+    LIMITS,
+    Ambient,
+    GivenStart,
+    Known,
+    Profile,
+    StartError,
+    Wall,
+    given,
+    located,
+    profile,
+    walls,
+)
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.building import Building
+    from mascarin.weather import Measurements
+
+#: A sensor's first value is looked for this long after the start. [s]
+WITHIN: Final = 3600.0
+_BETWEEN: Final = f"between {LIMITS[0]:g} and {LIMITS[1]:g} degC"
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredStart:
+    """A start from measured temperatures.
+
+    Attributes
+    ----------
+    measurements : Measurements
+        The table; temperatures in degC.
+    sensors : mapping of str to str or sequence of str
+        Output of the building -> column, or columns whose mean is taken. Airs of zones, faces, interfaces,
+        phase-change layers and sensors in walls say where a run starts; other outputs are passed over.
+    """
+
+    measurements: Measurements
+    sensors: Mapping[str, str | Sequence[str]]
+
+    def known(self, building: Building, found: Sequence[Wall], start: pd.Timestamp) -> Known:
+        """The first value of each sensor.
+
+        Raises
+        ------
+        StartError
+            A sensor has no value, or an impossible one, or none of them is in the air of a zone.
+        """
+        zones: dict[str, float] = {}
+        points: dict[str, list[tuple[float, float]]] = {}
+        said = []
+        for name, columns in self.sensors.items():
+            place = located(building.output(name), found, building)
+            if place is None:
+                continue
+            value = self._first(name, [columns] if isinstance(columns, str) else list(columns), start)
+            said.append(f"{name} {value:g}")
+            if place[1] is None:
+                zones[place[0]] = value
+            else:
+                points.setdefault(place[0], []).append((place[1], value))
+        if building.zones and not zones:
+            raise StartError(
+                ("initial",),
+                f"found no sensor in the air of {' or '.join(building.zones)}, expected one at least for a "
+                "measured start: add it, or give temperatures (initial: {zones: {...}})",
+            )
+        return Known(zones, points, None, f"measured from {start:%Y-%m-%d %H:%M}: {', '.join(said)} degC")
+
+    def _first(self, name: str, columns: Sequence[str], start: pd.Timestamp) -> float:
+        """First value within an hour of the start, the mean of the columns that have one. [degC]"""
+        import numpy as np
+        import pandas as pd
+
+        table, step = self.measurements, self.measurements.step_seconds
+        times = pd.date_range(start, periods=1 + int(WITHIN // step), freq=pd.Timedelta(seconds=step))
+        rows = np.stack([table.at(column, times) for column in columns])
+        told = f"{' and '.join(repr(column) for column in columns)} ({name})"
+        for row in rows.T:
+            value = float(row[np.isfinite(row)].mean()) if np.isfinite(row).any() else None
+            if value is None:
+                continue
+            if not LIMITS[0] < value < LIMITS[1]:
+                raise StartError(
+                    ("initial",),
+                    f"found {value:g} in {told} at the start, expected a temperature {_BETWEEN}: correct the "
+                    "column or its unit, or leave that sensor out (in a study use: false)",
+                )
+            return value
+        raise StartError(
+            ("initial",),
+            f"found no value of {told} within an hour from {start:%Y-%m-%d %H:%M} in {table.file} (missing "
+            "or masked), expected one: begin later, leave that sensor out (in a study use: false), or give "
+            "temperatures (initial: {zones: {...}})",
+        )
+
+
+Initial = Literal["repeat"] | float | Mapping[str, Any] | GivenStart | MeasuredStart
+"""What a run starts from, as `Simulation` takes it."""
+
+
+def read(asked: object) -> float | GivenStart | MeasuredStart | None:
+    """What was asked for: one temperature [degC], given or measured ones, or None for a repeated period.
+
+    Raises
+    ------
+    InputError
+        It is none of these.
+    """
+    if isinstance(asked, GivenStart | MeasuredStart):
+        return asked
+    if isinstance(asked, str) and asked == "repeat":
+        return None
+    if isinstance(asked, (int, float)) and not isinstance(asked, bool) and LIMITS[0] < asked < LIMITS[1]:
+        return float(asked)
+    if isinstance(asked, Mapping):
+        from mascarin.building.reading import explained
+
+        plain = dict(asked)
+        try:
+            return GivenStart.model_validate(plain)
+        except ValidationError as error:
+            raise explained(error, plain, "initial") from None
+    raise InputError(
+        f"initial: found {asked!r}, expected 'repeat', a temperature {_BETWEEN}, a mapping of temperatures "
+        "such as {'zones': {'room': 21}}, or a MeasuredStart"
+    )
+
+
+def resolved(
+    asked: GivenStart | MeasuredStart,
+    building: Building,
+    nodes: Mapping[tuple[str, str], int],
+    ambient: Ambient,
+    start: pd.Timestamp,
+) -> Profile:
+    """Temperatures everywhere in a building.
+
+    Parameters
+    ----------
+    asked : GivenStart or MeasuredStart
+        What is known.
+    building : Building
+        The building.
+    nodes : mapping of (str, str) to int
+        Finite volumes by construction and layer.
+    ambient : Ambient
+        What surrounds it.
+    start : pandas.Timestamp
+        Start of the run.
+
+    Raises
+    ------
+    StartError
+        A name that does not exist, a sensor without a value, no temperature of any air.
+    """
+    found = walls(building, nodes)
+    if isinstance(asked, MeasuredStart):
+        return profile(building, found, asked.known(building, found, start), ambient)
+    return profile(building, found, given(asked, found, building), ambient)

@@ -1,0 +1,156 @@
+"""The identification step of a study."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.calibration import CalibrationProblem, Fit, FitParameter, Rules, solve
+from mascarin.calibration.building_problem import fit_parameter, problem_of
+from mascarin.weather.table import seconds_of
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.building import Building
+    from mascarin.simulation.simulation import Simulation
+    from mascarin.study.description import Free, IdentificationPlan, Sensor
+    from mascarin.validation.observation import Observation
+
+
+#: So much work may be lost when a study is killed. [s]
+CHUNK_SECONDS: Final = 1.0
+_MOST: Final = 64
+_PACK: Final = 8
+
+
+def free_parameter(building: Building, path: str, free: Free | None) -> FitParameter:
+    """A parameter with its bounds: the study's, else the building's range.
+
+    Raises
+    ------
+    InputError
+        Unknown path, or bounds outside of what the parameter can be.
+    """
+    if free is None:
+        return fit_parameter(building, path)
+    return fit_parameter(
+        building, path, (free.low, free.high), free.prior, start=free.start, scale=free.scale
+    )
+
+
+def fit_parameters(building: Building, plan: IdentificationPlan) -> list[FitParameter]:
+    """All parameters of a plan.
+
+    Raises
+    ------
+    InputError
+        As for `free_parameter`.
+    """
+    return [free_parameter(building, path, free) for path, free in plan.parameters.items()]
+
+
+def problem(
+    simulation: Simulation,
+    observation: Observation,
+    use: npt.NDArray[np.bool_],
+    sensors: Mapping[str, Sensor],
+    plan: IdentificationPlan,
+) -> CalibrationProblem:
+    """What a plan asks for.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Covers the lead and the identification period.
+    observation : Observation
+        Measured series.
+    use : ndarray of bool, shape (n,)
+        Instants of the identification period.
+    sensors : mapping of str to Sensor
+        Uncertainties, and which take part.
+    plan : IdentificationPlan
+        What to find and how.
+
+    Raises
+    ------
+    InputError
+        A parameter or a sensor that cannot be used.
+    """
+    return problem_of(
+        simulation,
+        observation,
+        use,
+        fit_parameters(simulation.building, plan),
+        {name: sensor for name, sensor in sensors.items() if sensor.use},
+        independent_weight(plan, observation.interval),
+    )
+
+
+def independent_weight(plan: IdentificationPlan, interval: float) -> float:
+    """What one of many samples counts, where samples closer together than some time share one weight.
+
+    Parameters
+    ----------
+    plan : IdentificationPlan
+        Says after which time samples count as independent.
+    interval : float
+        Spacing of the samples. [s]
+    """
+    if plan.independent is None:
+        return 1.0
+    return min(1.0, interval / seconds_of(plan.independent, "identification.independent"))
+
+
+def identify(
+    simulation: Simulation,
+    stated: CalibrationProblem,
+    plan: IdentificationPlan,
+    *,
+    record: Path | None,
+    progress: Callable[[int, float], object] | None = None,
+) -> Fit:
+    """Find the parameters of a plan.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What the problem runs.
+    stated : CalibrationProblem
+        From `problem`.
+    plan : IdentificationPlan
+        How to find them.
+    record : Path, optional
+        File in which every evaluation is kept.
+    progress : callable, optional
+        Called with the number of evaluations and the lowest cost so far.
+    """
+    return solve(
+        stated,
+        method=plan.method,
+        cost=plan.cost,
+        seed=plan.seed,
+        rules=Rules(
+            starts=plan.starts,
+            slopes=plan.slopes,
+            sequences=plan.sequences,
+            agree=plan.agree,
+            evaluations=plan.budget,
+            moves=plan.moves,
+        ),
+        record=record,
+        batch=_batch(simulation),
+        progress=progress,
+    )
+
+
+def _batch(simulation: Simulation) -> int:
+    """How many evaluations to keep at a time; it changes how much work can be lost and no result."""
+    began = time.monotonic()
+    simulation.ensemble(np.tile(simulation.vector({}), (_PACK, 1)))
+    seconds = max(time.monotonic() - began, 1e-6)
+    return int(np.clip(_PACK * CHUNK_SECONDS / seconds, 1, _MOST))

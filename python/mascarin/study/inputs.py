@@ -1,0 +1,232 @@
+"""The inputs of a study: files found, read, and remembered with their hashes."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.weather import Climate, Measurements
+from mascarin.weather.table import read_table
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+    from mascarin.building.site import Site
+    from mascarin.study.description import ClimateSource, MeasuredWeather, StudyFile, Table
+    from mascarin.study.locations import Places
+
+#: A file that the data module knows, by name.
+KNOWN = "data:"
+
+
+def find(name: str, beside: Path) -> Path:
+    """A file beside the study, or a known data set.
+
+    Parameters
+    ----------
+    name : str
+        Relative path, or ``data:NAME``.
+    beside : Path
+        Folder of the study.
+
+    Raises
+    ------
+    InputError
+        There is no such file.
+    """
+    if name.startswith(KNOWN):
+        from mascarin.weather.data import data_file
+
+        return data_file(name.removeprefix(KNOWN))
+    path = beside / name
+    if not path.is_file():
+        raise InputError(
+            f"found no file {path}; expected a file, its path counted from the folder of the study. "
+            + _neighbours(path)
+        )
+    return path
+
+
+def _neighbours(path: Path) -> str:
+    """What a mistyped name may have meant."""
+    from mascarin.errors import did_you_mean
+
+    if not path.parent.is_dir():
+        return f"There is no folder {path.parent} either: correct the path."
+    same = [other.name for other in path.parent.iterdir() if other.suffix == path.suffix]
+    return did_you_mean(path.name, same) or "Correct the path."
+
+
+def open_climate(source: ClimateSource, beside: Path, building: Building, places: Places) -> Climate:
+    """The weather of a study.
+
+    Raises
+    ------
+    InputError
+        A file, column or time zone is missing, or a value cannot be used.
+    """
+    if source.epw is not None:
+        with places.blame("climate", "epw"):
+            return Climate.from_epw(find(source.epw, beside))
+    if source.tmy is not None:
+        with places.blame("climate", "tmy"):
+            return Climate.from_tmy(find(source.tmy, beside))
+    if source.measured is not None:
+        return _measured_climate(source.measured, beside, building.site, places)
+    raise InputError("climate: nothing given; expected one of epw, tmy, measured")
+
+
+def _measured_climate(table: MeasuredWeather, beside: Path, site: Site, places: Places) -> Climate:
+    with places.blame("climate", "measured", "table"):
+        path = find(table.table, beside)
+    with places.blame("climate", "measured", "columns"):
+        columns = {channel: _column(given) for channel, given in table.columns.items()}
+    with places.blame("climate", "measured"):
+        climate = Climate.from_table(
+            path,
+            columns=columns,
+            absent=table.absent,
+            latitude=float(site.latitude),
+            longitude=float(site.longitude),
+            altitude=float(site.altitude),
+            **table.options,
+        )
+    return climate if table.fill_gaps is None else climate.fill_gaps(table.fill_gaps)
+
+
+def require_one_clock(study: StudyFile, places: Places) -> None:
+    """Refuse one table that is read as if it had two clocks.
+
+    Raises
+    ------
+    InputError
+        Climate and measurements name the same table with another time zone or other stamps.
+    """
+    weather, measured = study.climate.measured, study.measurements
+    if weather is None or weather.table != measured.table:
+        return
+    for key in ("timezone", "stamps"):
+        mine, theirs = getattr(weather, key), getattr(measured, key)
+        if mine != theirs:
+            with places.blame("measurements", key):
+                raise InputError(
+                    f"found {theirs}, but the climate reads the same table with {key} {mine} "
+                    f"({places.at('climate', 'measured', key)}); expected one clock for one table: write the "
+                    "same in both"
+                )
+
+
+def _column(given: object) -> str | dict[str, object]:
+    if isinstance(given, str):
+        return given
+    if isinstance(given, dict):
+        return {str(key): value for key, value in given.items()}
+    raise InputError(f"found {given!r}, expected a column's name or a mapping with 'column'")
+
+
+def open_measurements(
+    study: StudyFile, beside: Path, building: Building, places: Places, of_building: Places
+) -> Measurements:
+    """The measured columns that sensors and boundaries need.
+
+    Parameters
+    ----------
+    study : StudyFile
+        Names table and sensors.
+    beside : Path
+        Folder of the study.
+    building : Building
+        Names the columns that drive it.
+    places, of_building : Places
+        Lines of the study and of the building, for errors.
+
+    Raises
+    ------
+    InputError
+        A file, column or time zone is missing, or a value cannot be used.
+    """
+    from mascarin.building.engine_input import measured_columns
+
+    table: Table = study.measurements
+    with places.blame("measurements", "table"):
+        path = find(table.table, beside)
+    driving = measured_columns(building)
+    # What asks for each column, for errors.
+    asks = {name: places.at("measurements", "inspect") for name in table.inspect}
+    for name in driving:
+        line = of_building.find("measured", name) or of_building.find("irradiance", name)
+        asks[name] = f"{line or of_building.path}: measured column"
+    for sensor, entry in study.sensors.items():
+        asks |= dict.fromkeys(entry.columns, places.at("sensors", sensor, "column"))
+    others = () if table.inspect else _other_columns(path, table, asks)
+    try:
+        return Measurements.from_table(path, columns=[*asks, *others], **table.options)
+    except InputError as error:
+        _tell(path, table, asks, places)
+        raise InputError(f"{places.at('measurements', 'mean')}: {error}") from None
+
+
+def _other_columns(path: Path, table: Table, asks: Mapping[str, str]) -> list[str]:
+    """Columns of numbers that nothing asks for: their quality is judged all the same."""
+    options = {key: value for key, value in table.options.items() if key not in ("stamps", "mean")}
+    try:
+        read = read_table(path, **options)
+    except InputError:
+        # What is wrong is said where the columns that are asked for are read.
+        return []
+    others = []
+    for column in map(str, read.frame.columns):
+        with contextlib.suppress(InputError):
+            if column not in asks and np.isfinite(read.numbers(column, column)).any():
+                others.append(column)
+    return others
+
+
+def _tell(path: Path, table: Table, asks: Mapping[str, str], places: Places) -> None:
+    """Say what cannot be read: the table as a whole, else every column, with the entry that asks for it."""
+    from mascarin.study.locations import Faults
+
+    plain, faults = {**table.options, "mean": ()}, Faults()
+    with places.blame("measurements"):
+        Measurements.from_table(path, columns=(), **plain)
+    for column, place in asks.items():
+        with faults.kept():
+            try:
+                Measurements.from_table(path, columns=[column], **plain)
+            except InputError as error:
+                raise InputError(f"{place}: {error}") from None
+    faults.tell(places.path)
+
+
+def filled(read: Measurements, building: Building, longest: str) -> Measurements:
+    """The same with short gaps filled in the columns that drive the building.
+
+    Parameters
+    ----------
+    read : Measurements
+        As they were read.
+    building : Building
+        Names the columns.
+    longest : str
+        Longest gap to fill, such as ``2h``.
+    """
+    import numpy as np
+
+    from mascarin.building.engine_input import measured_columns
+    from mascarin.weather.gaps import fill_linearly
+    from mascarin.weather.table import seconds_of
+
+    limit = seconds_of(longest, "fill_gaps") / read.step_seconds
+    data, notes = read.data.copy(), list(read.provenance)
+    for name in measured_columns(building):
+        values = data[name].to_numpy(dtype=np.float64).copy()
+        count = fill_linearly(values, limit)
+        if count:
+            data[name] = values
+            notes.append(f"{read.file}: {count} missing values of {name} filled linearly on request.")
+    return replace(read, data=data, provenance=tuple(notes))

@@ -1,0 +1,147 @@
+"""Phase-change layers of a building: what is recorded of them, and the law that they follow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.building.material import PhaseChangeMaterial, PhaseDensities, Phases, PhaseSpecificHeats
+from mascarin.building.phase_change import TanhLaw
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.building import Building
+    from mascarin.simulation.results import Results
+
+    Array = npt.NDArray[np.float64]
+
+#: Points of a law's curve.
+_POINTS: Final = 161
+
+
+@dataclass(frozen=True)
+class MeltingLayer:
+    """A phase-change layer of a surface.
+
+    Attributes
+    ----------
+    surface, layer, material : str
+        Their names.
+    liquid_fraction, enthalpy : str
+        Outputs: the mean liquid fraction, and the mean enthalpy. [-], [J/m3]
+    faces : tuple of str
+        Outputs: the temperatures of its two faces, outside and inside. [degC]
+    """
+
+    surface: str
+    layer: str
+    material: str
+    liquid_fraction: str
+    enthalpy: str
+    faces: tuple[str, str]
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """All that is recorded."""
+        return (self.liquid_fraction, self.enthalpy, *self.faces)
+
+    def of(self, building: Building) -> PhaseChangeMaterial:
+        """What it is made of."""
+        material = building.materials[self.material]
+        assert isinstance(material, PhaseChangeMaterial)  # noqa: S101 (melting_layers finds no other)
+        return material
+
+
+def melting_layers(building: Building) -> list[MeltingLayer]:
+    """Every phase-change layer, surface by surface.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    """
+    found = []
+    for surface, entry in building.surfaces.items():
+        layers = building.constructions[entry.construction].layers
+        for k, layer in enumerate(layers):
+            if not isinstance(building.materials[layer.material], PhaseChangeMaterial):
+                continue
+            outer = f"{surface}.interface_{k}_temperature" if k else f"{surface}.outside_temperature"
+            last = k + 1 == len(layers)
+            inner = f"{surface}.inside_temperature" if last else f"{surface}.interface_{k + 1}_temperature"
+            fraction, enthalpy = (
+                f"{surface}.{layer.name}_{what}" for what in ("liquid_fraction", "enthalpy")
+            )
+            found.append(
+                MeltingLayer(surface, str(layer.name), layer.material, fraction, enthalpy, (outer, inner))
+            )
+    return found
+
+
+def _pair(value: Phases | float) -> tuple[float, float]:
+    """A property of the solid and of the liquid."""
+    if isinstance(value, PhaseDensities | PhaseSpecificHeats):
+        return float(value.solid), float(value.liquid)
+    assert isinstance(value, float)  # noqa: S101 (a number is the other form of both)
+    return float(value), float(value)
+
+
+def solid_density(material: PhaseChangeMaterial) -> float:
+    """Density that enthalpies per volume are divided by. [kg/m3]"""
+    return _pair(material.density)[0]
+
+
+def path(results: Results, building: Building, layer: MeltingLayer) -> tuple[Array, Array]:
+    """Where a layer was at every recorded time.
+
+    Parameters
+    ----------
+    results : Results
+        A run that recorded the layer's outputs.
+    building : Building
+        What was run, with the values of the run.
+    layer : MeltingLayer
+        Which layer.
+
+    Returns
+    -------
+    temperature : ndarray, shape (rows,)
+        Mean of its two faces. [degC]
+    enthalpy : ndarray, shape (rows,)
+        Mean over the layer, above its law's zero. [kJ/kg]
+    """
+    names = [output.name for output in results.outputs]
+    faces = [results.records[:, names.index(name)] for name in layer.faces]
+    enthalpy = results.records[:, names.index(layer.enthalpy)] / (1000.0 * solid_density(layer.of(building)))
+    return 0.5 * (faces[0] + faces[1]), enthalpy
+
+
+def law_curve(material: PhaseChangeMaterial, low: float, high: float) -> tuple[Array, Array] | None:
+    """Enthalpy over temperature of the tanh law, zero for the solid at the melting temperature.
+
+    Parameters
+    ----------
+    material : PhaseChangeMaterial
+        With the values of the run.
+    low, high : float
+        Ends of the curve. [degC]
+
+    Returns
+    -------
+    tuple of ndarray or None
+        Temperatures [degC] and enthalpies [kJ/kg], each of shape (161,); None for another law.
+    """
+    law = material.law
+    if not isinstance(law, TanhLaw) or material.latent_heat is None or material.melting_temperature is None:
+        return None
+    heats, densities = _pair(material.specific_heat), _pair(material.density)
+    solid, liquid = (rho * c for rho, c in zip(densities, heats, strict=True))
+    temperature = np.linspace(low, high, _POINTS)
+    above = temperature - float(material.melting_temperature)
+    fraction = 0.5 * (1.0 + np.tanh(above / law.half_width))
+    latent = densities[1] * float(material.latent_heat)
+    enthalpy = solid * above + fraction * (latent + (liquid - solid) * above)
+    return temperature, enthalpy / (1000.0 * solid_density(material))

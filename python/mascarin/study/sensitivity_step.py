@@ -1,0 +1,174 @@
+"""The sensitivity step of a study: runs in chunks of about a second, each kept as soon as it is done."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.sensitivity.building_analysis import checked_range, factors_of, made
+from mascarin.sensitivity.methods import plan as design
+from mascarin.weather.table import seconds_of
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.building import Building
+    from mascarin.progress import Progress
+    from mascarin.sensitivity import Factor, Sensitivity
+    from mascarin.sensitivity.runs import Plan
+    from mascarin.simulation.simulation import Simulation
+    from mascarin.study.description import SensitivityPlan
+    from mascarin.study.locations import Places
+    from mascarin.study.storage import Workspace
+
+    Array = npt.NDArray[np.float64]
+
+#: At most so much work is lost when a study is killed. [s]
+CHUNK_SECONDS: Final = 1.0
+_FIRST_CHUNK: Final = 8
+
+
+def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> None:
+    """Refuse what a plan says about parameters that are none, or cannot be so.
+
+    Raises
+    ------
+    InputError
+        Unknown or structural path, a range the wrong way round or beyond what the parameter can be.
+    """
+    for path, span in plan.ranges.items():
+        with places.blame("sensitivity", "ranges", path):
+            checked_range(building, path, span)
+    for path in plan.distributions:
+        with places.blame("sensitivity", "distributions", path):
+            building.parameter(path)
+    for name, paths in plan.groups.items():
+        with places.blame("sensitivity", "groups", name):
+            for path in paths:
+                building.parameter(path)
+    for path in plan.leave_out:
+        with places.blame("sensitivity", "leave_out"):
+            building.parameter(path)
+    with places.blame("sensitivity"):
+        runs_of(plan, factors(building, plan))
+
+
+def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
+    """All parameters that act and have a range, as the plan says.
+
+    Raises
+    ------
+    InputError
+        As for `mascarin.sensitivity.factors_of`.
+    """
+    return factors_of(
+        building,
+        ranges=plan.ranges,
+        distributions=plan.distributions,
+        groups=plan.groups,
+        leave_out=plan.leave_out,
+    )
+
+
+def runs_of(plan: SensitivityPlan, chosen: list[Factor]) -> Plan:
+    """The runs that a plan asks for.
+
+    Raises
+    ------
+    InputError
+        Numbers or groups that the method cannot use; SALib is not installed.
+    """
+    return design(
+        chosen,
+        plan.method,
+        replicates=plan.replicates,
+        samples=plan.samples,
+        order=plan.order,
+        seed=plan.seed,
+    )
+
+
+def screen(
+    simulation: Simulation,
+    plan: SensitivityPlan,
+    chosen: list[Factor],
+    lead_seconds: float,
+    names: tuple[str, ...],
+    workspace: Workspace,
+    progress: Progress,
+) -> Sensitivity:
+    """Make the runs and analyse them.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Covers the lead and the period that is analysed.
+    plan : SensitivityPlan
+        Method, replicates, seed.
+    chosen : list of Factor
+        What varies.
+    lead_seconds : float
+        Run before the outputs are analysed. [s]
+    names : tuple of str
+        Names of the outputs, in the order of the simulation.
+    workspace : Workspace
+        Keeps finished chunks.
+    progress : Progress
+        Is told how far it is.
+
+    Raises
+    ------
+    SolverError
+        A run failed; the text names its parameters.
+    """
+    runs = runs_of(plan, chosen)
+    collector = runs.collector(names, [output.unit for output in simulation.outputs])
+    done = np.zeros(len(runs), dtype=bool)
+    name = f"sensitivity-{plan.method}"
+    for first, values in workspace.kept(name):
+        collector.add(first, values)
+        done[first : first + len(values)] = True
+    skipped = round(lead_seconds / simulation.step_seconds)
+    every = max(1, round(seconds_of(plan.interval) / simulation.step_seconds))
+    pace = _Pace()
+    for first, samples in _missing(runs, done, pace):
+        began = time.monotonic()
+        records = made(simulation, runs.paths, samples, first, start=skipped, every=every)
+        workspace.keep(name, first, records)
+        collector.add(first, records)
+        done[first : first + len(samples)] = True
+        pace.learn(len(samples), time.monotonic() - began)
+        progress.update(int(done.sum()), len(runs))
+    return collector.result()
+
+
+class _Pace:
+    """How many runs fill a chunk, in whole packs of lanes where they fit; learnt from the last one."""
+
+    def __init__(self) -> None:
+        self.size = _FIRST_CHUNK
+
+    def learn(self, runs: int, seconds: float) -> None:
+        wanted = runs * CHUNK_SECONDS / max(seconds, 1e-3)
+        whole = 8 * round(wanted / 8) if wanted >= 8 else int(wanted)
+        self.size = int(np.clip(whole, 1, 2048))
+
+
+def _missing(runs: Plan, done: npt.NDArray[np.bool_], pace: _Pace) -> Iterator[tuple[int, Array]]:
+    """Runs that have not been made, in consecutive pieces of one replicate."""
+    for replicate in range(runs.replicates):
+        start = replicate * runs.runs
+        samples = runs.samples(replicate)
+        row = 0
+        while row < runs.runs:
+            if done[start + row]:
+                row += 1
+                continue
+            stop = min(row + pace.size, runs.runs)
+            taken = done[start + row : start + stop]
+            stop = row + (int(np.argmax(taken)) if taken.any() else stop - row)
+            yield start + row, samples[row:stop]
+            row = stop

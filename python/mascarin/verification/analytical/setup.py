@@ -1,0 +1,164 @@
+"""The bench that the cases stand on: descriptions as text, boundaries as columns of a table.
+
+Everything goes the way a user's building goes: YAML text, model, climate from a table, simulation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.building import Building
+    from mascarin.simulation.results import Results
+    from mascarin.simulation.simulation import Scheme, Simulation
+    from mascarin.weather import Climate
+
+    Array = npt.NDArray[np.float64]
+
+DAY: Final = 86400.0
+HOUR: Final = 3600.0
+START: Final = "2001-01-01"
+
+SITE: Final = (
+    "site: {latitude: 0, longitude: 0, altitude: 0, timezone: UTC, sky: {kind: offset, depression: 0}}\n"
+)
+"""A site that does nothing: sea level, sky as warm as the air."""
+
+_CHANNELS: Final = (
+    "air_temperature",
+    "dew_point",
+    "cloud_cover",
+    "wind_speed",
+    "wind_direction",
+    "global_horizontal",
+    "direct_normal",
+    "diffuse_horizontal",
+)
+
+
+def times(length: float, every: float) -> Array:
+    """Stamps from 0 to a length, both included, shape (n + 1,). [s]"""
+    return every * np.arange(round(length / every) + 1, dtype=np.float64)
+
+
+def climate(every: float, columns: Mapping[str, Array | float]) -> Climate:
+    """A climate from columns of instants; what is not given is still, dark and 20 degC.
+
+    Parameters
+    ----------
+    every : float
+        Spacing of the stamps. [s]
+    columns : mapping of str to ndarray or float
+        Climate channels by their names; every other name is a measured column. [unit of each]
+
+    Returns
+    -------
+    Climate
+        As `Climate.from_table` gives it.
+    """
+    import pandas as pd
+
+    from mascarin.weather import Climate
+
+    given = {"air_temperature": 20.0, **columns}
+    count = max(len(np.atleast_1d(column)) for column in given.values())
+    index = pd.date_range(START, periods=count, freq=pd.Timedelta(seconds=every), tz="UTC")
+    absent = [name for name in ("dew_point", "wind_speed", "wind_direction") if name not in given]
+    sunny = "direct_normal" in given
+    return Climate.from_table(
+        pd.DataFrame({name: np.broadcast_to(np.asarray(c), count) for name, c in given.items()}, index=index),
+        timezone="UTC",
+        columns={name: name for name in given if name in _CHANNELS},
+        extra=[name for name in given if name not in _CHANNELS],
+        absent=absent if sunny else [*absent, "radiation"],
+        instant=[name for name in given if name in _CHANNELS],
+    )
+
+
+def building(text: str) -> Building:
+    """A building from YAML text, read as a file is; a site that does nothing is added where there is none."""
+    from pathlib import Path
+    from tempfile import TemporaryDirectory
+
+    from mascarin.building import load
+
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "case.yaml"
+        file.write_text(text if "site:" in text else SITE + text, encoding="utf-8")
+        return load(file)
+
+
+def simulation(
+    described: Building,
+    weather: Climate,
+    *,
+    step: float,
+    outputs: Sequence[str],
+    initial: float,
+    scheme: Scheme = "sdirk2",
+    length: float | None = None,
+) -> Simulation:
+    """A simulation from one temperature throughout, over the whole table or its first part. [s, degC]"""
+    import pandas as pd
+
+    from mascarin.simulation.simulation import Simulation
+
+    # The last stamp is the end: the interval behind it is not simulated.
+    end = weather.index[-1] if length is None else weather.index[0] + pd.Timedelta(seconds=length)
+    return Simulation(
+        described, weather, step=step, end=end, outputs=list(outputs), initial=initial, scheme=scheme
+    )
+
+
+def run(
+    text: str,
+    every: float,
+    columns: Mapping[str, Array | float],
+    *,
+    step: float,
+    outputs: Sequence[str],
+    initial: float = 20.0,
+    scheme: Scheme = "sdirk2",
+    length: float | None = None,
+) -> Results:
+    """Describe and simulate; arguments as above."""
+    bench = simulation(
+        building(text),
+        climate(every, columns),
+        step=step,
+        outputs=outputs,
+        initial=initial,
+        scheme=scheme,
+        length=length,
+    )
+    return bench.run()
+
+
+def steady(value: float) -> Array:
+    """Two stamps of one value: a boundary that does not change. [any]"""
+    return np.full(2, value)
+
+
+def harmonic(series: Array, step: float, period: float) -> complex:
+    """Complex amplitude ``a`` of ``Im(a e^{i w t})`` in the last period of a series, drift taken out.
+
+    Parameters
+    ----------
+    series : ndarray, shape (n + 1,)
+        Values from time 0 on.
+    step : float
+        Spacing. [s]
+    period : float
+        Period; a whole number of steps. [s]
+    """
+    count = round(period / step)
+    t = step * np.arange(len(series) - count, len(series))
+    w = 2.0 * np.pi / period
+    basis = np.column_stack([np.ones(count), (t - t[0]) / period, np.sin(w * t), np.cos(w * t)])
+    parts = np.linalg.lstsq(basis, series[-count:], rcond=None)[0]
+    return complex(parts[2], parts[3])

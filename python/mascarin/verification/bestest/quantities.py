@@ -1,0 +1,299 @@
+"""Quantities of Standard 140 from the hours of a year.
+
+An hour is named by the one in which it ends: hour 1 is 00:00 to 01:00, local standard time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.verification.bestest.catalogue import Case
+from mascarin.verification.bestest.reference import Range, ranges
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Array = npt.NDArray[np.float64]
+
+HOURS: Final = 8760
+"""Hours of the year."""
+MONTHS: Final = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+_LENGTHS: Final = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
+_STARTS: Final = tuple(accumulate(_LENGTHS, initial=0))
+COLDEST_BIN: Final = -50
+"""Lowest bin of the histogram, which takes everything below the next. [degC]"""
+HOTTEST_BIN: Final = 98
+"""Highest bin of the histogram. [degC]"""
+ORIENTATIONS: Final = {
+    "horizontal": "roof.incident_solar",
+    "north": "north_wall.incident_solar",
+    "east": "east_wall.incident_solar",
+    "south": "south_wall.incident_solar",
+    "west": "west_wall.incident_solar",
+}
+"""Output with the sun on each plane of case 600. [W/m2]"""
+ONTO_GLASS: Final = "glass.incident_solar"
+"""Series of the sun on the glass that a case is asked about: south, or west. [W/m2]"""
+THROUGH_GLASS: Final = "glass.transmitted_solar"
+"""Series of the sun that this glass lets through, per area of glass. [W/m2]"""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a case beside what the six programs found.
+
+    Attributes
+    ----------
+    case, quantity, unit : str
+        What it is.
+    value : float
+        Ours. [unit]
+    when : str
+        Hour of a peak or an extreme: month, day, hour that ends.
+    range : Range or None
+        Theirs; none for a building of the user's.
+    """
+
+    case: str
+    quantity: str
+    unit: str
+    value: float
+    when: str
+    range: Range | None
+
+    @property
+    def passed(self) -> bool | None:
+        """Whether it lies between the smallest and the largest result of the six programs; none without."""
+        if self.range is None:
+            return None
+        return self.range.low <= self.value <= self.range.high
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain values for JSON."""
+        theirs = self.range
+        return {
+            "case": self.case,
+            "quantity": self.quantity,
+            "unit": self.unit,
+            "value": self.value,
+            "when": self.when,
+            "min": None if theirs is None else theirs.low,
+            "max": None if theirs is None else theirs.high,
+            "expected": None if theirs is None else theirs.mean,
+            "programs": {} if theirs is None else dict(theirs.programs),
+            "passed": self.passed,
+        }
+
+
+@dataclass(frozen=True)
+class Year:
+    """The hourly means of a case.
+
+    Attributes
+    ----------
+    case : Case
+        Which.
+    series : mapping of str to ndarray, shape (8760,)
+        Hourly means by output name. [W, degC, W/m2]
+    closure : float
+        Closure of the energy ledger. [-]
+    """
+
+    case: Case
+    series: Mapping[str, Array]
+    closure: float
+
+    def __post_init__(self) -> None:
+        """Refuse anything but whole years."""
+        for name, values in self.series.items():
+            if values.shape != (HOURS,):
+                raise InputError(
+                    f"case {self.case.name}: found {values.shape} hours of {name}, expected {HOURS}"
+                )
+
+    @property
+    def heating(self) -> Array:
+        """Heating load. [W]"""
+        return self._load("heating")
+
+    @property
+    def cooling(self) -> Array:
+        """Sensible cooling load, positive. [W]"""
+        return self._load("cooling")
+
+    def _load(self, kind: str) -> Array:
+        """A load; zero where the case has no such plant. [W]"""
+        return self.series.get(f"{self.case.zone}.{kind}_load", np.zeros(HOURS))
+
+    @property
+    def temperature(self) -> Array:
+        """Air of the zone that floats, or of the one with the plant. [degC]"""
+        return self.series[f"{self.case.floating or self.case.zone}.air_temperature"]
+
+
+def when(hour: int) -> str:
+    """Name of an hour of the year, counted from 0: month, day, hour that ends.
+
+    >>> when(0), when(8759)
+    ('Jan 1 1', 'Dec 31 24')
+    """
+    day, within = divmod(hour, 24)
+    month = next(index for index in range(12) if day < _STARTS[index + 1])
+    return f"{MONTHS[month]} {day - _STARTS[month] + 1} {within + 1}"
+
+
+def hours_of(month: str, day: int) -> slice:
+    """The 24 hours of a day, counted from 0."""
+    first = 24 * (_STARTS[MONTHS.index(month)] + day - 1)
+    return slice(first, first + 24)
+
+
+def months() -> list[slice]:
+    """The hours of each month, counted from 0."""
+    return [slice(24 * start, 24 * end) for start, end in pairwise(_STARTS)]
+
+
+def bins(temperatures: Array) -> Array:
+    """Hours in each bin of 1 K, from -50 to 98 degC; the lowest takes everything colder.
+
+    Parameters
+    ----------
+    temperatures : ndarray, shape (n,)
+        Hourly means. [degC]
+
+    Returns
+    -------
+    ndarray, shape (149,)
+        Number of hours with ``n <= T < n + 1``.
+    """
+    place = np.clip(np.floor(temperatures), COLDEST_BIN, HOTTEST_BIN).astype(np.int64) - COLDEST_BIN
+    return np.bincount(place, minlength=HOTTEST_BIN - COLDEST_BIN + 1).astype(np.float64)
+
+
+def energy(watts: Array) -> float:
+    """Sum of hourly means. [MWh from W, kWh/m2 x 1e-3 from W/m2]"""
+    return float(watts.sum()) / 1e6
+
+
+def quantities(years: Mapping[str, Year], case: Case) -> list[Quantity]:
+    """Every quantity of a case that the six programs have given.
+
+    Parameters
+    ----------
+    years : mapping of str to Year
+        Years by case; those that the case's quantities refer to must be among them.
+    case : Case
+        Which.
+    """
+    found = {**_loads(years[case.name]), **_floating(years[case.name]), **_sun(years, case)}
+    known = ranges()
+    return [
+        Quantity(case.name, name, known[case.name, name].unit, value, at, known[case.name, name])
+        for name, (value, at) in found.items()
+        if (case.name, name) in known
+    ]
+
+
+def quantities_of(name: str, series: Mapping[str, Array]) -> list[Quantity]:
+    """Loads and temperatures of any building, beside which nobody's stand.
+
+    Parameters
+    ----------
+    name : str
+        What to call it.
+    series : mapping of str to ndarray, shape (8760,)
+        Hourly means of loads and air temperatures, by output name. [W, degC]
+
+    Returns
+    -------
+    list of Quantity
+        Annual loads and peaks, and extremes and mean of the air, each with its zone before its name.
+    """
+    found = []
+    for output, values in series.items():
+        zone, _, kind = output.partition(".")
+        numbers = (
+            _extremes(values) if kind == "air_temperature" else _load(kind.removesuffix("_load"), values)
+        )
+        for quantity, (value, at) in numbers.items():
+            found.append(
+                Quantity(name, f"{zone}.{quantity}", _UNITS[quantity.split("_")[0]], value, at, None)
+            )
+    return found
+
+
+_UNITS: Final = {"annual": "MWh", "peak": "kW", "max": "degC", "min": "degC", "mean": "degC"}
+
+
+def partners(case: Case) -> tuple[str, ...]:
+    """Further cases that the quantities of a case refer to."""
+    return (case.base,) if (case.name, _shading(case)) in ranges() else ()
+
+
+def asked_about_sun(case: Case) -> bool:
+    """Whether the sun through its glass is asked for."""
+    return (case.name, f"transmitted_solar_{facing(case)}") in ranges()
+
+
+def _shading(case: Case) -> str:
+    return f"shading_coefficient_{facing(case)}"
+
+
+def facing(case: Case) -> str:
+    """Where the glass looks that a case is asked about."""
+    return "west" if case.opening == "east_west" else "south"
+
+
+def _loads(year: Year) -> dict[str, tuple[float, str]]:
+    if not year.case.conditioned:
+        return {}
+    return {**_load("heating", year.heating), **_load("cooling", year.cooling)}
+
+
+def _load(kind: str, watts: Array) -> dict[str, tuple[float, str]]:
+    top = int(np.argmax(watts))
+    return {
+        f"annual_{kind}": (energy(watts), ""),
+        # A plant that never runs has no hour of its peak.
+        f"peak_{kind}": (float(watts[top]) / 1e3, when(top) if watts[top] > 0.0 else ""),
+    }
+
+
+def _floating(year: Year) -> dict[str, tuple[float, str]]:
+    if year.case.floating is None:
+        return {}
+    return _extremes(year.temperature)
+
+
+def _extremes(air: Array) -> dict[str, tuple[float, str]]:
+    return {
+        "max_temperature": (float(air.max()), when(int(np.argmax(air)))),
+        "min_temperature": (float(air.min()), when(int(np.argmin(air)))),
+        "mean_temperature": (float(air.mean()), ""),
+    }
+
+
+def _sun(years: Mapping[str, Year], case: Case) -> dict[str, tuple[float, str]]:
+    """Incident and transmitted sun; transmitted is per area of glass."""
+    year = years[case.name]
+    way = facing(case)
+    found = {
+        f"incident_solar_{plane}": (1e3 * energy(year.series[output]), "")
+        for plane, output in ORIENTATIONS.items()
+        if output in year.series
+    }
+    if THROUGH_GLASS not in year.series:
+        return found
+    through = 1e3 * energy(year.series[THROUGH_GLASS])
+    found[f"transmitted_solar_{way}"] = (through, "")
+    found[f"transmissivity_{way}"] = (through / (1e3 * energy(year.series[ONTO_GLASS])), "")
+    if case.base in years and case.shaded:
+        unshaded = 1e3 * energy(years[case.base].series[THROUGH_GLASS])
+        found[_shading(case)] = (1.0 - through / unshaded, "")
+    return found

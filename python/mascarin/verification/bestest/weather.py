@@ -1,0 +1,62 @@
+"""The weather of Standard 140: which file it is, and how to tell it from another."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from mascarin.weather import Climate
+
+FINGERPRINT: Final = "33dade78c566d0930e6b9e92b76bdb279853a01277d0d326ee77ab6df47fcf8a"
+"""SHA-256 of the 8760 hours' numbers. Files that differ in their header alone have the same."""
+WHERE: Final = (
+    "It is 725650TYCST.epw: Denver International Airport, TMY3, station 725650. It comes with the standard's "
+    "accompanying files and with NREL's BESTEST-GSR (github.com/NREL/BESTEST-GSR)"
+)
+"""Where to get the file."""
+_FIRST, _LAST = 6, 23  # dry bulb to opaque sky cover
+_HEADER: Final = 8
+
+
+def read(file: Path | None) -> Climate:
+    """Read the weather, once it is sure that it is the right one.
+
+    Parameters
+    ----------
+    file : Path or None
+        The EPW file.
+
+    Raises
+    ------
+    InputError
+        No file was given, it cannot be read, or it holds other weather.
+    """
+    from mascarin.weather import Climate
+
+    if file is None:
+        raise InputError(f"--weather: not given; expected the standard's weather file. {WHERE}.")
+    if not file.is_file():
+        raise InputError(f"--weather: found no file '{file}'; expected the standard's weather file. {WHERE}.")
+    climate = Climate.from_epw(file, typical=True)
+    found = fingerprint(file)
+    if found != FINGERPRINT:
+        place = climate.site.name if climate.site is not None else "an unknown place"
+        raise InputError(
+            f"--weather: found '{file}', weather of {place} (fingerprint {found[:12]}); expected that of the "
+            f"standard (fingerprint {FINGERPRINT[:12]}), for which alone the programs' results hold. {WHERE}."
+        )
+    return climate
+
+
+def fingerprint(file: Path) -> str:
+    """SHA-256 of the numbers of an EPW file, hour by hour, without header, years and flags."""
+    digest = hashlib.sha256()
+    for line in file.read_text(encoding="latin-1").splitlines()[_HEADER:]:
+        fields = line.split(",")
+        digest.update(",".join(f"{float(field):.6g}" for field in fields[_FIRST : _LAST + 1]).encode())
+        digest.update(b"\n")
+    return digest.hexdigest()

@@ -1,0 +1,114 @@
+"""A climate with all its channels: what follows from the measured ones and the sun."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mascarin.weather import derive
+from mascarin.weather.arrays import Array
+from mascarin.weather.channels import RADIATION, Kind
+from mascarin.weather.climate import Climate
+from mascarin.weather.grid import Grid, frame_of
+from mascarin.weather.profile import node_times, pieces_for, trapezoid_weights
+from mascarin.weather.radiation import Basis, clear_beam, direct_by_closure
+from mascarin.weather.sun import SunPath
+
+
+def complete(climate: Climate, latitude: float, longitude: float) -> Climate:
+    """Derive the missing irradiances and the cloud cover; see `Climate.completed`.
+
+    Parameters
+    ----------
+    climate : Climate
+        As read.
+    latitude, longitude : float
+        Positive north and east [deg].
+    """
+    missing = [name for name in (*RADIATION, "cloud_cover") if name not in climate.data.columns]
+    if not missing:
+        return climate
+    grid = climate.grid
+    kind: Kind = next((climate.kinds[name] for name in RADIATION if name in climate.kinds), "mean")
+    sun = SunPath.over(latitude, longitude, grid.start, grid.end)
+    up, extra, clear = _sun_means(sun, grid, kind)
+    columns = {str(name): climate.data[name].to_numpy(dtype=np.float64) for name in climate.data.columns}
+    notes: list[str] = []
+    basis = _fill_radiation(columns, up, extra, clear, climate.file, notes)
+    if "cloud_cover" not in columns:
+        total = columns["global_horizontal"]
+        columns["cloud_cover"] = (
+            derive.cloud_cover(total, up, grid.interval) if total.any() else np.zeros(grid.count)
+        )
+        notes.append(
+            f"{climate.file}: cloud cover estimated from global irradiance (Kasten & Czeplak 1980 "
+            "with Haurwitz's clear sky, G/G_clear = 1 - 0.75 (N/8)^3.4), interpolated through the night."
+            if total.any()
+            else f"{climate.file}: cloud cover neither measured nor to be estimated; clear sky assumed."
+        )
+    kinds: dict[str, Kind] = dict(climate.kinds)
+    kinds.update(dict.fromkeys(RADIATION, kind))
+    kinds.setdefault("cloud_cover", "instant")
+    closing = dict(climate.closing)
+    for name in missing:
+        if kinds[name] == "instant":
+            closing.setdefault(name, float(columns[name][-1]))
+    derived = replace(climate, data=frame_of(columns, grid), kinds=kinds, closing=closing, _ready={})
+    made = _Derived(**{**vars(derived), "provenance": (*climate.provenance, *notes), "basis": basis})
+    made._ready[(latitude, longitude)] = made
+    return made
+
+
+@dataclass(frozen=True, eq=False)
+class _Derived(Climate):
+    """A climate whose third irradiance was derived: remembers from which two."""
+
+    basis: Basis = "direct+diffuse"
+
+    def radiation_basis(self) -> Basis:
+        return self.basis
+
+
+def _sun_means(sun: SunPath, grid: Grid, kind: str) -> tuple[Array, Array, Array]:
+    """Mean sine of elevation, extraterrestrial and clear beam of each interval, or at its start."""
+    starts = grid.start + grid.interval * np.arange(grid.count)
+    if kind == "instant":
+        up = np.maximum(sun.vector(starts)[:, 2], 0.0)
+        extra = sun.normal_irradiance(starts)
+        return up, extra, extra * clear_beam(up)
+    pieces = pieces_for(grid.interval)
+    weights = trapezoid_weights(pieces)
+    up = np.maximum(sun.vector(node_times(grid.start, grid.interval, grid.count, pieces))[..., 2], 0.0)
+    extra = sun.normal_irradiance(starts + 0.5 * grid.interval)
+    return up @ weights, extra, extra * (clear_beam(up) @ weights)
+
+
+def _fill_radiation(
+    columns: dict[str, Array], up: Array, extra: Array, clear: Array, where: str, notes: list[str]
+) -> Basis:
+    names = {name for name in RADIATION if name in columns}
+    if "global_horizontal" not in names:
+        columns["global_horizontal"] = columns["direct_normal"] * up + columns["diffuse_horizontal"]
+        notes.append(f"{where}: global irradiance from direct and diffuse.")
+        return "direct+diffuse"
+    total = columns["global_horizontal"]
+    if "diffuse_horizontal" not in names and "direct_normal" in names:
+        columns["diffuse_horizontal"] = np.maximum(total - columns["direct_normal"] * up, 0.0)
+        notes.append(f"{where}: diffuse irradiance from global and direct, not below zero.")
+        return "direct+diffuse"
+    if "diffuse_horizontal" not in names:
+        columns["diffuse_horizontal"] = derive.diffuse_erbs(total, up, extra)
+        if total.any():
+            notes.append(
+                f"{where}: diffuse irradiance estimated from global (Erbs et al. 1982, made for hours)."
+            )
+    if "direct_normal" in names:
+        return "all" if len(names) == len(RADIATION) else "direct+diffuse"
+    columns["direct_normal"] = direct_by_closure(total, columns["diffuse_horizontal"], up, clear)
+    if total.any():
+        notes.append(
+            f"{where}: direct normal irradiance from global and diffuse by closure; at most twice "
+            "a clear sky's beam, what exceeds it stays in the diffuse."
+        )
+    return "global+diffuse"

@@ -1,0 +1,120 @@
+"""What is not measured and follows from what is: dew point, diffuse part, cloud cover.
+
+References
+----------
+Alduchov & Eskridge 1996, Journal of Applied Meteorology 35(4), 601-609,
+doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2 (Magnus form over water).
+Erbs, Klein & Duffie 1982, Solar Energy 28(4), 293-302, doi:10.1016/0038-092X(82)90302-4.
+Haurwitz 1945, Journal of Meteorology 2(3), 154-166, doi:10.1175/1520-0469(1945)002<0154:IIRTCA>2.0.CO;2.
+Kasten & Czeplak 1980, Solar Energy 24(2), 177-189, doi:10.1016/0038-092X(80)90391-6.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from mascarin.weather.arrays import Array
+
+MAGNUS_B: Final = 17.625
+"""Alduchov & Eskridge 1996 [-]."""
+MAGNUS_C: Final = 243.04
+"""Alduchov & Eskridge 1996 [degC]."""
+
+_CLOUD_EXPONENT: Final = 3.4
+_CLOUD_LOSS: Final = 0.75
+_CLEAR_GAIN: Final = 1098.0
+_CLEAR_DECAY: Final = -0.057
+_LOWEST_SUN: Final = float(np.sin(np.radians(10.0)))
+
+
+def dew_point(temperature: Array, humidity: Array) -> Array:
+    """Dew point over water from the Magnus form.
+
+    Parameters
+    ----------
+    temperature : ndarray, shape (n,)
+        Air temperature [degC].
+    humidity : ndarray, shape (n,)
+        Relative humidity, taken as at least 1 [%].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Dew point [degC].
+    """
+    share = np.log(np.maximum(humidity, 1.0) / 100.0) + MAGNUS_B * temperature / (MAGNUS_C + temperature)
+    return np.asarray(MAGNUS_C * share / (MAGNUS_B - share))
+
+
+def diffuse_erbs(total: Array, up: Array, extra: Array) -> Array:
+    """Diffuse horizontal irradiance by the correlation of Erbs et al., through pvlib.
+
+    Parameters
+    ----------
+    total : ndarray, shape (n,)
+        Global horizontal irradiance [W/m2].
+    up : ndarray, shape (n,)
+        Sine of the solar elevation, mean over the interval counting night as zero [-].
+    extra : ndarray, shape (n,)
+        Extraterrestrial normal irradiance [W/m2].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Diffuse irradiance, between zero and the global one; all of it where the sun is below 3 deg [W/m2].
+    """
+    from pvlib.irradiance import erbs
+
+    lit = up > np.sin(np.radians(3.0))
+    # pvlib takes the day of the year only to know the extraterrestrial irradiance; scaling the global
+    # irradiance to the solar constant of that day gives the clearness for our own.
+    zenith = np.degrees(np.arccos(np.clip(up, 0.0, 1.0)))
+    day = np.full(len(total), 94.0)
+    from pvlib.irradiance import get_extra_radiation
+
+    scale = float(get_extra_radiation(94.0)) / extra
+    result = erbs(np.maximum(total, 0.0) * scale, zenith, day)
+    diffuse = np.asarray(result["dhi"], dtype=np.float64) / scale
+    return np.where(lit, np.clip(diffuse, 0.0, np.maximum(total, 0.0)), total)
+
+
+def cloud_cover(total: Array, up: Array, interval: float) -> Array:
+    """Cloud cover from global irradiance, Kasten & Czeplak's relation the other way round.
+
+    G / G_clear = 1 - 0.75 (N/8)^3.4, N in oktas, on running means of an hour; with the sun below 10 deg, and
+    at night, linear between the last and the next value. G_clear is Haurwitz's 1098 sin h exp(-0.057 / sin h)
+    W/m2: Kasten and Czeplak's own, from Hamburg, is a quarter too low under a high sun, so that cloud would
+    seem to come and go with the hour.
+
+    Parameters
+    ----------
+    total : ndarray, shape (n,)
+        Global horizontal irradiance, NaN where missing [W/m2].
+    up : ndarray, shape (n,)
+        Sine of the solar elevation, mean over the interval [-].
+    interval : float
+        Length of an interval [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Cloud cover [tenths].
+    """
+    width = max(1, round(3600.0 / interval))
+    high = np.maximum(up, _LOWEST_SUN)
+    clear = np.where(up > _LOWEST_SUN, _CLEAR_GAIN * up * np.exp(_CLEAR_DECAY / high), np.nan)
+    usable = np.isfinite(clear) & np.isfinite(total)
+    if not usable.any():
+        return np.zeros(len(total))
+    ratio = _running(np.where(usable, total, 0.0), width) / np.maximum(
+        _running(np.where(usable, clear, 0.0), width), 1e-9
+    )
+    tenths = 10.0 * (np.clip(1.0 - ratio, 0.0, _CLOUD_LOSS) / _CLOUD_LOSS) ** (1.0 / _CLOUD_EXPONENT)
+    place = np.arange(len(total))
+    return np.interp(place, place[usable], tenths[usable])
+
+
+def _running(values: Array, width: int) -> Array:
+    return np.convolve(values, np.ones(width), mode="same") if width > 1 else values

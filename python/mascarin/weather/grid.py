@@ -1,0 +1,144 @@
+"""A regular grid of intervals: which rows cover a span of time, and how they carry on past the ends."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, tzinfo
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.weather.arrays import Array, Lines
+from mascarin.weather.table import stamps_of
+from mascarin.weather.timezones import zone_name
+
+Rows = Lines
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_MARGIN = 3
+_DAY = 86400.0
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Intervals of equal length.
+
+    Attributes
+    ----------
+    start : float
+        Start of the first interval, seconds since 1970-01-01 UTC [s].
+    interval : float
+        Length of one [s].
+    count : int
+        Number of intervals.
+    zone : datetime.tzinfo
+        Time zone; a fixed offset where the grid is periodic.
+    periodic : bool
+        A year of 365 days that stands for any year.
+    """
+
+    start: float
+    interval: float
+    count: int
+    zone: tzinfo
+    periodic: bool = False
+
+    @property
+    def end(self) -> float:
+        """End of the last interval [s]."""
+        return self.start + self.interval * self.count
+
+    def span(self) -> str:
+        """The range covered, as text."""
+        first, last = stamps_of(np.array([self.start, self.end]), self.zone)
+        return f"{first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M} ({zone_name(self.zone)})"
+
+    def require(self, start: float, end: float, where: str, hint: str = "") -> None:
+        """Refuse a span that the grid does not cover.
+
+        Raises
+        ------
+        InputError
+            The span starts too early or ends too late.
+        """
+        if self.periodic or (start >= self.start - 1e-6 and end <= self.end + 1e-6):
+            return
+        first, last = stamps_of(np.array([start, end]), self.zone)
+        raise InputError(
+            f"{where}: the period {first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M} is outside the data, "
+            f"which cover {self.span()}; choose a period inside{hint}."
+        )
+
+    def rows(self, start: float, end: float) -> tuple[float, Rows]:
+        """Rows whose intervals cover a span, with a margin where there is one.
+
+        Parameters
+        ----------
+        start, end : float
+            Span, seconds since 1970-01-01 UTC [s].
+
+        Returns
+        -------
+        first : float
+            Start of the first interval [s].
+        rows : ndarray, shape (k + 1,)
+            Row of each interval, then that in which the last one ends (`count` past the record's end).
+        """
+        low = int(np.floor((start - self.start) / self.interval + 1e-9)) - _MARGIN
+        high = int(np.ceil((end - self.start) / self.interval - 1e-9)) + _MARGIN
+        if not self.periodic:
+            low, high = max(low, 0), min(high, self.count)
+            return self.start + low * self.interval, np.arange(low, high + 1)
+        steps = np.arange(low, high + 1)
+        return self.start + low * self.interval, self._in_any_year(self.start + steps * self.interval)
+
+    def _in_any_year(self, seconds: Array) -> Rows:
+        """Row of the same local time in the stored year; 29 February is 28 February once more."""
+        offset = self.zone.utcoffset(datetime(2001, 1, 1))
+        local = seconds + (offset.total_seconds() if offset is not None else 0.0)
+        days = np.floor(local / _DAY + 1e-9)
+        date = days.astype(np.int64).astype("datetime64[D]")
+        year = date.astype("datetime64[Y]")
+        number = (date - year.astype("datetime64[D]")).astype(np.int64)
+        leap = ((year + 1).astype("datetime64[D]") - year.astype("datetime64[D]")).astype(np.int64) == 366
+        number = number - (leap & (number >= 59))
+        per_day = round(_DAY / self.interval)
+        return np.asarray(number * per_day + np.round((local - days * _DAY) / self.interval).astype(np.int64))
+
+
+def course(values: Array, closing: float, rows: Rows, kind: str) -> Array:
+    """Values of a window of rows.
+
+    Parameters
+    ----------
+    values : ndarray, shape (count,)
+        One value for each interval: at its start (instant) or its mean.
+    closing : float
+        Instantaneous value at the end of the record; not read for a mean.
+    rows : ndarray, shape (k + 1,)
+        From `Grid.rows`.
+    kind : str
+        `instant` or `mean`.
+
+    Returns
+    -------
+    ndarray, shape (k + 1,) or (k,)
+        Instants at both ends of every interval, or the means.
+    """
+    if kind == "mean":
+        return values[rows[:-1]]
+    return np.append(values, closing)[rows]
+
+
+def frame_of(columns: Mapping[str, Array], grid: Grid) -> pd.DataFrame:
+    """Columns on a grid, labelled by the start of each interval in the grid's zone."""
+    import pandas as pd
+
+    index = stamps_of(grid.start + grid.interval * np.arange(grid.count), grid.zone)
+    frame = pd.DataFrame(dict(columns), index=index)
+    frame.index.name = "time"
+    return frame

@@ -1,0 +1,203 @@
+"""Quantities inside the intervals of their source: shapes that keep every interval's mean.
+
+A `Profile` is linear between evenly spaced nodes inside each source interval. It may jump
+from one interval to the next. Its means over any span follow exactly from the nodes.
+
+A mean is reconstructed as `k(t) shape(t)`: the shape follows the sun (or is constant), and the
+index k is linear between the edges and the middle of the interval. k agrees with its neighbour
+at a shared edge; in the middle it is what the interval's mean requires; where that would
+be negative the shared edges are lowered, where it would be too large the interval's k is drawn
+towards a constant. The means are kept in each of these cases.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mascarin.weather.arrays import Array, Flags
+
+_FINEST = 300.0
+_FLAT_BELOW = 0.2
+_TIME_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A piecewise linear course of a quantity.
+
+    Attributes
+    ----------
+    start : float
+        Start of the first source interval [s].
+    interval : float
+        Length of a source interval [s].
+    nodes : ndarray, shape (intervals, m + 1)
+        Values at evenly spaced nodes of each interval, both ends included.
+    """
+
+    start: float
+    interval: float
+    nodes: Array
+
+    def at(self, time: Array) -> Array:
+        """Value at a time; at a shared edge that of the interval that ends there.
+
+        Parameters
+        ----------
+        time : ndarray, shape (...,)
+            Time, same zero as `start` [s].
+        """
+        count, pieces = self.nodes.shape[0], self.nodes.shape[1] - 1
+        place = (np.asarray(time, dtype=np.float64) - self.start) / self.interval
+        row = np.ceil(place - _TIME_TOLERANCE / self.interval).astype(np.int64) - 1
+        row = np.clip(row, 0, count - 1)
+        inner = np.clip(place - row, 0.0, 1.0) * pieces
+        left = np.minimum(inner.astype(np.int64), pieces - 1)
+        weight = inner - left
+        return np.asarray((1.0 - weight) * self.nodes[row, left] + weight * self.nodes[row, left + 1])
+
+    def means(self, edges: Array) -> Array:
+        """Mean over each span between consecutive edges.
+
+        Parameters
+        ----------
+        edges : ndarray, shape (n + 1,)
+            Increasing times inside the profile, same zero as `start` [s].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Means, exact for the profile.
+        """
+        count, pieces = self.nodes.shape[0], self.nodes.shape[1] - 1
+        width = self.interval / pieces
+        inside = self.start + width * np.arange(count * pieces + 1)
+        inside = inside[(inside > edges[0]) & (inside < edges[-1])]
+        cuts = np.union1d(edges, inside)
+        # On a piece without a node inside, the mean of a linear function is its value in the middle.
+        # The middle is never an edge, so the one-sided choice in `at` does not matter.
+        integral = self.at(0.5 * (cuts[1:] + cuts[:-1])) * np.diff(cuts)
+        first = np.searchsorted(cuts, edges[:-1])
+        return np.asarray(np.add.reduceat(integral, first) / np.diff(edges))
+
+
+def pieces_for(interval: float) -> int:
+    """Number of pieces of one source interval: even, none longer than 5 min.
+
+    Parameters
+    ----------
+    interval : float
+        Length of a source interval [s].
+    """
+    return 2 * max(1, int(np.ceil(interval / (2.0 * _FINEST) - 1e-9)))
+
+
+def node_times(start: float, interval: float, count: int, pieces: int) -> Array:
+    """Times of all nodes.
+
+    Returns
+    -------
+    ndarray, shape (count, pieces + 1)
+        Times, same zero as `start` [s].
+    """
+    return start + interval * (np.arange(count)[:, None] + np.arange(pieces + 1)[None, :] / pieces)
+
+
+def trapezoid_weights(pieces: int) -> Array:
+    """Weights of the nodes in an interval's mean; they sum to one. Shape (pieces + 1,)."""
+    weights = np.full(pieces + 1, 1.0 / pieces)
+    weights[[0, -1]] *= 0.5
+    return weights
+
+
+def index_nodes(means: Array, shape: Array, largest: float | None = None) -> Array:
+    """The index k at the nodes, such that each interval's mean of `k shape` is what is asked for.
+
+    Parameters
+    ----------
+    means : ndarray, shape (n,)
+        Mean of each interval; non-negative where `largest` is given.
+    shape : ndarray, shape (n, m + 1)
+        Non-negative shape at the nodes.
+    largest : float, optional
+        k may not exceed this in the middle of an interval, nor fall below zero, except where the
+        interval's own mean needs more. None: k is free (temperatures) [-].
+
+    Returns
+    -------
+    ndarray, shape (n, m + 1)
+        k; zero in intervals without shape.
+    """
+    left, middle, right = _tents(shape.shape[1] - 1)
+    weights = trapezoid_weights(shape.shape[1] - 1)
+    weighted = shape * weights
+    total = weighted.sum(axis=1)
+    on_left, on_middle, on_right = (weighted @ tent for tent in (left, middle, right))
+    lit = total > 0.0
+    safe = np.where(lit, total, 1.0)
+    constant = np.where(lit, means / safe, 0.0)
+    edges = _shared_edges(constant, lit)
+    if largest is not None:
+        edges = _lowered(edges, means, on_left, on_right)
+    tented = lit & (on_middle > _FLAT_BELOW * total)
+    rest = means - edges[:-1] * on_left - edges[1:] * on_right
+    centre = np.where(tented, rest / np.where(tented, on_middle, 1.0), constant)
+    share = np.where(tented, 1.0, 0.0)
+    if largest is not None:
+        limit = np.maximum(largest, constant)
+        over = tented & (centre > limit)
+        share = np.where(over, (limit - constant) / np.where(over, centre - constant, 1.0), share)
+        centre = np.maximum(centre, 0.0)  # against the last bit where the edges were lowered
+    flat = (1.0 - share) * constant
+    ends = [flat + share * edges[:-1], flat + share * centre, flat + share * edges[1:]]
+    return np.asarray(sum(end[:, None] * tent for end, tent in zip(ends, (left, middle, right), strict=True)))
+
+
+def steady(means: Array, pieces: int, *, positive: bool) -> Array:
+    """Reconstruct means without a shape.
+
+    Parameters
+    ----------
+    means : ndarray, shape (n,)
+        Mean of each interval.
+    pieces : int
+        Pieces of an interval, even.
+    positive : bool
+        Whether the quantity cannot be negative.
+
+    Returns
+    -------
+    ndarray, shape (n, pieces + 1)
+        Values at the nodes.
+    """
+    flat = np.ones((len(means), pieces + 1))
+    if not positive or np.any(means < 0.0):
+        return index_nodes(means, flat)
+    return index_nodes(means, flat, largest=float(np.inf))
+
+
+def _tents(pieces: int) -> tuple[Array, Array, Array]:
+    """Linear functions that are one at the left edge, the middle and the right edge."""
+    x = np.arange(pieces + 1) / pieces
+    left = np.maximum(0.0, 1.0 - 2.0 * x)
+    right = np.maximum(0.0, 2.0 * x - 1.0)
+    return left, 1.0 - left - right, right
+
+
+def _shared_edges(index: Array, lit: Flags) -> Array:
+    """Mean of the two neighbours' index; where one has no shape, the other's."""
+    padded = np.concatenate([[0.0], np.where(lit, index, 0.0), [0.0]])
+    number = np.concatenate([[0.0], lit.astype(np.float64), [0.0]])
+    both = number[1:] + number[:-1]
+    return np.asarray((padded[1:] + padded[:-1]) / np.where(both > 0.0, both, 1.0))
+
+
+def _lowered(edges: Array, means: Array, on_left: Array, on_right: Array) -> Array:
+    """Lower the edges so far that no interval's two edges alone exceed its mean."""
+    taken = edges[:-1] * on_left + edges[1:] * on_right
+    over = taken > means
+    factor = np.where(over, means / np.where(over, taken, 1.0), 1.0)
+    factor = np.concatenate([[1.0], factor, [1.0]])
+    return np.asarray(edges * np.minimum(factor[1:], factor[:-1]))

@@ -1,0 +1,461 @@
+"""Suspicious stretches of measured series: stuck, forward-filled, spiking, missing, out of range.
+
+Nothing is corrected here. What is ordinary is learnt from each channel itself: how often it
+repeats a value, how far it moves in one step, where it rests (night, calm, saturation).
+A stretch is named when it is far from that, so coarse loggers are not blamed for their steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Literal
+
+import numpy as np
+
+from mascarin.weather.arrays import Array, Flags, Lines
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Defect = Literal["stuck", "forward_filled", "spike", "missing", "out_of_range"]
+
+_LONGER: Final = 3.0
+"""A run of equal values is long when it exceeds the channel's ordinary longest run by this factor."""
+_FEWEST: Final = 6
+"""Equal values in a row that one channel must show at least."""
+_FEWEST_TOGETHER: Final = 4
+"""The same for several channels at once."""
+_SUPPORT: Final = 3
+"""So many runs of about a length make that length ordinary."""
+_TURNING: Final = 6.0
+"""A coarse logger at a turning point may exceed its ordinary longest run by this factor."""
+_HOPELESS: Final = 10.0
+"""Beyond this factor no turning point and no quiet spell explains a run."""
+_ALIKE: Final = 0.8
+"""Runs of two channels are one event when they share this part of the rows that either covers."""
+_DAY: Final = 86400.0
+_SPIKE: Final = 5.0
+"""A spike exceeds the channel's 99th percentile of steps by this factor."""
+_SPIKE_RANGE: Final = 0.05
+"""And this part of the channel's range."""
+_SPIKE_WIDTH: Final = 3
+_FAR: Final = 5.0
+"""Without limits: a value so many ranges (5th to 95th percentile) from the median is out of range."""
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A suspicious stretch of one channel.
+
+    Attributes
+    ----------
+    channel : str
+        Column.
+    kind : str
+        `stuck` (one channel repeats a value while it should move), `forward_filled` (several channels repeat
+        theirs over the same rows), `spike`, `missing`, `out_of_range`.
+    start, end : pandas.Timestamp
+        First and last row concerned. Where a value is repeated, `start` is its first repetition.
+    count : int
+        Rows concerned.
+    detail : str
+        What was found, for a reader.
+    """
+
+    channel: str
+    kind: Defect
+    start: pd.Timestamp
+    end: pd.Timestamp
+    count: int
+    detail: str
+
+
+def find(
+    data: pd.DataFrame,
+    kinds: Mapping[str, str] | None = None,
+    limits: Mapping[str, tuple[float, float]] | None = None,
+) -> list[Stretch]:
+    """Find the suspicious stretches of every column.
+
+    Parameters
+    ----------
+    data : pandas.DataFrame
+        Numbers on a regular time index, NaN where missing.
+    kinds : mapping, optional
+        Not needed to judge; accepted so that a climate and measurements are judged alike.
+    limits : mapping of str to (float, float), optional
+        Lowest and highest possible value of a column. Without limits only values that are far outside
+        of what the column does are reported.
+
+    Returns
+    -------
+    list of Stretch
+        In order of channel, then start.
+    """
+    del kinds
+    if len(data) < 2:
+        return []
+    interval = float((data.index[1] - data.index[0]).total_seconds())
+    columns = {str(name): data[name].to_numpy(dtype=np.float64) for name in data.columns}
+    found: dict[str, list[tuple[Defect, int, int, str]]] = {name: [] for name in columns}
+    stuck: dict[str, list[tuple[int, int]]] = {}
+    for name, values in columns.items():
+        found[name] += _missing(values)
+        outside = _out_of_range(values, (limits or {}).get(name))
+        found[name] += outside
+        kept = values.copy()
+        for _, first, last, _ in outside:
+            kept[first:last] = np.nan
+        stuck[name] = _stuck(kept, interval, (limits or {}).get(name, ()))
+        found[name] += _spikes(_unwound(kept), values)
+    for name, stretches in _repeated(columns, stuck).items():
+        found[name] += stretches
+    return [
+        Stretch(name, kind, data.index[first], data.index[last - 1], last - first, detail)
+        for name in columns
+        for kind, first, last, detail in sorted(found[name], key=lambda item: (item[1], item[0]))
+    ]
+
+
+def mask(
+    data: pd.DataFrame, stretches: Sequence[Stretch], kinds: Sequence[str] | None = None
+) -> pd.DataFrame:
+    """Where values would be left out, if one wants to.
+
+    Parameters
+    ----------
+    data : pandas.DataFrame
+        The table that the stretches were found in.
+    stretches : sequence of Stretch
+        From `find`.
+    kinds : sequence of str, optional
+        Kinds to take; default all.
+
+    Returns
+    -------
+    pandas.DataFrame
+        True where a value belongs to a stretch; the shape of `data`.
+    """
+    import pandas as pd
+
+    where = pd.DataFrame(False, index=data.index, columns=data.columns)
+    for stretch in stretches:
+        if kinds is None or stretch.kind in kinds:
+            where.loc[stretch.start : stretch.end, stretch.channel] = True
+    return where
+
+
+def runs(flags: Flags) -> list[tuple[int, int]]:
+    """First row and row past the end of every run of True.
+
+    Parameters
+    ----------
+    flags : ndarray of bool, shape (n,)
+        Where.
+    """
+    padded = np.concatenate([[False], flags, [False]]).astype(np.int8)
+    change = np.flatnonzero(np.diff(padded))
+    return [(int(first), int(last)) for first, last in zip(change[::2], change[1::2], strict=True)]
+
+
+# ---------------------------------------------------------------------- missing and out of range
+
+
+def _missing(values: Array) -> list[tuple[Defect, int, int, str]]:
+    return [
+        ("missing", first, last, f"{last - first} values missing") for first, last in runs(np.isnan(values))
+    ]
+
+
+def _out_of_range(values: Array, limits: tuple[float, float] | None) -> list[tuple[Defect, int, int, str]]:
+    low, high = limits if limits is not None else _usual_range(values)
+    with np.errstate(invalid="ignore"):
+        outside = (values < low) | (values > high)
+    found: list[tuple[Defect, int, int, str]] = []
+    for first, last in runs(outside):
+        part = values[first:last]
+        worst = part[np.argmax(np.abs(part - 0.5 * (low + high)))]
+        said = "possible range" if limits is not None else "range to be expected from the other values"
+        found.append(("out_of_range", first, last, f"{worst:g} is outside the {said}, {low:g} .. {high:g}"))
+    return found
+
+
+def _usual_range(values: Array) -> tuple[float, float]:
+    """Limits far outside of what the column does; none for one that mostly rests (rain)."""
+    there = values[~np.isnan(values)]
+    if len(there) < 20:
+        return -np.inf, np.inf
+    low, middle, high = np.quantile(there, [0.05, 0.5, 0.95])
+    if not high > low or np.mean(there == middle) > 0.4:
+        return -np.inf, np.inf
+    reach = _FAR * (high - low)
+    return float(middle - reach), float(middle + reach)
+
+
+# ---------------------------------------------------------------------- spikes
+
+
+def _spikes(kept: Array, shown: Array) -> list[tuple[Defect, int, int, str]]:
+    """Excursions of at most three rows that come back to where they started.
+
+    What is an excursion is learnt from the values that are possible (`kept`, NaN elsewhere). An excursion may
+    itself be impossible: it is then a spike as well as out of range. Values are told as they are `shown`.
+    """
+    least = _least_spike(kept[~np.isnan(kept)])
+    possible = ~np.isnan(kept)
+    every = np.where(possible, kept, shown)
+    flags = np.zeros(len(kept), dtype=bool)
+    # Without the impossible values, so that a spike beside one is seen; then with them.
+    for values in (kept, every):
+        there = np.flatnonzero(~np.isnan(values))
+        flags[there[_excursions(values[there], possible[there], least)]] = True
+    there = np.flatnonzero(~np.isnan(every))
+    found: list[tuple[Defect, int, int, str]] = []
+    for first, last in runs(flags[there]):
+        row = there[first + int(np.argmax(np.abs(every[there[first:last]] - every[there[first - 1]])))]
+        after = there[min(last, len(there) - 1)]
+        text = f"{shown[row]:g} between {shown[there[first - 1]]:g} and {shown[after]:g}"
+        found.append(("spike", int(there[first]), int(there[last - 1]) + 1, text))
+    return found
+
+
+def _least_spike(series: Array) -> float:
+    """Height from which on an excursion is a spike; infinite where too little is known of the column."""
+    steps = np.abs(np.diff(series))
+    steps = steps[steps > 0.0]
+    if len(series) < 20 or len(steps) < 10:
+        return np.inf
+    low, high = np.quantile(series, [0.01, 0.99])
+    return max(_SPIKE * float(np.quantile(steps, 0.99)), _SPIKE_RANGE * float(high - low))
+
+
+def _excursions(series: Array, possible: Flags, least: float) -> Lines:
+    """Rows of excursions; what comes before and after one must be possible."""
+    taken = np.zeros(len(series), dtype=bool)
+    for width in range(1, min(_SPIKE_WIDTH, len(series) - 2) + 1):
+        before, after = series[: -width - 1], series[width + 1 :]
+        inner = np.stack([series[1 + k : len(series) - width + k] for k in range(width)])
+        above = np.min(inner, axis=0) - np.maximum(before, after) > least
+        below = np.minimum(before, after) - np.max(inner, axis=0) > least
+        back = (np.abs(after - before) < 0.5 * least) & possible[: -width - 1] & possible[width + 1 :]
+        for place in np.flatnonzero((above | below) & back):
+            taken[place + 1 : place + 1 + width] = True
+    return np.flatnonzero(taken)
+
+
+def _unwound(values: Array) -> Array:
+    """A direction in degrees without its jumps at north; any other column as it is."""
+    there = ~np.isnan(values)
+    series = values[there]
+    if (
+        len(series) < 2
+        or series.min() < 0.0
+        or series.max() > 360.0
+        or np.max(np.abs(np.diff(series))) < 270.0
+    ):
+        return values
+    unwound = values.copy()
+    unwound[there] = np.unwrap(series, period=360.0)
+    return unwound
+
+
+# ---------------------------------------------------------------------- repeated values
+
+
+def _runs_of_equal(values: Array) -> tuple[Lines, Lines]:
+    """Start and length of every run of equal values; a missing value equals nothing."""
+    changes = np.concatenate([[True], ~(values[1:] == values[:-1])])
+    start = np.flatnonzero(changes)
+    return start, np.diff(np.concatenate([start, [len(values)]]))
+
+
+def _ordinary_longest(lengths: Lines, least: int = 2) -> float:
+    """Longest run that is ordinary: the least, or reached from it in strides that several runs support."""
+    ordered = np.sort(lengths)
+    longest = float(max(least, np.quantile(ordered, 0.99, method="lower")))
+    while True:
+        within = ordered[(ordered > longest) & (ordered <= _LONGER * longest)]
+        if len(within) < _SUPPORT:
+            return longest
+        longest = float(within[-1])
+
+
+def _stuck(values: Array, interval: float, bounds: Sequence[float]) -> list[tuple[int, int]]:
+    """Runs of equal values that this channel does not show by itself: first and past-the-end row."""
+    there = values[~np.isnan(values)]
+    if len(there) < _FEWEST:
+        return []
+    if np.all(there == there[0]):
+        # Never moves: a whole number is an entry that stands for the channel, another comes from a sensor.
+        return [] if float(there[0]).is_integer() else [(0, len(values))]
+    start, length = _runs_of_equal(values)
+    idle = _idle(values, start, length, interval) | np.isin(values[start], bounds) | np.isnan(values[start])
+    longest = _ordinary_longest(length[~idle])
+    long = ~idle & (length >= _FEWEST) & (length > _LONGER * longest)
+    long &= ~_returning(values[start], length)
+    candidates = [(int(a), int(a + n)) for a, n in zip(start[long], length[long], strict=True)]
+    return [
+        run
+        for run in candidates
+        if run[1] - run[0] > _HOPELESS * longest
+        or (_elsewhere_moves(values, candidates, run) and not _turns(values, run, longest))
+    ]
+
+
+def _idle(values: Array, start: Lines, length: Lines, interval: float) -> Flags:
+    """Runs at zero, of at most a day, of a channel that is never negative: night, calm."""
+    return np.asarray((values[start] == 0.0) & (np.nanmin(values) >= 0.0) & (length * interval <= _DAY))
+
+
+def _returning(value: Array, length: Lines) -> Flags:
+    """Runs at a value to which the channel returns for long: saturation, dry spells."""
+    rests = np.zeros(len(value), dtype=bool)
+    for k in np.flatnonzero(length >= _FEWEST):
+        same = (value == value[k]) & (length * _LONGER >= length[k])
+        if np.count_nonzero(same) > _SUPPORT:
+            rests[k] = True
+    return rests
+
+
+def _elsewhere_moves(values: Array, candidates: list[tuple[int, int]], run: tuple[int, int]) -> bool:
+    """Whether windows as long as the run, or as can be judged, move elsewhere by two steps of the logger."""
+    keep = ~np.isnan(values)
+    for first, last in candidates:
+        keep[first + 1 : last] = False
+    edge = [value for value in (np.nanmin(values), np.nanmax(values)) if np.mean(values == value) > 0.01]
+    for value in edge:
+        keep &= values != value
+    series = values[keep]
+    if len(series) < 2:
+        return False
+    window = min(run[1] - run[0], max(2, len(series) // 20))
+    count = len(series) // window
+    blocks = series[: count * window].reshape(count, window)
+    moves = np.ptp(blocks, axis=1) >= 1.99 * _resolution(values)
+    return bool(np.mean(moves) >= 0.98)
+
+
+def _resolution(values: Array) -> float:
+    """Smallest step that the channel usually makes: the resolution of a coarse logger."""
+    steps = np.abs(np.diff(values))
+    steps = steps[steps > 0.0]
+    return float(np.quantile(steps, 0.05)) if len(steps) else 0.0
+
+
+def _turns(values: Array, run: tuple[int, int], longest: float) -> bool:
+    """Whether a coarse logger may stand at a turning point: entered and left by one step, not too long."""
+    first, last = run
+    if longest <= 2.0 or last - first > _TURNING * longest:
+        return False
+    step = 1.5 * _resolution(values)
+    before = first == 0 or abs(values[first - 1] - values[first]) <= step
+    after = last == len(values) or abs(values[last] - values[first]) <= step
+    return bool(before and after)
+
+
+def _repeated(
+    columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]]
+) -> dict[str, list[tuple[Defect, int, int, str]]]:
+    """Sort runs of repeated values into stuck ones and forward-filled ones."""
+    together = _held_together(columns, stuck)
+    found: dict[str, list[tuple[Defect, int, int, str]]] = {name: [] for name in columns}
+    count = len(next(iter(columns.values())))
+    for name, values in columns.items():
+        blocks = [block for block in together if _held(values, block) and _counts(values, block)]
+        for first, last in blocks:
+            end = ", to the end of the record" if last == count else ""
+            text = f"repeats {values[first]:g} while several other channels repeat theirs{end}"
+            found[name].append(("forward_filled", first, last, text))
+        for first, last in stuck[name]:
+            if any(_alike((first + 1, last), block) for block in blocks):
+                continue
+            end = ", to the end of the record" if last == count else ""
+            text = f"stuck at {values[first]:g} for {last - first} rows{end}"
+            found[name].append(("stuck", first + 1 if first else 0, last, text))
+    return found
+
+
+def _held_together(
+    columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]]
+) -> list[tuple[int, int]]:
+    """Blocks of rows in which several channels repeat their values; first repetition and past-the-end row."""
+    blocks: list[tuple[int, int]] = []
+    pool = [(run[0] + 1, run[1]) for stretches in stuck.values() for run in stretches]
+    for block in sorted(set(pool)):
+        same = [other for other in pool if _alike(block, other)]
+        if len(same) >= 2:
+            common = max(first for first, _ in same), min(last for _, last in same)
+            blocks += [] if common in blocks else [common]
+    for first, last in (*_still(columns, stuck), *_tail(columns, stuck)):
+        if not any(a <= first and last <= b for a, b in blocks):
+            blocks = [block for block in blocks if not (first <= block[0] and block[1] <= last)]
+            blocks.append((first, last))
+    return sorted(blocks)
+
+
+def _still(columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]]) -> list[tuple[int, int]]:
+    """Blocks of rows in which no channel changes at all, longer than that ordinarily happens."""
+    count = len(next(iter(columns.values())))
+    moving = np.zeros(count, dtype=bool)
+    moving[0] = True
+    for values in columns.values():
+        moving[1:] |= values[1:] != values[:-1]
+    still = runs(~moving)
+    lengths = np.ones(max(int(moving.sum()), 1), dtype=np.int64)
+    lengths[: len(still)] = [last - first + 1 for first, last in still]
+    limit = max(_LONGER * _ordinary_longest(lengths, least=1), _FEWEST_TOGETHER - 1)
+    return [
+        block for block in still if block[1] - block[0] + 1 > limit and len(_free(columns, stuck, block)) >= 2
+    ]
+
+
+def _tail(columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]]) -> list[tuple[int, int]]:
+    """Block at the end of the record in which several channels show their longest run of all."""
+    count = len(next(iter(columns.values())))
+    longest = []
+    for name, values in columns.items():
+        start, length = _runs_of_equal(values)
+        block = (int(start[-1]) + 1, count)
+        record = length[-1] >= _FEWEST_TOGETHER and length[-1] > 2.0 * np.max(length[:-1], initial=1)
+        if record and name in _free(columns, stuck, block):
+            longest.append(block)
+    return [max(longest)] if len(longest) >= 2 else []
+
+
+def _free(
+    columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]], block: tuple[int, int]
+) -> list[str]:
+    """Channels that repeat a value in a block, and were not stuck at it long before."""
+    first, last = block
+    return [
+        name
+        for name, values in columns.items()
+        if _held(values, block)
+        and _counts(values, block)
+        and not any(a < first - 1 - (last - first) and last <= b for a, b in stuck[name])
+    ]
+
+
+def _alike(one: tuple[int, int], other: tuple[int, int]) -> bool:
+    """Whether two runs cover nearly the same rows."""
+    shared = min(one[1], other[1]) - max(one[0], other[0])
+    return shared >= _ALIKE * (max(one[1], other[1]) - min(one[0], other[0]))
+
+
+def _held(values: Array, block: tuple[int, int]) -> bool:
+    """Whether a column repeats its value in every row of a block."""
+    first, last = block
+    return bool(np.all(values[first:last] == values[first - 1 : last - 1]))
+
+
+def _counts(values: Array, block: tuple[int, int]) -> bool:
+    """Whether a repeated value says anything: the column moves elsewhere, and does not rest at this value."""
+    value = values[block[0]]
+    if np.isnan(value):
+        return False
+    outside = values[~np.isnan(values) & (values != value)]
+    if value == 0.0 or not len(outside):
+        return False
+    resting = value < outside.min() or value > outside.max()
+    return not (resting and len(values) - len(outside) - (block[1] - block[0]) > 0.01 * len(values))

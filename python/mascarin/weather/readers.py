@@ -1,0 +1,323 @@
+"""Weather files of a year: EPW and TMY3."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import date, tzinfo
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.weather.arrays import Array, Lines
+from mascarin.weather.table import file_hash
+from mascarin.weather.timezones import fixed_zone, zone_name
+
+_HEADER = 8
+_FIELDS = 35
+_TMY_HEAD = 7
+_HOURS = 8760
+
+# Channel, field number in the file, factor, entry from which on it means "no value".
+_EPW: Final = (
+    ("air_temperature", 6, 1.0, 99.9),
+    ("dew_point", 7, 1.0, 99.9),
+    ("pressure", 9, 1.0, 999999.0),
+    ("infrared", 12, 1.0, 9999.0),
+    ("global_horizontal", 13, 1.0, 9999.0),
+    ("direct_normal", 14, 1.0, 9999.0),
+    ("diffuse_horizontal", 15, 1.0, 9999.0),
+    ("wind_direction", 20, 1.0, 999.0),
+    ("wind_speed", 21, 1.0, 999.0),
+    ("cloud_cover", 23, 1.0, 99.0),
+)
+# Channel, pvlib's column, column in the file, factor.
+_TMY: Final = (
+    ("air_temperature", "temp_air", "Dry-bulb (C)", 1.0),
+    ("dew_point", "temp_dew", "Dew-point (C)", 1.0),
+    ("pressure", "pressure", "Pressure (mbar)", 100.0),
+    ("global_horizontal", "ghi", "GHI (W/m^2)", 1.0),
+    ("direct_normal", "dni", "DNI (W/m^2)", 1.0),
+    ("diffuse_horizontal", "dhi", "DHI (W/m^2)", 1.0),
+    ("wind_direction", "wind_direction", "Wdir (degrees)", 1.0),
+    ("wind_speed", "wind_speed", "Wspd (m/s)", 1.0),
+    ("cloud_cover", "OpqCld (tenths)", "OpqCld (tenths)", 1.0),
+)
+_MEANS: Final = frozenset({"global_horizontal", "direct_normal", "diffuse_horizontal"})
+
+_WHOLE: Final = (
+    "get it whole from its source; a shorter record can be used as a measured table (measured in a study, "
+    "Climate.from_table in Python)"
+)
+_NO_VALUE_TMY: Final = -9900.0
+
+_STAMPS_NOTE: Final = (
+    "{where}: stamps are hour-ending. Radiation stamped h is the mean of the hour before and was put at "
+    "its start; "
+    "temperature, humidity, wind, pressure, cloud cover and infrared are spot values at the stamp and "
+    "stay there."
+)
+
+
+@dataclass(frozen=True)
+class Year:
+    """One year of hourly weather as read; values of hour-ending rows, in order.
+
+    Attributes
+    ----------
+    year : int
+        Calendar year of the first row.
+    mixed : bool
+        The months come from different years.
+    zone : datetime.tzinfo
+        Fixed offset.
+    values : mapping of str to ndarray, shape (8760 or 8784,)
+        Channels; NaN where missing.
+    place : tuple of float and str
+        Latitude, longitude [deg], altitude [m] and name.
+    where : str
+        File name.
+    sha256 : str
+        Hash of the file.
+    lines : ndarray
+        Line of each row.
+    notes : tuple of str
+        What was done.
+    """
+
+    year: int
+    mixed: bool
+    zone: tzinfo
+    values: Mapping[str, Array]
+    place: tuple[float, float, float, str]
+    where: str
+    sha256: str
+    lines: Lines
+    notes: tuple[str, ...]
+
+
+def read_epw(path: Path) -> Year:
+    """Read an EPW file (EnergyPlus Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary").
+
+    Raises
+    ------
+    InputError
+        Header or rows are broken; the line is named.
+    """
+    digest = file_hash(path)
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    where = path.name
+    lines = text.splitlines()
+    years, table = _read_epw_rows(lines, where)
+    values = {}
+    for (channel, _, factor, limit), raw in zip(_EPW, table.T, strict=True):
+        # Many files write 0 where no infrared was known.
+        unknown = (raw >= limit) | ((raw <= 0.0) & (channel == "infrared"))
+        values[channel] = np.where(unknown, np.nan, raw * factor)
+    head = [field.strip() for field in lines[0].split(",")]
+    latitude, longitude, hours, altitude = (float(field) for field in head[6:10])
+    name = ", ".join(part for part in (head[1], head[3]) if part)
+    zone = fixed_zone(hours)
+    notes = (
+        f"{where}: EPW, {len(table)} hours, {name}, time zone {zone_name(zone)}.",
+        _STAMPS_NOTE.format(where=where),
+        f"{where}: cloud cover is the opaque sky cover.",
+    )
+    numbers = np.arange(len(table), dtype=np.int64) + _HEADER + 1
+    place = (latitude, longitude, altitude, name)
+    return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, numbers, notes)
+
+
+def read_tmy3(path: Path) -> Year:
+    """Read a TMY3 CSV file with pvlib.
+
+    Raises
+    ------
+    InputError
+        The file is not TMY3, or not a whole year.
+    """
+    from pvlib import iotools
+
+    digest = file_hash(path)
+    where = path.name
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    _check_tmy(text.splitlines(), where)
+    try:
+        frame, meta = iotools.read_tmy3(str(path), map_variables=True)
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
+        raise InputError(
+            f"{where}: cannot be read as TMY3 CSV ({error}); use from_table for other tables."
+        ) from error
+    if len(frame) not in (_HOURS, _HOURS + 24):
+        raise InputError(
+            f"{where}: found {len(frame)} rows, expected 8760 hours; the file is cut or holds gaps: {_WHOLE}."
+        )
+    values = {}
+    for channel, column, _, factor in _TMY:
+        raw = frame[column].to_numpy(dtype=np.float64)
+        values[channel] = np.where(raw <= -9000.0, np.nan, raw * factor)
+    years = [int(stamp.year) for stamp in frame.index[12::24]]
+    place = (
+        float(meta["latitude"]),
+        float(meta["longitude"]),
+        float(meta["altitude"]),
+        str(meta.get("Name", "")).strip("\"' "),
+    )
+    zone = fixed_zone(float(meta["TZ"]))
+    notes = (
+        f"{where}: TMY3, {len(frame)} hours, {place[3]}, time zone {zone_name(zone)}.",
+        _STAMPS_NOTE.format(where=where),
+        f"{where}: cloud cover is the opaque sky cover.",
+    )
+    lines = np.arange(len(frame), dtype=np.int64) + 3
+    return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, lines, notes)
+
+
+def kind_of(channel: str) -> str:
+    """`mean` for the radiation of a yearly file, `instant` for the rest."""
+    return "mean" if channel in _MEANS else "instant"
+
+
+def _check_tmy(lines: list[str], where: str) -> None:
+    """Check the head and every row of a TMY3 table."""
+    head = lines[0].count(",") + 1 if lines else 0
+    if head != _TMY_HEAD or len(lines) < 3:
+        raise InputError(
+            f"{where}:1: expected the seven fields of a TMY3 table (station, name, state, time zone, "
+            "latitude, "
+            f"longitude, altitude), found {head}; read other tables with from_table."
+        )
+    names = [name.strip() for name in lines[1].split(",")]
+    missing = [name for _, _, name, _ in _TMY if name not in names]
+    if missing:
+        raise InputError(
+            f"{where}:2: no column {missing[0]!r}, which TMY3 has; found {', '.join(names[:8])}, ..."
+        )
+    places = [(f"{channel} ({name})", names.index(name)) for channel, _, name, _ in _TMY]
+    for line, row in enumerate(lines[2:], start=3):
+        fields = row.split(",")
+        if len(fields) < len(names):
+            raise InputError(
+                f"{where}:{line}: found {len(fields)} fields, expected {len(names)}; the file is cut or "
+                f"damaged here: {_WHOLE}."
+            )
+        for name, place in places:
+            _number(fields[place], name, where, line, _NO_VALUE_TMY)
+
+
+def _read_epw_rows(lines: list[str], where: str) -> tuple[list[int], Array]:
+    """Check every line; the year of each row, and its numbers in the order of the channels."""
+    if len(lines) <= _HEADER or not lines[0].upper().startswith("LOCATION"):
+        raise InputError(
+            f"{where}:1: expected the LOCATION line of an EPW file, found {lines[0][:60] if lines else ''!r}."
+        )
+    _check_location(lines[0], where)
+    _check_periods(lines[_HEADER - 1], where)
+    rows = lines[_HEADER:]
+    while rows and not rows[-1].strip():
+        rows.pop()
+    years, table = [], []
+    previous: tuple[int, int, int] | None = None
+    for count, row in enumerate(rows):
+        line = _HEADER + 1 + count
+        fields = row.split(",")
+        if len(fields) < _FIELDS - 3:
+            raise InputError(
+                f"{where}:{line}: found {len(fields)} fields, expected {_FIELDS}; the file is cut or "
+                f"damaged here: {_WHOLE}."
+            )
+        stamp = _integers(fields, where, line)
+        table.append(
+            [
+                _number(fields[field], f"{channel} (field {field + 1})", where, line, code)
+                for channel, field, _, code in _EPW
+            ]
+        )
+        years.append(stamp[0])
+        previous = _check_order(previous, stamp, where, line)
+    if len(rows) not in (_HOURS, _HOURS + 24):
+        raise InputError(
+            f"{where}:{_HEADER + len(rows)}: the file ends after {len(rows)} hours, expected 8760 "
+            f"(or 8784 in a leap year); it is cut or holds gaps: {_WHOLE}."
+        )
+    return years, np.array(table)
+
+
+def _check_location(line: str, where: str) -> None:
+    fields = line.split(",")
+    if len(fields) < 10:
+        raise InputError(f"{where}:1: LOCATION has {len(fields)} fields, expected 10.")
+    limits = ((6, "latitude", 90.0), (7, "longitude", 180.0), (8, "time zone", 14.0), (9, "altitude", 9000.0))
+    for field, name, limit in limits:
+        try:
+            good = abs(float(fields[field])) <= limit
+        except ValueError:
+            good = False
+        if not good:
+            raise InputError(
+                f"{where}:1: {name} is {fields[field]!r}, expected a number within {limit:g} of zero."
+            )
+
+
+def _check_periods(line: str, where: str) -> None:
+    fields = line.split(",")
+    if not line.upper().startswith("DATA PERIODS") or len(fields) < 3:
+        raise InputError(f"{where}:{_HEADER}: expected the DATA PERIODS line, found {line[:60]!r}.")
+    if fields[2].strip() != "1":
+        raise InputError(
+            f"{where}:{_HEADER}: {fields[2].strip()} records per hour, expected 1; read such a file "
+            "with from_table."
+        )
+
+
+def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, int]:
+    try:
+        year, month, day, hour = (int(float(field)) for field in fields[:4])
+    except ValueError as error:
+        raise InputError(
+            f"{where}:{line}: date {','.join(fields[:4])!r} is not year,month,day,hour."
+        ) from error
+    return year, month, day, hour
+
+
+def _number(text: str, what: str, where: str, line: int, code: float) -> float:
+    """The number of an entry; `code` is how the format says that there is none."""
+    try:
+        number, wanted = float(text), "a finite number"
+    except ValueError:
+        number, wanted = math.nan, "a number"
+    if not math.isfinite(number):
+        raise InputError(
+            f"{where}:{line}: {what} is {text.strip()!r}, expected {wanted}; correct it, or "
+            f"write {code:.15g}, which stands for no value, and choose a period without this hour."
+        )
+    return number
+
+
+def _check_order(
+    previous: tuple[int, int, int] | None, stamp: tuple[int, int, int, int], where: str, line: int
+) -> tuple[int, int, int]:
+    _, month, day, hour = stamp
+    here = (month, day, hour)
+    expected = _next_hours(previous)
+    if here not in expected:
+        wanted = " or ".join(f"{m}/{d} hour {h}" for m, d, h in expected)
+        raise InputError(
+            f"{where}:{line}: found {month}/{day} hour {hour}, expected {wanted}; a row is missing or twice."
+        )
+    return here
+
+
+def _next_hours(previous: tuple[int, int, int] | None) -> list[tuple[int, int, int]]:
+    if previous is None:
+        return [(1, 1, 1)]
+    month, day, hour = previous
+    if hour < 24:
+        return [(month, day, hour + 1)]
+    if (month, day) == (2, 28):
+        return [(2, 29, 1), (3, 1, 1)]
+    following = date.fromordinal(date(2000, month, day).toordinal() + 1)
+    return [(following.month, following.day, 1)]

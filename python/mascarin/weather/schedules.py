@@ -1,0 +1,192 @@
+"""Schedules at the stages of every step: fractions as means over the step, temperatures as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import tzinfo
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.weather.arrays import Array
+from mascarin.weather.channels import TEMPERATURES
+from mascarin.weather.checks import require_range
+from mascarin.weather.forcing import STAGES, column_means, column_values, holder_of
+from mascarin.weather.timezones import moment
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.building.schedule import Schedule
+    from mascarin.weather.climate import Climate
+    from mascarin.weather.measurements import Measurements
+
+#: A step that ends at a switch ends before it. [s]
+_BEFORE: Final = 1e-3
+
+
+@dataclass(frozen=True)
+class Course:
+    """A profile in straight pieces over time.
+
+    Attributes
+    ----------
+    knots : ndarray, shape (n + 1,)
+        Ends of the pieces. [s]
+    first, last : ndarray, shape (n,)
+        Values at the start and at the end of each piece.
+    """
+
+    knots: Array
+    first: Array
+    last: Array
+
+    def before(self, times: Array) -> Array:
+        """Values just before some times: a piece holds up to and including its end."""
+        piece = np.searchsorted(self.knots, times - _BEFORE, side="right") - 1
+        length = self.knots[piece + 1] - self.knots[piece]
+        share = (times - self.knots[piece]) / length
+        return np.asarray(self.first[piece] + (self.last[piece] - self.first[piece]) * share)
+
+    def means(self, edges: Array) -> Array:
+        """Means between edges, shape (len(edges) - 1,)."""
+        lengths = np.diff(self.knots)
+        sums = np.concatenate([[0.0], np.cumsum(0.5 * (self.first + self.last) * lengths)])
+        piece = np.clip(np.searchsorted(self.knots, edges, side="right") - 1, 0, len(lengths) - 1)
+        inside = edges - self.knots[piece]
+        slope = (self.last - self.first)[piece] / lengths[piece]
+        integral = sums[piece] + (self.first[piece] + 0.5 * slope * inside) * inside
+        return np.asarray(np.diff(integral) / np.diff(edges))
+
+
+def scheduled(
+    climate: Climate,
+    schedules: Mapping[str, Schedule],
+    timezone: tzinfo,
+    start: object,
+    end: object,
+    step_seconds: float,
+    scheme: str = "sdirk2",
+    measurements: Measurements | None = None,
+) -> Array:
+    """Values of schedules at the stages of every step of a period.
+
+    A fraction is its mean over the step, the same in all stages: no heat is lost where a switch falls
+    inside a step. A temperature is its value at the time of the stage; before a jump there.
+
+    Parameters
+    ----------
+    climate : Climate
+        Gives the period its clock, and may hold measured columns.
+    schedules : mapping of str to Schedule
+        Schedules by name.
+    timezone : datetime.tzinfo
+        Time zone of the site: days and hours are those of its clocks, summer time included.
+    start, end : str, datetime or pandas.Timestamp
+        Period; without an offset, local time of the climate. A whole number of steps.
+    step_seconds : float
+        Step [s].
+    scheme : str
+        A key of `STAGES`.
+    measurements : Measurements, optional
+        Where to look for columns that the climate does not hold.
+
+    Returns
+    -------
+    ndarray, shape (steps, stages, schedules)
+        Fractions [-] and temperatures [degC].
+
+    Raises
+    ------
+    InputError
+        A measured column is unknown, lacks a value or holds one that cannot be.
+    """
+    first = moment(start, climate.grid.zone, "start").timestamp()
+    last = moment(end, climate.grid.zone, "end").timestamp()
+    edges = step_seconds * np.arange(round((last - first) / step_seconds) + 1)
+    nodes, weights = STAGES[scheme]
+    stage = edges[:-1, None] + step_seconds * np.array(nodes)
+    out = np.empty((*stage.shape, len(schedules)))
+    for place, (name, schedule) in enumerate(schedules.items()):
+        if schedule.column is None:
+            course = course_of(schedule, timezone, first, last)
+            means = schedule.kind == "fraction"
+            values = course.means(edges)[:, None] if means else course.before(stage)
+        else:
+            values = _measured(climate, measurements, name, schedule, first, edges, stage, weights)
+        out[..., place] = values
+    return out
+
+
+def course_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -> Course:
+    """The profile of a schedule over a span, on the clocks of a time zone.
+
+    Parameters
+    ----------
+    schedule : Schedule
+        One value, or profiles of days.
+    timezone : datetime.tzinfo
+        Whose clocks.
+    first, last : float
+        Span, seconds since 1970-01-01 UTC [s].
+
+    Returns
+    -------
+    Course
+        Times from the start of the span [s].
+    """
+    import pandas as pd
+
+    ends = pd.to_datetime([first, last], unit="s", utc=True).tz_convert(timezone).tz_localize(None)
+    days = pd.date_range(
+        ends[0].normalize() - pd.Timedelta(days=1), ends[1].normalize() + pd.Timedelta(days=1)
+    )
+    starts: list[pd.Timestamp] = []
+    values: list[tuple[float, float]] = []
+    for day in days:
+        for minute, _, begin, finish in schedule.pieces(
+            day.weekday(), holiday=schedule.is_holiday(day.date())
+        ):
+            starts.append(day + pd.Timedelta(minutes=minute))
+            values.append((begin, finish))
+    stamps = pd.DatetimeIndex([*starts, days[-1] + pd.Timedelta(days=1)])
+    knots = _instants(stamps, timezone) - first
+    pairs = np.array(values)
+    # Where clocks go forward, the pieces that they leap over have no length.
+    real = np.diff(knots) > 0.0
+    return Course(np.concatenate([knots[:-1][real], knots[-1:]]), pairs[real, 0], pairs[real, 1])
+
+
+def _instants(stamps: pd.DatetimeIndex, timezone: tzinfo) -> Array:
+    """Seconds since 1970-01-01 UTC of local times; of an hour that comes twice, the first."""
+    local = stamps.tz_localize(timezone, ambiguous=np.ones(len(stamps), bool), nonexistent="shift_forward")
+    return np.asarray(
+        local.tz_convert("UTC").tz_localize(None).to_numpy().astype("datetime64[s]"), dtype=np.float64
+    )
+
+
+def _measured(
+    climate: Climate,
+    measurements: Measurements | None,
+    name: str,
+    schedule: Schedule,
+    first: float,
+    edges: Array,
+    stage: Array,
+    weights: Sequence[float],
+) -> Array:
+    """A schedule from a measured column."""
+    column = str(schedule.column)
+    try:
+        holder = holder_of(climate, measurements, column)
+    except InputError as error:
+        raise InputError(f"schedules.{name}.column: {error}") from None
+    span = (first, first + float(edges[-1]))
+    holder.grid.require(*span, f"{holder.file}: {column}")
+    fraction = schedule.kind == "fraction"
+    require_range(holder, column, (0.0, 1.0) if fraction else TEMPERATURES, *span)
+    if fraction:
+        return column_means(holder, column, first, edges)[:, None]
+    return column_values(holder, column, first, edges, stage, tuple(weights))

@@ -1,0 +1,178 @@
+"""The sun's true direction and the extraterrestrial irradiance at any time, from pvlib.
+
+pvlib's solar position algorithm is evaluated once an hour; between, the direction is turned with
+the earth and the remainder, which moves by a degree a day, is interpolated by a cubic. The
+result stays within 1e-6 rad of pvlib at every instant, and costs next to nothing at a million of them.
+
+References
+----------
+Reda & Andreas 2004, Solar Energy 76(5), 577-589, doi:10.1016/j.solener.2003.12.003 (sun position).
+Kopp & Lean 2011, Geophysical Research Letters 38, L01706, doi:10.1029/2010GL045777 (solar constant).
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.machinery
+import importlib.util
+import sys
+from dataclasses import dataclass
+from functools import cache
+from types import ModuleType
+from typing import Final
+
+import numpy as np
+
+from mascarin.weather.arrays import Array
+
+SOLAR_CONSTANT: Final = 1361.0
+"""Total solar irradiance at the mean distance of the earth (Kopp & Lean 2011, 1360.8) [W/m2]."""
+
+_NODE_STEP: Final = 3600.0
+#: Terrestrial time less universal time [s], pvlib's default; one second more moves the sun by 2e-7 rad.
+_DELTA_T: Final = 67.0
+_TURN: Final = 2.0 * np.pi / 86400.0
+
+
+@dataclass(frozen=True)
+class SunPath:
+    """The sun over one place in one span of time.
+
+    Attributes
+    ----------
+    latitude : float
+        Positive north [deg].
+    first : float
+        Time of the first node, seconds since the origin [s].
+    slow : ndarray, shape (nodes, 3)
+        Direction to the sun in axes (meridian, east, pole) that turn with the mean sun [-].
+    extra : ndarray, shape (nodes,)
+        Extraterrestrial normal irradiance [W/m2].
+    """
+
+    latitude: float
+    first: float
+    slow: Array
+    extra: Array
+
+    @classmethod
+    def over(
+        cls, latitude: float, longitude: float, start: float, end: float, origin: float = 0.0
+    ) -> SunPath:
+        """Prepare the sun for a span of time.
+
+        Parameters
+        ----------
+        latitude, longitude : float
+            Positive north and east [deg].
+        start, end : float
+            Span, seconds since 1970-01-01 UTC [s].
+        origin : float
+            Time from which the times of the other methods count, seconds since 1970-01-01 UTC [s].
+        """
+        spa = _algorithm()
+        first = (np.floor(start / _NODE_STEP) - 2.0) * _NODE_STEP
+        count = int(np.ceil((end - first) / _NODE_STEP)) + 4
+        seconds = first + _NODE_STEP * np.arange(count)
+        # At sea level; pressure and temperature act on refraction alone, which is not looked at.
+        _, zenith, _, _, azimuth, _ = spa.solar_position(
+            seconds, latitude, longitude, 0.0, 1013.25, 12.0, _DELTA_T, 0.5667, 1
+        )
+        distance = spa.earthsun_distance(seconds, _DELTA_T, 1)
+        vector = _direction(np.radians(zenith), np.radians(azimuth))
+        slow = _turn(_to_pole(vector, np.radians(latitude)), _TURN * (seconds - first))
+        return cls(latitude, first - origin, slow, SOLAR_CONSTANT / distance**2)
+
+    def vector(self, time: Array) -> Array:
+        """Unit vector to the centre of the sun, without refraction.
+
+        Parameters
+        ----------
+        time : ndarray, shape (...,)
+            Seconds since the origin, inside the span [s].
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            East, north and up components; up <= 0 below the horizon [-].
+        """
+        place = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
+        slow = _cubic(self.slow, place)
+        slow /= np.sqrt(np.sum(slow * slow, axis=-1, keepdims=True))
+        return _from_pole(_turn(slow, -_TURN * _NODE_STEP * place), np.radians(self.latitude))
+
+    def normal_irradiance(self, time: Array) -> Array:
+        """Extraterrestrial normal irradiance.
+
+        Parameters
+        ----------
+        time : ndarray, shape (...,)
+            Seconds since the origin, inside the span [s].
+
+        Returns
+        -------
+        ndarray, shape (...,)
+            Irradiance on a plane facing the sun, outside the atmosphere [W/m2].
+        """
+        place = (np.asarray(time, dtype=np.float64) - self.first) / _NODE_STEP
+        return _cubic(self.extra[:, None], place)[..., 0]
+
+
+@cache
+def _algorithm() -> ModuleType:
+    """The file of pvlib with the algorithm, without the rest of pvlib where that is not in use already.
+
+    All of pvlib takes half a second to import; this file needs numpy alone.
+    """
+    name = "pvlib.spa"
+    if name in sys.modules:
+        return sys.modules[name]
+    package = importlib.util.find_spec("pvlib")
+    folders = package.submodule_search_locations if package else None
+    found = importlib.machinery.PathFinder.find_spec(name, folders)
+    if found is None or found.loader is None:
+        return importlib.import_module(name)
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    return module
+
+
+def _direction(zenith: Array, azimuth: Array) -> Array:
+    sine = np.sin(zenith)
+    return np.stack([sine * np.sin(azimuth), sine * np.cos(azimuth), np.cos(zenith)], axis=-1)
+
+
+def _to_pole(vector: Array, latitude: float) -> Array:
+    """(east, north, up) -> (meridian, east, pole)."""
+    east, north, up = vector[..., 0], vector[..., 1], vector[..., 2]
+    sine, cosine = np.sin(latitude), np.cos(latitude)
+    return np.stack([cosine * up - sine * north, east, sine * up + cosine * north], axis=-1)
+
+
+def _from_pole(vector: Array, latitude: float) -> Array:
+    """(meridian, east, pole) -> (east, north, up)."""
+    meridian, east, pole = vector[..., 0], vector[..., 1], vector[..., 2]
+    sine, cosine = np.sin(latitude), np.cos(latitude)
+    return np.stack([east, cosine * pole - sine * meridian, sine * pole + cosine * meridian], axis=-1)
+
+
+def _turn(vector: Array, angle: Array) -> Array:
+    """Turn about the pole, eastwards for a positive angle [rad]."""
+    sine, cosine = np.sin(angle), np.cos(angle)
+    meridian, east = vector[..., 0], vector[..., 1]
+    return np.stack(
+        [cosine * meridian - sine * east, sine * meridian + cosine * east, vector[..., 2]], axis=-1
+    )
+
+
+def _cubic(nodes: Array, place: Array) -> Array:
+    """Four-point Lagrange interpolation at fractional node numbers."""
+    base = np.clip(np.floor(place).astype(np.int64), 1, len(nodes) - 3)
+    x = (place - base)[..., None]
+    before, here, after, beyond = nodes[base - 1], nodes[base], nodes[base + 1], nodes[base + 2]
+    return np.asarray(
+        -x * (x - 1.0) * (x - 2.0) / 6.0 * before
+        + (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 * here
+        - (x + 1.0) * x * (x - 2.0) / 2.0 * after
+        + (x + 1.0) * x * (x - 1.0) / 6.0 * beyond
+    )

@@ -1,0 +1,102 @@
+"""A year of weather as read becomes a climate: typical or of one calendar year."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import date
+from typing import cast
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.weather.arrays import Array, Lines
+from mascarin.weather.channels import Kind
+from mascarin.weather.climate import Climate, Place
+from mascarin.weather.grid import Grid, frame_of
+from mascarin.weather.readers import Year, kind_of
+
+_FREE = ("infrared", "pressure", "cloud_cover")
+
+
+def climate_of(read: Year, typical: bool | None, year: int | None) -> Climate:
+    """Climate of a yearly file.
+
+    Parameters
+    ----------
+    read : Year
+        As read, hour-ending.
+    typical, year
+        As in `Climate.from_epw`.
+
+    Returns
+    -------
+    Climate
+        Spot values at their stamps, means at the start of their hour.
+
+    Raises
+    ------
+    InputError
+        The number of hours does not fit the calendar.
+    """
+    periodic = read.mixed if typical is None else typical
+    label = read.year if not periodic else (2001 if year is None else year)
+    notes = list(read.notes)
+    values, lines = dict(read.values), read.lines
+    count = len(lines)
+    if periodic:
+        if count != 8760:
+            keep = np.r_[0 : 59 * 24, 60 * 24 : count]
+            values, lines, count = {k: v[keep] for k, v in values.items()}, lines[keep], 8760
+            notes.append(f"{read.where}: 29 February left out of the typical year.")
+        notes.append(
+            f"{read.where}: one typical year of 365 days, labelled {label}; it stands for any year, "
+            "wraps at its "
+            "end, and 29 February is 28 February once more."
+        )
+    else:
+        _check_length(count, label, read.where)
+        notes.append(
+            f"{read.where}: the calendar year {label}; its first hour starts from the first spot value."
+        )
+    start = (date(label, 1, 1) - date(1970, 1, 1)).total_seconds()
+    offset = read.zone.utcoffset(None)
+    grid = Grid(start - (offset.total_seconds() if offset else 0.0), 3600.0, count, read.zone, periodic)
+    return _of_year(read, grid, values, lines, notes)
+
+
+def _check_length(count: int, year: int, where: str) -> None:
+    days = (date(year + 1, 1, 1) - date(year, 1, 1)).days
+    if count not in (days * 24, 8760):
+        raise InputError(f"{where}: found {count} hours for the year {year}, expected {days * 24}.")
+    if count != days * 24:
+        raise InputError(
+            f"{where}: the year {year} has a 29 February and the file has none; add that day, or write "
+            "a year without one, such as 2023, in every row (in Python: typical=True, if the year "
+            "stands for any)."
+        )
+
+
+def _of_year(
+    read: Year,
+    grid: Grid,
+    values: Mapping[str, Array],
+    lines: Lines,
+    notes: list[str],
+) -> Climate:
+    columns, kinds, closing = {}, {}, {}
+    for name, column in values.items():
+        if np.isnan(column).all() and name in _FREE:
+            continue
+        kinds[name] = cast("Kind", kind_of(name))
+        if kinds[name] == "mean":
+            columns[name] = column
+            continue
+        # The spot value of the hour that ends at 24:00 on 31 December opens a typical year.
+        opening = column[-1] if grid.periodic else column[0]
+        columns[name] = np.concatenate([[opening], column[:-1]])
+        closing[name] = float(column[-1])
+    return Climate(
+        data=frame_of(columns, grid), kinds=kinds, grid=grid, closing=closing, site=Place(*read.place),
+        file=read.where, sha256=read.sha256, provenance=tuple(notes), lines=lines,
+        knots=np.concatenate([lines[-1:] if grid.periodic else lines[:1], lines]), of_year=True,
+    )  # fmt: skip

@@ -1,0 +1,302 @@
+"""Descriptions that the tests of the model share."""
+
+from __future__ import annotations
+
+from mascarin.building import Building
+from mascarin.building.reading import parse
+
+# One closed room: small, and free of anything that the tests do not look at.
+ROOM = """\
+name: room
+site: {latitude: 48, longitude: 2, altitude: 100, timezone: Europe/Paris}
+materials:
+  concrete: {conductivity: 1.75, density: 2240, specific_heat: 900, source: a table}
+constructions:
+  wall:
+    layers:
+      - {material: concrete, thickness: 0.2}
+zones:
+  room: {volume: 30, infiltration: 0.5}
+surfaces:
+  south:
+    construction: wall
+    area: 16
+    tilt: 90
+    azimuth: 180
+    outside: {outdoors: true, convection: 15, emissivity: 0.9, absorptance: 0.6}
+    inside: {zone: room, convection: 3, emissivity: 0.9}
+  rest:
+    construction: wall
+    area: 50
+    tilt: 90
+    azimuth: 0
+    outside: {adiabatic: true}
+    inside: {zone: room, convection: 3, emissivity: 0.9}
+sensors:
+  core: {surface: south, depth: 0.1}
+"""
+
+# Every kind of part once; the kinds of sky follow below.
+EVERYTHING = """\
+name: everything
+site:
+  latitude: -21.3
+  longitude: 55.5
+  altitude: {value: 55, range: [40, 70], source: a map}
+  timezone: UTC+4
+  wind: {terrain: suburb}
+  diffuse: hay_davies
+materials:
+  concrete: {conductivity: 1.75, density: 2240, specific_heat: 900, source: a table}
+  gap: {kind: resistance, resistance: 0.15}
+  wax:
+    kind: pcm
+    conductivity: [0.22, 0.18]
+    density: 855
+    specific_heat: {solid: 3134, liquid: 2833}
+    latent_heat: 71000
+    melting_temperature: 23.4
+    law: {kind: tanh, gamma: 0.04, delta_t: 0.01}
+  salt:
+    kind: pcm
+    conductivity: 0.5
+    density: [1500, 1450]
+    specific_heat: 2000
+    latent_heat: 150000
+    melting_temperature: 27
+    law: {kind: tanh, width: 1.5}
+  curve:
+    kind: pcm
+    conductivity: 0.2
+    density: 800
+    specific_heat: 2000
+    law:
+      kind: table
+      temperatures: [15, 20, 22, 23]
+      enthalpies: [0, 2.0e+4, 9.0e+4, 1.2e+5]
+      melting_range: [20, 22]
+constructions:
+  wall:
+    layers:
+      - {material: concrete, thickness: 0.1, nodes: 5}
+      - {material: gap}
+      - {name: lining, material: concrete, thickness: 0.02}
+  ceiling:
+    layers:
+      - {material: wax, thickness: 0.00526}
+      - {material: salt, thickness: 0.01}
+      - {material: curve, thickness: 0.01}
+schedules:
+  day: {kind: fraction, days: {all: [{at: "00:00", value: 0.1, ramp_to: 0.4}, {at: "08:00", value: 1},
+                                     {at: "18:00", value: 0.3}]}}
+  always: {kind: fraction, value: 0.9}
+  cool: {kind: temperature, days: {weekdays: [{at: "00:00", value: 27}], weekends: [{at: "00:00", value: 29},
+         {at: "12:00", value: 29, ramp_to: 28}], holidays: [{at: "00:00", value: 30}]}, holidays: ["12-25"]}
+  warm: {kind: temperature, value: 15}
+glazings:
+  clear:
+    kind: panes
+    panes:
+      - thickness: 0.004
+        emissivity: 0.84
+        transmittance: 0.83
+        reflectance: 0.08
+        density: 2500
+        specific_heat: 750
+      - {thickness: 0.004, emissivity: 0.84, transmittance: 0.83, reflectance: 0.08}
+      - {thickness: 0.004, emissivity: [0.1, 0.84], transmittance: 0.6, reflectance: [0.2, 0.25]}
+    gaps: [{thickness: 0.06, gas: argon}, {conductance: 5}]
+  listed:
+    kind: panes
+    panes: [{thickness: 0.006, emissivity: 0.84}]
+    angular:
+      angles: [0, 60, 90]
+      transmittance: [0.8, 0.7, 0]
+      reflectance: [0.1, 0.2, 1]
+      absorptance: [[0.1, 0.1, 0]]
+      diffuse: {transmittance: 0.7, reflectance: 0.2, absorptance: [0.1]}
+  plain: {kind: simple, u_value: 2.1, solar_heat_gain: 0.7}
+windows:
+  pane:
+    surface: west
+    glazing: clear
+    area: 1
+    cavity_height: 0.3
+    frame: {fraction: 0.2, u_value: 2}
+    outside: {convection: 15, sky_view: 0.4, height: 1.5, longwave: {kind: linearised, reference: 20}}
+    inside: {convection: 3}
+  light:
+    surface: roof
+    glazing: listed
+    vertices: [[1, 1, 3.166666667], [2, 1, 3.166666667], [2, 2, 3.333333333], [1, 2, 3.333333333]]
+    outside: {convection: {kind: mowitt}}
+    inside: {convection: iso15099}
+  hatch: {surface: roof, glazing: plain, area: 1, outside: {convection: 15}, inside: {convection: 3}}
+shades:
+  hood: {vertices: [[0, 0, 4], [3, 0, 4], [3, -1, 4], [0, -1, 4]]}
+zones:
+  room:
+    volume: 27
+    sun: area
+    capacity_factor: 2
+    infiltration: {constant: 0.2, temperature: 0.01, wind: 0.02}
+    longwave: radiosity
+    gains:
+      people: {power: 100, radiative: 0.5, schedule: day}
+      lamp: {power: 20}
+    ventilation:
+      fan: {air_changes: 1.5, schedule: day}
+      shaft: {flow: 0.002}
+    heating: {setpoint: 24, capacity: 40, schedule: always}
+    cooling: {setpoint: {schedule: cool}, capacity: 60}
+  attic:
+    volume: 9
+    infiltration: {value: 0.3, range: [0, 1]}
+    longwave: {kind: linearised, reference: 25}
+    sun: {kind: shares, shares: {ceiling: 0.95}, lost: 0.05}
+    view_factors:
+      roof: {ceiling: 1.0}
+      ceiling: {roof: 0.8, light: 0.1, hatch: 0.1}
+      light: {ceiling: 1.0}
+      hatch: {ceiling: 1.0}
+  shaft: {volume: 4, longwave: none, heating: {setpoint: {schedule: warm}}}
+air_paths:
+  hatch: {between: [room, attic], flow: 0.01, schedule: always}
+openings:
+  ridge: {zone: attic, area: 0.02, height: 0.3}
+  eaves: {zone: attic, area: 0.01, height: 0.4, discharge: 0.6, wind_coefficient: 0.25, schedule: day}
+surfaces:
+  roof:
+    construction: wall
+    vertices: [[0, 0, 3], [3, 0, 3], [3, 3, 3.5], [0, 3, 3.5]]
+    outside: {outdoors: true, convection: tarp, emissivity: 0.9, absorptance: 0.8, area_factor: 1.1}
+    inside: {zone: attic, convection: {kind: alamdari_hammond}, emissivity: 0.25}
+  ceiling:
+    construction: ceiling
+    area: 9
+    tilt: 0
+    outside: {zone: attic, convection: {kind: paper_eq5, factor: 0.8}, emissivity: 0.05}
+    inside:
+      zone: room
+      emissivity: 0.9
+      absorptance: 0.5
+      convection:
+        kind: power
+        upward: {a: 0.1, b: 1.5, n: 0.33}
+        downward: {b: 0.6, n: 0.25}
+  floor:
+    construction: wall
+    area: 9
+    tilt: 180
+    outside: {ground: {mean: 22, amplitude: 2, coldest_day: 200}}
+    inside:
+      zone: room
+      convection: {kind: linear_wind, constant: 3, wind: 0}
+      emissivity: 0.9
+      absorptance: 0.6
+  west:
+    construction: wall
+    area: 9
+    tilt: 90
+    azimuth: 270
+    outside:
+      outdoors: true
+      convection: {kind: mowitt}
+      emissivity: 0.9
+      absorptance: 0.4
+      sky_view: 0.4
+      height: 1.5
+      longwave: {kind: linearised, reference: 24}
+    inside: {zone: room, convection: 2.5, emissivity: 0.9, absorptance: 0.5}
+  east:
+    construction: wall
+    area: 9
+    tilt: 90
+    azimuth: 90
+    outside:
+      outdoors: true
+      convection: {kind: linear_wind, constant: 11.4, wind: 5.7}
+      emissivity: 0.9
+      absorptance: 0.4
+      longwave: none
+    inside: {zone: room, convection: 2.5, emissivity: 0.9, absorptance: 0.5}
+  north:
+    construction: wall
+    area: 9
+    tilt: 90
+    azimuth: 0
+    outside: {measured: T_out, convection: 12, irradiance: G_north, absorptance: 0.4}
+    inside: {zone: shaft, convection: 2.5}
+  mass:
+    construction: wall
+    area: 4
+    tilt: 90
+    azimuth: 0
+    internal_mass: true
+    outside: {zone: room, convection: 2, emissivity: 0.9, absorptance: 0.5}
+    inside: {zone: room, convection: 2, emissivity: 0.9, absorptance: 0.5}
+  south:
+    construction: wall
+    area: 9
+    tilt: 90
+    azimuth: 180
+    outside: {outdoors: true, convection: doe2, emissivity: 0.9, absorptance: 0.4}
+    inside: {zone: shaft, convection: 2.5}
+  held: {construction: wall, area: 1, tilt: 90, outside: {measured: T_face}, inside: {adiabatic: true}}
+sensors:
+  core: {surface: west, depth: 0.05}
+"""
+
+SKIES = [
+    {"kind": "martin_berdahl"},
+    {"kind": "clark_allen"},
+    {"kind": "brunt"},
+    {"kind": "offset", "depression": 9},
+    {"kind": "measured"},
+]
+
+
+def room() -> Building:
+    """The closed room."""
+    return parse(ROOM, "room.yaml")
+
+
+#: Laws for the materials wax, salt and curve of `EVERYTHING`, beside those that stand there.
+MELTING = [
+    ("{kind: smooth_step, width: 1.2}", "{kind: gaussian, width: 0.8}", "capacity"),
+    ("{kind: gumbel, width: 0.6}", "{kind: linear, width: 1.0}", "fractions"),
+    (
+        "{kind: triangle, below: 2.0, above: 1.0}\n    hysteresis: {model: curve-switch, "
+        "freezing_temperature: 22.3, law: {kind: smooth_step, width: 1.0, continuity: 2}}",
+        "{kind: gumbel, width: 0.5, tail: high}",
+        "two curves",
+    ),
+]
+_CURVES = {
+    "capacity": """{kind: capacity, temperatures: [15, 20, 21, 22, 23],
+      capacities: [2000, 2500, 60000, 2500, 2000], melting_range: [20, 22]}
+    latent_heat: 60000""",
+    "fractions": """{kind: fractions, temperatures: [19, 21, 22], fractions: [0, 0.6, 1]}
+    latent_heat: 60000""",
+    "two curves": """{kind: fractions, temperatures: [23, 24.5, 25.2], fractions: [0, 0.6, 1]}
+    latent_heat: 60000
+    hysteresis:
+      model: curve_switch
+      law: {kind: fractions, temperatures: [22.7, 24.3, 25], fractions: [0, 0.6, 1]}""",
+}
+
+
+def everything_melting(wax: str, salt: str, curve: str) -> Building:
+    """`EVERYTHING` with other laws of phase change."""
+    text = EVERYTHING.replace("{kind: tanh, gamma: 0.04, delta_t: 0.01}", wax)
+    text = text.replace("{kind: tanh, width: 1.5}", salt)
+    start, end = text.index("\n      kind: table"), text.index("\nconstructions:")
+    return parse(text[:start] + " " + _CURVES[curve] + text[end:], "everything.yaml")
+
+
+def everything() -> list[Building]:
+    """Every kind of part: once for each sky, with the density of the air, with each law of phase change."""
+    building = parse(EVERYTHING, "everything.yaml")
+    skies = [building.replace({"site.sky": sky}) for sky in SKIES]
+    melting = [everything_melting(*laws) for laws in MELTING]
+    return [*skies, building.replace({"site.air_density": 1.16}), *melting]

@@ -1,0 +1,96 @@
+"""Numbers carry their notes; quantities hold unit, limits and range."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import pytest
+from pydantic_core import PydanticCustomError
+
+from mascarin.building import quantities
+from mascarin.building.number import Fixed, Limits, Number, Percent, Quantity, Span, Within
+
+LENGTH = Quantity("m", "A length", Percent(10, "a ruler"), Limits(above=0, at_most=5))
+
+
+def test_a_number_is_a_float() -> None:
+    number = LENGTH.read({"value": 2, "range": [1, 4], "source": "a book", "assumed": True})
+    assert number * 2 == 4.0
+    assert (number.range, number.source, number.assumed, number.quantity) == (
+        (1.0, 4.0),
+        "a book",
+        True,
+        LENGTH,
+    )
+    twin = copy.deepcopy(number)
+    assert (twin, twin.range, twin.source) == (2.0, (1.0, 4.0), "a book")
+
+
+def test_a_range_that_is_not_written_is_the_default_one() -> None:
+    assert LENGTH.read(2.0).believable == pytest.approx((1.8, 2.2))
+    assert LENGTH.read({"value": 2.0, "range": [1.0, 2.0]}).believable == (1.0, 2.0)
+    assert Number(3.0).believable == (3.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("spread", "value", "expected"),
+    [
+        (Percent(20, ""), -2.0, (-2.4, -1.6)),
+        (Within(0.5, ""), 1.0, (0.5, 1.5)),
+        (Span(0.0, 1.0, ""), 0.2, (0.0, 1.0)),
+        (Span(0.0, 1.0, ""), 1.5, (0.0, 1.5)),
+        (Fixed(""), 1.0, (1.0, 1.0)),
+    ],
+)
+def test_default_ranges(
+    spread: Percent | Within | Span | Fixed, value: float, expected: tuple[float, float]
+) -> None:
+    assert Quantity("-", "", spread).default_range(value) == pytest.approx(expected)
+
+
+def test_a_default_range_keeps_inside_the_limits() -> None:
+    share = Quantity("-", "", Within(0.1, ""), Limits(above=0, at_most=1))
+    assert share.default_range(0.95) == pytest.approx((0.85, 1.0))
+    low, high = share.default_range(0.05)
+    assert 0.0 < low < 0.05 < high == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize(
+    "raw", [0, -1, 6, math.nan, math.inf, "1", "1 m", True, None, [1], {}, {"value": None}]
+)
+def test_what_is_no_such_number_is_refused(raw: object) -> None:
+    with pytest.raises(PydanticCustomError, match=r"found .*; expected"):
+        LENGTH.read(raw)
+
+
+def test_a_word_may_stand_for_a_number() -> None:
+    worded = Quantity("-", "", Span(1, 2, ""), words={"rough": 1.67})
+    assert worded.read("rough") == 1.67
+    assert worded.read({"value": "rough", "range": [1, 2]}).source == "'rough'"
+    with pytest.raises(PydanticCustomError, match="Did you mean 'rough'"):
+        worded.read("rouhg")
+
+
+def test_a_whole_number() -> None:
+    count = Quantity("-", "", Fixed(""), whole=True)
+    assert count.read(3) == 3.0
+    with pytest.raises(PydanticCustomError, match="a whole number"):
+        count.read(3.5)
+
+
+def test_every_quantity_says_what_it_is() -> None:
+    """Unit, meaning and a reason for the range; the default range of a plain value has a width."""
+    found = 0
+    for name in dir(quantities):
+        for note in getattr(getattr(quantities, name), "__metadata__", ()):
+            found += 1
+            assert note.unit, name
+            assert note.description[:1].isupper(), name
+            assert note.spread.reason, name
+            value = max(note.limits.lower, 0.0) + min(0.5, 0.5 * note.limits.upper)
+            low, high = note.default_range(value)
+            assert note.limits.hold(low), name
+            assert note.limits.hold(high), name
+            assert low < high or isinstance(note.spread, Fixed), name
+    assert found > 50

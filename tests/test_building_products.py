@@ -1,0 +1,126 @@
+"""Products of the library in a building file."""
+
+from __future__ import annotations
+
+import jsonschema
+import pytest
+
+from building_samples import ROOM
+from mascarin.building import Building, json_schema
+from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.phase_change import TableLaw, TanhLaw
+from mascarin.building.reading import parse, plain
+from mascarin.errors import InputError
+from mascarin.materials import Product, library, product
+
+
+def text(material: str) -> str:
+    return ROOM.replace("materials:\n", f"materials:\n  pcm: {{{material}}}\n").replace(
+        "      - {material: concrete, thickness: 0.2}\n",
+        "      - {material: concrete, thickness: 0.2}\n      - {material: pcm, thickness: 0.01}\n",
+    )
+
+
+def building(material: str) -> Building:
+    return parse(text(material), "room.yaml")
+
+
+def pcm(material: str) -> PhaseChangeMaterial:
+    found = building(material).materials["pcm"]
+    assert isinstance(found, PhaseChangeMaterial)
+    return found
+
+
+def values(material: PhaseChangeMaterial, *names: str) -> list[float]:
+    return [float(getattr(material, name)) for name in names]
+
+
+def test_a_product_is_a_material_with_its_numbers_and_sources() -> None:
+    taken = building("product: rt25hc")
+    material = taken.materials["pcm"]
+    assert isinstance(material, PhaseChangeMaterial)
+    assert material.product == "RT25HC"
+    density = taken.parameter("materials.pcm.density.solid")
+    assert (density.value, density.structural) == (880, False)
+    assert density.source == product("RT25HC").source
+    assert [source for source in taken.sources() if "RT25HC" in source] == [product("RT25HC").source]
+    assert isinstance(material.law, TableLaw)
+    curve = product("RT25HC").heating
+    assert curve is not None
+    assert tuple(map(float, material.law.temperatures)) == curve.temperatures
+    assert taken.parameter("materials.pcm.law.temperature_shift").varies
+    assert taken.to_engine().json
+
+
+def test_a_curve_is_chosen_by_its_word() -> None:
+    law = pcm("product: RT25HC, law: cooling").law
+    assert isinstance(law, TableLaw)
+    assert law.melting == (14.0, 28.0)
+    with pytest.raises(InputError, match=r"law: heating, the curves known of RT28HC"):
+        pcm("product: RT28HC, law: cooling")
+
+
+def test_what_the_user_gives_comes_first() -> None:
+    material = pcm("product: Energain, density: 870, melting_temperature: {value: 22, range: [21, 23]}")
+    assert values(material, "density", "melting_temperature", "latent_heat") == [870, 22, 71000]
+    assert isinstance(material.law, TanhLaw)
+    assert material.law.width == 1.0
+    taken = building("product: Energain, density: 870")
+    assert taken.parameter("materials.pcm.density").source in (None, "")
+    assert "4.5 kg/m2" in str(building("product: Energain").parameter("materials.pcm.density").source)
+
+
+def test_a_law_by_width_takes_latent_heat_and_melting_temperature_from_the_product() -> None:
+    material = pcm("product: RT28HC, law: {kind: tanh, width: 0.5}")
+    assert values(material, "latent_heat") == [220000]
+    assert float(material.melting_temperature or 0) == product("RT28HC").melting_temperature == 27.63
+
+
+def test_a_product_survives_other_values() -> None:
+    other = building("product: RT25HC").replace(
+        {"materials.pcm.density.solid": 900, "materials.pcm.law": "cooling"}
+    )
+    material = other.materials["pcm"]
+    assert isinstance(material, PhaseChangeMaterial)
+    assert material.law == pcm("product: RT25HC, law: cooling").law
+    assert other.parameter("materials.pcm.density.solid").value == 900
+
+
+@pytest.mark.parametrize(
+    ("material", "message"),
+    [
+        ("product: RT25", "a product of the library\n  Did you mean 'RT25HC'"),
+        ("product: 25", "expected: the name of a product"),
+        ("product: RT25HC, kind: solid", "RT25HC is a phase-change material"),
+        ("product: RT25HC, densty: 1", "Did you mean 'density'?"),
+        ("product: RT25HC, latent_heat: 1.0e5", "what the table rises"),
+    ],
+)
+def test_refusals_say_where_and_what(material: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        building(material)
+    assert message in str(caught.value)
+    assert str(caught.value).startswith("room.yaml:4: materials.pcm")
+
+
+def test_what_nobody_knows_must_be_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    bare = Product(
+        "Bare", "y", None, None, "a leaflet", None, None, None, {"latent_heat": 1e5, "density": 900}
+    )
+    monkeypatch.setattr(library, "products", lambda: {"Bare": bare})
+    with pytest.raises(
+        InputError, match="no conductivity and no specific_heat; the source of Bare does not say"
+    ):
+        pcm("product: Bare")
+    given = "product: Bare, conductivity: 0.2, specific_heat: 2000"
+    with pytest.raises(InputError, match="no law; Bare has no curves"):
+        pcm(given)
+    with pytest.raises(InputError, match="melting_temperature: needed"):
+        pcm(f"{given}, law: {{kind: tanh, width: 1}}")
+    material = pcm(f"{given}, melting_temperature: 25, law: {{kind: tanh, width: 1}}")
+    assert values(material, "latent_heat", "density") == [1e5, 900]
+
+
+def test_the_schema_knows_the_short_form() -> None:
+    validator = jsonschema.Draft202012Validator(json_schema())
+    validator.validate(plain(text("product: RT25HC"), "room.yaml"))

@@ -1,0 +1,45 @@
+"""The site: time zones, sources of defaults."""
+
+from __future__ import annotations
+
+import pytest
+
+from building_samples import everything, room
+from mascarin.building.site import utc_offset_minutes
+from mascarin.errors import InputError
+
+
+@pytest.mark.parametrize(
+    ("text", "minutes"),
+    [
+        ("UTC", 0),
+        ("UTC+4", 240),
+        ("UTC-03:30", -210),
+        ("UTC+14", 840),
+        ("UTC+15", None),
+        ("UTC+5:75", None),
+        ("UTC4", None),
+        ("+4", None),
+        ("Europe/Paris", None),
+    ],
+)
+def test_fixed_offsets(text: str, minutes: int | None) -> None:
+    assert utc_offset_minutes(text) == minutes
+
+
+@pytest.mark.parametrize("zone", ["Indian/Reunion", "UTC+4", "UTC", "America/Denver"])
+def test_zones_that_are(zone: str) -> None:
+    assert room().replace({"site.timezone": zone}).site.timezone == zone
+
+
+@pytest.mark.parametrize("zone", ["", "Paris", "UTC+25", "local", "/etc/localtime", "Europe"])
+def test_zones_that_are_not(zone: str) -> None:
+    with pytest.raises(InputError, match="IANA time zone"):
+        room().replace({"site.timezone": zone})
+
+
+def test_every_default_of_the_site_has_a_source() -> None:
+    for building in everything():
+        for parameter in building.parameters():
+            if parameter.path.startswith(("site.sky", "site.cloud", "site.wind", "site.ground")):
+                assert parameter.source or parameter.path == "site.sky.depression", parameter.path

@@ -1,0 +1,298 @@
+"""Calibration of a building against a table that it made itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mascarin.building import Building, load
+from mascarin.calibration import CalibrationProblem, FitParameter, Rules, solve
+from mascarin.calibration.building_problem import Sensor, calibrate, fit_parameter, problem_of
+from mascarin.calibration.least_squares import derivative
+from mascarin.errors import InputError
+from mascarin.examples import FOLDER
+from mascarin.simulation.simulation import Simulation
+from mascarin.study.pipeline import Study
+from mascarin.validation.observation import observe
+from mascarin.weather import Climate, Measurements
+from study_support import BUILDING, FINE, NOISE, TRUTH, logger_table, open_climate
+
+SENSORS = {
+    "joint": Sensor("wall.interface_1_temperature", "joint", 0.06),
+    "core": Sensor("core.temperature", "core", 0.06),
+}
+SPAN: dict[str, Any] = {"start": "2023-03-02", "end": "2023-03-06", "step": "10min", "lead": "1d"}
+
+
+@pytest.fixture(scope="module")
+def building(tmp_path_factory: pytest.TempPathFactory) -> Building:
+    path = tmp_path_factory.mktemp("building") / "building.yaml"
+    path.write_text(BUILDING, encoding="utf-8")
+    return load(path)
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> pd.DataFrame:
+    path = tmp_path_factory.mktemp("table") / "building.yaml"
+    path.write_text(BUILDING, encoding="utf-8")
+    return logger_table(path)
+
+
+@pytest.fixture(scope="module")
+def climate(table: pd.DataFrame) -> Climate:
+    return open_climate(table)
+
+
+@pytest.fixture(scope="module")
+def measured(table: pd.DataFrame) -> Measurements:
+    return Measurements.from_table(table, timezone="UTC+1")
+
+
+def test_the_truth_lies_in_the_interval(building: Building, climate: Climate, measured: Measurements) -> None:
+    # The conductivities go together (correlation 0.97): only on the mesh of the wall that made the table are
+    # they as good as their intervals. A bound that is far away asks for that mesh.
+    free = {path: FINE.get(path, (0.2, 12.0)) for path in TRUTH} | {
+        "surfaces.wall.outside.absorptance": (0.2, 0.8)
+    }
+    fit = calibrate(
+        building, climate, measured, parameters=free, sensors=SENSORS, rules=Rules(starts=1), **SPAN
+    )
+    assert fit.reason == "1 start searched"
+    for k, parameter in enumerate(fit.problem.parameters):
+        half = (fit.high[k] - fit.low[k]) / 2.0
+        assert abs(fit.x[k] - TRUTH[parameter.path]) < 1.5 * half, parameter.path
+    # What is left is the noise of the logger.
+    assert np.nanstd(fit.residuals, axis=0) == pytest.approx([NOISE, NOISE], rel=0.1)
+    assert fit.residuals.shape == (4 * 144, 2)
+
+
+def test_a_record_is_continued_and_bounds_hold(
+    building: Building, climate: Climate, measured: Measurements, tmp_path: Path
+) -> None:
+    # The true absorptance, 0.62, lies outside: the estimate ends on the bound, and it is said.
+    told: list[int] = []
+    record = tmp_path / "record.jsonl"
+
+    def fit() -> Any:
+        return calibrate(
+            building, climate, measured,
+            parameters={"surfaces.wall.outside.absorptance": (0.3, 0.55)},
+            sensors=SENSORS, rules=Rules(starts=1), record=record,
+            progress=lambda done, lowest: told.append(done), **SPAN | {"step": "1h"},
+        )  # fmt: skip
+
+    first = fit()
+    assert first.x[0] == 0.55
+    assert "surfaces.wall.outside.absorptance" in first.on_bound
+    count, before = len(told), record.read_bytes()
+    again = fit()
+    assert again.x[0] == first.x[0]
+    assert record.read_bytes() == before
+    assert len(told) == count
+
+
+def test_output_and_column_are_enough_for_a_sensor(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
+    fit = calibrate(
+        building, climate, measured,
+        parameters=["surfaces.wall.outside.absorptance"], sensors={"core.temperature": "core"},
+        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+    )  # fmt: skip
+    assert [sensor.name for sensor in fit.problem.sensors] == ["core.temperature"]
+    assert fit.problem.sensors[0].uncertainty == pytest.approx(0.5 / 1.96)
+
+
+def test_bounds_come_from_the_building_where_none_are_given(building: Building) -> None:
+    found = fit_parameter(building, "surfaces.wall.outside.absorptance", (None, 0.7), prior=0.1)
+    assert (found.lower, found.upper) == (0.2, 0.7)
+    assert found.nominal == 0.5
+    assert found.prior == (0.5, 0.1)
+    assert found.unit == "-"
+    # A short way to write a path leads to the parameter itself.
+    short = fit_parameter(building, "constructions.wall.layers.brick.conductivity")
+    assert short.path == "materials.brick.conductivity"
+
+
+def test_several_columns_are_averaged_and_stand_for_each_other(
+    building: Building, climate: Climate, table: pd.DataFrame
+) -> None:
+    more = table.assign(twin=table["core"] + 0.2)
+    more.loc[more.index[144:432], "core"] = np.nan
+    measured = Measurements.from_table(more, timezone="UTC+1")
+    fit = calibrate(
+        building, climate, measured,
+        parameters=["surfaces.wall.outside.absorptance"],
+        sensors={"core": Sensor("core.temperature", ["core", "twin"])},
+        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+    )  # fmt: skip
+    shown = fit.problem.sensors[0].measured
+    want = table["core"].resample("1h").first()["2023-03-02":"2023-03-05"].to_numpy()
+    assert len(shown) == 96
+    np.testing.assert_allclose(shown[:48], want[:48] + 0.2, atol=1e-9)
+    np.testing.assert_allclose(shown[48:], want[48:] + 0.1, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"parameters": ["materials.brick.condctivity"]}, "Did you mean 'materials.brick.conductivity'"),
+        ({"parameters": ["site.latitude"]}, "structural .* cannot be fitted; choose another"),
+        ({"parameters": {"materials.brick.conductivity": (-1.0, 1.0)}}, "reaches beyond what the parameter"),
+        ({"sensors": {"core.temprature": "core"}}, "Did you mean 'core.temperature'"),
+        ({"sensors": {"core.temperature": "cor"}}, "no measured column 'cor'. Did you mean 'core'"),
+        ({"start": "2023-04-02", "end": "2023-04-06"}, "outside the data"),
+        ({"start": "2023-03-06", "end": "2023-03-02"}, "expected the end after the start"),
+    ],
+)
+def test_what_cannot_be_used_is_refused(
+    change: dict[str, Any], says: str, building: Building, climate: Climate, measured: Measurements
+) -> None:
+    given: dict[str, Any] = {"parameters": ["materials.brick.conductivity"], "sensors": SENSORS, **SPAN}
+    with pytest.raises(InputError, match=says):
+        calibrate(building, climate, measured, **(given | change))
+
+
+def test_a_sensor_that_repeats_itself_is_refused_before_anything_is_run(
+    building: Building, climate: Climate, table: pd.DataFrame
+) -> None:
+    dead = table.copy()
+    dead.loc["2023-03-02 06:00":"2023-03-05 18:00", "core"] = 17.3
+    measured = Measurements.from_table(dead, timezone="UTC+1")
+    with pytest.raises(InputError, match=r"sensor 'core', column core: stuck from 2023-03-02 06:") as found:
+        calibrate(
+            building, climate, measured, parameters=["materials.brick.conductivity"], sensors=SENSORS, **SPAN
+        )
+    assert "leave it out, mask the stretch, or choose another period" in str(found.value)
+
+
+def test_start_scale_and_a_relative_uncertainty_reach_the_problem(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
+    free = fit_parameter(building, "materials.brick.conductivity", (0.2, 2.0), start=1.5, scale="log")
+    fit = calibrate(
+        building, climate, measured,
+        parameters=[free],
+        sensors={"core": Sensor("core.temperature", "core", 0.06, relative=0.05)},
+        rules=Rules(starts=1), **SPAN | {"step": "1h"},
+    )  # fmt: skip
+    assert fit.minima[0].start[0] == pytest.approx(1.5)
+    assert fit.problem.parameters[0].scale == "log"
+    core = fit.problem.sensors[0]
+    want = np.hypot(0.06 / 1.96, 0.05 / 1.96 * np.abs(core.measured))
+    np.testing.assert_allclose(core.sigma, want)
+    with pytest.raises(InputError, match=r"range \[0.2, 2\] W/\(m K\) does not hold the start 3"):
+        fit_parameter(building, "materials.brick.conductivity", (0.2, 2.0), start=3.0)
+
+
+# --- exact slopes ---------------------------------------------------------------------------------------
+
+#: Where the seven parameters of the paper stand between the ends of their ranges, beside their start.
+PLACES = np.array([0.62, 0.35, 0.41, 0.55, 0.33, 0.47, 0.58])
+
+
+@pytest.fixture(scope="module")
+def seven() -> CalibrationProblem:
+    """The seven parameters of the LGI cell on two days, against data that a known truth made.
+
+    One sensor is a mean over its interval, one an output that the records are turned into.
+    """
+    study = Study(FOLDER / "lgi" / "study.yaml")
+    variant = "the paper's seven, 25 outside"
+    building = study.building_of(variant)
+    free = [fit_parameter(building, path) for path in study.plan_of(variant).parameters]
+    sensors = {
+        "operative": Sensor("room.operative_temperature", "room_air", 0.3),
+        "interface": Sensor("ceiling.energain_plasterboard_temperature", "pcm_plasterboard", 0.3),
+        "top": Sensor("ceiling.outside_temperature", "pcm_top", 0.3),
+        "gap": Sensor("air_gap.air_temperature", "gap_air", 0.3),
+        "steel": Sensor("roof.inside_temperature", "steel_sheet", 0.3),
+    }
+    simulation = Simulation(
+        building,
+        study.climate,
+        step="15min",
+        start="2010-09-20",
+        end="2010-09-23",
+        outputs=[sensor.output for sensor in sensors.values()],
+        measurements=study.measurements,
+        ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
+    )
+    begin = pd.Timestamp("2010-09-21", tz=study.climate.grid.zone)
+    observation = observe(simulation, study.measurements, sensors, begin)
+    observation = replace(observation, kinds=("instant", "instant", "instant", "mean", "instant"))
+    # Two stretches, of which one night between them takes no part.
+    use = np.ones(len(observation.times), dtype=np.bool_)
+    use[80:112] = False
+    posed = problem_of(simulation, observation, use, free, sensors)
+    truth = posed.values(PLACES[None])
+    made = np.asarray(posed.model(truth))[0]
+    data = (replace(s, measured=made[:, k]) for k, s in enumerate(posed.sensors))
+    return replace(posed, sensors=tuple(data))
+
+
+def test_exact_slopes_of_the_cell_are_those_of_differences(seven: CalibrationProblem) -> None:
+    for z in (PLACES, seven.positions(np.array([p.first for p in seven.parameters]))):
+        found = seven.jacobian(seven.values(z[None])[0]) * seven.rates(z)
+        near = derivative(seven, z, 1e-4)[1]
+        assert found.shape == (160, 5, 7)
+        largest = np.abs(found).max(axis=(0, 1))
+        assert (largest > 0.1).all()
+        apart = np.abs(found - near)
+        assert apart.max() < 1e-5 * largest.max()
+        # Of each parameter's own largest too, but for the few instants at which the iteration of a step ends
+        # early: differences are those of the last iterate, whatever their step, exact slopes of the solution.
+        assert (np.quantile(apart, 0.99, axis=(0, 1)) < 1e-6 * largest).all()
+        assert (apart.max(axis=(0, 1)) < 3e-5 * largest).all()
+
+
+def test_seven_parameters_of_the_cell_come_back_with_exact_slopes(
+    seven: CalibrationProblem, tmp_path: Path
+) -> None:
+    rules = Rules(starts=2, slopes="exact")
+    record = tmp_path / "record.jsonl"
+    fit = solve(seven, rules=rules, record=record)
+    assert len(fit.minima) == 2
+    for minimum in fit.minima:
+        np.testing.assert_allclose(minimum.x, seven.values(PLACES[None])[0], rtol=1e-6)
+    kept = record.read_bytes()
+    again = solve(seven, rules=rules, record=record)
+    np.testing.assert_array_equal(again.x, fit.x)
+    np.testing.assert_array_equal(again.low, fit.low)
+    assert record.read_bytes() == kept
+
+
+def test_exact_slopes_hold_at_bounds(
+    building: Building, climate: Climate, measured: Measurements, tmp_path: Path
+) -> None:
+    found, near = (
+        calibrate(
+            building, climate, measured,
+            parameters={
+                "surfaces.wall.outside.absorptance": (0.3, 0.55),
+                "surfaces.wall.inside.convection.coefficient": (4.0, 12.0),
+            },
+            sensors=SENSORS, rules=Rules(starts=2, slopes=slopes), **SPAN | {"step": "1h"},
+        )
+        for slopes in ("exact", "differences")
+    )  # fmt: skip
+    assert found.x[0] == near.x[0] == 0.55
+    assert "surfaces.wall.outside.absorptance" in found.on_bound
+    np.testing.assert_allclose(found.x, near.x, rtol=1e-3)
+
+
+def test_what_has_no_slope_is_refused(building: Building, climate: Climate, measured: Measurements) -> None:
+    exact = Rules(slopes="exact")
+    given: dict[str, Any] = {"sensors": SENSORS, "rules": exact, **SPAN}
+    by_hand = FitParameter("site.latitude", 40.0, 50.0)
+    with pytest.raises(InputError, match=r"site\.latitude: is structural"):
+        calibrate(building, climate, measured, parameters=[by_hand], **given)
+    with pytest.raises(InputError, match="least-squares minimises 'nll'; for the cost 'sd'"):
+        calibrate(
+            building, climate, measured, parameters=["materials.brick.conductivity"], cost="sd", **given
+        )

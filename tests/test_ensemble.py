@@ -1,0 +1,319 @@
+"""Ensembles: members in order, the same bits alone and together, failures that are named."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from ensemble_support import Forgetful, always_deadly, coldest, deadly, warmest
+from mascarin.building import Building, load
+from mascarin.ensemble import Statistic, Store, latin_hypercube, sweep, sweep_into
+from mascarin.ensemble import workers as sweep_workers
+from mascarin.errors import InputError, SolverError
+from mascarin.simulation.simulation import Failure, Simulation, simulate
+from mascarin.weather import Climate, Measurements
+from study_support import BUILDING, drivers, open_climate
+
+JOINT = "wall.interface_1_temperature"
+K = "materials.insulation.conductivity"
+FILM = "surfaces.wall.inside.convection.coefficient"
+
+
+@pytest.fixture(scope="module")
+def building(tmp_path_factory: pytest.TempPathFactory) -> Building:
+    path = tmp_path_factory.mktemp("building") / "building.yaml"
+    path.write_text(BUILDING, encoding="utf-8")
+    return load(path)
+
+
+@pytest.fixture(scope="module")
+def climate() -> Climate:
+    return open_climate(drivers())
+
+
+@pytest.fixture(scope="module")
+def measured() -> Measurements:
+    return Measurements.from_table(drivers(), timezone="UTC+1")
+
+
+def test_members_come_in_order_with_their_samples(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
+    samples = {K: [0.02, 0.04, 0.06], FILM: [4.0, 8.0, 12.0]}
+    found = sweep(
+        building, climate, samples, outputs=[JOINT], step="1h", start="2023-03-01", end="2023-03-04",
+        measurements=measured,
+    )  # fmt: skip
+    assert found[JOINT].dims == ("member", "time")
+    assert found[JOINT].shape == (3, 73)
+    assert found[JOINT].attrs["units"] == "degC"
+    np.testing.assert_array_equal(found["samples"], np.column_stack([samples[K], samples[FILM]]))
+    assert found["parameter"].to_numpy().tolist() == [K, FILM]
+    assert (found["closure"] < 1e-10).all()
+    assert found.attrs["failures"] == []
+    assert found.attrs["timezone"] == "UTC+1"
+    # Times are UTC without a zone: local midnight is 23:00 of the day before.
+    assert pd.Timestamp(found["time"].to_numpy()[0]) == pd.Timestamp("2023-02-28 23:00")
+    # The better it insulates, the nearer the joint is to the room.
+    mean = found[JOINT].mean("time").to_numpy()
+    assert mean[0] > mean[1] > mean[2]
+
+
+def test_a_member_does_not_depend_on_the_others(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
+    span = {"step": "1h", "start": "2023-03-01", "end": "2023-03-03", "measurements": measured}
+    # The same mesh for all: the worst ends of the ranges are among each of the samples.
+    values = np.array([0.02, 0.06, 0.031, 0.05, 0.045, 0.033, 0.027, 0.058, 0.041, 0.022])
+    whole = sweep(building, climate, {K: values}, outputs=[JOINT], **span)  # type: ignore[arg-type]
+    part = sweep(building, climate, {K: values[[0, 1, 7]]}, outputs=[JOINT], **span)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(part[JOINT].to_numpy(), whole[JOINT].to_numpy()[[0, 1, 7]])
+
+
+def test_a_sweep_of_one_is_a_run(building: Building, climate: Climate, measured: Measurements) -> None:
+    nominal = float(building.parameter(K).value)
+    span = {"step": "1h", "start": "2023-03-01", "end": "2023-03-03", "measurements": measured}
+    one = sweep(building, climate, {K: [nominal]}, outputs=[JOINT], **span)  # type: ignore[arg-type]
+    run = simulate(building, climate, outputs=[JOINT], **span)  # type: ignore[arg-type]
+    np.testing.assert_allclose(one[JOINT].to_numpy()[0], run.records[:, 0], atol=1e-9)
+
+
+def test_a_frame_of_samples_is_taken_too(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
+    frame = pd.DataFrame({K: [0.03, 0.05]})
+    found = sweep(
+        building, climate, frame, outputs=[JOINT], step="1h", end="2023-03-02", measurements=measured
+    )
+    assert found.sizes["member"] == 2
+
+
+@pytest.mark.parametrize(
+    ("samples", "says"),
+    [
+        ({}, "samples: no columns; give values by parameter path"),
+        ({K: [0.03, 0.04], FILM: [8.0]}, "expected the same number for every path"),
+        ({K: []}, "expected one value for each member"),
+        ({K: [0.03, -1.0]}, r"of member 1 is -1 W/\(m K\); expected a value from 0 to"),
+        ({K: [0.03, float("nan")]}, "of member 1 is nan"),
+        ({"materials.insulation.conductivty": [1.0]}, "Did you mean 'materials.insulation.conductivity'"),
+        ({"site.latitude": [44.0, 95.0]}, "member 1.*latitude"),
+        ({"surfaces.wall.inside.convection": [8.0, "tarpp"]}, "(?s)member 1.*tarpp"),
+    ],
+)
+def test_samples_that_cannot_be_are_refused(
+    samples: dict[str, list[float]], says: str, building: Building, climate: Climate, measured: Measurements
+) -> None:
+    with pytest.raises(InputError, match=says):
+        sweep(building, climate, samples, outputs=[JOINT], step="1h", end="2023-03-02", measurements=measured)
+
+
+def test_an_unknown_output_is_refused(
+    building: Building, climate: Climate, measured: Measurements, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=r"wall.interface_1_temperature"):
+        sweep(building, climate, {K: [0.03]}, outputs=["wall.interface_1_temprature"], measurements=measured)
+
+
+SOME = {K: np.linspace(0.02, 0.06, 40), FILM: np.linspace(4.0, 12.0, 40)}
+
+
+class Setting:
+    """What all sweeps below share."""
+
+    def __init__(self, building: Building, climate: Climate, measured: Measurements) -> None:
+        self.place = (building, climate)
+        self.options: dict[str, Any] = {
+            "outputs": [JOINT], "step": "1h", "start": "2023-03-01", "end": "2023-03-03",
+            "measurements": measured,
+        }  # fmt: skip
+
+    def sweep(self, samples: Any, **more: Any) -> xr.Dataset:
+        return sweep(*self.place, samples, **{**self.options, **more})
+
+    def into(self, folder: Path, samples: Any, **more: Any) -> Store:
+        return sweep_into(folder, *self.place, samples, **{**self.options, **more})
+
+
+@pytest.fixture(scope="module")
+def setting(building: Building, climate: Climate, measured: Measurements) -> Setting:
+    return Setting(building, climate, measured)
+
+
+def test_structural_parameters_and_whole_parts_are_grouped(setting: Setting) -> None:
+    building, climate = setting.place
+    windy = {"kind": "linear_wind", "constant": 2.0, "wind": 1.0}
+    samples: dict[str, list[Any]] = {
+        K: [0.02, 0.03, 0.04, 0.05],
+        "site.latitude": [44.0, 46.0, 44.0, 46.0],
+        "surfaces.wall.inside.convection": [8.0, windy, windy, 8.0],
+    }
+    found = setting.sweep(samples)
+    for member in range(4):
+        shape = {path: values[member] for path, values in samples.items() if path != K}
+        # The mesh is the same: it is chosen for the whole range of the samples.
+        alone = sweep(
+            building.replace(shape), climate, {K: [samples[K][member], 0.02, 0.05]}, **setting.options
+        )
+        np.testing.assert_array_equal(found[JOINT][member], alone[JOINT][0])
+    assert found["sample: site.latitude"].to_numpy().tolist() == samples["site.latitude"]
+    assert len({float(mean) for mean in found[JOINT].mean("time")}) == 4
+
+
+def test_objectives_are_what_the_series_give(setting: Setting) -> None:
+    series = setting.sweep(SOME)[JOINT]
+    found = setting.sweep(SOME, objectives={"warmest": warmest, "coldest": coldest})
+    np.testing.assert_array_equal(found["warmest"], series.max("time"))
+    np.testing.assert_array_equal(found["coldest"], series.min("time"))
+    assert JOINT not in found
+
+
+def test_objectives_that_cannot_be_are_named(setting: Setting) -> None:
+    with pytest.raises(InputError, match=r"objective 'none': found a result of shape \(16, 49\)"):
+        setting.sweep(SOME, objectives={"none": lambda run: run[JOINT]})
+    with pytest.raises(InputError, match="objective 'lost' failed: KeyError"):
+        setting.sweep(SOME, objectives={"lost": lambda run: run["room"]})
+    with pytest.raises(InputError, match="'closure' is the name of something else"):
+        setting.sweep(SOME, objectives={"closure": warmest})
+
+
+def test_workers_give_the_bits_of_threads(setting: Setting) -> None:
+    told: list[int] = []
+    found = setting.sweep(SOME, workers=2, report=told.append)
+    np.testing.assert_array_equal(found[JOINT], setting.sweep(SOME)[JOINT])
+    assert told[-1] == 40
+    with pytest.raises(InputError, match="workers: found 0"):
+        setting.sweep(SOME, workers=0)
+
+
+def test_a_worker_that_dies_loses_nothing(
+    setting: Setting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MASCARIN_TEST_MARK", str(tmp_path / "died"))
+    found = setting.sweep(SOME, objectives={"warmest": deadly}, workers=2)
+    assert (tmp_path / "died").exists()
+    np.testing.assert_array_equal(found["warmest"], setting.sweep(SOME)[JOINT].max("time"))
+
+
+def test_a_stretch_that_kills_every_worker_is_named(setting: Setting) -> None:
+    with pytest.raises(SolverError, match=r"members \d+ to \d+: their worker died 3 times"):
+        setting.sweep(SOME, objectives={"warmest": always_deadly}, workers=1)
+
+
+def test_any_executor_does_and_may_lose_work(setting: Setting) -> None:
+    executor = Forgetful()
+    found = setting.sweep(SOME, workers=executor)
+    assert executor.given > 3
+    np.testing.assert_array_equal(found[JOINT], setting.sweep(SOME)[JOINT])
+
+
+def test_a_cluster_of_processes(setting: Setting) -> None:
+    distributed = pytest.importorskip("distributed")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        cluster = distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        )
+        with cluster, distributed.Client(cluster) as client:
+            found = setting.sweep(SOME, objectives={"warmest": warmest}, workers=client.get_executor())
+    np.testing.assert_array_equal(found["warmest"], setting.sweep(SOME)[JOINT].max("time"))
+
+
+@pytest.mark.parametrize("objectives", [None, {"warmest": warmest}])
+def test_a_store_goes_on_where_it_was_cut_off(
+    setting: Setting, tmp_path: Path, objectives: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = setting.into(tmp_path / "whole", SOME, objectives=objectives, seed=7)
+    # Other stretches, cut off in the second of them.
+    monkeypatch.setattr(sweep_workers, "FIRST", 8)
+    told: list[int] = []
+
+    def impatient(done: int) -> None:
+        told.append(done)
+        if done > 8:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        setting.into(tmp_path / "cut", SOME, objectives=objectives, seed=7, report=impatient)
+    half = Store(tmp_path / "cut")
+    assert (half.complete, half.done) == (False, 8)
+    assert half.gaps() == [(8, 40)]
+    assert len(half.table()) == 8
+    with pytest.raises(InputError, match="members 0 to 39 are not all there; 8 of 40"):
+        half.dataset()
+    (tmp_path / "cut" / "pieces" / "000000000008-000000000016.part").write_bytes(b"half written")
+    told.clear()
+    setting.into(tmp_path / "cut", SOME, objectives=objectives, seed=7, report=told.append)
+    assert told[0] > 8
+    for name in ("manifest.json", "members.parquet"):
+        assert (tmp_path / "cut" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    assert sorted(file.name for file in (tmp_path / "cut").iterdir()) == ["manifest.json", "members.parquet"]
+    name = "warmest" if objectives else JOINT
+    straight = setting.sweep(SOME, objectives=objectives)
+    np.testing.assert_array_equal(whole.dataset()[name], straight[name])
+    np.testing.assert_array_equal(whole.dataset(3, 11)[name], straight[name][3:11])
+    np.testing.assert_array_equal(whole.dataset()[f"sample: {K}"], SOME[K])
+    assert whole.manifest["seed"] == 7
+    assert whole.manifest["mascarin_version"]
+
+
+def test_a_folder_with_something_else_is_refused(setting: Setting, tmp_path: Path) -> None:
+    setting.into(tmp_path / "kept", SOME, objectives={"warmest": warmest})
+    with pytest.raises(InputError, match="differs in identity, samples; expected the same one"):
+        setting.into(tmp_path / "kept", {**SOME, K: SOME[K] + 0.01}, objectives={"warmest": warmest})
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "thesis.txt").write_text("years of work", encoding="utf-8")
+    with pytest.raises(InputError, match="not empty and no ensemble"):
+        setting.into(tmp_path / "other", SOME)
+    with pytest.raises(InputError, match="no readable manifest"):
+        Store(tmp_path / "nowhere")
+
+
+def test_failing_members_are_kept_with_their_reason(setting: Setting, tmp_path: Path) -> None:
+    ensemble = Simulation.ensemble
+
+    def failing(self: Simulation, vectors: Any, **options: Any) -> Any:
+        records, closure, _ = ensemble(self, vectors, **options)
+        return records, closure, [Failure(2, "step 4: the wall did not converge")]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Simulation, "ensemble", failing)
+        found = setting.sweep({K: SOME[K][:8]})
+        kept = setting.into(tmp_path / "kept", {K: SOME[K][:8]})
+    assert found.attrs["failures"] == ["member 2: step 4: the wall did not converge"]
+    assert np.isnan(found[JOINT][2]).all()
+    assert not np.isnan(found[JOINT][3]).any()
+    assert kept.table()["failure"][2] == "step 4: the wall did not converge"
+    assert kept.dataset().attrs["failures"] == found.attrs["failures"]
+
+
+def test_statistics_in_words(setting: Setting) -> None:
+    series = setting.sweep(SOME)[JOINT]
+    words = [f"{kind}:{JOINT}" for kind in ("min", "mean", "max", "sd")]
+    words += [f"above:12:{JOINT}", f"below:12:{JOINT}"]
+    found = setting.sweep(SOME, objectives={text: Statistic.read(text) for text in words})
+    np.testing.assert_allclose(found[words[1]], series.mean("time"), rtol=1e-14)
+    np.testing.assert_allclose(found[words[3]], series.std("time"), rtol=1e-12)
+    np.testing.assert_array_equal(found[words[4]], (series[:, 1:] > 12.0).sum("time"))
+    np.testing.assert_array_equal(found[words[4]] + found[words[5]], 48.0)
+    for text in ("mx:a", "max", "above:a", "max:1:a", "above::a"):
+        with pytest.raises(InputError, match="objective: found"):
+            Statistic.read(text)
+
+
+def test_members_are_drawn_evenly_and_again_the_same(building: Building) -> None:
+    drawn = latin_hypercube(building, 50, seed=3, paths=[K, FILM])
+    parameter = building.parameter(K)
+    strata = (drawn[K].to_numpy() - parameter.low) / (parameter.high - parameter.low) * 50
+    assert sorted(strata.astype(int).tolist()) == list(range(50))
+    assert drawn.equals(latin_hypercube(building, 50, seed=3, paths=[K, FILM]))
+    assert not drawn.equals(latin_hypercube(building, 50, seed=4, paths=[K, FILM]))
+    assert "site.latitude" not in latin_hypercube(building, 2, seed=3)
+    with pytest.raises(InputError, match="structural"):
+        latin_hypercube(building, 2, seed=3, paths=["site.latitude"])

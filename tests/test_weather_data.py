@@ -1,0 +1,101 @@
+from __future__ import annotations
+
+import builtins
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mascarin.errors import InputError
+from mascarin.weather import data as data_module
+from mascarin.weather.data import FILES, cache_folder, data_file
+
+
+@pytest.fixture
+def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """No data folder and an empty cache."""
+    monkeypatch.delenv("MASCARIN_DATA", raising=False)
+    for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
+        monkeypatch.setenv(name, str(tmp_path))
+    return tmp_path
+
+
+@pytest.mark.parametrize("known", FILES, ids=lambda known: known.name)
+def test_pinned_hashes_are_those_of_the_files(
+    data_dir: Path, monkeypatch: pytest.MonkeyPatch, known: data_module.DataFile
+) -> None:
+    monkeypatch.setenv("MASCARIN_DATA", str(data_dir))
+    path = data_file(known.name)
+    assert path == data_dir / known.path
+    assert hashlib.sha256(path.read_bytes()).hexdigest() == known.sha256
+    assert data_file(known.path) == path
+
+
+def test_a_flat_folder_will_do(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MASCARIN_DATA", str(empty))
+    (empty / "pcm_products.csv").write_text("x", encoding="utf-8")
+    assert data_file("pcm_products.csv") == empty / "pcm_products.csv"
+
+
+def test_unknown_name_gets_a_suggestion() -> None:
+    with pytest.raises(
+        InputError, match=r"data:wall_bench.csv: no such data set. Did you mean 'wall_bench_2024.csv'"
+    ):
+        data_file("wall_bench.csv")
+
+
+def test_cache_is_used_only_with_the_pinned_hash(
+    empty: Path, monkeypatch: pytest.MonkeyPatch, data_dir: Path
+) -> None:
+    cached = cache_folder() / "pcm" / "pcm_products.csv"
+    cached.parent.mkdir(parents=True)
+    cached.write_text("damaged", encoding="utf-8")
+    with pytest.raises(InputError, match="cannot be downloaded"):
+        data_file("pcm_products.csv")
+    cached.write_bytes((data_dir / "pcm" / "pcm_products.csv").read_bytes())
+    assert data_file("pcm_products.csv") == cached
+
+
+def test_download_goes_to_the_cache(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pooch = pytest.importorskip("pooch")
+    asked: list[tuple[str, str]] = []
+
+    def retrieve(url: str, known_hash: str, fname: str, path: Path) -> str:
+        asked.append((url, known_hash))
+        path.mkdir(parents=True)
+        (path / fname).write_text("from afar", encoding="utf-8")
+        return str(path / fname)
+
+    monkeypatch.setattr(pooch, "retrieve", retrieve)
+    path = data_file("wall_bench_2024.csv")
+    assert path.read_text(encoding="utf-8") == "from afar"
+    assert path.parent.parent == cache_folder()
+    assert asked[0][0].startswith("https://")
+    assert asked[0][1] == f"sha256:{FILES[0].sha256}"
+
+
+def test_failed_download_and_missing_pooch_say_what_to_do(
+    empty: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pooch = pytest.importorskip("pooch")
+
+    def refuse(*_: Any, **__: Any) -> str:
+        raise ValueError("SHA256 hash of downloaded file does not match")
+
+    monkeypatch.setattr(pooch, "retrieve", refuse)
+    with pytest.raises(
+        InputError, match=r"does not match.*set MASCARIN_DATA to a folder that holds wall_bench/"
+    ):
+        data_file("wall_bench_2024.csv")
+
+    real = builtins.__import__
+
+    def without_pooch(name: str, *rest: Any, **named: Any) -> Any:
+        if name == "pooch":
+            raise ImportError(name)
+        return real(name, *rest, **named)
+
+    monkeypatch.setattr(builtins, "__import__", without_pooch)
+    with pytest.raises(InputError, match=r"needs the package pooch: install mascarin\[data\]"):
+        data_file("wall_bench_2024.csv")
