@@ -1,4 +1,4 @@
-"""Progress of long work on stderr, with the time that remains."""
+"""Progress of long work, with the time that remains: on standard error, or as a bar in a notebook."""
 
 from __future__ import annotations
 
@@ -6,9 +6,16 @@ import contextlib
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Final, Self, TextIO
+
+Report = Callable[[int, int], object]
+"""What is called during long work, with the number of units done and their total."""
+
+ProgressOption = bool | Report | None
+"""The option ``progress`` of every function: None shows progress in notebooks only, True everywhere, False
+nowhere; a function is called with the number of units done and their total."""
 
 SILENT_FOR: Final = 2.0
 """Work shorter than this shows nothing. [s]"""
@@ -16,6 +23,67 @@ SILENT_FOR: Final = 2.0
 _REDRAW_EVERY: Final = 0.1  # s, on a terminal
 _LINE_EVERY: Final = 5.0  # s, in a log
 _BAR: Final = 24  # characters
+
+
+@contextlib.contextmanager
+def reporting(progress: ProgressOption, label: str) -> Iterator[Report]:
+    """Turn the option ``progress`` of a function into one callable.
+
+    Parameters
+    ----------
+    progress : bool, callable or None
+        As the user gave it; see `ProgressOption`.
+    label : str
+        What is being done, a few words.
+
+    Yields
+    ------
+    callable
+        To be called with the number of units done and their total.
+
+    Examples
+    --------
+    >>> seen = []
+    >>> with reporting(lambda done, total: seen.append((done, total)), "runs") as report:
+    ...     report(1, 2)
+    >>> seen
+    [(1, 2)]
+    """
+    if callable(progress):
+        call = progress
+
+        def forward(done: int, total: int) -> None:
+            call(done, total)
+
+        yield forward
+    elif progress is not False and in_notebook():
+        with _notebook_bar(label) as report:
+            yield report
+    elif progress:
+        with Progress(label) as shown:
+            yield shown
+    else:
+        yield lambda _done, _total: None
+
+
+def in_notebook() -> bool:
+    """Whether this process runs the cells of a notebook."""
+    module = sys.modules.get("IPython")
+    shell = None if module is None else module.get_ipython()
+    return shell is not None and type(shell).__name__ == "ZMQInteractiveShell"
+
+
+@contextlib.contextmanager
+def _notebook_bar(label: str) -> Iterator[Report]:
+    from tqdm.auto import tqdm
+
+    with tqdm(desc=label, delay=SILENT_FOR, leave=False) as bar:
+
+        def report(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        yield report
 
 
 class Progress:

@@ -1,0 +1,3 @@
+"""Files and text shared by all packages: atomic writes, folder locks, short descriptions of objects."""
+
+from __future__ import annotations

@@ -1,0 +1,107 @@
+"""Files that appear complete or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import BinaryIO, Final
+
+PART: Final = ".part"
+"""Ending of a file that is being written; one that is found later was left by a killed process."""
+
+
+@contextlib.contextmanager
+def replacing(path: Path) -> Iterator[BinaryIO]:
+    r"""Open a file for writing that takes the place of another only when it is complete.
+
+    The content goes to a temporary file of a unique name in the same folder, is flushed to the disk, and is
+    then renamed. Two processes that write the same file do not mix their content: the last one wins.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; its folder exists.
+
+    Yields
+    ------
+    BinaryIO
+        The temporary file.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written; the file that was there before is unchanged.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> target = Path(tempfile.mkdtemp()) / "table.csv"
+    >>> with replacing(target) as file:
+    ...     size = file.write(b"a,b\n")
+    >>> target.read_text()
+    'a,b\n'
+    """
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PART, dir=path.parent)
+    draft = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        draft.chmod(_usual_mode())
+        draft.replace(path)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+    _flush_folder(path.parent)
+
+
+def write(path: Path, content: str | bytes) -> Path:
+    """Write a whole file at once; see `replacing`.
+
+    Parameters
+    ----------
+    path : Path
+        File to write.
+    content : str or bytes
+        Its content; text is written as UTF-8 with the line ends it has.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    with replacing(path) as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+    return path
+
+
+def remove_drafts(folder: Path) -> None:
+    """Remove what killed processes left half written in a folder that this process has locked."""
+    for draft in folder.glob(f"*{PART}"):
+        draft.unlink(missing_ok=True)
+
+
+def _usual_mode() -> int:
+    """Permissions that a new file gets; temporary files are made readable to their owner alone."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def _flush_folder(folder: Path) -> None:
+    """Make the renaming itself last, where the system lets a folder be flushed."""
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

@@ -1,0 +1,97 @@
+"""Atomic writes, folder locks and short descriptions."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from mascarin._io import atomic, display
+from mascarin._io.locks import FolderLock
+from mascarin.errors import InputError
+
+
+def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
+    target = tmp_path / "a.csv"
+    atomic.write(target, "old")
+    atomic.write(target, b"new\r\n")
+    assert target.read_bytes() == b"new\r\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
+
+
+def test_a_failure_keeps_the_old_file(tmp_path: Path) -> None:
+    target = tmp_path / "a.csv"
+    atomic.write(target, "old")
+
+    def fail() -> None:
+        with atomic.replacing(target) as file:
+            file.write(b"half")
+            raise RuntimeError("disk")
+
+    with pytest.raises(RuntimeError, match="disk"):
+        fail()
+    assert target.read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
+
+
+def test_two_writers_do_not_mix(tmp_path: Path) -> None:
+    target = tmp_path / "a.csv"
+    with atomic.replacing(target) as first:
+        first.write(b"first")
+        with atomic.replacing(target) as second:
+            second.write(b"2")
+        assert target.read_bytes() == b"2"
+    assert target.read_bytes() == b"first"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="permissions of POSIX systems")
+def test_a_new_file_has_the_usual_permissions(tmp_path: Path) -> None:
+    usual = tmp_path / "usual"
+    usual.write_text("")
+    atomic.write(tmp_path / "ours", "")
+    assert (tmp_path / "ours").stat().st_mode == usual.stat().st_mode
+
+
+def test_drafts_of_killed_processes_are_removed(tmp_path: Path) -> None:
+    (tmp_path / ".a.csv.x1.part").write_text("half")
+    (tmp_path / "b.csv").write_text("whole")
+    atomic.remove_drafts(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["b.csv"]
+
+
+def test_a_locked_folder_refuses_a_second_process(tmp_path: Path) -> None:
+    code = (
+        "import sys; from pathlib import Path; from mascarin._io.locks import FolderLock\n"
+        "lock = FolderLock(Path(sys.argv[1])); print('held', flush=True); sys.stdin.read()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        env=dict(os.environ), text=True,
+    ) as other:  # fmt: skip
+        assert other.stdout is not None
+        assert other.stdout.readline() == "held\n"
+        with pytest.raises(InputError, match=r"another process is writing .* choose another folder"):
+            FolderLock(tmp_path)
+        other.kill()
+    with FolderLock(tmp_path):
+        pass
+
+
+def test_text_has_at_most_fifteen_lines() -> None:
+    rows = [(f"name {k}", "x" * 200) for k in range(40)]
+    lines = display.text("Title", rows).splitlines()
+    assert len(lines) == 15
+    assert lines[-1] == "  ... 27 more"
+    assert max(map(len, lines)) <= 100
+
+
+def test_html_is_escaped() -> None:
+    table = pd.DataFrame({"<b>": ["<script>"]})
+    found = display.page("<i>", [("<a>", "<u>")], tables={"<em>": table})
+    for tag in ("<i>", "<a>", "<u>", "<em>", "<b>", "<script>"):
+        assert tag not in found
+    assert found.count("<details>") == 1
