@@ -1,15 +1,32 @@
+from . import building as building
+from . import calibration as calibration
+from . import ensemble as ensemble
+from . import materials as materials
+from . import optimization as optimization
+from . import sensitivity as sensitivity
+from . import simulation as simulation
+from . import validation as validation
+from . import weather as weather
+from .building import Building as Building
 from .building import load as load
 from .calibration import calibrate as calibrate
 from .ensemble import sweep as sweep
+from .errors import InputError as InputError
+from .errors import MascarinError as MascarinError
+from .errors import SolverError as SolverError
 from .materials.dsc import from_dsc as from_dsc
+from .sensitivity import Sensitivity as Sensitivity
 from .sensitivity import screen as screen
 from .simulation.derivatives import gradient as gradient
 from .simulation.derivatives import jacobian as jacobian
 from .simulation.initial import MeasuredStart as MeasuredStart
 from .simulation.linear_model import state_space as state_space
+from .simulation.results import Results as Results
+from .simulation.simulation import Simulation as Simulation
 from .simulation.simulation import simulate as simulate
 from .study import Study as Study
 from .weather import Climate as Climate
+from .weather import Measurements as Measurements
 
 __version__: str
 __all__: list[str]
