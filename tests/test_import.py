@@ -45,5 +45,5 @@ def test_no_package_has_the_name_of_a_public_function() -> None:
 
 
 def test_unknown_name() -> None:
-    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+    with pytest.raises(AttributeError, match="No mascarin attribute nothing"):
         _ = mascarin.nothing  # type: ignore[attr-defined]
