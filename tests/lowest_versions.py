@@ -33,7 +33,7 @@ def main(file: Path) -> None:
     project = tomllib.loads(file.read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
     texts = [*project["dependencies"], *(t for name in sorted(extras) if name != "dev" for t in extras[name])]
-    print("\n".join(sorted({lowest(text) for text in texts}) + TESTS))
+    sys.stdout.write("\n".join(sorted({lowest(text) for text in texts}) + TESTS) + "\n")
 
 
 if __name__ == "__main__":

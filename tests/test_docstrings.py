@@ -20,7 +20,7 @@ PACKAGES = [
     "validation", "weather",
 ]  # fmt: skip
 
-#: numpydoc's checks that hold here: no docstring, no summary, parameters that are missing, unknown, in another
+#: Checks of numpydoc: no docstring, no summary, parameters that are missing, unknown, in another
 #: order or without a description.
 CHECKS = {"GL08", "SS01", "SS04", "PR01", "PR02", "PR03", "PR07"}
 #: Python's own members that classes inherit.
