@@ -40,7 +40,7 @@ def test_summary(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert (name, unit) == ("room.air_temperature", "degC")
     assert -15.0 < float(low) < float(mean) < float(high) < 25.0
     assert "start: first 24 h repeated" in out
-    assert float(out.split("closure")[1]) < 1e-10
+    assert float(out.split("energy-balance residual")[1]) < 1e-10
 
 
 def test_json(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:

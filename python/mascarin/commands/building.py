@@ -115,9 +115,9 @@ def _unreached(building: Building, weather: Path | None) -> dict[str, str]:
     if weather is None:
         raise InputError("--reach: found no --weather; expected a weather file to run the building in")
     from mascarin.commands.run import read_weather
-    from mascarin.simulation.simulation import unreached
+    from mascarin.simulation.inactive import inactive_parameters
 
-    return unreached(building, read_weather(weather))
+    return inactive_parameters(building, read_weather(weather))
 
 
 def _matches(path: str, patterns: tuple[str, ...]) -> bool:

@@ -83,7 +83,6 @@ def sweep(
             "--objective max:room.air_temperature"
         )
     kept = {text: Statistic.read(text) for text in objectives or ()}
-    total = len(table)
     with Progress("members") as progress:
         store = sweep_into(
             out,
@@ -97,7 +96,7 @@ def sweep(
             end=end,
             workers=workers,
             seed=None if samples is not None else seed,
-            report=lambda done: progress(done, total),
+            progress=progress,
         )
     _print(store, as_json)
 
