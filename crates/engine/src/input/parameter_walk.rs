@@ -6,7 +6,7 @@
 use core::fmt::{Display, Write};
 
 use super::description::{
-    AirPath, Angular, Construction, Convection, Description, Facing, FrameShare, Gain, Gap, Glazing,
+    AirPath, Angular, Clouds, Construction, Convection, Description, Facing, FrameShare, Gain, Gap, Glazing,
     IdealLoad, Infiltration, Layer, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
     ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, Surface, Ventilation, WindProfile, Zone,
     ZoneLongwave, ZoneSun,
@@ -105,6 +105,17 @@ walk!(Description { site, materials, constructions, zones, air_paths, openings, 
     plain { parameters, shades, channels });
 
 walk!(Site { altitude, air_density, ground_reflectance, wind, sky, cloud } plain { diffuse });
+impl ParameterIds for Clouds {
+    fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
+        match self {
+            Self::Factor(coefficients) => coefficients.parameter_ids(walk),
+            Self::Layer { emissivity, base } => {
+                walk.field("emissivity", emissivity);
+                walk.field("base", base);
+            }
+        }
+    }
+}
 walk!(WindProfile { mast_height, mast_exponent, mast_layer, exponent, layer } plain {});
 walk!(Sky by variant {
     Measured { scale } plain {},

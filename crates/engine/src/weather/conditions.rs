@@ -109,7 +109,7 @@ impl<S: Real> Conditions<S> {
     ) {
         let site = &plan.description.site;
         let air = S::constant(now.row[channel::AIR_TEMPERATURE]);
-        let sky = sky_emission(&Values::new(numbers), &site.sky, coefficients.cloud, &now.sky);
+        let sky = sky_emission(&Values::new(numbers), &site.sky, &coefficients.clouds, &now.sky);
         (self.sky, self.outdoor_air) = (sky, air);
         self.wind = S::constant(now.wind.speed);
         self.sun.irradiate(plan, coefficients, weather_index, now);

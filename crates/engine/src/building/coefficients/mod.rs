@@ -14,6 +14,7 @@ use super::plan::Plan;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::Path;
+use crate::physics::longwave::CloudEffect;
 
 /// All coefficients of a run.
 #[derive(Debug, Clone)]
@@ -28,8 +29,8 @@ pub struct Coefficients<S> {
     pub paths: Vec<Path<S>>,
     /// Solar reflectance of the ground [-].
     pub ground_reflectance: S,
-    /// Coefficients of the cloud polynomial of the sky's emission [-].
-    pub cloud: [S; 3],
+    /// Effect of clouds on the sky's emission.
+    pub clouds: CloudEffect<S>,
     /// Depth of each sensor from the outside surface [m].
     pub sensor_depths: Vec<S>,
 }
@@ -55,7 +56,7 @@ impl<S: Real> Coefficients<S> {
             zones,
             paths,
             ground_reflectance: values.get(site.ground_reflectance),
-            cloud: site.cloud.map(|id| values.get(id)),
+            clouds: CloudEffect::new(&site.cloud, &values),
             sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),
         }
     }

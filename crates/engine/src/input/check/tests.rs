@@ -1,5 +1,7 @@
 use super::*;
-use crate::input::description::{Convection, Facing, Glazing, Material, PcmLaw, Zone, ZoneSun};
+use crate::input::description::{
+    Clouds, Convection, Facing, Glazing, Material, ParamId, PcmLaw, Zone, ZoneSun,
+};
 
 /// Two zones, an opaque wall with a phase-change layer, a window, a floor on the ground and a partition; every parameter
 /// is number 0 to 9.
@@ -99,7 +101,14 @@ fn a_sound_description_is_accepted() {
 #[test]
 fn every_parameter_id_is_checked() {
     refused(|d| d.site.wind.layer.0 = 10, &["site.wind.layer", "parameter 10", "below 10"]);
-    refused(|d| d.site.cloud[2].0 = u32::MAX, &["site.cloud[2]"]);
+    refused(
+        |d| d.site.cloud = Clouds::Factor([ParamId(0), ParamId(0), ParamId(u32::MAX)]),
+        &["site.cloud[2]"],
+    );
+    refused(
+        |d| d.site.cloud = Clouds::Layer { emissivity: ParamId(0), base: ParamId(u32::MAX) },
+        &["site.cloud.base"],
+    );
     refused(
         |d| {
             if let Material::Pcm { law: PcmLaw::Tabulated { enthalpy_scale, .. }, .. } = &mut d.materials[2] {

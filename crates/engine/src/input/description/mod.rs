@@ -29,6 +29,6 @@ pub use glazing::{Angular, Gap, Gas, Glazing, Pane, PaneOptics};
 pub use material::Material;
 pub use parameter::{ParamId, Parameter};
 pub use phase_change::{HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail};
-pub use site::{DiffuseSky, Site, Sky, WindProfile};
+pub use site::{Clouds, DiffuseSky, Site, Sky, WindProfile};
 pub use surface::{Exposure, Facing, FrameShare, OutdoorLongwave, Sensor, Side, Surface};
 pub use zone::{Gain, IdealLoad, Infiltration, SetPoint, Ventilation, Zone, ZoneLongwave, ZoneSun};

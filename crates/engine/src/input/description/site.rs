@@ -19,8 +19,8 @@ pub struct Site {
     pub wind: WindProfile,
     /// Model of the sky's long-wave emission.
     pub sky: Sky,
-    /// Cubic factor of cloud cover N [tenths]: 1 + c1 N + c2 N^2 + c3 N^3 (Clark & Allen 1978).
-    pub cloud: [ParamId; 3],
+    /// Effect of clouds on the sky's long-wave emission.
+    pub cloud: Clouds,
     /// Model of the sky's diffuse short-wave radiation.
     pub diffuse: DiffuseSky,
 }
@@ -78,6 +78,21 @@ pub enum Sky {
     Offset {
         /// Air minus sky [K].
         depression: ParamId,
+    },
+}
+
+/// Effect of clouds on the emissivity of the clear sky; see `physics/longwave` for sources.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, deny_unknown_fields)]
+pub enum Clouds {
+    /// Factor `1 + c1 N + c2 N^2 + c3 N^3` of cloud cover N [tenths] (Clark & Allen 1978).
+    Factor([ParamId; 3]),
+    /// Opaque layer: adds `(1 - clear) (N/10) emissivity exp(-base/8200 m)` (Martin & Berdahl 1984).
+    Layer {
+        /// Emissivity of the clouds [-].
+        emissivity: ParamId,
+        /// Height of their base above the ground [m].
+        base: ParamId,
     },
 }
 

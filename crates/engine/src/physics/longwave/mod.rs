@@ -10,4 +10,4 @@ mod sky;
 pub use emission::{Emission, black_temperature};
 pub(crate) use exchange::direct_exchange_areas;
 pub use exchange::{exchange_areas, self_weight};
-pub use sky::{SkyState, sky_emission};
+pub use sky::{CloudEffect, SkyState, sky_emission};

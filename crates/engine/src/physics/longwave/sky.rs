@@ -5,13 +5,50 @@
 //!   Martin & Berdahl (1984), Solar Energy 33(3), doi:10.1016/0038-092X(84)90162-2; Brunt (1932),
 //!   doi:10.1002/qj.49705824704; recalibrated by Li, Jiang & Coimbra (2017), Solar Energy 144,
 //!   doi:10.1016/j.solener.2017.01.006. All coefficients are parameters.
-//! - Clouds: Clark & Allen (1978).
+//! - Clouds as a factor: Clark & Allen (1978); as an opaque layer: Martin & Berdahl (1984).
 
-use crate::input::description::Sky;
+use crate::input::description::{Clouds, Sky};
 use crate::input::forcing::channel;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::constants::{KELVIN, SIGMA};
+
+/// Scale height of the effect of clouds [m]: the base of a cloud is colder than the air at the ground (Martin & Berdahl 1984).
+const CLOUD_SCALE_HEIGHT: f64 = 8200.0;
+
+/// Effect of clouds on the emissivity of the clear sky.
+#[derive(Debug, Clone)]
+pub enum CloudEffect<S> {
+    /// Coefficients of the cubic factor of cloud cover in tenths [-].
+    Factor([S; 3]),
+    /// Part of the emission that the clear sky lacks, added under an overcast sky [-].
+    Layer(S),
+}
+
+impl<S: Real> CloudEffect<S> {
+    /// Evaluates the description at a parameter vector.
+    #[must_use]
+    pub fn new(clouds: &Clouds, values: &Values<'_, S>) -> Self {
+        match clouds {
+            Clouds::Factor(coefficients) => Self::Factor(coefficients.map(|id| values.get(id))),
+            Clouds::Layer { emissivity, base } => {
+                let depth = values.get(*base).scale(-1.0 / CLOUD_SCALE_HEIGHT);
+                Self::Layer(values.get(*emissivity) * depth.exp())
+            }
+        }
+    }
+
+    /// Emissivity of the sky under `cover` tenths of cloud.
+    #[inline(always)]
+    fn emissivity(&self, clear: S, cover: f64) -> S {
+        match self {
+            Self::Factor(c) => {
+                clear * (S::one() + (c[0] + (c[1] + c[2].scale(cover)).scale(cover)).scale(cover))
+            }
+            Self::Layer(overcast) => clear + (S::one() - clear) * overcast.scale(0.1 * cover),
+        }
+    }
+}
 
 /// The weather as the models of the sky need it.
 #[derive(Debug, Clone, Copy)]
@@ -45,9 +82,14 @@ impl SkyState {
 
 /// Downward emission of the sky on a horizontal plane [W/m2].
 #[inline(always)]
-pub fn sky_emission<S: Real>(values: &Values<'_, S>, sky: &Sky, cloud: [S; 3], state: &SkyState) -> S {
+pub fn sky_emission<S: Real>(
+    values: &Values<'_, S>,
+    sky: &Sky,
+    clouds: &CloudEffect<S>,
+    state: &SkyState,
+) -> S {
     let h = state.humidity;
-    let emissivity = match sky {
+    let clear = match sky {
         Sky::Measured { scale } => return values.get(*scale).scale(h),
         Sky::Offset { depression } => {
             return (S::constant(state.air) - values.get(*depression)).pow4().scale(SIGMA);
@@ -57,9 +99,7 @@ pub fn sky_emission<S: Real>(values: &Values<'_, S>, sky: &Sky, cloud: [S; 3], s
             values.get(*a) + values.get(*b).scale(h) + values.get(*c).scale(h * h)
         }
     };
-    let n = state.cloud;
-    let clouds = S::one() + (cloud[0] + (cloud[1] + cloud[2].scale(n)).scale(n)).scale(n);
-    (emissivity * clouds).min(S::one()).scale(state.black)
+    clouds.emissivity(clear, state.cloud).min(S::one()).scale(state.black)
 }
 
 /// Vapour pressure [hPa] at a dew point [degC]: Magnus form, Alduchov & Eskridge (1996),
@@ -75,27 +115,27 @@ mod tests {
     use crate::input::forcing::CLIMATE_CHANNELS;
 
     /// Air at 20 degC, dew point 10 degC, 5 tenths of cloud.
-    fn emission(sky: &Sky, numbers: &[f64], cloud: [f64; 3]) -> f64 {
+    fn emission(sky: &Sky, numbers: &[f64], clouds: &CloudEffect<f64>) -> f64 {
         let mut row = [0.0; CLIMATE_CHANNELS];
         row[channel::AIR_TEMPERATURE] = 20.0;
         row[channel::DEW_POINT] = 10.0;
         row[channel::CLOUD_COVER] = 5.0;
         row[channel::INFRARED] = 333.0;
-        sky_emission(&Values::new(numbers), sky, cloud, &SkyState::new(sky, &row))
+        sky_emission(&Values::new(numbers), sky, clouds, &SkyState::new(sky, &row))
     }
 
     /// Black at 20 degC: 418.766 W/m2.
     #[test]
     fn models_by_hand() {
         let [a, b, c] = core::array::from_fn(|k| ParamId(u32::try_from(k).unwrap()));
-        let clear = [0.0; 3];
+        let clear = &CloudEffect::Factor([0.0; 3]);
         let close = |found: f64, expected: f64| {
             assert!((found / expected - 1.0).abs() < 1e-5, "{found} is not {expected}");
         };
         // 0.711 + 0.56 0.1 + 0.73 0.01 = 0.7743; clouds 1 + 0.0224 5 - 0.0035 25 + 0.00028 125 = 1.0595.
         let martin = Sky::MartinBerdahl { a, b, c };
         close(emission(&martin, &[0.711, 0.56, 0.73], clear), 0.7743 * 418.766);
-        let cloud = [0.0224, -0.0035, 0.00028];
+        let cloud = &CloudEffect::Factor([0.0224, -0.0035, 0.00028]);
         close(emission(&martin, &[0.711, 0.56, 0.73], cloud), 0.7743 * 1.0595 * 418.766);
         // 0.787 + 0.764 ln(283.15/273) = 0.814890.
         close(emission(&Sky::ClarkAllen { a, b }, &[0.787, 0.764], clear), 0.814_890 * 418.766);
@@ -106,5 +146,14 @@ mod tests {
         close(emission(&Sky::Measured { scale: a }, &[1.1], cloud), 1.1 * 333.0);
         // No more than a black body.
         close(emission(&martin, &[1.2, 0.0, 0.0], cloud), 418.766);
+    }
+    /// Opaque clouds of half cover, their base at 1200 m: 0.7743 + 0.2257 0.5 e^(-1200/8200) = 0.871787.
+    #[test]
+    fn a_layer_of_clouds_adds_what_the_clear_sky_lacks() {
+        let [a, b, c, emissivity, base] = core::array::from_fn(|k| ParamId(u32::try_from(k).unwrap()));
+        let numbers = [0.711, 0.56, 0.73, 1.0, 1200.0];
+        let clouds = CloudEffect::new(&Clouds::Layer { emissivity, base }, &Values::new(&numbers[..]));
+        let found = emission(&Sky::MartinBerdahl { a, b, c }, &numbers, &clouds);
+        assert!((found / (0.871_787 * 418.766) - 1.0).abs() < 1e-5, "{found}");
     }
 }

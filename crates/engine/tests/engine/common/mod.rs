@@ -12,9 +12,9 @@ pub mod random;
 pub mod straight;
 
 use mascarin_engine::description::{
-    Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer, Material,
-    MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky, Surface,
-    WindProfile, Zone, ZoneLongwave, ZoneSun,
+    Clouds, Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer,
+    Material, MeltingCurve, OutdoorLongwave, ParamId, Parameter, PcmLaw, PowerLaw, Sensor, Side, Site, Sky,
+    Surface, WindProfile, Zone, ZoneLongwave, ZoneSun,
 };
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::{CLIMATE_CHANNELS, Forcing, channel};
@@ -60,11 +60,11 @@ impl Builder {
                 b: add("site.sky.b", 0.56),
                 c: add("site.sky.c", 0.73),
             },
-            cloud: [
+            cloud: Clouds::Factor([
                 add("site.cloud.c1", 0.0224),
                 add("site.cloud.c2", -0.0035),
                 add("site.cloud.c3", 0.00028),
-            ],
+            ]),
             diffuse: DiffuseSky::Perez,
         };
         let description = Description {
