@@ -54,6 +54,15 @@ def with_parameters(building: Building, parameters: Mapping[str, float] | None) 
     return building.replace(values)
 
 
+def changed_parameters(
+    before: Building, after: Building, parameters: Mapping[str, float] | None
+) -> dict[str, float]:
+    """Parameters that `with_parameters` changed, by whole path. [unit of each]"""
+    old = {before.parameter(path).path: before.parameter(path).value for path in parameters or {}}
+    new = {path: after.parameter(path).value for path in old}
+    return {path: float(value) for path, value in new.items() if value != old[path]}
+
+
 def period(
     climate: Climate, start: TimeLike | None, end: TimeLike | None
 ) -> tuple[pd.Timestamp, pd.Timestamp]:

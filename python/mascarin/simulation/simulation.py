@@ -15,6 +15,7 @@ from mascarin.progress import reporting
 from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
 from mascarin.simulation.compiling import (
     REPEATED_WITHIN,
+    changed_parameters,
     chosen_outputs,
     forcing_of,
     period,
@@ -24,11 +25,11 @@ from mascarin.simulation.compiling import (
 )
 from mascarin.simulation.energy import EnergyLedger
 from mascarin.simulation.initial import read as read_initial
+from mascarin.simulation.limits import Limits, require_set_points_apart
 from mascarin.simulation.options import RunOptions, described
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.readings import Readings
 from mascarin.simulation.results import Results
-from mascarin.simulation.set_points import require_apart
 from mascarin.simulation.slopes import gradient_of, labelled_slopes
 from mascarin.weather import CHANNELS, summary
 from mascarin.weather.table import epoch_seconds, seconds_of
@@ -125,7 +126,7 @@ class Simulation:
         self.step_seconds = seconds_of(step)
         self.start, self.end = period(climate, start, end)
         self.outputs = chosen_outputs(self.building, outputs)
-        self._replaced = _changed(building, self.building, options.parameters or {})
+        self._replaced = changed_parameters(building, self.building, options.parameters)
         wanted = read_initial(initial)
         self._first_period = seconds_of(first_period, "first_period")
         description = self.building.to_engine(self.step_seconds, dict(ranges or {}))
@@ -150,7 +151,7 @@ class Simulation:
             timezone=zone_name(climate.grid.zone),
         )  # fmt: skip
         _ = self.compiled.plan  # the engine's own checks
-        self._require_set_points_apart(self.values[None, :])
+        self._require_possible(self.values[None, :])
 
     def __repr__(self) -> str:
         return (
@@ -346,7 +347,19 @@ class Simulation:
             index=self.index,
             records=np.ascontiguousarray(records),
             energy=EnergyLedger.read(raw),
-            provenance=self._provenance(raw, vector),
+            provenance=Provenance(
+                building=self.building.name,
+                building_hash=self.compiled.hash,
+                climate=summary(self.climate),
+                step_seconds=self.step_seconds,
+                scheme=self.scheme,
+                start=self._start_note(raw),
+                changed={**self._replaced, **self._changed(vector)},
+                newton_iterations=int(raw["iterations"]),
+                nested_stages=int(raw["nested"]),
+                halved_steps=int(raw["halvings"]),
+                reversals=int(raw["reversals"]),
+            ),
             warnings=tuple(unmelted.warnings(self.building, seen)),
         )
 
@@ -507,12 +520,6 @@ class Simulation:
     def _positions(self) -> dict[str, int]:
         return {path: index for index, path in enumerate(self.compiled.paths)}
 
-    @cached_property
-    def _limits(self) -> tuple[Array, Array]:
-        """Limits of each parameter, shapes (P,). [unit of each]"""
-        parameters = [self.building.parameter(path) for path in self.paths]
-        return np.array([p.lower for p in parameters]), np.array([p.upper for p in parameters])
-
     def _checked(self, vector: Array | None) -> Array:
         found: Array = np.array(self.values if vector is None else vector, dtype=np.float64)
         self._require_possible(found[None, :])
@@ -520,48 +527,20 @@ class Simulation:
 
     def _require_possible(self, vectors: Array) -> None:
         """Refuse parameter vectors of the wrong length, or with a value that its parameter cannot have."""
-        if vectors.ndim != 2 or vectors.shape[1] != len(self.compiled.paths):
-            raise InputError(
-                f"samples: found an array of shape {vectors.shape}, expected (members, "
-                f"{len(self.compiled.paths)}): one value for each parameter"
-            )
-        lower, upper = self._limits
-        # A value that is no number makes only its own member fail.
-        bad = np.argwhere((vectors < lower) | (vectors > upper))
-        if bad.size:
-            member, k = (int(i) for i in bad[0])
-            parameter = self.building.parameter(self.compiled.paths[k])
-            raise InputError(
-                f"samples: {parameter.path} of member {member}: found {vectors[member, k]:g} "
-                f"{parameter.unit}; expected a value from {parameter.lower:g} to {parameter.upper:g}"
-            )
-        self._require_set_points_apart(vectors)
-
-    def _require_set_points_apart(self, vectors: Array) -> None:
-        require_apart(
+        self._limits.require(vectors)
+        require_set_points_apart(
             self.building, vectors, self.compiled.forcing, positions=self._positions,
             channels=self._channels, times=self.index,
         )  # fmt: skip
 
-    def _provenance(self, raw: Mapping[str, Any], vector: Array) -> Provenance:
-        changed = {
-            path: float(value)
-            for path, value, nominal in zip(self.paths, vector, self.values, strict=True)
-            if value != nominal
-        }
-        return Provenance(
-            building=self.building.name,
-            building_hash=hashlib.sha256(self.compiled.description.encode()).hexdigest(),
-            climate=summary(self.climate),
-            step_seconds=self.step_seconds,
-            scheme=self.scheme,
-            start=self._start_note(raw),
-            changed={**self._replaced, **changed},
-            newton_iterations=int(raw["iterations"]),
-            nested_stages=int(raw["nested"]),
-            halved_steps=int(raw["halvings"]),
-            reversals=int(raw["reversals"]),
-        )
+    @cached_property
+    def _limits(self) -> Limits:
+        return Limits([self.building.parameter(path) for path in self.compiled.paths])
+
+    def _changed(self, vector: Array) -> dict[str, float]:
+        """Parameters of a vector that differ from those of the building."""
+        where = np.flatnonzero(vector != self.values)
+        return {self.compiled.paths[k]: float(vector[k]) for k in where}
 
     def _start_note(self, raw: Mapping[str, Any]) -> str:
         if isinstance(self.initial, float):
@@ -575,64 +554,4 @@ class Simulation:
         )
 
 
-def _changed(before: Building, after: Building, parameters: Mapping[str, float]) -> dict[str, float]:
-    """Parameters that a replacement changed, by whole path."""
-    values = {before.parameter(path).path: before.parameter(path).value for path in parameters}
-    found = {path: after.parameter(path).value for path in values}
-    return {path: float(value) for path, value in found.items() if value != values[path]}
-
-
 described(Simulation)
-
-
-@described
-def simulate(
-    building: Building,
-    climate: Climate,
-    *,
-    parameters: Mapping[str, float] | None = None,
-    outputs: Sequence[str] | None = None,
-    start: TimeLike | None = None,
-    end: TimeLike | None = None,
-    step: str | float = "15min",
-    scheme: Scheme = "sdirk2",
-    initial: Initial = "repeat",
-    first_period: str | float = "1d",
-    measurements: Measurements | None = None,
-    progress: ProgressOption = None,
-) -> Results:
-    """Run a building in a climate.
-
-    Parameters
-    ----------
-    building : Building
-        The building.
-    climate : Climate
-        Its weather.
-    <run options>
-
-    Returns
-    -------
-    Results
-        Series by name and the energy balance.
-
-    Raises
-    ------
-    InputError
-        Something that cannot be used, before the run.
-    SolverError
-        A step or the repeated first period did not converge.
-
-    Examples
-    --------
-    >>> import mascarin as mc
-    >>> from mascarin.examples import box, box_climate
-    >>> run = mc.simulate(box(), box_climate(), step="1h", parameters={"zones.room.volume": 30.0})
-    >>> run["room.air_temperature"].attrs["units"]
-    'degC'
-    """
-    options = RunOptions(
-        parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
-        initial=initial, first_period=first_period, measurements=measurements,
-    )  # fmt: skip
-    return Simulation(building, climate, **options.keywords()).run(progress=progress)
