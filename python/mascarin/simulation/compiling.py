@@ -10,6 +10,7 @@ import numpy as np
 from mascarin.building.initial_state import Ambient, GivenStart
 from mascarin.errors import InputError
 from mascarin.simulation.initial import MeasuredStart, resolved
+from mascarin.simulation.initial import read as read_initial
 from mascarin.weather import CHANNELS, IRRADIANCES, TEMPERATURES, parse_timezone, scheduled
 from mascarin.weather.table import stamps_of
 from mascarin.weather.timezones import moment
@@ -24,6 +25,17 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
+
+__all__ = [
+    "changed_parameters",
+    "chosen_outputs",
+    "forcing_of",
+    "period",
+    "read_initial",
+    "settings_of",
+    "start_of",
+    "with_parameters",
+]
 
 #: Largest change of any temperature between two repetitions of the first period. [K]
 REPEATED_WITHIN: Final = 0.01

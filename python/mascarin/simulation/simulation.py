@@ -9,22 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mascarin.building import unmelted
 from mascarin.errors import InputError
 from mascarin.progress import reporting
 from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
-from mascarin.simulation.compiling import (
-    REPEATED_WITHIN,
-    changed_parameters,
-    chosen_outputs,
-    forcing_of,
-    period,
-    settings_of,
-    start_of,
-    with_parameters,
-)
 from mascarin.simulation.energy import EnergyLedger
-from mascarin.simulation.initial import read as read_initial
 from mascarin.simulation.limits import Limits, require_set_points_apart
 from mascarin.simulation.options import RunOptions, described
 from mascarin.simulation.provenance import Provenance
@@ -116,33 +104,35 @@ class Simulation:
         measurements: Measurements | None = None,
         ranges: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
+        from mascarin.simulation import compiling  # pydantic, which an evaluation for GenOpt does without
+
         options = RunOptions(
             parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
             initial=initial, first_period=first_period, measurements=measurements,
         )  # fmt: skip
-        self.building = with_parameters(building, options.parameters)
+        self.building = compiling.with_parameters(building, options.parameters)
         self.climate = climate
         self.scheme: Scheme = scheme
         self.step_seconds = seconds_of(step)
-        self.start, self.end = period(climate, start, end)
-        self.outputs = chosen_outputs(self.building, outputs)
-        self._replaced = changed_parameters(building, self.building, options.parameters)
-        wanted = read_initial(initial)
+        self.start, self.end = compiling.period(climate, start, end)
+        self.outputs = compiling.chosen_outputs(self.building, outputs)
+        self._replaced = compiling.changed_parameters(building, self.building, options.parameters)
+        wanted = compiling.read_initial(initial)
         self._first_period = seconds_of(first_period, "first_period")
         description = self.building.to_engine(self.step_seconds, dict(ranges or {}))
         self.notes = description.notes
-        forcing = forcing_of(
+        forcing = compiling.forcing_of(
             self.building, climate, description, start=self.start, end=self.end,
             step_seconds=self.step_seconds, scheme=scheme, measurements=measurements,
         )  # fmt: skip
         self._channels = tuple(description.channels)
-        self.initial = start_of(wanted, self.building, description, forcing, self.start)
+        self.initial = compiling.start_of(wanted, self.building, description, forcing, self.start)
         self.compiled = CompiledRun(
             description=description.json,
             forcing=forcing,
             paths=tuple(description.paths),
             values=description.values,
-            settings=settings_of(
+            settings=compiling.settings_of(
                 self.initial, forcing, step_seconds=self.step_seconds, scheme=scheme,
                 first_period=self._first_period,
             ),
@@ -337,6 +327,8 @@ class Simulation:
         vector : ndarray, shape (P,)
             Parameter vector. [unit of each]
         """
+        from mascarin.building import unmelted  # pydantic, as above
+
         vector = np.array(vector, dtype=np.float64)
         self._require_possible(vector[None, :])
         watched = unmelted.watched(self.building)
@@ -547,10 +539,11 @@ class Simulation:
             return f"{self.initial:g} degC everywhere"
         if self.initial is not None:
             return self.initial.words
-        hours = self.compiled.settings["warmup_steps"] * self.step_seconds / 3600.0
+        settings = self.compiled.settings
+        hours = settings["warmup_steps"] * self.step_seconds / 3600.0
         return (
             f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
-            f"by more than {REPEATED_WITHIN:g} K (last change {raw['settled']:.4f} K)"
+            f"by more than {settings['warmup_tolerance']:g} K (last change {raw['settled']:.4f} K)"
         )
 
 
