@@ -220,7 +220,7 @@ class Results:
         import numpy as np
         import pandas as pd
 
-        from mascarin.weather.table import seconds_of
+        from mascarin.weather.times import seconds_of
 
         seconds = seconds_of(interval, "interval")
         place = np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64)

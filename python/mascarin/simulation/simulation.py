@@ -15,7 +15,7 @@ import numpy as np
 from mascarin import _engine
 from mascarin.errors import InputError, SolverError, did_you_mean
 from mascarin.simulation.results import EnergyLedger, Provenance, Results
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:
@@ -706,7 +706,7 @@ def _told_apart(in_time: Callable[[str], str] = str) -> Iterator[None]:
 
 
 def _period(climate: Climate, start: object, end: object) -> tuple[pd.Timestamp, pd.Timestamp]:
-    from mascarin.weather.table import stamps_of
+    from mascarin.weather.times import stamps_of
 
     grid = climate.grid
     first, last = stamps_of(np.array([grid.start, grid.end]), grid.zone)

@@ -11,7 +11,7 @@ from mascarin.genopt.export.case import Case, Run, inputs_of, open_case
 from mascarin.simulation.simulation import _probes
 from mascarin.study import Study
 from mascarin.study.inputs import find
-from mascarin.weather.table import epoch_seconds
+from mascarin.weather.times import epoch_seconds
 
 if TYPE_CHECKING:
     from mascarin.study.description import StudyFile
