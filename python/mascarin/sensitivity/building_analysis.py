@@ -12,7 +12,7 @@ from mascarin.sensitivity.factors import DistributionName, Factor
 from mascarin.sensitivity.methods import MethodName, plan
 from mascarin.sensitivity.result import Sensitivity
 from mascarin.simulation.simulation import Simulation
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -10,7 +10,7 @@ import numpy as np
 
 from mascarin.sensitivity.building_analysis import checked_range, factors_of, made
 from mascarin.sensitivity.methods import plan as design
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
