@@ -8,8 +8,8 @@ quasi-random sample treats the design as if it were random.
 
 Time series. An index is the sum over time of a part of the variance, divided by the sum of the variance. This
 sum does not change when the times are rotated into principal components, of which a few hold nearly all of
-the variance; so each index is computed for these few only. The rest (1e-6 of the variance in the first replicate)
-counts as not explained.
+the variance; so each index is computed for these few only. The rest (1e-6 of the variance in the first
+replicate) counts as not explained.
 
 References
 ----------

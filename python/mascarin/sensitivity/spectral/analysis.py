@@ -34,6 +34,7 @@ https://doi.org/10.1080/01621459.1969.10501057
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -127,73 +128,76 @@ def _analyzed(
     units: tuple[str, ...],
     confidence: float,
 ) -> SpectralSensitivity:
-    """Put the replicates together, one output at a time."""
-    count, r = len(plan.groups), plan.replicates
-    times = parts[0].mean.shape[0]
-    shape, shape_t = (count, len(outputs)), (count, times, len(outputs))
-    index, low, high, effect, effect_rms, raw = (np.zeros(shape) for _ in range(6))
-    index_t, low_t, high_t, effect_t = (np.zeros(shape_t) for _ in range(4))
-    significant = np.zeros(shape, dtype=np.bool_)
-    variance_t = np.zeros((times, len(outputs)))
-    spectra = np.zeros((r, parts[0].lines.shape[0], len(outputs)))
-    coherent = np.bincount(plan.group_of) == 1
-    strict = 1.0 - (1.0 - confidence) / count
-    gain = np.stack([part.gain for part in parts])
-    warnings = []
-    for s, output in enumerate(outputs):
-        real = np.stack([part.real[..., s] for part in parts])
-        power = np.stack([part.power[..., s] for part in parts])
-        variance = _variance(
-            np.stack([part.variance[:, s] for part in parts]), np.stack([part.mean[:, s] for part in parts])
-        )
-        scale = max(float(np.abs(part.mean[:, s]).max()) for part in parts)
-        floor = (1e-12 * scale) ** 2 + np.finfo(float).tiny
-        numerator = _power(real, power, coherent)
-        steady = variance.value <= floor
-        variance_t[:, s] = np.where(steady, 0.0, variance.value)
-        index_t[:, :, s], low_t[:, :, s], high_t[:, :, s] = interval(numerator, variance, confidence)
-        for array in (index_t, low_t, high_t):
-            array[:, steady, s] = np.nan
-        effect_t[:, :, s] = (real[:, :, 0] / gain[:, :, None]).mean(axis=0)
-        effect[:, s] = effect_t[:, :, s].mean(axis=1)
-        effect_rms[:, s] = np.sqrt(np.mean(effect_t[:, :, s] ** 2, axis=1))
-        total = variance.summed()
-        if total.value <= floor:
-            warnings.append(f"'{output}' does not depend on any of the varied parameters")
-            continue
-        index[:, s], low[:, s], high[:, s] = interval(numerator.summed(), total, confidence)
-        # An index below 1e-12 is rounding.
-        significant[:, s] = above_zero(numerator.summed(), total, strict) & (index[:, s] > 1e-12)
-        plain = np.mean([part.variance[:, s].sum() for part in parts])
-        raw[:, s] = np.mean([part.raw[:, s] for part in parts], axis=0) / plain
-        spectra[:, :, s] = np.stack([part.lines[:, s] / part.variance[:, s].sum() for part in parts])
-    threshold = power_threshold(plan.order, plan.runs, r, count)
+    """Put the replicates together."""
+    found = [_of_output(plan, parts, s, confidence) for s in range(len(outputs))]
+    arrays: dict[str, Any] = {name: np.stack([one[name] for one in found], axis=-1) for name in found[0]}
+    constant = arrays.pop("constant")
     return SpectralSensitivity(
         method="spectral",
         names=plan.groups,
         outputs=outputs,
         units=units,
-        index=index,
-        low=low,
-        high=high,
-        effect=effect,
-        significant=significant,
         confidence=confidence,
         runs=len(plan),
         seed=plan.seed,
-        warnings=tuple(warnings),
+        warnings=tuple(
+            f"'{output}' does not depend on any of the varied parameters"
+            for output, none in zip(outputs, constant, strict=True)
+            if none
+        ),
         design=plan,
-        raw_index=raw,
-        threshold=threshold,
-        effect_rms=effect_rms,
-        index_t=index_t,
-        low_t=low_t,
-        high_t=high_t,
-        effect_t=effect_t,
+        threshold=power_threshold(plan.order, plan.runs, plan.replicates, len(plan.groups)),
         mean_t=np.mean([part.mean for part in parts], axis=0),
-        variance_t=variance_t,
-        spectra=spectra,
+        **arrays,
     )
+
+
+def _of_output(plan: Design, parts: Sequence[Replicate], s: int, confidence: float) -> dict[str, Any]:
+    """Arrays of output number s, by the names of the attributes; `constant` where nothing changes it."""
+    real, power, variances, means = (
+        np.stack([getattr(part, name)[..., s] for part in parts])
+        for name in ("real", "power", "variance", "mean")
+    )
+    coherent = np.bincount(plan.group_of) == 1
+    gain = np.stack([part.gain for part in parts])
+    numerator, variance = _power(real, power, coherent), _variance(variances, means)
+    # A variance of rounding errors counts as zero.
+    floor = (1e-12 * float(np.abs(means).max())) ** 2 + np.finfo(float).tiny
+    steady = variance.value <= floor
+    index_t, low_t, high_t = interval(numerator, variance, confidence)
+    for array in (index_t, low_t, high_t):
+        array[:, steady] = np.nan
+    effect_t = (real[:, :, 0] / gain[:, :, None]).mean(axis=0)
+    total = variance.summed()
+    constant = bool(total.value <= floor)
+    lines = np.stack([part.lines[:, s] for part in parts])
+    zero = np.zeros(len(plan.groups))
+    index, low, high, raw, significant = zero, zero, zero, zero, zero > 0.0
+    spectra = np.zeros(lines.shape)
+    if not constant:
+        index, low, high = interval(numerator.summed(), total, confidence)
+        strict = 1.0 - (1.0 - confidence) / len(plan.groups)
+        # An index below 1e-12 is rounding.
+        significant = above_zero(numerator.summed(), total, strict) & (index > 1e-12)
+        sums = [part.variance[:, s].sum() for part in parts]
+        raw = np.mean([part.raw[:, s] for part in parts], axis=0) / np.mean(sums)
+        spectra = np.stack([line / one for line, one in zip(lines, sums, strict=True)])
+    return {
+        "index": index,
+        "low": low,
+        "high": high,
+        "effect": effect_t.mean(axis=1),
+        "significant": significant,
+        "raw_index": raw,
+        "effect_rms": np.sqrt(np.mean(effect_t**2, axis=1)),
+        "index_t": index_t,
+        "low_t": low_t,
+        "high_t": high_t,
+        "effect_t": effect_t,
+        "variance_t": np.where(steady, 0.0, variance.value),
+        "spectra": spectra,
+        "constant": constant,
+    }
 
 
 def _power(real: Floats, power: Floats, coherent: NDArray[np.bool_]) -> Ratio:
