@@ -26,7 +26,7 @@ from mascarin.optimization import (
     NelderMead,
     Observer,
     OneAtATime,
-    Optimiser,
+    Optimizer,
     ParticleSwarm,
     Space,
     SufficientDecrease,
@@ -123,9 +123,6 @@ _NUMBERS = {
     "Sigma": _POSITIVE,
     "PopulationSize": Number(whole=True, low=4),
     "MaxEvaluations": _COUNT,
-    "Tolerance": _NOT_NEGATIVE,
-    "Weight": Number(low=0, high=2, open_low=True),
-    "Crossover": Number(low=0, high=1, open_low=True),
 }
 _BOOLEANS = {"ModifyStoppingCriterion", "StopAtError"}
 _WORDS = {"MultiStart": ["Uniform"], "NeighborhoodTopology": ["gbest", "lbest", "vonNeumann"]}
@@ -141,7 +138,7 @@ class Built:
 
     Parameters
     ----------
-    optimiser : Optimiser
+    optimiser : Optimizer
         The search.
     name : str
         The name after ``Main =``.
@@ -153,7 +150,7 @@ class Built:
         Whether GenOpt has no algorithm of this name.
     """
 
-    optimiser: Optimiser
+    optimiser: Optimizer
     name: str
     stop_at_error: bool = True
     counts_equal: bool = False
@@ -170,12 +167,19 @@ class Context:
     workers: int
 
 
+REMOVED = {
+    "MascarinDE": "choose MascarinCMAES for continuous parameters, or PSOCC, which also takes discrete ones "
+    "(docs/coming-from-genopt.md)"
+}
+"""Algorithms of earlier versions, and what to choose instead."""
+
+
 @dataclass(frozen=True)
 class Algorithm:
     """One name after ``Main =``: its keys in order, those that may be missing, and its builder."""
 
     keys: tuple[str, ...]
-    build: Callable[[Context, Keys], Optimiser]
+    build: Callable[[Context, Keys], Optimizer]
     optional: tuple[str, ...] = ()
     discrete: bool = False
     mixed: bool = False
@@ -254,6 +258,8 @@ def chosen(project: Project) -> str:
     if main is None:
         place = project.algorithm.end or project.algorithm.place
         report.error(place, "missing specification of 'Main' in 'Algorithm'")
+    elif main.value in REMOVED:
+        report.error(main.place, f"algorithm '{main.value}' was removed; {REMOVED[main.value]}")
     elif main.value not in known:
         hint = did_you_mean(main.value, known)
         report.error(main.place, f"algorithm '{main.value}' is not known. {hint}".rstrip())
@@ -368,7 +374,7 @@ def _space(project: Project, name: str, rule: Algorithm) -> Space:
             project.discrete[0].place,
             f"Algorithm '{name}' can only have continuous variables. {verb} {listed} "
             f"{'are' if len(names) > 1 else 'is'} specified as discrete. Choose an algorithm that takes "
-            "them, such as PSOCC, GPSPSOCCHJ, MascarinHookeJeeves or MascarinDE",
+            "them, such as PSOCC, GPSPSOCCHJ or MascarinHookeJeeves",
         )
         project.report.raise_if_any()
     continuous = tuple(
@@ -390,10 +396,10 @@ def _space(project: Project, name: str, rule: Algorithm) -> Space:
 
 def _pattern(
     kind: type[HookeJeeves] | type[CoordinateSearch],
-) -> Callable[[Context, Keys], Optimiser]:
+) -> Callable[[Context, Keys], Optimizer]:
     """Builder of a search on a mesh."""
 
-    def make(context: Context, keys: Keys) -> Optimiser:
+    def make(context: Context, keys: Keys) -> Optimizer:
         space, settings = context.space, context.project.settings
         starts = None
         if "MultiStart" in keys:
@@ -452,7 +458,7 @@ def _swarm_rules(keys: Keys) -> SwarmRules:
     """How particles move."""
     return SwarmRules(
         topology=keys["NeighborhoodTopology"],
-        neighbours=keys["NeighborhoodSize"],
+        neighbors=keys["NeighborhoodSize"],
         particles=keys["NumberOfParticle"],
         generations=keys["NumberOfGeneration"],
         seed=keys["Seed"],
@@ -465,7 +471,7 @@ def _swarm_rules(keys: Keys) -> SwarmRules:
     )
 
 
-def _swarm(context: Context, keys: Keys) -> Optimiser:
+def _swarm(context: Context, keys: Keys) -> Optimizer:
     """A particle swarm, on a mesh when one is given."""
     mesh = (keys["MeshSizeDivider"], keys["InitialMeshSizeExponent"]) if "MeshSizeDivider" in keys else None
     return ParticleSwarm(
@@ -480,7 +486,7 @@ def _swarm(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def _hybrid(context: Context, keys: Keys) -> Optimiser:
+def _hybrid(context: Context, keys: Keys) -> Optimizer:
     """A particle swarm followed by Hooke-Jeeves."""
     settings = context.project.settings
     return SwarmThenPattern(
@@ -501,7 +507,7 @@ def _hybrid(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def _simplex(context: Context, keys: Keys) -> Optimiser:
+def _simplex(context: Context, keys: Keys) -> Optimizer:
     """Nelder and Mead's simplex."""
     settings = context.project.settings
     return NelderMead(
@@ -517,7 +523,7 @@ def _simplex(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def _gradient(context: Context, keys: Keys) -> Optimiser:
+def _gradient(context: Context, keys: Keys) -> Optimizer:
     """Gradient descent with Armijo line search."""
     rules = ArmijoRules(
         alpha=keys["Alpha"],
@@ -540,7 +546,7 @@ def _gradient(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def _golden(context: Context, keys: Keys) -> Optimiser:
+def _golden(context: Context, keys: Keys) -> Optimizer:
     """Golden section."""
     limit = context.project.settings.max_iterations
     points = golden_points(keys["IntervalReduction"]) if "IntervalReduction" in keys else limit
@@ -554,14 +560,14 @@ def _golden(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def _fibonacci(context: Context, keys: Keys) -> Optimiser:
+def _fibonacci(context: Context, keys: Keys) -> Optimizer:
     """Fibonacci search."""
     limit = context.project.settings.max_iterations
     points = fibonacci_points(keys["IntervalReduction"]) if "IntervalReduction" in keys else limit
     return FibonacciSearch(context.space, points, text=double_text, observer=context.observer, remember=False)
 
 
-def _mesh(context: Context, keys: Keys) -> Optimiser:
+def _mesh(context: Context, keys: Keys) -> Optimizer:
     """All combinations."""
     _check_logarithms(context)
     return Grid(
@@ -574,7 +580,7 @@ def _mesh(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def _parametric(context: Context, keys: Keys) -> Optimiser:
+def _parametric(context: Context, keys: Keys) -> Optimizer:
     """One parameter at a time."""
     _check_logarithms(context)
     return OneAtATime(context.space, observer=context.observer, remember=False)
