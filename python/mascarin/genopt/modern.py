@@ -1,13 +1,27 @@
-"""Optimizers beyond GenOpt's, under names of their own."""
+"""Optimization algorithms that GenOpt does not have."""
 
 from __future__ import annotations
 
-from mascarin.genopt.algorithm import Algorithm, Context, Keys
+from mascarin.genopt.searches import Context
+from mascarin.genopt.settings import Keys
 from mascarin.optimization import CovarianceSearch, Optimizer
 
 
-def _covariance(context: Context, keys: Keys) -> Optimizer:
-    """CMA-ES; MaxIte is the largest number of evaluations."""
+def covariance(context: Context, keys: Keys) -> Optimizer:
+    """Make a CMA-ES search; MaxIte is the largest number of evaluations.
+
+    Parameters
+    ----------
+    context : Context
+        The project and its parameters.
+    keys : Keys
+        Settings of the section.
+
+    Returns
+    -------
+    Optimizer
+        The search.
+    """
     return CovarianceSearch(
         context.space,
         sigma=keys.get("Sigma", 0.25),
@@ -17,10 +31,3 @@ def _covariance(context: Context, keys: Keys) -> Optimizer:
         observer=context.observer,
         remember=False,
     )
-
-
-ALGORITHMS: dict[str, Algorithm] = {
-    "MascarinCMAES": Algorithm(
-        ("Seed", "Sigma", "PopulationSize"), _covariance, ("Sigma", "PopulationSize"), own=True
-    ),
-}
