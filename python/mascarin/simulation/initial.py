@@ -116,8 +116,8 @@ class MeasuredStart:
             if not LIMITS[0] < value < LIMITS[1]:
                 raise StartError(
                     ("initial",),
-                    f"found {value:g} in {where} at the start, expected a temperature {_BETWEEN}: correct the "
-                    "column or its unit, or leave that sensor out (in a study use: false)",
+                    f"found {value:g} in {where} at the start, expected a temperature {_BETWEEN}: correct "
+                    "the column or its unit, or leave that sensor out (in a study use: false)",
                 )
             return value
         raise StartError(

@@ -219,7 +219,9 @@ class Simulation(VectorRuns):
         """
         paths = [self.building.parameter(path).path for path in vary]
         with reporting(progress, "parameters") as report:
+            report(0, len(paths))
             records, slopes = self.jacobian_vector(paths, self.vector(parameters or {}), progress=report)
+            report(len(paths), len(paths))
         units = [self.building.parameter(path).unit for path in paths]
         named = dict(zip(paths, units, strict=True))
         return labelled_slopes(self.outputs, self.index, named, records, slopes)
