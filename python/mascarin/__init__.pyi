@@ -16,7 +16,7 @@ from .errors import MascarinError as MascarinError
 from .errors import SolverError as SolverError
 from .materials.dsc import from_dsc as from_dsc
 from .sensitivity import Sensitivity as Sensitivity
-from .sensitivity import screen as screen
+from .sensitivity import sensitivity_analysis as sensitivity_analysis
 from .simulation.derivatives import gradient as gradient
 from .simulation.derivatives import jacobian as jacobian
 from .simulation.initial import MeasuredStart as MeasuredStart

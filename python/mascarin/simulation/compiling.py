@@ -12,7 +12,7 @@ from mascarin.errors import InputError
 from mascarin.simulation.initial import MeasuredStart, resolved
 from mascarin.simulation.initial import read as read_initial
 from mascarin.weather import CHANNELS, IRRADIANCES, TEMPERATURES, parse_timezone, scheduled
-from mascarin.weather.table import stamps_of
+from mascarin.weather.times import stamps_of
 from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:

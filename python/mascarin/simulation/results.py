@@ -14,7 +14,7 @@ from mascarin.simulation.energy import EnergyLedger
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.spacing import means, state_means
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import parse_timezone
 
 if TYPE_CHECKING:

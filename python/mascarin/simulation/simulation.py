@@ -19,7 +19,7 @@ from mascarin.simulation.results import Results
 from mascarin.simulation.slopes import gradient_of, labelled_slopes
 from mascarin.simulation.vectors import VectorRuns
 from mascarin.weather import CHANNELS, summary
-from mascarin.weather.table import epoch_seconds, seconds_of
+from mascarin.weather.times import epoch_seconds, seconds_of
 from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
