@@ -9,7 +9,7 @@ import numpy as np
 
 from mascarin import _engine
 from mascarin.simulation.engine_errors import translated
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

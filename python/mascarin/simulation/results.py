@@ -384,11 +384,11 @@ class Results(Mapping[str, "xr.DataArray"]):
         >>> figure.axes[0].get_ylabel()
         'degC'
         """
-        from mascarin.simulation.plotting import draw
+        from mascarin.figures.series import draw  # matplotlib
 
         chosen = [names] if isinstance(names, str) else list(self) if names is None else names
         positions = [self._position(name) for name in chosen]
-        series = [(self.outputs[p], self.records[:, p]) for p in positions]
+        series = [(self.outputs[p].name, self.outputs[p].unit, self.records[:, p]) for p in positions]
         return draw(series, self.index, ax)
 
     # --- in words -----------------------------------------------------------------------------------------
