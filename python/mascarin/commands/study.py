@@ -13,7 +13,7 @@ from mascarin.commands.inputs import AsJson
 from mascarin.commands.output import print_json, print_table
 
 if TYPE_CHECKING:
-    from mascarin.study import Findings, Study
+    from mascarin.study import Study, StudyResults
 
 
 _SHOWN: Final = 10
@@ -41,12 +41,11 @@ def study(
         Folder for study.json, tables, figures, the report, and unfinished work.
     """
     opened = _open(file)
-    findings = opened.run(out)
-    _report(out)
+    findings = opened.run(out, progress=True)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
     _tell(opened, findings, out)
-    return _judge([verdict.to_dict() for verdict in findings.verdicts["fitted"]])
+    return _judge([verdict.to_dict() for verdict in findings.criteria["fitted"]])
 
 
 def sensitivity(
@@ -158,7 +157,7 @@ def _open(file: str) -> Study:
     from mascarin.examples import locate
     from mascarin.study import Study
 
-    return Study(locate(file))
+    return Study.from_yaml(locate(file))
 
 
 def _print_scores(content: Mapping[str, Any]) -> None:
@@ -192,15 +191,7 @@ def _judge(verdicts: Sequence[Mapping[str, Any]]) -> int:
     return 1 if missed else 0
 
 
-def _report(out: Path) -> None:
-    """Make the report from what the study left in its folder."""
-    from mascarin.report import write
-    from mascarin.report.folder import read_folder
-
-    write(out / "report.html", *read_folder(out))
-
-
-def _tell(opened: Study, findings: Findings, out: Path) -> None:
+def _tell(opened: Study, findings: StudyResults, out: Path) -> None:
     """A summary for the person at the terminal."""
     count = len(opened.file.sensors)
     lines = [f"{opened.file.name}: {opened.file.observed}, {count} sensor{'s' * (count != 1)}"]

@@ -376,43 +376,69 @@ class Variant(Part):
         return self
 
 
-class StudyFile(Part):
-    """A study: compare, find what matters, identify, compare again, corroborate."""
+class StudyPlan(Part):
+    """What is done in a study; the building, the weather and the measurements come beside it."""
 
-    name: str = Field(description="Title of the study")
+    name: str = Field("study", description="Title of the study")
     about: str = Field("", description="A few sentences for the report")
     observed: str = Field(
         "measurement", description="What the data are called: measurement, virtual experiment"
     )
-    observed_note: str = Field("", description="What whoever reads the numbers must know of the data")
-    building: str = Field(description="Building file, beside the study")
-    set: dict[str, Any] = Field(
-        default_factory=dict, description="Path -> value, on top of the building file"
-    )
-    climate: ClimateSource = Field(description="The weather")
-    measurements: Table = Field(description="The measured table")
+    observed_note: str = Field("", description="What readers of the report must know about the data")
     sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
     step: Duration = Field("15min", description="Time step")
-    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field("sdirk2", description="Scheme")
+    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field(
+        "sdirk2", description="Time integration scheme"
+    )
     initial: Initial = Field(
         "repeat",
-        description="State that a run starts from: its first day repeated until it settles (repeat), the "
-        "first values of the sensors (measured), one temperature everywhere [degC], or those that are given",
+        description="Initial state of a run: its first period repeated until the state converges (repeat), "
+        "the first values of the sensors (measured), one temperature everywhere [degC], or temperatures of "
+        "zones and surfaces",
     )
-    periods: Periods = Field(description="Which part of the record is for what")
-    quality: Quality = Field(default_factory=lambda: Quality(mask=()), description="Suspicious stretches")
-    criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit 1 when one is missed")
+    periods: Periods = Field(description="Which part of the record is used for what")
+    quality: Quality = Field(
+        default_factory=lambda: Quality(mask=()), description="What to do with suspicious values"
+    )
+    criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit code 1 if one is not met")
     aims: tuple[Limit, ...] = Field(
         (),
-        description="Limits that one would like to reach: where one is missed the report says what would "
-        "take the rest of the error away, and nothing fails",
+        description="Limits that are desired but not required: if one is not met, the report shows the "
+        "sources of the remaining error, and the exit code does not change",
     )
-    sensitivity: SensitivityPlan | None = Field(None, description="Which parameters matter")
+    sensitivity: SensitivityPlan | None = Field(
+        None, description="Sensitivity analysis of all parameters with a range"
+    )
     identification: IdentificationPlan | None = Field(
-        None, description="Which parameters to identify; without it the building can only be compared"
+        None, description="Parameters to identify; without it the building can only be compared"
     )
-    reference: Reference | None = Field(None, description="Numbers of a publication, shown as a scale")
-    variants: dict[str, Variant] = Field(default_factory=dict, description="Other model choices")
+    reference: Reference | None = Field(
+        None, description="Numbers of a publication, shown beside the results"
+    )
+    variants: dict[str, Variant] = Field(default_factory=dict, description="Other choices of model")
+
+    @model_validator(mode="after")
+    def _named(self) -> Self:
+        insist(
+            *(
+                fault(("variants", name), f"'{name}'", "another name", "Results use this name already.")
+                for name in self.variants
+                if name in TAKEN
+            )
+        )
+        return self
+
+
+class StudyFile(StudyPlan):
+    """A study as a file: the plan, and the files of the building, the weather and the measurements."""
+
+    name: str = Field(description="Title of the study")
+    building: str = Field(description="Building file; its path starts at the folder of the study")
+    set: dict[str, Any] = Field(
+        default_factory=dict, description="Path -> value that replaces the one of the building file"
+    )
+    climate: ClimateSource = Field(description="Weather data")
+    measurements: Table = Field(description="Table of measurements")
 
     @model_validator(mode="before")
     @classmethod
@@ -421,17 +447,6 @@ class StudyFile(Part):
             expected = "a study: building, climate, measurements, sensors, periods, identification"
             insist(fault((), "a building", expected, "A study names a building; see docs/your-own-wall.md."))
         return data
-
-    @model_validator(mode="after")
-    def _named(self) -> Self:
-        insist(
-            *(
-                fault(("variants", name), f"'{name}'", "another name", "Results use this one already.")
-                for name in self.variants
-                if name in TAKEN
-            )
-        )
-        return self
 
 
 def read_study(path: str | Path) -> StudyFile:
