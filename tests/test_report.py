@@ -15,7 +15,7 @@ import pytest
 import report_example
 from mascarin.errors import InputError
 from mascarin.report import render, write
-from mascarin.report.payload import Series
+from mascarin.report.series import Series
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mascarin.report.payload import Series
+    from mascarin.report.series import Series
 
 __all__ = ["render", "write", "write_folder"]
 
@@ -23,7 +23,7 @@ def render(study: Mapping[str, Any], series: Series) -> str:
     Parameters
     ----------
     study : mapping
-        As in :class:`mascarin.report.payload.Study`.
+        As in :class:`mascarin.report.schema.Study`.
     series : Series
         Curves; thinned if there are more values than a page should carry.
 

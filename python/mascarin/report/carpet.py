@@ -11,7 +11,7 @@ from datetime import timedelta
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.report.payload import Array, Series
+from mascarin.report.series import Array, Series
 
 #: Colours at -limit, -limit/2, 0, +limit/2, +limit: blue to red through a light grey; told apart in the
 #: common kinds of colour blindness because they differ in lightness and on the blue-yellow axis.

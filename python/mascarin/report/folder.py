@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.report.payload import Array, Column, Series, read_json
+from mascarin.report.series import Array, Column, Series, read_json
 from mascarin.report.text import plain_path
 
 #: Climate channels with the words and units of a legend.
