@@ -294,9 +294,9 @@ def test_what_keeps_from_an_aim_is_the_parameter_left_out(
 def _left(done: Done) -> str:
     """What the report says in its section on the rest; nothing where there is none."""
     page = (done.out / "report.html").read_text(encoding="utf-8")
-    if 'id="shortfall"' not in page:
+    if 'id="error-sources"' not in page:
         return ""
-    section = page[page.index('id="shortfall"') :]
+    section = page[page.index('id="error-sources"') :]
     return re.sub(r"<[^>]+>|\s+", " ", section[: section.index("</section")])
 
 
@@ -322,7 +322,7 @@ def test_the_rest_is_asked_for_without_aims_or_criteria_and_of_one_sensor(
     assert list(shortfall["sd"]) == ["core"]
     assert shortfall["steps"]
     assert shortfall["every"]["sd"]["core"] < 0.5 * shortfall["sd"]["core"]
-    assert "The table adds them one by one" in _left(found)
+    assert "The table adds the parameters one by one" in _left(found)
 
 
 def test_where_only_noise_is_left_no_parameter_is_blamed(
@@ -334,7 +334,7 @@ def test_where_only_noise_is_left_no_parameter_is_blamed(
     shortfall = found.content["shortfall"]
     assert shortfall["steps"] == []
     assert shortfall["sd"]["joint"] == pytest.approx(NOISE, rel=0.15)
-    assert "No parameter takes a noticeable part of it away" in _left(found)
+    assert "No parameter reduces the error significantly" in _left(found)
 
 
 def test_a_sensor_without_blind_values_is_left_out_and_named(
@@ -422,7 +422,7 @@ def test_when_it_was_run_is_told_beside_the_results(done: Done) -> None:
     run = json.loads((done.out / "run.json").read_text(encoding="utf-8"))
     assert run["run_time"] > 0.0
     assert run["created"].endswith("+00:00")
-    assert "Time of the run" in (done.out / "report.html").read_text(encoding="utf-8")
+    assert "Run time" in (done.out / "report.html").read_text(encoding="utf-8")
     assert done.content["command"] == ["mascarin study study.yaml -o out/"]
 
 

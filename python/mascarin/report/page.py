@@ -108,12 +108,16 @@ def _facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
     fitted = [p for p in study.get("parameters", {}).values() if "fitted" in p]
     if fitted:
         sensed = len({path for shares in study.get("sensitivity", {}).values() for path in shares})
-        note = f"of {sensed} examined" if sensed else "from the measurements"
-        found.append(_fact("Parameters identified", str(len(fitted)), note))
+        note = f"of {sensed} analyzed" if sensed else "from the measurements"
+        found.append(_fact("Calibrated parameters", str(len(fitted)), note))
     closure = study.get("ledger", {}).get("closure")
     if closure is not None:
         found.append(
-            _fact("Energy balance closes to", text.significant(closure, 2), "of the heat turned over")
+            _fact(
+                "Energy-balance residual",
+                text.significant(closure, 2),
+                "relative to the total heat exchanged",
+            )
         )
     return found
 
@@ -137,7 +141,7 @@ def _worst(study: Mapping[str, Any]) -> dict[str, str] | None:
             unit = text.difference_unit(unit_of(study, high[1]))
             spread = text.fixed(low[0]) if low == high else f"{text.fixed(low[0])}–{text.fixed(high[0])}"
             label = str(study["periods"][period].get("label", period)).lower()
-            return _fact("Scatter of the error", f"{spread}\u00a0{unit}", f"standard deviation, {label}")
+            return _fact("Error of the fitted model", f"{spread}\u00a0{unit}", f"standard deviation, {label}")
     return None
 
 

@@ -138,5 +138,5 @@ def _period_curves(
     if band > 0.0:
         below.bar(x.low, x.high, -band, band, "sensor-band")
     below.curve(hours[pick], error[pick], "error")
-    words = f"{label}: observed and simulated"
-    return PeriodCurves(label, chart.markup(words), below.markup(f"{label}: simulated less observed"))
+    words = f"{label}: measured and simulated"
+    return PeriodCurves(label, chart.markup(words), below.markup(f"{label}: simulated minus measured"))

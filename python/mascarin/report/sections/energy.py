@@ -63,4 +63,4 @@ def ledger_bars(ledger: Mapping[str, Any]) -> Markup | None:
         shown = f"{text.significant(value, 4)}\u00a0MJ"
         svg.label(x, y + 16.0, shown, "layer-name", "start" if value >= 0 else "end")
     svg.line(middle, 0.0, middle, 8.0 + 26.0 * len(terms), "axis")
-    return svg.markup("Terms of the energy ledger")
+    return svg.markup("Heat flows of the energy balance")

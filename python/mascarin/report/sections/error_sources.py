@@ -21,10 +21,10 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         return None
     sensors = list(found.get("sd", {}))
     changes = found["steps"][-1]["changes"] if found.get("steps") else {}
-    rows = [{"label": "as it is", "change": "", "cells": _scatter(found.get("sd", {}), sensors)}]
+    rows = [{"label": "fitted model", "change": "", "cells": _scatter(found.get("sd", {}), sensors)}]
     rows += [
         {
-            "label": f"{'with' if number == 0 else 'and'} {parameter_label(study, step['path'])}",
+            "label": f"{'with changed' if number == 0 else 'and'} {parameter_label(study, step['path'])}",
             "change": text.fixed(100.0 * changes[step["path"]], 0, sign=True),
             "cells": _scatter(step["sd"], sensors),
         }

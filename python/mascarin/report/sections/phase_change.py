@@ -59,7 +59,7 @@ def enthalpy_loop(entry: Mapping[str, Any]) -> Figure | None:
         width=420.0,
         height=260.0,
         y_label="enthalpy, kJ/kg",
-        x_label="mean of its two faces, °C",
+        x_label="mean temperature of its two surfaces, °C",
     )
     if law_t.size:
         chart.curve(law_t, law_h, "law")

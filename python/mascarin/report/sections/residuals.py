@@ -113,7 +113,7 @@ def _cross(entry: Mapping[str, Any]) -> Chart:
     y = Axis(-1.0, 1.0, (-1.0, -0.5, 0.0, 0.5, 1.0), ("−1", "−0.5", "0", "0.5", "1"))
     high = float(lags.max(initial=1.0))
     marks = [float(m) for m in np.arange(0.0, high + 1e-9, 2.0)]
-    chart = _small(Axis(0.0, high, marks, [f"{m:g}" for m in marks]), y, "residual later by, h")
+    chart = _small(Axis(0.0, high, marks, [f"{m:g}" for m in marks]), y, "lag of the residual, h")
     band = float(entry.get("correlation_band") or 0.0)
     if band > 0.0:
         chart.bar(0.0, high, -band, band, "null-band")
@@ -154,7 +154,7 @@ def _periodogram(entry: Mapping[str, Any]) -> Chart:
     low, high = float(place.min()), float(place.max())
     marks = [m for m in (0.1, 1.0, 2.0, 10.0, 48.0) if low <= math.log10(m) <= high]
     x = Axis(low, high, [math.log10(m) for m in marks], [f"{m:g}" for m in marks])
-    chart = _small(x, y, "cycles per day")
+    chart = _small(x, y, "frequency, 1/day")
     # As many points as there are pixels, equally far apart on the logarithmic axis.
     _, kept = np.unique(np.round((place - low) / max(high - low, 1e-9) * 200.0), return_index=True)
     white = frequency[kept] / float(frequency.max())

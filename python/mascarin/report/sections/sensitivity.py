@@ -37,6 +37,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         for path in paths
     ]
     return {
+        "index": _index(study),
         "design": study.get("sensitivity_design", []),
         "outputs": [label_of(study, output) for output in outputs],
         "rows": rows,
@@ -48,6 +49,12 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         "reference": study.get("reference", {}).get("label", ""),
         "layout": layout(study, "influential"),
     }
+
+
+def _index(study: Mapping[str, Any]) -> str:
+    """Name of the index in the table."""
+    method = dict(row[:2] for row in study.get("sensitivity_design", [])).get("method", "")
+    return "Relative squared elementary effect" if method == "morris" else "First-order index S1"
 
 
 def _influential(
@@ -146,7 +153,7 @@ def draw_spectrum(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any
     y = Axis(math.log10(floor), 0.25, [math.log10(m) for m in marks], [f"{100 * m:g}" for m in marks])
     x = Axis.over(frequency, around=0.0, count=6)
     x = Axis(0.0, float(frequency.max(initial=1.0)) * 1.02, *_within(x, float(frequency.max(initial=1.0))))
-    chart = Chart(x, y, height=210.0, y_label="% of the variance", x_label="frequency")
+    chart = Chart(x, y, height=210.0, y_label="part of the variance, %", x_label="frequency")
     _stems(chart, frequency, power, threshold)
     if threshold > floor:
         chart.level(math.log10(threshold), "threshold")
@@ -190,7 +197,7 @@ def _name_peaks(chart: Chart, peaks: Sequence[Mapping[str, Any]]) -> None:
 
 
 def day_shares(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) -> Figure:
-    """Shares of the strongest parameters over the hours of the day, stacked.
+    """First-order indices of the most influential parameters over the day, stacked.
 
     Parameters
     ----------
@@ -207,12 +214,12 @@ def day_shares(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) 
         Axis(float(hours.min(initial=0.0)), float(hours.max(initial=24.0)), *hour_marks(hours)),
         Axis(0.0, 100.0, (0.0, 25.0, 50.0, 75.0, 100.0), ("0", "25", "50", "75", "100")),
         height=190.0,
-        y_label="% of the variance",
-        x_label="hour of day",
+        y_label="first-order index S1, %",
+        x_label="hour of the day",
     )
     below = np.zeros(len(hours))
     for number, row in enumerate(shares[:8]):
         chart.band(hours, below, np.minimum(below + row, 100.0), f"area c{number}")
         below = np.minimum(below + row, 100.0)
     label = label_of(study, sensor)
-    return Figure(label, chart.markup(f"Shares over the day for {label}"))
+    return Figure(label, chart.markup(f"First-order indices over the day, {label}"))
