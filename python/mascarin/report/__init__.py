@@ -1,7 +1,7 @@
 """The report of a study: one HTML file without anything outside of it.
 
-Its only input are the results of a study: the content of ``study.json`` (:mod:`mascarin.report.schema`) and its
-series (:mod:`mascarin.report.series`). Styles, scripts and pictures are part of the file, and its content
+Its only input are the results of a study: the content of ``study.json`` (:mod:`mascarin.report.schema`) and
+its series (:mod:`mascarin.report.series`). Styles, scripts and pictures are part of the file, and its content
 security policy forbids the browser to load anything else.
 """
 

@@ -140,8 +140,8 @@ def interval_entry(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
 def interval_words(study: Setup, found: PredictionIntervals) -> list[str]:
     """Sensors with a low coverage on the blind days, in words."""
     return [
-        f"{name}: the {100.0 * found.confidence:g} % prediction interval contains {100.0 * share:.0f} % of the "
-        f"values of the blind days: the model error there differs from that of the identification."
+        f"{name}: the {100.0 * found.confidence:g} % prediction interval contains {100.0 * share:.0f} % of "
+        f"the values of the blind days: the model error there differs from that of the identification."
         for name, share in zip(study.observation.names, found.coverage["blind"], strict=True)
         if share < _LOW_COVERAGE
     ]
