@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Final
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.examples.small import box, box_climate
 from mascarin.examples.synthetic import SyntheticWall, synthetic_wall
 
-__all__ = ["FOLDER", "STUDIES", "SyntheticWall", "locate", "synthetic_wall"]
+__all__ = ["FOLDER", "STUDIES", "SyntheticWall", "box", "box_climate", "locate", "synthetic_wall"]
 
 FOLDER: Final = Path(__file__).parent
 #: Example studies by name.

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
-from mascarin.building import Building
-from mascarin.simulation.simulation import Simulation
-from mascarin.weather import Climate, Measurements
-
 if TYPE_CHECKING:
     import pandas as pd
+
+    from mascarin.building import Building
+    from mascarin.weather import Climate, Measurements
 
 _DESCRIPTION: Final[dict[str, Any]] = {
     "name": "Synthetic wall",
@@ -90,6 +87,13 @@ def synthetic_wall() -> SyntheticWall:
     >>> synthetic_wall().building.parameter("materials.insulation.conductivity").value
     0.04
     """
+    # Heavy libraries, which are not needed to list the example studies.
+    import numpy as np
+
+    from mascarin.building import Building
+    from mascarin.simulation.simulation import Simulation
+    from mascarin.weather import Climate, Measurements
+
     building = Building.model_validate(_DESCRIPTION)
     table = _boundary_conditions()
     climate = Climate.from_table(
@@ -117,6 +121,7 @@ def synthetic_wall() -> SyntheticWall:
 
 def _boundary_conditions() -> pd.DataFrame:
     """Outdoor air [degC], solar irradiance on the wall [W/m2] and room air [degC] of days that differ."""
+    import numpy as np
     import pandas as pd
 
     index = pd.date_range("2023-03-01", periods=216, freq="1h", name="time")

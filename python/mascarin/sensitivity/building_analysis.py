@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
+    from mascarin.simulation.options import TimeLike
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -92,8 +93,8 @@ def screen(
     distributions: Mapping[str, DistributionName] | None = None,
     groups: Mapping[str, Sequence[str]] | None = None,
     leave_out: Sequence[str] = (),
-    start: object = None,
-    end: object = None,
+    start: TimeLike | None = None,
+    end: TimeLike | None = None,
     step: str | float = "15min",
     interval: str | float = "1h",
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",

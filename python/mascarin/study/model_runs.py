@@ -139,7 +139,7 @@ def compared(
     setup: Setup, label: str, simulation: Simulation, values: Any, fit: Fit | None, note: str
 ) -> ModelRun:
     """Run a model over the whole record and compare it with the measurements."""
-    results = simulation.run(values)
+    results = simulation.run_vector(values)
     return ModelRun(label, simulation, results, setup.scores(results), fit, note)
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.calibration import CalibrationProblem
+    from mascarin.simulation.options import TimeLike
     from mascarin.simulation.results import Results
     from mascarin.study.description import StudyPlan
     from mascarin.study.locations import Places
@@ -190,7 +191,7 @@ class Setup:
         return dict(zip(PERIODS, (seen, named, rest if rest.any() else named), strict=True))
 
     def _simulate(
-        self, building: Building, start: object, end: object, further: Sequence[str] = ()
+        self, building: Building, start: TimeLike, end: TimeLike, further: Sequence[str] = ()
     ) -> Simulation:
         """A model that records the outputs of the sensors, then further outputs."""
         return Simulation(

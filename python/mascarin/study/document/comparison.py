@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mascarin.validation.criteria import Verdict
 
 
-#: Flows of `simulation.results.FLOWS`, by words.
+#: Flows of `simulation` (``FLOWS``), by words.
 FLOW_LABELS: Final = {
     "solar": "solar radiation absorbed by opaque surfaces",
     "convection": "convection from outdoor air",
