@@ -137,15 +137,15 @@ def test_ranges_given_as_pairs_are_used(wall: SyntheticWall) -> None:
 
 
 INSULATION = {"material": "insulation", "thickness": 0.08}
-IDEAL_LOADS = {"heating": {"set_point": 20.0}, "cooling": {"set_point": 25.0}}
+IDEAL_LOADS = {"heating": {"setpoint": 20.0}, "cooling": {"setpoint": 22.0}}
 
 
 def glazed() -> Building:
     """A box with a south window, heating and cooling."""
     wall = {
         "construction": "wall",
-        "outside": {"outdoors": True, "absorptance": 0.6, "emissivity": 0.9},
-        "inside": {"zone": "room", "emissivity": 0.9},
+        "outside": {"outdoors": True, "absorptance": 0.6, "emissivity": 0.9, "convection": 15.0},
+        "inside": {"zone": "room", "emissivity": 0.9, "absorptance": 0.5, "convection": 3.0},
     }
     sides = {"south": 180.0, "north": 0.0, "east": 90.0, "west": 270.0}
     surfaces: dict[str, Any] = {
@@ -154,7 +154,8 @@ def glazed() -> Building:
     surfaces["roof"] = {**wall, "area": 16.0, "tilt": 0.0, "azimuth": 0.0}
     surfaces["floor"] = {
         "construction": "wall", "area": 16.0, "tilt": 180.0, "azimuth": 0.0,
-        "outside": {"ground": 10.0}, "inside": {"zone": "room", "emissivity": 0.9},
+        "outside": {"ground": {"temperature": 10.0}},
+        "inside": {"zone": "room", "emissivity": 0.9, "absorptance": 0.5, "convection": 2.0},
     }  # fmt: skip
     return Building.model_validate(
         {
@@ -171,8 +172,11 @@ def glazed() -> Building:
             "constructions": {"wall": {"layers": [INSULATION, {"material": "concrete", "thickness": 0.1}]}},
             "zones": {"room": {"volume": 43.0, **IDEAL_LOADS}},
             "surfaces": surfaces,
-            "glazings": {"double": {"kind": "simple", "u_value": 2.7, "g_value": 0.6}},
-            "windows": {"window": {"surface": "south", "glazing": "double", "area": 5.0}},
+            "glazings": {"double": {"kind": "simple", "u_value": 2.7, "solar_heat_gain": 0.6}},
+            "windows": {"window": {
+                    "surface": "south", "glazing": "double", "area": 5.0,
+                    "outside": {"convection": 15.0}, "inside": {"convection": 3.0},
+                }},
         }
     )  # fmt: skip
 
