@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,8 +14,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.study.locations import Faults, Places
 from mascarin.weather import Climate, Measurements
 from mascarin.weather.data import data_file
-from mascarin.weather.gaps import fill_linearly
-from mascarin.weather.table import read_table, seconds_of
+from mascarin.weather.table import read_table
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -210,12 +208,4 @@ def filled(read: Measurements, building: Building, longest: str) -> Measurements
     longest : str
         Longest gap to fill, such as ``2h``.
     """
-    limit = seconds_of(longest, "fill_gaps") / read.step_seconds
-    data, notes = read.data.copy(), list(read.provenance)
-    for name in measured_columns(building):
-        values = data[name].to_numpy(dtype=np.float64).copy()
-        count = fill_linearly(values, limit)
-        if count:
-            data[name] = values
-            notes.append(f"{read.file}: {count} missing values of {name} filled linearly on request.")
-    return replace(read, data=data, provenance=tuple(notes))
+    return read.fill_gaps(longest, measured_columns(building))

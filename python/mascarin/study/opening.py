@@ -20,8 +20,8 @@ from mascarin.study.inputs import filled, find, open_climate, open_measurements,
 from mascarin.study.locations import Faults, Places
 from mascarin.study.names import check_names
 from mascarin.validation.criteria import Criterion
+from mascarin.weather.files import file_hash
 from mascarin.weather.quality import mask
-from mascarin.weather.table import file_hash
 
 if TYPE_CHECKING:
     import pandas as pd

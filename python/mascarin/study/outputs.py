@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io import atomic
 from mascarin.calibration import plots
-from mascarin.sensitivity.plots import save, save_all
+from mascarin.figures.files import save
+from mascarin.sensitivity.files import save_all
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
 from mascarin.study.tables import tables_of, write_tables

@@ -19,7 +19,7 @@ from mascarin.study.description import IdentificationPlan, StudyFile
 from mascarin.study.phase_change import melting_layers
 from mascarin.validation.metrics import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mascarin._io import atomic
-from mascarin.sensitivity.plots import save_all
+from mascarin.sensitivity.files import save_all
 from mascarin.study.description import SensitivityPlan
 from mascarin.study.document.comparison import comparison
 from mascarin.study.document.estimates import estimates, prediction_entries, profile_entries

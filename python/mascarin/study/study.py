@@ -21,7 +21,7 @@ from mascarin.study.residuals_step import error_sources, examined, too_few
 from mascarin.study.results import StudyResults
 from mascarin.study.setup import Setup
 from mascarin.study.storage import Workspace
-from mascarin.study.writing import text_of, write_study
+from mascarin.study.writing import study_text, write_study
 from mascarin.validation.criteria import judge
 from mascarin.validation.residuals import diagnose
 
@@ -190,7 +190,7 @@ class Study(Setup):
         InputError
             The weather is a year of a weather file, which a table cannot represent.
         """
-        return text_of(self.sources) if path is None else write_study(self.sources, Path(path))
+        return study_text(self.sources) if path is None else write_study(self.sources, Path(path))
 
     def run(self, out: str | Path | None = None, *, progress: ProgressOption = None) -> StudyResults:
         """Carry out all steps of the study.

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import os
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from ruamel.yaml import YAML
 
 from mascarin._io import atomic
+from mascarin.building.yaml_text import text_of
 from mascarin.errors import InputError
 from mascarin.study.description import StudyFile
 from mascarin.study.inputs import KNOWN
 from mascarin.weather.channels import BY_NAME
-from mascarin.weather.climate import NEUTRAL
+from mascarin.weather.measured import NEUTRAL
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +27,7 @@ _CLIMATE: Final = "climate.csv"
 _MEASUREMENTS: Final = "measurements.csv"
 
 
-def text_of(inputs: Inputs) -> str:
+def study_text(inputs: Inputs) -> str:
     """The text of a study file.
 
     Parameters
@@ -46,7 +45,7 @@ def text_of(inputs: Inputs) -> str:
     InputError
         The weather cannot be written as a table.
     """
-    return _yaml(_content(inputs))
+    return text_of(_content(inputs))
 
 
 def write_study(inputs: Inputs, path: Path) -> str:
@@ -71,14 +70,12 @@ def write_study(inputs: Inputs, path: Path) -> str:
     """
     content = _content(inputs)
     if inputs.path is None:
-        atomic.write(
-            path.with_name(_BUILDING), _yaml(inputs.building.model_dump(mode="json", exclude_unset=True))
-        )
+        inputs.building.to_yaml(path.with_name(_BUILDING))
         atomic.write(path.with_name(_CLIMATE), _table(inputs.climate.data))
         atomic.write(path.with_name(_MEASUREMENTS), _table(inputs.measurements.data))
     else:
         content = _moved(content, inputs.path.parent, path.parent)
-    text = _yaml(content)
+    text = text_of(content)
     atomic.write(path, text)
     return text
 
@@ -105,7 +102,7 @@ def _content(inputs: Inputs) -> dict[str, Any]:
 
 def _weather(climate: Climate) -> dict[str, Any]:
     """How the table of the weather is read."""
-    if climate.of_year:
+    if climate.record.of_year:
         raise InputError(
             f"{climate.file}: found the weather of a year, which a table cannot represent; write the study "
             "file by hand with climate: {epw: ...} or climate: {tmy: ...}"
@@ -144,11 +141,3 @@ def _table(data: pd.DataFrame) -> str:
     table = data.dropna(axis="columns", how="all").astype(np.float64)
     table.insert(0, "time", [stamp.isoformat() for stamp in data.index])
     return str(table.to_csv(index=False, lineterminator="\n"))
-
-
-def _yaml(content: dict[str, Any]) -> str:
-    writer, text = YAML(), StringIO()
-    writer.default_flow_style = None
-    writer.width = 110
-    writer.dump(content, text)
-    return text.getvalue()
