@@ -252,7 +252,7 @@ def test_what_overlaps(low: tuple[float, float], high: tuple[float, float], meet
 def test_open_edges_are_named() -> None:
     faces = box(3, 4, 2.5)
     gaps = g.open_edges(faces[1:])
-    assert {gap.face for gap in gaps} == {"north", "south", "west", "east"}
+    assert {gap.polygon for gap in gaps} == {"north", "south", "west", "east"}
     assert sum(gap.length for gap in gaps) == pytest.approx(14.0)
     with pytest.raises(InputError, match=r"4 open edges .*north: from .* 3\.000 m"):
         g.volume(faces[1:])

@@ -1,4 +1,4 @@
-"""The language of parameters: paths, short ways to write them, replacement."""
+"""Parameters: paths, short forms of paths, replacement."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def test_a_parameter_carries_all_that_is_known() -> None:
     assert (parameter.lower, parameter.upper) == (-500.0, 9000.0)
     assert parameter.source == "a map"
     assert parameter.description.startswith("Altitude")
-    assert parameter.range_reason == "written in the description"
+    assert parameter.range_reason == "given in the description"
     assert not parameter.structural
     assert parameter.varies
 
@@ -39,13 +39,13 @@ def test_paths_are_unique_and_ranges_hold_the_value() -> None:
 def test_a_range_without_width_is_said() -> None:
     building = room().replace({"surfaces.south.inside.convection": 0})
     parameter = building.parameter("surfaces.south.inside.convection.coefficient")
-    assert parameter.reason == "its default range has no width: write a range"
+    assert parameter.reason == "its default range has no width: give a range"
     assert not parameter.varies
 
 
 def test_what_shapes_the_calculation_is_marked() -> None:
     structural = {p.path: p.reason for p in everything()[0].parameters() if p.structural}
-    assert structural["site.latitude"] == "acts through the sun's path in the forcing"
+    assert structural["site.latitude"] == "acts through the position of the sun in the forcing"
     for path in (
         "surfaces.roof.vertices.2.2",
         "constructions.wall.layers.concrete.nodes",

@@ -93,7 +93,7 @@ def test_a_product_survives_other_values() -> None:
         ("product: 25", "expected: the name of a product"),
         ("product: RT25HC, kind: solid", "RT25HC is a phase-change material"),
         ("product: RT25HC, densty: 1", "Did you mean 'density'?"),
-        ("product: RT25HC, latent_heat: 1.0e5", "what the table rises"),
+        ("product: RT25HC, latent_heat: 1.0e5", "the rise of the table"),
     ],
 )
 def test_refusals_say_where_and_what(material: str, message: str) -> None:

@@ -50,7 +50,7 @@ FAULTS = {
         "constructions.wall.layers",
         ["two layers called 'concrete'", "Add 'name:'"],
     ),
-    "layer named as a face": (
+    "layer named as a side": (
         "{material: concrete, thickness: 0.2}",
         "{name: outside, material: concrete, thickness: 0.2} # here",
         "constructions.wall.layers.outside",
@@ -66,7 +66,7 @@ FAULTS = {
         "concrete: {conductivity: 1.75, density: 2240, specific_heat: 900, source: a table}",
         "concrete: {kind: resistance, resistance: 0.1}",
         "constructions.wall.layers.concrete.thickness",
-        ["none: the material is a bare resistance", "Remove 'thickness:'"],
+        ["none: the material is a resistance", "Remove 'thickness:'"],
     ),
     "unknown kind of material": (
         "concrete: {conductivity: 1.75,",
@@ -145,13 +145,13 @@ FAULTS = {
         "convection: 15, emissivity: 0.9, absorptance: 0.6}",
         "emissivity: 0.9, absorptance: 0.6} # here",
         "surfaces.south.outside.convection",
-        ["Film coefficient"],
+        ["Surface heat transfer coefficient"],
     ),
     "no emissivity in an exchanging zone": (
         "inside: {zone: room, convection: 3, emissivity: 0.9}\n  rest",
         "inside: {zone: room, convection: 3} # here\n  rest",
         "surfaces.south.inside.emissivity",
-        ["zone 'room' exchanges long-wave", "longwave: none"],
+        ["zone 'room' exchanges radiation", "longwave: none"],
     ),
     "no absorptance for a measured irradiance": (
         "outside: {adiabatic: true}",
@@ -169,7 +169,7 @@ FAULTS = {
         "true}\n    inside: {zone: room, convection: 3,",
         "true}\n    inside: {zone: room, convection: {kind: tarp, roughness: rough}, # here\n",
         "surfaces.rest.inside.convection.roughness",
-        ["it belongs to the wind's part"],
+        ["only the forced part by wind uses it"],
     ),
     "an outdoor film indoors": (
         "true}\n    inside: {zone: room, convection: 3,",
@@ -456,7 +456,7 @@ LAWS = {
         "    conductivity: 0.2\n",
         "    conductivity: 0.2\n    latent_heat: 40000\n",
         "materials.curve.latent_heat",
-        "what the table rises between 20 and 22 degC",
+        "the rise of the table between 20 and 22 degC",
     ),
     "three phases": (
         "[0.22, 0.18]",
@@ -474,7 +474,7 @@ LAWS = {
         "roof: {ceiling: 1.0}\n",
         "roof: {floor: 1.0}\n",
         "zones.attic.view_factors.roof.floor",
-        "a face of this zone",
+        "a surface of this zone",
     ),
     "view factors with a hole": (
         "      ceiling: {roof: 0.8, light: 0.1, hatch: 0.1}\n",

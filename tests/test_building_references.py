@@ -20,7 +20,7 @@ def test_numbers_and_correlations_are_cited_once() -> None:
 
 
 def test_remarks_are_no_sources() -> None:
-    remarks = ("not written", "no furniture", "as published", "as it is", "vertices", "of a square")
+    remarks = ("not given", "no furniture", "as published", "as it is", "vertices", "of a square")
     for building in (room(), *everything()):
         assert cites(building, *remarks) == [False] * len(remarks)
 

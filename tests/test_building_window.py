@@ -82,7 +82,7 @@ def test_windows_together_exceed_their_wall() -> None:
         ("glazing: clear", "glazing: claer", r"'claer'[\s\S]*Did you mean 'clear'"),
         ("absorptance: 0.4}", "}", r"surfaces\.rest\.inside\.absorptance[\s\S]*the sun enters zone 'room'"),
         ("gaps: [{conductance: 5.208}]", "gaps: []", r"0 gaps between 2 panes"),
-        ("reflectance: 0.075", "reflectance: 0.3", r"1\.134 in all[\s\S]*at most 1 in all"),
+        ("reflectance: 0.075", "reflectance: 0.3", r"sum 1\.134[\s\S]*at most 1 together"),
         (
             "    area: 4\n",
             "    vertices: [[0, 0, 1], [1, 0, 1], [1, 0, 2], [0, 0, 2]]\n",
@@ -91,7 +91,7 @@ def test_windows_together_exceed_their_wall() -> None:
         (
             "infiltration: 0.5",
             "infiltration: 0.5, sun: {kind: shares, shares: {south: 0.5, rest: 0.4}}",
-            r"shares that sum to 0\.900",
+            r"fractions that sum to 0\.900",
         ),
         (
             "infiltration: 0.5",
@@ -278,11 +278,11 @@ def test_what_cannot_be_drawn_is_refused(change: dict[str, Any], said: str) -> N
 
 def test_shades_and_rays_need_vertices() -> None:
     shade = "shades: {s: {vertices: [[0, 0, 3], [1, 0, 3], [1, -1, 3]]}}\n"
-    with pytest.raises(InputError, match=r"shades\.s[\s\S]*no face in the sun has vertices"):
+    with pytest.raises(InputError, match=r"shades\.s[\s\S]*no sunlit surface has vertices"):
         parse(BOX + shade, "box.yaml")
     traced = BOX.replace("infiltration: 0.5", "infiltration: 0.5, sun: geometry")
     with pytest.raises(InputError, match=r"geometry, where 'south', 'rest', 'pane' have no vertices"):
         parse(traced, "box.yaml")
     half = drawn(shades={"s": {"vertices": [[0, 0, 3], [1, 0, 3], [1, -1, 3]]}}, sun="area")
     bare = {"windows.one.vertices": None, "windows.one.area": 6}
-    assert any("without vertices, one lie" in line for line in check(half.replace(bare)))
+    assert any("shades: without effect on one" in line for line in check(half.replace(bare)))

@@ -91,7 +91,7 @@ def test_heat_flow_of_the_sample_upside_down(tmp_path: Path) -> None:
         from_dsc(file, rate=RATE)
     material = from_dsc(file, rate=RATE, mass=mass)
     is_the_known_one(material)
-    assert "sign turned" in material.warnings[0]
+    assert "sign changed" in material.warnings[0]
 
 
 def test_enthalpy(tmp_path: Path) -> None:
@@ -196,7 +196,7 @@ def test_a_unit_can_be_given(tmp_path: Path) -> None:
     bare = write(tmp_path / "b.csv", {"temperature": t, "cp": heat(t) / 1000})
     material = from_dsc(bare)
     is_the_known_one(material)
-    assert "names no unit: taken as j/gk" in material.warnings[0]
+    assert "has no unit: j/gk assumed" in material.warnings[0]
 
 
 def test_wrong_order(tmp_path: Path) -> None:

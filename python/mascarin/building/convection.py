@@ -1,4 +1,4 @@
-"""Film coefficients of a face: which correlation, with which numbers."""
+"""Surface heat transfer coefficients: constants and correlations."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ _AS_PUBLISHED = Remark("the correlation as published")
 
 
 class Constant(Part):
-    """A constant film coefficient."""
+    """A constant surface heat transfer coefficient."""
 
     kind: Literal["constant"] = "constant"
-    coefficient: q.Film
+    coefficient: q.HeatTransferCoefficient
 
 
 class LinearWind(Part):
-    """``constant + wind V``, V the wind speed at the face."""
+    """``constant + wind V``, with the wind speed V at the surface."""
 
     kind: Literal["linear_wind"] = "linear_wind"
-    constant: q.Film
-    wind: q.FilmPerSpeed
+    constant: q.HeatTransferCoefficient
+    wind: q.HeatTransferCoefficientPerSpeed
 
 
 class AlamdariHammond(Part):
@@ -37,7 +37,7 @@ class AlamdariHammond(Part):
 
 
 class PaperEq5(Part):
-    """Eq. 5 of Guichard et al. as it is printed there."""
+    """Equation 5 of Guichard et al. 2016 as printed."""
 
     kind: Literal["paper_eq5"] = "paper_eq5"
     length: q.ConvectionLength | None = None
@@ -45,7 +45,13 @@ class PaperEq5(Part):
 
 
 class Tarp(Part):
-    """TARP (Walton 1983): buoyant part, and outdoors a forced part by roughness and perimeter."""
+    """TARP (Walton 1983): buoyant part, and outdoors a forced part by roughness and perimeter.
+
+    Examples
+    --------
+    >>> Tarp(roughness="smooth").roughness
+    1.11
+    """
 
     kind: Literal["tarp"] = "tarp"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
@@ -54,14 +60,14 @@ class Tarp(Part):
 
 
 class Mowitt(Part):
-    """MoWiTT (Yazdanian & Klems 1994), for smooth faces outdoors."""
+    """MoWiTT (Yazdanian & Klems 1994), for smooth surfaces outdoors."""
 
     kind: Literal["mowitt"] = "mowitt"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
 
 
 class Doe2(Part):
-    """DOE-2: TARP's buoyant part, and MoWiTT's wind on faces of any roughness, outdoors."""
+    """DOE-2: the buoyant part of TARP and the wind of MoWiTT on surfaces of any roughness, outdoors."""
 
     kind: Literal["doe2"] = "doe2"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
@@ -69,7 +75,7 @@ class Doe2(Part):
 
 
 class Iso15099(Part):
-    """Free convection at the room's face of a glazing, by its height and tilt (ISO 15099:2003)."""
+    """Free convection on the room side of a glazing, by its height and tilt (ISO 15099:2003)."""
 
     kind: Literal["iso15099"] = "iso15099"
     length: q.ConvectionLength | None = None
@@ -79,10 +85,10 @@ class Iso15099(Part):
 class PowerLaw(Part):
     """``a + b |dT|^n + c V^m`` for one direction of heat flow."""
 
-    a: q.PowerConstant = Number(0.0, source=Remark("not written: no constant part"))
-    b: q.PowerBuoyant = Number(0.0, source=Remark("not written: no buoyant part"))
+    a: q.PowerConstant = Number(0.0, source=Remark("not given: no constant part"))
+    b: q.PowerBuoyant = Number(0.0, source=Remark("not given: no buoyant part"))
     n: q.PowerExponent = Number(1.0 / 3.0, source=Remark("turbulent free convection"))
-    c: q.PowerForced = Number(0.0, source=Remark("not written: no forced part"))
+    c: q.PowerForced = Number(0.0, source=Remark("not given: no forced part"))
     m: q.PowerWindExponent = Number(0.8, source=Remark("turbulent flow along a plate"))
 
 
@@ -90,7 +96,7 @@ class Power(Part):
     """A power law for each direction of heat flow."""
 
     kind: Literal["power"] = "power"
-    upward: PowerLaw = Field(description="Heat flows up, or the face is vertical")
+    upward: PowerLaw = Field(description="Heat flows up, or the surface is vertical")
     downward: PowerLaw = Field(description="Heat flows down")
 
 
@@ -100,7 +106,10 @@ Convection = Annotated[
     Shorthand(word="kind", number="coefficient", kind="constant"),
 ]
 
-#: Where the correlations come from.
+#: Description of the fields that hold a coefficient.
+CONVECTION = "Surface heat transfer coefficient: a number [W/(m2 K)], or a correlation"
+
+#: Sources of the correlations.
 SOURCES = {
     "alamdari_hammond": "Alamdari & Hammond 1983, doi:10.1177/014362448300400304",
     "paper_eq5": "Guichard et al. 2016, doi:10.3390/en9010009, eq. 5 as printed",

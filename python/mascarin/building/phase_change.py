@@ -14,36 +14,42 @@ from mascarin.building import quantities as q
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, fault, insist
 
-#: Share of the transition cut off at either end of a curve with tails, where hysteresis needs an end.
+#: Fraction of the transition cut off at each end of a curve with tails, where hysteresis needs an end.
 CUT: Final = 1e-3
 
 
 class ClosedLaw(Part):
-    """A law of the liquid fraction in closed form, about the melting temperature."""
+    """A law of the liquid fraction by a formula, about the melting temperature."""
 
-    #: Whether the fraction reaches 0 and 1 only in the infinite.
+    #: Whether the fraction reaches 0 and 1 only at infinity.
     tails: ClassVar[bool] = False
 
     @property
     def half_width(self) -> float:
-        """Half-width of the melting range, or of most of it [K]."""
-        raise TypeError("a law has a width of its own")
+        """Half-width of the melting range [K]."""
+        raise TypeError("each law defines its width")
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, from the melting temperature, tails cut at `CUT` [K]."""
-        raise TypeError("a law has a reach of its own")
+        """Where melting starts and is complete, relative to the melting temperature, without tails [K]."""
+        raise TypeError("each law defines its reach")
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
-        raise TypeError("a law has a fraction of its own")
+        """Liquid fraction at a distance above the melting temperature [K]."""
+        raise TypeError("each law defines its fraction")
 
 
 class TanhLaw(ClosedLaw):
     """Liquid fraction ``(1 + tanh((T - Tm)/w))/2``.
 
-    Either the half-width ``w`` is given, or ``gamma`` and ``delta_t`` of Guichard et al., with which
+    Either the half-width ``w`` is given, or ``gamma`` and ``delta_t`` of Guichard et al. 2016,
     ``w = 4 delta_t/gamma``.
+
+    Examples
+    --------
+    >>> law = TanhLaw(gamma=0.04, delta_t=0.01)
+    >>> law.half_width, law.fraction(0.0)
+    (1.0, 0.5)
     """
 
     tails: ClassVar[bool] = True
@@ -72,12 +78,12 @@ class TanhLaw(ClosedLaw):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, tails cut [K]."""
+        """Where melting starts and is complete, without tails [K]."""
         end = self.half_width * math.atanh(1.0 - 2.0 * CUT)
         return (-end, end)
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
+        """Liquid fraction at a distance above the melting temperature [K]."""
         return 0.5 + 0.5 * math.tanh(above / self.half_width)
 
 
@@ -86,7 +92,7 @@ class SmoothStepLaw(ClosedLaw):
 
     kind: Literal["smooth_step"] = "smooth_step"
     width: q.EndToMiddle
-    continuity: q.Continuity = Number(1.0, source=Remark("an enthalpy with a continuous capacity"))
+    continuity: q.Continuity = Number(1.0, source=Remark("the enthalpy has a continuous derivative"))
 
     @property
     def half_width(self) -> float:
@@ -99,7 +105,7 @@ class SmoothStepLaw(ClosedLaw):
         return (-self.half_width, self.half_width)
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
+        """Liquid fraction at a distance above the melting temperature [K]."""
         v = _held(0.5 + 0.5 * above / self.width)
         return (
             v * v * (3.0 - 2.0 * v)
@@ -122,19 +128,19 @@ class GaussianLaw(ClosedLaw):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, tails cut [K]."""
+        """Where melting starts and is complete, without tails [K]."""
         from statistics import NormalDist
 
         end = self.width * NormalDist().inv_cdf(1.0 - CUT)
         return (-end, end)
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
+        """Liquid fraction at a distance above the melting temperature [K]."""
         return 0.5 * math.erfc(-above / self.width / math.sqrt(2.0))
 
 
 class GumbelLaw(ClosedLaw):
-    """A skewed law: the latent capacity peaks at Tm and has a long tail on one side.
+    """A skewed law: the latent capacity has its peak at Tm and a long tail on one side.
 
     With the tail towards low temperatures the fraction is ``1 - exp(-exp((T - Tm)/w))``.
     """
@@ -143,7 +149,7 @@ class GumbelLaw(ClosedLaw):
     kind: Literal["gumbel"] = "gumbel"
     width: q.GumbelScale
     tail: Literal["low", "high"] = Field(
-        "low", description="Where the long tail is: low (melting starts slowly) or high temperatures"
+        "low", description="Side of the long tail: low (melting starts slowly) or high temperatures"
     )
 
     @property
@@ -153,19 +159,19 @@ class GumbelLaw(ClosedLaw):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, tails cut [K]."""
+        """Where melting starts and is complete, without tails [K]."""
         ends = sorted(-self.width * math.log(-math.log(share)) for share in (CUT, 1.0 - CUT))
         return (ends[0], ends[1]) if self.tail == "high" else (-ends[1], -ends[0])
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the peak [K]."""
+        """Liquid fraction at a distance above the peak [K]."""
         sign = 1.0 if self.tail == "low" else -1.0
         left = math.exp(-math.exp(max(min(sign * above / self.width, 30.0), -30.0)))
         return 1.0 - left if self.tail == "low" else left
 
 
 class LinearLaw(ClosedLaw):
-    """The liquid fraction rises straight from 0 at ``Tm - w`` to 1 at ``Tm + w``."""
+    """The liquid fraction is linear from 0 at ``Tm - w`` to 1 at ``Tm + w``."""
 
     kind: Literal["linear"] = "linear"
     width: q.EndToMiddle
@@ -181,7 +187,7 @@ class LinearLaw(ClosedLaw):
         return (-self.half_width, self.half_width)
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
+        """Liquid fraction at a distance above the melting temperature [K]."""
         return _held(0.5 + 0.5 * above / self.width)
 
 
@@ -203,7 +209,7 @@ class TriangleLaw(ClosedLaw):
         return (-float(self.below), float(self.above))
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the peak [K]."""
+        """Liquid fraction at a distance above the peak [K]."""
         rising, falling = _held(1.0 + above / self.below), _held(1.0 - above / self.above)
         total = self.below + self.above
         return (self.below * rising**2 + self.above * (1.0 - falling**2)) / total
@@ -214,7 +220,7 @@ def _held(value: float) -> float:
 
 
 class FractionsLaw(Part):
-    """Measured liquid fraction over temperature, interpolated monotonically; needs a latent heat beside."""
+    """Measured liquid fraction over temperature, interpolated monotonically; needs a latent heat."""
 
     tails: ClassVar[bool] = False
     kind: Literal["fractions"] = "fractions"
@@ -256,7 +262,7 @@ class FractionsLaw(Part):
 
 
 class _Table(Part):
-    """A measured curve over temperature that holds sensible and latent heat."""
+    """A measured curve over temperature that includes sensible and latent heat."""
 
     temperatures: tuple[q.CurveTemperature, ...]
     melting_range: tuple[q.CurveTemperature, q.CurveTemperature] | None = Field(
@@ -290,7 +296,7 @@ class _Table(Part):
 
     def rise(self, low: float, high: float) -> float:
         """Rise of the specific enthalpy between two temperatures of the table [J/kg]."""
-        raise TypeError("a table has a curve of its own")
+        raise TypeError("each table defines its curve")
 
 
 class TableLaw(_Table):
@@ -361,7 +367,7 @@ Law = Annotated[
     | CapacityLaw,
     Field(discriminator="kind"),
 ]
-#: Laws of the liquid fraction alone: what hysteresis can be made of.
+#: Laws of the liquid fraction alone, which hysteresis needs.
 FractionLaw = Annotated[
     TanhLaw | SmoothStepLaw | GaussianLaw | GumbelLaw | LinearLaw | TriangleLaw | FractionsLaw,
     Field(discriminator="kind"),
@@ -369,15 +375,20 @@ FractionLaw = Annotated[
 
 
 class Hysteresis(Part):
-    """A cooling curve of its own, and what happens on a reversal within the range.
+    """A cooling curve, and what happens at a reversal within the melting range.
 
     ``curve_track`` stays on its curve until all has melted or frozen. ``curve_switch`` keeps the liquid
-    fraction until the other curve is met. ``curve_scale`` follows the other curve, scaled to what is left.
+    fraction until the other curve is reached. ``curve_scale`` follows the other curve, scaled to the rest.
     The law of the material is the heating curve.
 
     References
     ----------
     Barz et al. 2019, J. Build. Perf. Simul. 12(6), doi:10.1080/19401493.2019.1657953
+
+    Examples
+    --------
+    >>> Hysteresis(model="curve_switch", freezing_temperature=18.5).model
+    'curve_switch'
     """
 
     model: Literal["curve_track", "curve_switch", "curve_scale"] = Field(
@@ -398,14 +409,14 @@ class Hysteresis(Part):
 
 
 def rising(key: str, values: tuple[Number, ...]) -> list[InitErrorDetails]:
-    """Find where a column of a table does not rise."""
+    """Points at which a column of a table does not rise."""
     if len(values) < 2:
         return [fault((key,), f"{len(values)} points", "at least two points", "Complete the table.")]
     return [
         fault(
             (key, i + 1),
             f"{after:g} after {before:g}",
-            "strictly rising values: heat must raise enthalpy",
+            "strictly rising values: enthalpy must rise with heat",
             "Sort the table, remove repeated points; a plateau needs a small slope.",
         )
         for i, (before, after) in enumerate(pairwise(values))
@@ -423,7 +434,7 @@ def _as_many(
 
 
 def monotone(x: tuple[Number, ...], y: tuple[Number, ...]) -> Callable[[float], float]:
-    """Monotone cubic through points, as the engine draws it; constant beyond the ends.
+    """Monotone cubic through points, as in the engine; constant beyond the ends.
 
     References
     ----------

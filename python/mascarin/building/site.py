@@ -1,4 +1,4 @@
-"""Where the building stands: position, wind profile, sky, ground."""
+"""The site: position, wind profile, sky, ground."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ TERRAINS = {"open": (0.14, 270.0), "suburb": (0.22, 370.0), "city": (0.33, 460.0
 
 
 class Wind(Part):
-    """Power-law profile that carries the wind from the mast to a face that has a height."""
+    """Power-law profile of the wind speed, from the mast to a surface with a height."""
 
     terrain: Literal["open", "suburb", "city", "sea"] = Field(
-        "open", description="Terrain around the building: gives exponent and layer where they are not written"
+        "open", description="Terrain around the building: gives exponent and layer where they are not given"
     )
     mast_height: q.MastHeight = Number(10.0, source="WMO-No. 8: standard height of anemometers")
     mast_exponent: q.WindExponent = Number(0.14, source=f"{ASHRAE_WIND}: open terrain")
@@ -46,10 +46,10 @@ class Wind(Part):
 
 
 class MeasuredSky(Part):
-    """Horizontal infrared of the climate, times a scale."""
+    """Measured horizontal infrared radiation of the climate, times a factor."""
 
     kind: Literal["measured"] = "measured"
-    scale: q.SkyScale = Number(1.0, source=Remark("the measurement as it is"))
+    scale: q.SkyScale = Number(1.0, source=Remark("the measurement without a correction"))
 
 
 class ClarkAllenSky(Part):
@@ -78,7 +78,7 @@ class BruntSky(Part):
 
 
 class OffsetSky(Part):
-    """Sky temperature a constant depression below the air temperature."""
+    """Sky temperature at a constant difference below the air temperature."""
 
     kind: Literal["offset"] = "offset"
     depression: q.SkyDepression = Number(
@@ -119,13 +119,11 @@ def _timezone(text: str) -> str:
 def _nearest(text: str) -> str:
     from zoneinfo import available_timezones
 
-    return (
-        did_you_mean(text, available_timezones()) or "Local clock time without a zone cannot place the sun."
-    )
+    return did_you_mean(text, available_timezones()) or "The position of the sun needs a time zone."
 
 
 def utc_offset_minutes(text: str) -> int | None:
-    """Minutes that a fixed zone such as ``UTC+4`` is ahead of UTC; none if the text is no such zone."""
+    """Minutes that a fixed zone such as ``UTC+4`` is ahead of UTC; None for any other text."""
     match = re.fullmatch(r"UTC(?:([+-])(\d{1,2})(?::(\d{2}))?)?", text)
     if match is None:
         return None
@@ -135,14 +133,21 @@ def utc_offset_minutes(text: str) -> int | None:
 
 
 class Site(Part):
-    """Where the building stands."""
+    """Site of the building: position, clock, wind, sky.
+
+    Examples
+    --------
+    >>> site = Site(latitude=48.1, longitude=11.6, altitude=520, timezone="Europe/Berlin")
+    >>> site.diffuse
+    'perez'
+    """
 
     latitude: q.Latitude
     longitude: q.Longitude
     altitude: q.Altitude
     air_density: q.AirDensity | None = None
     timezone: Annotated[str, AfterValidator(_timezone)] = Field(
-        description="Time zone of the building's clock: an IANA name such as Europe/Paris, or UTC+4"
+        description="Time zone of the local clock: an IANA name such as Europe/Paris, or UTC+4"
     )
     ground_reflectance: q.GroundReflectance = Number(
         0.2, source="Liu & Jordan 1963, doi:10.1016/0038-092X(63)90006-9"

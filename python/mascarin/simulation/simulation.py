@@ -207,7 +207,7 @@ class Simulation:
         """Set points at the ends of the steps, shape (members, 1) or (1, steps). [degC]"""
         from mascarin.weather import CHANNELS
 
-        plant = self.building.zones[zone].plants[which]
+        plant = self.building.zones[zone].loads[which]
         if plant.setpoint.schedule is None:
             return vectors[:, [self._positions[f"zones.{zone}.{which}.setpoint.temperature"]]]
         place = len(CHANNELS) + self._description.channels.index(f"schedule {plant.setpoint.schedule}")
