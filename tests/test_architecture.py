@@ -14,6 +14,7 @@ PACKAGE = ROOT / "python" / "mascarin"
 # From first to last (docs/architecture.md). Entries of one line may use each other, without circles.
 ORDER = [
     {"errors", "progress", "_engine", "_io"},
+    {"figures"},
     {"materials"},
     {"building"},
     {"weather"},
@@ -23,9 +24,9 @@ ORDER = [
     {"calibration"},
     {"verification"},
     {"examples"},
+    {"report"},
     {"study"},
     {"genopt"},
-    {"report"},
     {"commands", "cli"},
 ]
 LEVEL = {name: level for level, names in enumerate(ORDER) for name in names}
