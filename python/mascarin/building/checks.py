@@ -192,3 +192,17 @@ def assumptions(building: Description) -> Iterator[str]:
             yield f"zones.{name}.sun: area (solar radiation over all surfaces, part of it lost through glass)"
         if "approximated" in _exchange(building, name):
             yield f"zones.{name}: view factors by areas, zero between surfaces in one plane"
+
+
+def seconds_of(step: str | float) -> float:
+    """Duration of a time step in seconds, from a number or a text such as ``15min``."""
+    if not isinstance(step, str):
+        return float(step)
+    import pandas as pd
+
+    try:
+        return float(pd.Timedelta(step).total_seconds())
+    except ValueError:
+        raise InputError(
+            f"step: found '{step}'; expected a duration such as '15min' or a number [s]"
+        ) from None

@@ -14,14 +14,26 @@ _AS_PUBLISHED = Remark("the correlation as published")
 
 
 class Constant(Part):
-    """A constant surface heat transfer coefficient."""
+    """A constant surface heat transfer coefficient.
+
+    Examples
+    --------
+    >>> Constant(coefficient=8)
+    Constant(coefficient=8 W/(m2 K))
+    """
 
     kind: Literal["constant"] = "constant"
     coefficient: q.HeatTransferCoefficient
 
 
 class LinearWind(Part):
-    """``constant + wind V``, with the wind speed V at the surface."""
+    """``constant + wind V``, with the wind speed V at the surface.
+
+    Examples
+    --------
+    >>> LinearWind(constant=11.4, wind=5.7)
+    LinearWind(constant=11.4 W/(m2 K), wind=5.7 W/(m2 K)/(m/s))
+    """
 
     kind: Literal["linear_wind"] = "linear_wind"
     constant: q.HeatTransferCoefficient
@@ -29,7 +41,13 @@ class LinearWind(Part):
 
 
 class AlamdariHammond(Part):
-    """Buoyant convection by orientation and direction of heat flow (Alamdari & Hammond 1983)."""
+    """Buoyant convection by orientation and direction of heat flow (Alamdari & Hammond 1983).
+
+    Examples
+    --------
+    >>> AlamdariHammond(factor=1.1)
+    AlamdariHammond(factor=1.1)
+    """
 
     kind: Literal["alamdari_hammond"] = "alamdari_hammond"
     length: q.ConvectionLength | None = None
@@ -37,7 +55,13 @@ class AlamdariHammond(Part):
 
 
 class PaperEq5(Part):
-    """Equation 5 of Guichard et al. 2016 as printed."""
+    """Equation 5 of Guichard et al. 2016 as printed.
+
+    Examples
+    --------
+    >>> PaperEq5()
+    PaperEq5(factor=1)
+    """
 
     kind: Literal["paper_eq5"] = "paper_eq5"
     length: q.ConvectionLength | None = None
@@ -60,14 +84,26 @@ class Tarp(Part):
 
 
 class Mowitt(Part):
-    """MoWiTT (Yazdanian & Klems 1994), for smooth surfaces outdoors."""
+    """MoWiTT (Yazdanian & Klems 1994), for smooth surfaces outdoors.
+
+    Examples
+    --------
+    >>> Mowitt(factor=0.9)
+    Mowitt(factor=0.9)
+    """
 
     kind: Literal["mowitt"] = "mowitt"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
 
 
 class Doe2(Part):
-    """DOE-2: the buoyant part of TARP and the wind of MoWiTT on surfaces of any roughness, outdoors."""
+    """DOE-2: the buoyant part of TARP and the wind of MoWiTT on surfaces of any roughness, outdoors.
+
+    Examples
+    --------
+    >>> Doe2(roughness="rough")
+    Doe2(factor=1, roughness=1.67)
+    """
 
     kind: Literal["doe2"] = "doe2"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
@@ -75,7 +111,13 @@ class Doe2(Part):
 
 
 class Iso15099(Part):
-    """Free convection on the room side of a glazing, by its height and tilt (ISO 15099:2003)."""
+    """Free convection on the room side of a glazing, by its height and tilt (ISO 15099:2003).
+
+    Examples
+    --------
+    >>> Iso15099()
+    Iso15099(factor=1)
+    """
 
     kind: Literal["iso15099"] = "iso15099"
     length: q.ConvectionLength | None = None
@@ -83,7 +125,13 @@ class Iso15099(Part):
 
 
 class PowerLaw(Part):
-    """``a + b |dT|^n + c V^m`` for one direction of heat flow."""
+    """``a + b |dT|^n + c V^m`` for one direction of heat flow.
+
+    Examples
+    --------
+    >>> PowerLaw(b=1.5, n=0.33)
+    PowerLaw(a=0 W/(m2 K), b=1.5 W/(m2 K^(n+1)), n=0.33, c=0 W/(m2 K (m/s)^m), m=0.8)
+    """
 
     a: q.PowerConstant = Number(0.0, source=Remark("not given: no constant part"))
     b: q.PowerBuoyant = Number(0.0, source=Remark("not given: no buoyant part"))
@@ -93,7 +141,13 @@ class PowerLaw(Part):
 
 
 class Power(Part):
-    """A power law for each direction of heat flow."""
+    """A power law for each direction of heat flow.
+
+    Examples
+    --------
+    >>> Power(upward={"b": 1.5}, downward={"b": 0.6, "n": 0.25})
+    Power(upward=PowerLaw, downward=PowerLaw)
+    """
 
     kind: Literal["power"] = "power"
     upward: PowerLaw = Field(description="Heat flows up, or the surface is vertical")

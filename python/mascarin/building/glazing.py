@@ -115,7 +115,13 @@ def both(value: Any) -> tuple[float, float]:
 
 
 class FilledGap(Part):
-    """A gap filled with gas: convection by ISO 15099, long-wave radiation between gray panes."""
+    """A gap filled with gas: convection by ISO 15099, long-wave radiation between gray panes.
+
+    Examples
+    --------
+    >>> FilledGap(thickness=0.016, gas="argon")
+    FilledGap(thickness=0.016 m, gas=argon, pressure=101325 Pa)
+    """
 
     thickness: q.GapThickness
     gas: Literal["air", "argon", "krypton", "xenon"] = Field("air", description="Gas in the gap")
@@ -123,7 +129,13 @@ class FilledGap(Part):
 
 
 class GivenGap(Part):
-    """A gap of known conductance, by convection and radiation together."""
+    """A gap of known conductance, by convection and radiation together.
+
+    Examples
+    --------
+    >>> GivenGap(conductance=5)
+    GivenGap(conductance=5 W/(m2 K))
+    """
 
     conductance: q.GapConductance
 
@@ -139,7 +151,13 @@ Gap = Annotated[
 
 
 class DiffuseOptics(Part):
-    """Optics of a glazing for diffuse solar radiation from outside."""
+    """Optics of a glazing for diffuse solar radiation from outside.
+
+    Examples
+    --------
+    >>> DiffuseOptics(transmittance=0.7, absorptance=[0.1])
+    DiffuseOptics(transmittance=0.7, absorptance=[0.1])
+    """
 
     transmittance: q.CurveOptic
     reflectance: q.CurveOptic | None = None
@@ -147,7 +165,13 @@ class DiffuseOptics(Part):
 
 
 class Angular(Part):
-    """Optics of a glazing over the angle of incidence, for solar radiation from outside."""
+    """Optics of a glazing over the angle of incidence, for solar radiation from outside.
+
+    Examples
+    --------
+    >>> Angular(angles=[0, 90], transmittance=[0.8, 0], absorptance=[[0.1, 0]])
+    Angular(angles=[0 deg, 90 deg], transmittance=[0.8, 0], absorptance=[[0.1, 0]], transmittance_sc...)
+    """
 
     angles: tuple[q.CurveAngle, ...] = Field(description="Rising from 0 to 90")
     transmittance: tuple[q.CurveOptic, ...] = Field(description="At each angle")

@@ -79,6 +79,10 @@ class Part(BaseModel):
                     fields[key] = value
         return fields
 
+    def in_short(self) -> str:
+        """The part in a few words, as a row of the part that it belongs to."""
+        return str(getattr(self, "kind", None) or type(self).__name__)
+
     def __dir__(self) -> list[str]:
         """Fields and methods, without those of pydantic."""
         own = {name for kind in type(self).__mro__ if issubclass(kind, Part) for name in vars(kind)}
@@ -218,7 +222,7 @@ def _in_short(value: Any) -> str:
     if isinstance(value, Number):
         return value.with_unit()
     if isinstance(value, Part):
-        return getattr(value, "kind", None) or type(value).__name__
+        return value.in_short()
     if isinstance(value, Mapping):
         return ", ".join(map(str, value)) or "none"
     if isinstance(value, tuple):

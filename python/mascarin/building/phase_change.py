@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Final, Literal
 
@@ -11,6 +10,7 @@ from pydantic import Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
+from mascarin.building.curves import as_many, monotone, rising
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, fault, insist
 
@@ -88,7 +88,13 @@ class TanhLaw(ClosedLaw):
 
 
 class SmoothStepLaw(ClosedLaw):
-    """A polynomial between ``Tm - w`` and ``Tm + w``, with one or two continuous derivatives."""
+    """A polynomial between ``Tm - w`` and ``Tm + w``, with one or two continuous derivatives.
+
+    Examples
+    --------
+    >>> SmoothStepLaw(width=1, continuity=2)
+    SmoothStepLaw(width=1 K, continuity=2)
+    """
 
     kind: Literal["smooth_step"] = "smooth_step"
     width: q.EndToMiddle
@@ -115,7 +121,13 @@ class SmoothStepLaw(ClosedLaw):
 
 
 class GaussianLaw(ClosedLaw):
-    """The latent capacity is a normal distribution about Tm with the standard deviation ``width``."""
+    """The latent capacity is a normal distribution about Tm with the standard deviation ``width``.
+
+    Examples
+    --------
+    >>> GaussianLaw(width=0.8)
+    GaussianLaw(width=0.8 K)
+    """
 
     tails: ClassVar[bool] = True
     kind: Literal["gaussian"] = "gaussian"
@@ -143,6 +155,11 @@ class GumbelLaw(ClosedLaw):
     """A skewed law: the latent capacity has its peak at Tm and a long tail on one side.
 
     With the tail towards low temperatures the fraction is ``1 - exp(-exp((T - Tm)/w))``.
+
+    Examples
+    --------
+    >>> GumbelLaw(width=0.8, tail="high")
+    GumbelLaw(width=0.8 K, tail=high)
     """
 
     tails: ClassVar[bool] = True
@@ -171,7 +188,13 @@ class GumbelLaw(ClosedLaw):
 
 
 class LinearLaw(ClosedLaw):
-    """The liquid fraction is linear from 0 at ``Tm - w`` to 1 at ``Tm + w``."""
+    """The liquid fraction is linear from 0 at ``Tm - w`` to 1 at ``Tm + w``.
+
+    Examples
+    --------
+    >>> LinearLaw(width=1)
+    LinearLaw(width=1 K)
+    """
 
     kind: Literal["linear"] = "linear"
     width: q.EndToMiddle
@@ -192,7 +215,13 @@ class LinearLaw(ClosedLaw):
 
 
 class TriangleLaw(ClosedLaw):
-    """The latent capacity is a triangle with its peak at Tm."""
+    """The latent capacity is a triangle with its peak at Tm.
+
+    Examples
+    --------
+    >>> TriangleLaw(below=2, above=1)
+    TriangleLaw(below=2 K, above=1 K)
+    """
 
     kind: Literal["triangle"] = "triangle"
     below: q.Flank
@@ -220,7 +249,13 @@ def _held(value: float) -> float:
 
 
 class FractionsLaw(Part):
-    """Measured liquid fraction over temperature, interpolated monotonically; needs a latent heat."""
+    """Measured liquid fraction over temperature, interpolated monotonically; needs a latent heat.
+
+    Examples
+    --------
+    >>> FractionsLaw(temperatures=[19, 21, 22], fractions=[0, 0.6, 1])
+    FractionsLaw(temperatures=[19 degC, 21 degC, 22 degC], fractions=[0, 0.6, 1], temperature_shift=0 K)
+    """
 
     tails: ClassVar[bool] = False
     kind: Literal["fractions"] = "fractions"
@@ -231,7 +266,7 @@ class FractionsLaw(Part):
     @model_validator(mode="after")
     def _complete(self) -> FractionsLaw:
         faults = [*rising("temperatures", self.temperatures), *rising("fractions", self.fractions)]
-        faults += _as_many("temperatures", self.temperatures, "fractions", self.fractions)
+        faults += as_many("temperatures", self.temperatures, "fractions", self.fractions)
         ends = [(0, 0.0), (len(self.fractions) - 1, 1.0)] if len(self.fractions) > 1 else []
         faults += [
             fault(
@@ -300,7 +335,13 @@ class _Table(Part):
 
 
 class TableLaw(_Table):
-    """Measured enthalpy over temperature, interpolated monotonically."""
+    """Measured enthalpy over temperature, interpolated monotonically.
+
+    Examples
+    --------
+    >>> TableLaw(temperatures=[15, 20, 25], enthalpies=[0, 2.0e4, 2.2e5])
+    TableLaw(temperatures=[15 degC, 20 degC, 25 degC], temperature_shift=0 K, enthalpy_scale=1, enth...)
+    """
 
     kind: Literal["table"] = "table"
     enthalpies: tuple[q.CurveEnthalpy, ...]
@@ -313,7 +354,7 @@ class TableLaw(_Table):
         insist(
             *rising("temperatures", self.temperatures),
             *rising("enthalpies", self.enthalpies),
-            *_as_many("temperatures", self.temperatures, "enthalpies", self.enthalpies),
+            *as_many("temperatures", self.temperatures, "enthalpies", self.enthalpies),
             *self._melting_outside(),
         )
         return self
@@ -325,7 +366,13 @@ class TableLaw(_Table):
 
 
 class CapacityLaw(_Table):
-    """Measured apparent specific heat over temperature, interpolated linearly and integrated."""
+    """Measured apparent specific heat over temperature, interpolated linearly and integrated.
+
+    Examples
+    --------
+    >>> CapacityLaw(temperatures=[18, 21, 24], capacities=[2000, 60000, 2000])
+    CapacityLaw(temperatures=[18 degC, 21 degC, 24 degC], temperature_shift=0 K, enthalpy_scale=1, c...)
+    """
 
     kind: Literal["capacity"] = "capacity"
     capacities: tuple[q.CurveCapacity, ...]
@@ -334,7 +381,7 @@ class CapacityLaw(_Table):
     def _monotone(self) -> CapacityLaw:
         insist(
             *rising("temperatures", self.temperatures),
-            *_as_many("temperatures", self.temperatures, "capacities", self.capacities),
+            *as_many("temperatures", self.temperatures, "capacities", self.capacities),
             *self._melting_outside(),
         )
         return self
@@ -406,57 +453,3 @@ class Hysteresis(Part):
         if isinstance(raw, dict) and isinstance(raw.get("model"), str):
             return raw | {"model": raw["model"].replace("-", "_")}
         return raw
-
-
-def rising(key: str, values: tuple[Number, ...]) -> list[InitErrorDetails]:
-    """Points at which a column of a table does not rise."""
-    if len(values) < 2:
-        return [fault((key,), f"{len(values)} points", "at least two points", "Complete the table.")]
-    return [
-        fault(
-            (key, i + 1),
-            f"{after:g} after {before:g}",
-            "strictly rising values: enthalpy must rise with heat",
-            "Sort the table, remove repeated points; a plateau needs a small slope.",
-        )
-        for i, (before, after) in enumerate(pairwise(values))
-        if not after > before
-    ]
-
-
-def _as_many(
-    one: str, first: tuple[Number, ...], other: str, second: tuple[Number, ...]
-) -> list[InitErrorDetails]:
-    if len(first) == len(second):
-        return []
-    found = f"{len(first)} {one} and {len(second)} {other}"
-    return [fault((), found, "as many of one as of the other", "Complete the table.")]
-
-
-def monotone(x: tuple[Number, ...], y: tuple[Number, ...]) -> Callable[[float], float]:
-    """Monotone cubic through points, as in the engine; constant beyond the ends.
-
-    References
-    ----------
-    Fritsch & Butland 1984, SIAM J. Sci. Stat. Comput. 5(2), doi:10.1137/0905021
-    """
-    lengths = [b - a for a, b in pairwise(x)]
-    secants = [(b - a) / length for (a, b), length in zip(pairwise(y), lengths, strict=True)]
-    slopes = [secants[0]]
-    for (left, right), (before, after) in zip(pairwise(lengths), pairwise(secants), strict=True):
-        near, far = 2.0 * right + left, right + 2.0 * left
-        slopes.append((near + far) / (near / before + far / after) if before > 0.0 < after else 0.0)
-    slopes.append(secants[-1])
-
-    def at(place: float) -> float:
-        if place <= x[0]:
-            return float(y[0])
-        for i, length in enumerate(lengths):
-            if place < x[i + 1]:
-                u = (place - x[i]) / length
-                s0, s1, m = slopes[i], slopes[i + 1], secants[i]
-                cubic = (3.0 * m - 2.0 * s0 - s1) + u * (s0 + s1 - 2.0 * m)
-                return float(y[i] + length * u * (s0 + u * cubic))
-        return float(y[-1])
-
-    return at

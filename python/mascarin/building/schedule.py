@@ -47,7 +47,13 @@ Holiday = Annotated[str, AfterValidator(_holiday)]
 
 
 class FractionPoint(Part):
-    """A fraction from a time of day on."""
+    """A fraction from a time of day on.
+
+    Examples
+    --------
+    >>> FractionPoint(at="08:00", value=1)
+    FractionPoint(at=08:00, value=1)
+    """
 
     at: ClockTime = Field(description='Time of day, "07:30"')
     value: q.ScheduledFraction
@@ -57,7 +63,13 @@ class FractionPoint(Part):
 
 
 class TemperaturePoint(Part):
-    """A temperature from a time of day on."""
+    """A temperature from a time of day on.
+
+    Examples
+    --------
+    >>> TemperaturePoint(at="07:00", value=15, ramp_to=20)
+    TemperaturePoint(at=07:00, value=15 degC, ramp_to=20 degC)
+    """
 
     at: ClockTime = Field(description='Time of day, "07:30"')
     value: q.ScheduledTemperature
@@ -100,7 +112,13 @@ class _Days(Part):
 
 
 class FractionDays(_Days):
-    """Profiles of a fraction by kind of day."""
+    """Profiles of a fraction by kind of day.
+
+    Examples
+    --------
+    >>> FractionDays(all=[{"at": "00:00", "value": 0.5}])
+    FractionDays(all=[FractionPoint])
+    """
 
     all: tuple[FractionPoint, ...] | None = None
     weekdays: tuple[FractionPoint, ...] | None = None
@@ -116,7 +134,13 @@ class FractionDays(_Days):
 
 
 class TemperatureDays(_Days):
-    """Profiles of a temperature by kind of day."""
+    """Profiles of a temperature by kind of day.
+
+    Examples
+    --------
+    >>> TemperatureDays(all=[{"at": "00:00", "value": 20}])
+    TemperatureDays(all=[TemperaturePoint])
+    """
 
     all: tuple[TemperaturePoint, ...] | None = None
     weekdays: tuple[TemperaturePoint, ...] | None = None

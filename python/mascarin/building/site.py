@@ -22,7 +22,13 @@ TERRAINS = {"open": (0.14, 270.0), "suburb": (0.22, 370.0), "city": (0.33, 460.0
 
 
 class Wind(Part):
-    """Power-law profile of the wind speed, from the mast to a surface with a height."""
+    """Power-law profile of the wind speed, from the mast to a surface with a height.
+
+    Examples
+    --------
+    >>> Wind(terrain="city")
+    Wind(terrain=city, mast_height=10 m, mast_exponent=0.14, mast_layer=270 m, exponent=0.33, layer=...)
+    """
 
     terrain: Literal["open", "suburb", "city", "sea"] = Field(
         "open", description="Terrain around the building: gives exponent and layer where they are not given"
@@ -46,14 +52,26 @@ class Wind(Part):
 
 
 class MeasuredSky(Part):
-    """Measured horizontal infrared radiation of the climate, times a factor."""
+    """Measured horizontal infrared radiation of the climate, times a factor.
+
+    Examples
+    --------
+    >>> MeasuredSky(scale=1.02)
+    MeasuredSky(scale=1.02)
+    """
 
     kind: Literal["measured"] = "measured"
     scale: q.SkyScale = Number(1.0, source=Remark("the measurement without a correction"))
 
 
 class ClarkAllenSky(Part):
-    """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K."""
+    """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K.
+
+    Examples
+    --------
+    >>> ClarkAllenSky()
+    ClarkAllenSky(a=0.787, b=0.764)
+    """
 
     kind: Literal["clark_allen"] = "clark_allen"
     a: q.SkyCoefficient = Number(0.787, source=CLARK)
@@ -61,7 +79,13 @@ class ClarkAllenSky(Part):
 
 
 class MartinBerdahlSky(Part):
-    """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC."""
+    """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC.
+
+    Examples
+    --------
+    >>> MartinBerdahlSky()
+    MartinBerdahlSky(a=0.711, b=0.56, c=0.73)
+    """
 
     kind: Literal["martin_berdahl"] = "martin_berdahl"
     a: q.SkyCoefficient = Number(0.711, source=MARTIN)
@@ -70,7 +94,13 @@ class MartinBerdahlSky(Part):
 
 
 class BruntSky(Part):
-    """Emissivity ``a + b sqrt(pw)`` of the clear sky, vapour pressure in hPa."""
+    """Emissivity ``a + b sqrt(pw)`` of the clear sky, vapour pressure in hPa.
+
+    Examples
+    --------
+    >>> BruntSky()
+    BruntSky(a=0.618, b=0.056)
+    """
 
     kind: Literal["brunt"] = "brunt"
     a: q.SkyCoefficient = Number(0.618, source=_LI)
@@ -78,7 +108,13 @@ class BruntSky(Part):
 
 
 class OffsetSky(Part):
-    """Sky temperature at a constant difference below the air temperature."""
+    """Sky temperature at a constant difference below the air temperature.
+
+    Examples
+    --------
+    >>> OffsetSky(depression=9)
+    OffsetSky(depression=9 K)
+    """
 
     kind: Literal["offset"] = "offset"
     depression: q.SkyDepression = Number(
@@ -94,7 +130,13 @@ Sky = Annotated[
 
 
 class Cloud(Part):
-    """Factor ``1 + c1 N + c2 N^2 + c3 N^3`` on the clear sky's emissivity, cloud cover N in tenths."""
+    """Factor ``1 + c1 N + c2 N^2 + c3 N^3`` on the clear sky's emissivity, cloud cover N in tenths.
+
+    Examples
+    --------
+    >>> Cloud()
+    Cloud(c1=0.0224, c2=-0.0035, c3=0.00028)
+    """
 
     c1: q.CloudCoefficient = Number(0.0224, source=CLARK)
     c2: q.CloudCoefficient = Number(-0.0035, source=CLARK)

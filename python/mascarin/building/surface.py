@@ -115,6 +115,11 @@ class Ground(Part):
     """Temperature of the ground: ``mean - amplitude cos(2 pi (day - coldest_day)/365)``.
 
     ``temperature`` may replace ``mean`` where it is the same all year.
+
+    Examples
+    --------
+    >>> Ground(mean=12, amplitude=4)
+    Ground(mean=12 degC, amplitude=4 K, coldest_day=15 d)
     """
 
     model_config = ConfigDict(json_schema_extra=_or_temperature)
@@ -133,7 +138,13 @@ class Ground(Part):
 
 
 class Exposure(Part):
-    """Which parts of the weather act on a side, beside the air temperature."""
+    """Which parts of the weather act on a side, beside the air temperature.
+
+    Examples
+    --------
+    >>> Exposure(sun=False)
+    Exposure(sun=False, wind=True, sky=True)
+    """
 
     sun: bool = Field(True, description="Solar radiation, from sky and ground")
     wind: bool = Field(True, description="Wind in the heat transfer coefficient")
@@ -179,6 +190,10 @@ class Side(Part):
     def faces(self) -> str:
         """Which of the five kinds of surroundings the side faces."""
         return next(name for name in FACINGS if getattr(self, name) is not None)
+
+    def in_short(self) -> str:
+        """What the side faces."""
+        return f"zone {self.zone}" if self.zone else self.faces
 
     @property
     def exposed(self) -> Exposure:

@@ -22,7 +22,13 @@ Vertices = tuple[tuple[q.Coordinate, q.Coordinate, q.Coordinate], ...]
 
 
 class Frame(Part):
-    """Frame of a window."""
+    """Frame of a window.
+
+    Examples
+    --------
+    >>> Frame(fraction=0.2, u_value=2)
+    Frame(fraction=0.2, u_value=2 W/(m2 K), absorptance=0.5, emissivity=0.9)
+    """
 
     fraction: q.FrameFraction
     u_value: q.FrameU
@@ -31,7 +37,13 @@ class Frame(Part):
 
 
 class WindowOutside(Part):
-    """The outer side of a window."""
+    """The outer side of a window.
+
+    Examples
+    --------
+    >>> WindowOutside(convection="doe2", height=1.5)
+    WindowOutside(convection=doe2, height=1.5 m)
+    """
 
     convection: Convection = Field(description=CONVECTION)
     sky_view: q.SkyView | None = None
@@ -67,7 +79,13 @@ class WindowOutside(Part):
 
 
 class WindowInside(Part):
-    """The inner side of a window."""
+    """The inner side of a window.
+
+    Examples
+    --------
+    >>> WindowInside(convection="iso15099")
+    WindowInside(convection=iso15099)
+    """
 
     convection: Convection = Field(description=CONVECTION)
 

@@ -18,7 +18,13 @@ ASHRAE_OPENING = (
 
 
 class Infiltration(Part):
-    """Infiltration: ``constant + temperature |dT| + wind V`` air changes per hour."""
+    """Infiltration: ``constant + temperature |dT| + wind V`` air changes per hour.
+
+    Examples
+    --------
+    >>> Infiltration(constant=0.2, wind=0.05)
+    Infiltration(constant=0.2 1/h, temperature=0 1/(h K), wind=0.05 1/(h m/s))
+    """
 
     constant: q.AirChange = Number(0.0, source=Remark("not given: airtight"), assumed=True)
     temperature: q.AirChangePerKelvin = Number(0.0, source=Remark("not given: no stack effect"), assumed=True)
@@ -80,7 +86,13 @@ class Ventilation(Part):
 
 
 class SetPoint(Part):
-    """Set point of ideal heating or cooling: a number, or a schedule."""
+    """Set point of ideal heating or cooling: a number, or a schedule.
+
+    Examples
+    --------
+    >>> SetPoint(temperature=20)
+    SetPoint(temperature=20 degC)
+    """
 
     temperature: q.SetPoint | None = None
     schedule: ScheduleName | None = Field(None, description="Schedule of temperature")
@@ -116,13 +128,25 @@ class IdealLoads(Part):
 
 
 class EvenSun(Part):
-    """Solar radiation distributed evenly over all surfaces; part of it leaves through the glass again."""
+    """Solar radiation distributed evenly over all surfaces; part of it leaves through the glass again.
+
+    Examples
+    --------
+    >>> EvenSun()
+    EvenSun()
+    """
 
     kind: Literal["area"] = "area"
 
 
 class GivenSun(Part):
-    """Solar radiation distributed by given fractions, scaled to a sum of one."""
+    """Solar radiation distributed by given fractions, scaled to a sum of one.
+
+    Examples
+    --------
+    >>> GivenSun(shares={"floor": 0.6, "walls": 0.4})
+    GivenSun(shares=floor, walls, lost=0)
+    """
 
     kind: Literal["shares"] = "shares"
     shares: dict[Name, q.SunShare] = Field(
@@ -132,7 +156,13 @@ class GivenSun(Part):
 
 
 class TracedSun(Part):
-    """Beam radiation traced to the surfaces, the rest by view factors; needs vertices of all surfaces."""
+    """Beam radiation traced to the surfaces, the rest by view factors; needs vertices of all surfaces.
+
+    Examples
+    --------
+    >>> TracedSun()
+    TracedSun()
+    """
 
     kind: Literal["geometry"] = "geometry"
 
@@ -183,7 +213,13 @@ class Zone(Part):
 
 
 class AirPath(Part):
-    """Air that two zones exchange, with the same flow in both directions."""
+    """Air that two zones exchange, with the same flow in both directions.
+
+    Examples
+    --------
+    >>> AirPath(between=("office", "corridor"), flow=0.02)
+    AirPath(between=[office, corridor], flow=0.02 m3/s)
+    """
 
     between: tuple[ZoneName, ZoneName] = Field(description="Names of the two zones")
     flow: q.VolumeFlow
@@ -199,7 +235,13 @@ class AirPath(Part):
 
 
 class Opening(Part):
-    """An opening to outdoors, with a flow of air by wind and buoyancy."""
+    """An opening to outdoors, with a flow of air by wind and buoyancy.
+
+    Examples
+    --------
+    >>> Opening(zone="attic", area=0.02, height=0.3)
+    Opening(zone=attic, area=0.02 m2, height=0.3 m, discharge=0.65, wind_coefficient=0.3)
+    """
 
     zone: ZoneName = Field(description="Name of the zone")
     area: q.OpeningArea
