@@ -18,6 +18,7 @@ from mascarin.building.plausibility import warnings
 from mascarin.building.surface import Side, Surface
 from mascarin.building.u_values import resistance_words, time_constant, u_value, window_u_value
 from mascarin.building.zone_surfaces import closed, surfaces_of_zone
+from mascarin.errors import InputError
 
 
 def check(building: Description, step_seconds: float = 900.0) -> list[str]:
