@@ -1,4 +1,4 @@
-"""What is said about a building before it runs."""
+"""Checks of a building before a run."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_a_given_coefficient_is_used_where_it_includes_radiation() -> None:
     )
 
 
-def test_nothing_passes_an_adiabatic_side() -> None:
+def test_an_adiabatic_side_has_no_heat_flow() -> None:
     building = room()
     assert u_value(building, building.surfaces["rest"]) == 0.0
     total = 16 * u_value(building, building.surfaces["south"])
@@ -55,7 +55,7 @@ def infiltration(building: Building) -> float:
     return float(check(building)[1].split("infiltration ")[1].split(" W/K")[0])
 
 
-def test_air_weighs_what_it_weighs_in_the_engine() -> None:
+def test_density_of_the_air_is_that_of_the_engine() -> None:
     """Standard atmosphere: 1013.25 hPa at sea level, 826 hPa at 1700 m; a written density comes first."""
     site = room().replace({"site.altitude": 0.0}).site
     assert density(site) == pytest.approx(1.2250, abs=2e-4)
@@ -66,7 +66,7 @@ def test_air_weighs_what_it_weighs_in_the_engine() -> None:
     assert infiltration(written) == pytest.approx(1.0 * 1006 * 0.5 * 30 / 3600, abs=0.005)
 
 
-def test_the_engine_takes_the_same_density() -> None:
+def test_the_engine_uses_the_same_density() -> None:
     """The air's rate of change by its films goes with 1/density; air changes do not depend on it."""
     linear = parse(
         ROOM.replace("emissivity: 0.9, absorptance", "longwave: none, emissivity: 0.9, absorptance"), "x"
@@ -93,7 +93,7 @@ def test_smallest_time_constant() -> None:
     assert time_constant(building, "wall", choose(building, 900)) == pytest.approx(min(inner, outer))
 
 
-def test_the_lines() -> None:
+def test_lines_of_a_check() -> None:
     lines = check(room(), 900)
     assert lines[0] == "room: 1 zone, 2 surfaces, 38 parameters"
     assert lines[1].startswith("zone room: 30 m3, 2 surfaces of 66.00 m2, UA ")
@@ -162,14 +162,14 @@ def warned_of(building: Building, values: dict[str, float]) -> list[str]:
         ({"conductivity": 400.0, "density": 8960.0, "specific_heat": 385.0}, None),
     ],
 )
-def test_properties_that_do_not_go_together(values: dict[str, float], told: str | None) -> None:
+def test_properties_in_wrong_units_are_warned_of(values: dict[str, float], told: str | None) -> None:
     changed = {f"materials.concrete.{key}": value for key, value in values.items()}
     found = [w for w in warned_of(room(), changed) if "materials.concrete:" in w]
     assert len(found) == (told is not None)
     assert told is None or (told in found[0] and "W/(m K)" in found[0])
 
 
-def test_both_phases_are_looked_at() -> None:
+def test_both_phases_are_checked() -> None:
     found = warned_of(everything()[0], {"materials.wax.conductivity.liquid": 40.0})
     fitting = "warning: materials.wax (liquid): a diffusivity of 1.7e-05"
     assert not any(w.startswith(fitting) for w in found)  # high, and still within what is known
@@ -178,12 +178,12 @@ def test_both_phases_are_looked_at() -> None:
     assert not any("materials.wax (solid)" in w for w in found)
 
 
-def test_a_specific_heat_in_kilojoules_is_refused() -> None:
+def test_a_specific_heat_in_kilojoules_is_an_error() -> None:
     with pytest.raises(InputError, match=r"found: 1\.4\s+expected: a number at least 100"):
         room().replace({"materials.concrete.specific_heat": 1.4})
 
 
-def test_vertices_that_contradict_what_is_written() -> None:
+def test_vertices_that_contradict_area_and_volume() -> None:
     text = EVERYTHING.replace("    vertices: [[0, 0, 3]", "    area: 8\n    vertices: [[0, 0, 3]")
     assert any(
         "8.00 m2 are given, the vertices enclose 9.12 m2" in w for w in noted(parse(text, "x"), "warning")

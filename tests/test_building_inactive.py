@@ -1,4 +1,4 @@
-"""Numbers without effect are named with the reason, and no others."""
+"""Numbers without effect have a reason, and no others."""
 
 from __future__ import annotations
 
@@ -65,13 +65,13 @@ def test_in_everything() -> None:
         ({"zones.room.longwave": "none"}, "surfaces.south.inside.emissivity"),
     ],
 )
-def test_a_choice_puts_numbers_out_of_work(changes: dict[str, object], path: str) -> None:
+def test_a_choice_makes_numbers_inactive(changes: dict[str, object], path: str) -> None:
     assert path in inactive(room().replace(changes))
     assert path not in inactive(room())
 
 
 @pytest.mark.parametrize("film", ["mowitt", "doe2"])
-def test_a_height_and_a_wind_correlation_put_the_profile_to_work(film: str) -> None:
+def test_a_height_and_a_wind_correlation_make_the_profile_active(film: str) -> None:
     building = room().replace({"surfaces.south.outside.convection": film, "surfaces.south.outside.height": 2})
     assert set(inactive(building)) == {"surfaces.rest.azimuth", "surfaces.rest.tilt"}
 

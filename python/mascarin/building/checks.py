@@ -29,13 +29,20 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
     building : Building
         The building.
     step_seconds : float
-        Time step of the runs to come. [s]
+        Time step of the runs. [s]
 
     Returns
     -------
     list of str
         Zones, surfaces with U values, constructions with their mesh, time constants; then warnings and
-        assumptions, each of which starts with its word.
+        assumptions, which start with ``warning:`` and ``assumed:``.
+
+    Examples
+    --------
+    >>> from mascarin import examples
+    >>> from mascarin.building import load
+    >>> check(load(examples.FOLDER / "lgi" / "building.yaml"))[0]
+    'LGI cell: 2 zones, 13 surfaces, 333 parameters'
     """
     mesh = choose(building, step_seconds)
     return [

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 Location = tuple[int | str, ...]
 
 
-_INTERNALS = frozenset(dir(BaseModel))
+#: Names that completion leaves out: those of pydantic, and what only this package uses.
+_INTERNALS = frozenset([*dir(BaseModel), "has_usual_kind", "in_short", "written"])
 _ONE_LINE = 100  # characters
 
 
