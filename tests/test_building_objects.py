@@ -173,7 +173,7 @@ def test_a_replaced_terrain_gives_its_wind_profile() -> None:
 
 
 def test_a_value_that_was_not_given_can_be_replaced() -> None:
-    building = room().with_values({"site.sky.a": 0.7, "site.cloud.c1": 0.02})
+    building = room().with_values({"site.sky.a": 0.7, "site.cloud.base": 900})
     assert building.parameter("site.sky.a").value == 0.7
     assert building.to_dict()["site"]["sky"] == {"kind": "martin_berdahl", "a": 0.7}
 

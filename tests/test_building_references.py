@@ -62,7 +62,7 @@ def test_the_sun_is_cited_with_the_model_chosen() -> None:
 def test_the_sky_is_cited_with_its_clouds() -> None:
     words = ("Martin & Berdahl", "Clark & Allen", "Brunt", "Alduchov", "Li, Jiang", "ISO 13790", "horizon")
     expected = {
-        "martin_berdahl": [True, True, False, False, False, False, True],
+        "martin_berdahl": [True, False, False, False, False, False, True],
         "clark_allen": [False, True, False, False, False, False, True],
         "brunt": [False, True, True, True, True, False, True],
         "offset": [False, False, False, False, False, True, True],
@@ -70,6 +70,8 @@ def test_the_sky_is_cited_with_its_clouds() -> None:
     }
     for kind, cited in expected.items():
         assert cites(room().replace({"site.sky": kind}), *words) == cited, kind
+    factor = room().replace({"site.cloud": "factor"})
+    assert cites(factor, "Martin & Berdahl", "Clark & Allen") == [True, True]
 
 
 def test_a_sky_model_with_other_coefficients_is_still_cited() -> None:

@@ -137,8 +137,8 @@ def _of_sky(building: Description) -> Iterator[str]:
         return
     kind = building.site.sky.kind
     yield from _SKIES.get(kind, ())
-    if kind in _SKIES:
-        yield CLARK  # the cloud factor acts on an emissivity only
+    if kind in _SKIES:  # clouds act on an emissivity only
+        yield CLARK if building.site.cloud.kind == "factor" else MARTIN
     yield _SKY_SPLIT
 
 

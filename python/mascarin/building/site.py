@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -11,6 +12,9 @@ from mascarin.building import quantities as q
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, Shorthand
 from mascarin.errors import did_you_mean
+
+if TYPE_CHECKING:
+    from pydantic import ModelWrapValidatorHandler
 
 ASHRAE_WIND = "ASHRAE Handbook of Fundamentals 2017, ch. 24, table 1"
 MARTIN = "Martin & Berdahl 1984, doi:10.1016/0038-092X(84)90162-2"
@@ -129,18 +133,36 @@ Sky = Annotated[
 ]
 
 
-class Cloud(Part):
+class CloudFactor(Part):
     """Factor ``1 + c1 N + c2 N^2 + c3 N^3`` on the clear sky's emissivity, cloud cover N in tenths.
 
     Examples
     --------
-    >>> Cloud()
-    Cloud(c1=0.0224, c2=-0.0035, c3=0.00028)
+    >>> CloudFactor()
+    CloudFactor(c1=0.0224, c2=-0.0035, c3=0.00028)
     """
 
+    kind: Literal["factor"] = "factor"
     c1: q.CloudCoefficient = Number(0.0224, source=CLARK)
     c2: q.CloudCoefficient = Number(-0.0035, source=CLARK)
     c3: q.CloudCoefficient = Number(0.00028, source=CLARK)
+
+
+class CloudLayer(Part):
+    """Opaque layer: adds ``(1 - clear) N/10 emissivity exp(-base/8200 m)`` to the clear sky's emissivity.
+
+    Examples
+    --------
+    >>> CloudLayer(base=2000)
+    CloudLayer(emissivity=1, base=2000 m)
+    """
+
+    kind: Literal["layer"] = "layer"
+    emissivity: q.CloudEmissivity = Number(1.0, source=MARTIN)
+    base: q.CloudBase = Number(1200.0, source="a typical base of low clouds (WMO-No. 407)", assumed=True)
+
+
+Cloud = Annotated[CloudFactor | CloudLayer, Field(discriminator="kind"), Shorthand(word="kind")]
 
 
 def _timezone(text: str) -> str:
@@ -199,7 +221,32 @@ class Site(Part):
         default_factory=lambda: MartinBerdahlSky(kind="martin_berdahl"),
         description="Long-wave emission of the sky",
     )
-    cloud: Cloud = Field(default_factory=Cloud, description="Effect of clouds on the sky's emissivity")
+    cloud: Cloud = Field(
+        default_factory=CloudLayer,
+        description="Effect of clouds on the sky's emissivity: as a factor, or as an opaque layer",
+    )
     diffuse: Literal["perez", "hay_davies", "isotropic"] = Field(
         "perez", description="Model of diffuse short-wave radiation on a tilted plane"
     )
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _clouds_of_the_sky(cls, raw: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Take the effect of clouds that belongs to the model of the clear sky, where none is given."""
+        if not isinstance(raw, Mapping):
+            return handler(raw)
+        given = raw.get("cloud")
+        if given is None:
+            site = handler({**raw, "cloud": {"kind": _cloud_kind(raw.get("sky"))}})
+            site.model_fields_set.discard("cloud")
+            return site
+        if isinstance(given, Mapping) and "kind" not in given:
+            kind = "layer" if {"emissivity", "base"} & set(given) else "factor"
+            raw = {**raw, "cloud": {"kind": kind, **given}}
+        return handler(raw)
+
+
+def _cloud_kind(sky: Any) -> str:
+    """The layer is by the authors of ``martin_berdahl``; the other models are used with the factor."""
+    kind = sky.get("kind") if isinstance(sky, Mapping) else getattr(sky, "kind", sky)
+    return "layer" if kind in (None, "martin_berdahl") else "factor"

@@ -26,7 +26,7 @@ from mascarin.building.engine_input.zones import describe_air_path, describe_ope
 from mascarin.building.mesh import choose
 from mascarin.building.number import Interval
 from mascarin.building.parameters import Parameter
-from mascarin.building.site import Site
+from mascarin.building.site import CloudFactor, CloudLayer, Site
 
 
 @dataclass(frozen=True)
@@ -120,11 +120,17 @@ def describe(
     )
 
 
+def _clouds(clouds: CloudFactor | CloudLayer, ids: Ids) -> Json | list[int]:
+    if isinstance(clouds, CloudFactor):
+        return [ids(f"cloud.{key}") for key in ("c1", "c2", "c3")]
+    return {key: ids(f"cloud.{key}") for key in ("emissivity", "base")}
+
+
 def _site(site: Site, ids: Ids) -> Json:
     return {
         **fields_of(site, ids),
         "wind": fields_of(site.wind, ids, "wind."),
         "sky": fields_of(site.sky, ids, "sky."),
-        "cloud": [ids("cloud.c1"), ids("cloud.c2"), ids("cloud.c3")],
+        "cloud": _clouds(site.cloud, ids),
         "diffuse": site.diffuse,
     }

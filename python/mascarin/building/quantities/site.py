@@ -95,6 +95,24 @@ SkyDepression = Annotated[
         Limits(at_least=-10, at_most=60),
     ),
 ]
+CloudEmissivity = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Long-wave emissivity of the clouds",
+        Span(0.8, 1.0, "water clouds are black to long-wave radiation; thin ones are not"),
+        Limits(at_least=0, at_most=1),
+    ),
+]
+CloudBase = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Height of the base of the clouds above the ground",
+        Span(300, 3000, "WMO-No. 407: low clouds to 2 km, the lower half of the middle ones"),
+        Limits(at_least=0, at_most=20000),
+    ),
+]
 CloudCoefficient = Annotated[
     Number, Quantity("-", "Coefficient of the cubic cloud factor on the sky's emissivity", Percent(10, FIT))
 ]
