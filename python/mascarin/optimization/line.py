@@ -123,7 +123,22 @@ class IntervalSearch(Optimizer):
 class GoldenSection(IntervalSearch):
     """Interval search that keeps the same part of the interval every time.
 
-    Parameters are those of `IntervalSearch`.
+    Parameters
+    ----------
+    space : Space
+        One continuous parameter with bounds; its initial value is not used.
+    points : int
+        Largest number of evaluations. [-]
+    difference : float, optional
+        Ends the search when the costs of the two inner points differ by less. [unit of the cost]
+    text : callable
+        Text of a number in the overview.
+    observer, remember
+        See `Optimizer`.
+
+    References
+    ----------
+    Kiefer (1953), doi:10.1090/S0002-9939-1953-0055639-3.
 
     Examples
     --------
@@ -142,7 +157,22 @@ class GoldenSection(IntervalSearch):
 class FibonacciSearch(IntervalSearch):
     """Interval search by ratios of Fibonacci numbers, which are optimal for a given number of points.
 
-    Parameters are those of `IntervalSearch`.
+    Parameters
+    ----------
+    space : Space
+        One continuous parameter with bounds; its initial value is not used.
+    points : int
+        Largest number of evaluations. [-]
+    difference : float, optional
+        Ends the search when the costs of the two inner points differ by less. [unit of the cost]
+    text : callable
+        Text of a number in the overview.
+    observer, remember
+        See `Optimizer`.
+
+    References
+    ----------
+    Kiefer (1953), doi:10.1090/S0002-9939-1953-0055639-3.
 
     Examples
     --------
