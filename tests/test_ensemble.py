@@ -16,7 +16,8 @@ from mascarin.building import Building, load
 from mascarin.ensemble import Statistic, Store, latin_hypercube, sweep, sweep_into
 from mascarin.ensemble import workers as sweep_workers
 from mascarin.errors import InputError, SolverError
-from mascarin.simulation.simulation import Failure, Simulation, simulate
+from mascarin.simulation.compiled import Failure
+from mascarin.simulation.simulation import Simulation, simulate
 from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, drivers, open_climate
 
@@ -184,10 +185,10 @@ def test_objectives_that_cannot_be_are_named(setting: Setting) -> None:
 
 
 def test_workers_give_the_bits_of_threads(setting: Setting) -> None:
-    told: list[int] = []
-    found = setting.sweep(SOME, workers=2, report=told.append)
+    told: list[tuple[int, int]] = []
+    found = setting.sweep(SOME, workers=2, progress=lambda *done: told.append(done))
     np.testing.assert_array_equal(found[JOINT], setting.sweep(SOME)[JOINT])
-    assert told[-1] == 40
+    assert told[-1] == (40, 40)
     with pytest.raises(InputError, match="workers: found 0"):
         setting.sweep(SOME, workers=0)
 
@@ -234,13 +235,13 @@ def test_a_store_goes_on_where_it_was_cut_off(
     monkeypatch.setattr(sweep_workers, "FIRST", 8)
     told: list[int] = []
 
-    def impatient(done: int) -> None:
+    def impatient(done: int, _: int) -> None:
         told.append(done)
         if done > 8:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        setting.into(tmp_path / "cut", SOME, objectives=objectives, seed=7, report=impatient)
+        setting.into(tmp_path / "cut", SOME, objectives=objectives, seed=7, progress=impatient)
     half = Store(tmp_path / "cut")
     assert (half.complete, half.done) == (False, 8)
     assert half.gaps() == [(8, 40)]
@@ -249,7 +250,9 @@ def test_a_store_goes_on_where_it_was_cut_off(
         half.dataset()
     (tmp_path / "cut" / "pieces" / "000000000008-000000000016.part").write_bytes(b"half written")
     told.clear()
-    setting.into(tmp_path / "cut", SOME, objectives=objectives, seed=7, report=told.append)
+    setting.into(
+        tmp_path / "cut", SOME, objectives=objectives, seed=7, progress=lambda done, _: told.append(done)
+    )
     assert told[0] > 8
     for name in ("manifest.json", "members.parquet"):
         assert (tmp_path / "cut" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()

@@ -12,8 +12,8 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin.errors import InputError
-from mascarin.sensitivity import METHODS, Factor, MorrisSensitivity, Sensitivity, collector, plan, run
-from mascarin.sensitivity.salib import SQUARES, SalibPlan
+from mascarin.sensitivity import METHODS, Factor, Sensitivity, collector, plan, run
+from mascarin.sensitivity.salib import SQUARES, MorrisSensitivity, SalibPlan
 from mascarin.sensitivity.spectral import SpectralSensitivity
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,8 @@ import xarray as xr
 
 from mascarin import __version__
 from mascarin.errors import InputError
-from mascarin.simulation.results import FLOWS, EnergyLedger, Results
+from mascarin.simulation.energy import FLOWS, EnergyLedger
+from mascarin.simulation.results import Results
 from mascarin.simulation.simulation import simulate
 from mascarin.weather import Climate
 from simulation_samples import LINEAR, hours, measured, read
@@ -127,7 +128,7 @@ def test_the_ledger_in_words_and_for_json() -> None:
     lines = str(ledger).splitlines()
     assert lines[0].split() == ["solar", "1.000", "kWh"]
     assert lines[-2].split() == ["stored", "15.000", "kWh"]
-    assert lines[-1] == "closure 2.0e-13"
+    assert lines[-1] == "relative energy-balance residual 2.0e-13"
 
 
 def test_another_spacing_keeps_states_and_heat(run: Results) -> None:

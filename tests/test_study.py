@@ -83,7 +83,7 @@ def done(bench: Bench) -> Done:
 def test_only_json_on_stdout(done: Done) -> None:
     assert done.code == 0
     assert json.loads(done.printed) == done.content
-    assert "criteria kept: 6 of 6" in done.said
+    assert "criteria met: 6 of 6" in done.said
 
 
 def test_the_files_that_are_left(done: Done) -> None:
@@ -237,7 +237,7 @@ def test_a_missed_criterion_ends_with_1(quick: Bench, capsys: pytest.CaptureFixt
     assert found.code == 1
     assert json.loads(found.printed) == found.content
     assert "missed: joint, blind: too good; found 0.0" in found.said
-    assert "criteria kept: 0 of 1" in found.said
+    assert "criteria met: 0 of 1" in found.said
     assert [c["passed"] for c in found.content["criteria"]] == [False, False]
 
 

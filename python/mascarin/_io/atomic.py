@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -44,18 +45,80 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     >>> target.read_text()
     'a,b\n'
     """
+    with drafting(path) as draft, draft.open("wb") as file:
+        yield file
+        file.flush()
+
+
+@contextlib.contextmanager
+def drafting(path: Path) -> Iterator[Path]:
+    """Give the path of a temporary file that takes the place of another only when it is complete.
+
+    For libraries that write to a path and not to an open file; as `replacing`.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; its folder exists.
+
+    Yields
+    ------
+    Path
+        The temporary file, which exists and is empty.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written; the file that was there before is unchanged.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> target = Path(tempfile.mkdtemp()) / "table.csv"
+    >>> with drafting(target) as draft:
+    ...     size = draft.write_text("a,b")
+    >>> target.read_text()
+    'a,b'
+    """
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PART, dir=path.parent)
+    os.close(handle)
     draft = Path(name)
     try:
-        with os.fdopen(handle, "wb") as file:
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
+        yield draft
+        _flush(draft)
         draft.chmod(_usual_mode())
         draft.replace(path)
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+    _flush_folder(path.parent)
+
+
+@contextlib.contextmanager
+def drafted(path: Path) -> Iterator[Path]:
+    """Give the name of a temporary file, for libraries that write to a name; see `replacing`.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; its folder exists.
+
+    Yields
+    ------
+    Path
+        The temporary file, with the ending of `path`.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written; the file that was there before is unchanged.
+    """
+    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", suffix=PART, dir=path.parent) as folder:
+        draft = Path(folder) / path.name
+        yield draft
+        with draft.open("rb+") as file:
+            os.fsync(file.fileno())
+        draft.replace(path)
     _flush_folder(path.parent)
 
 
@@ -87,7 +150,10 @@ def write(path: Path, content: str | bytes) -> Path:
 def remove_drafts(folder: Path) -> None:
     """Remove what killed processes left half written in a folder that this process has locked."""
     for draft in folder.glob(f"*{PART}"):
-        draft.unlink(missing_ok=True)
+        if draft.is_dir():
+            shutil.rmtree(draft, ignore_errors=True)
+        else:
+            draft.unlink(missing_ok=True)
 
 
 def _usual_mode() -> int:
@@ -95,6 +161,12 @@ def _usual_mode() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return 0o666 & ~mask
+
+
+def _flush(file: Path) -> None:
+    """Write the content of a file to the disk."""
+    with file.open("rb+") as opened:
+        os.fsync(opened.fileno())
 
 
 def _flush_folder(folder: Path) -> None:

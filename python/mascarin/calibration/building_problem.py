@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
+    from mascarin.simulation.options import TimeLike
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -168,7 +169,7 @@ def problem_of(
     def slopes(x: Array) -> Array:
         vector = simulation.vector({})
         vector[positions] = x
-        _, by_parameter = simulation.jacobian([parameter.path for parameter in parameters], vector)
+        _, by_parameter = simulation.jacobian_vector([p.path for p in parameters], vector)
         # Instants and means are linear in the records, and so are their slopes.
         seen = observation.simulated(simulation.index, by_parameter)[:, rows][:, :, columns]
         return np.moveaxis(seen, 0, -1)
@@ -201,8 +202,8 @@ def calibrate(
     *,
     parameters: Sequence[str | FitParameter] | Mapping[str, tuple[float, float]],
     sensors: Mapping[str, Sensor] | Mapping[str, str],
-    start: object,
-    end: object,
+    start: TimeLike,
+    end: TimeLike,
     step: str | float = "15min",
     lead: str | float = "3d",
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -10,12 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mascarin import __version__
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.members import members as read_members
 from mascarin.ensemble.store import Store
-from mascarin.ensemble.work import Objective, Piece, Recipe
+from mascarin.ensemble.work import CLOSURE, Objective, Piece, Recipe, dataset
 from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
+from mascarin.progress import reporting
+from mascarin.simulation.compiling import with_parameters
+from mascarin.simulation.options import RunOptions, described
+from mascarin.weather import summary
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -23,37 +29,45 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from mascarin.building import Building
+    from mascarin.progress import ProgressOption
     from mascarin.simulation.initial import Initial
-    from mascarin.simulation.simulation import Scheme, Simulation
+    from mascarin.simulation.options import Scheme, TimeLike
+    from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate, Measurements
 
 
+@described
 def sweep(
     building: Building,
     climate: Climate,
     samples: Mapping[str, npt.ArrayLike] | pd.DataFrame,
     *,
-    outputs: Sequence[str],
-    objectives: Mapping[str, Objective] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    outputs: Sequence[str] | None = None,
+    start: TimeLike | None = None,
+    end: TimeLike | None = None,
     step: str | float = "15min",
-    start: object = None,
-    end: object = None,
     scheme: Scheme = "sdirk2",
     initial: Initial = "repeat",
+    first_period: str | float = "1d",
     measurements: Measurements | None = None,
+    progress: ProgressOption = None,
+    objectives: Mapping[str, Objective] | None = None,
     workers: int | Executor | None = None,
-    report: Callable[[int], object] | None = None,
 ) -> xr.Dataset:
     """Run a building once for every row of samples; a member's bits do not depend on the others.
 
     Parameters
     ----------
-    building, climate, outputs, step, start, end, scheme, initial, measurements
-        As in `Simulation`.
+    building : Building
+        The building.
+    climate : Climate
+        Its weather.
     samples : mapping or pandas.DataFrame
-        Path -> values, one for each member, shape (M,). A structural parameter may vary too, and so may a
+        Values by path, one for each member, shape (M,). A structural parameter may vary too, and so may a
         whole part of the description (``surfaces.roof.outside.convection: [tarp, mowitt]``): members of
         the same shape are run together. [unit of each]
+    <run options>
     objectives : mapping of str to callable, optional
         What to keep of each member instead of its series: functions of a Dataset of the outputs over (member,
         time) that give one number a member, such as ``lambda run: run["room.air_temperature"].max("time")``.
@@ -61,8 +75,6 @@ def sweep(
     workers : int or concurrent.futures.Executor, optional
         Processes of this machine, or an executor: of dask.distributed (``client.get_executor()``), of
         mpi4py.futures, or any other. Default: the threads of this process.
-    report : callable, optional
-        Called with the number of members done.
 
     Returns
     -------
@@ -80,38 +92,43 @@ def sweep(
     """
     import xarray as xr
 
-    found = read_members(building, samples)
-    recipe = _recipe(
-        building, climate, found, outputs=outputs, objectives=objectives, step=step, start=start, end=end,
-        scheme=scheme, initial=initial, measurements=measurements,
+    options = RunOptions(
+        parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
+        initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
-    whole, closure, failures = _gathered(found, _pieces(recipe, found, [(0, found.count)], workers, report))
+    recipe, found = _prepared(building, climate, samples, options, objectives)
+    with reporting(progress, "members") as report:
+        pieces = _pieces(recipe, found, [(0, found.count)], workers, lambda done: report(done, found.count))
+        whole, closure, failures = _gathered(found, pieces)
     if len(failures) == found.count:
         raise SolverError(f"all {found.count} members failed; the first: {failures[0]}")
     return (
         _dataset(recipe, found, whole)
-        .assign(closure=xr.DataArray(closure, dims="member"))
+        .assign(closure=xr.DataArray(closure, dims="member", attrs=CLOSURE))
         .assign_attrs(failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())])
     )
 
 
+@described
 def sweep_into(
     store: Path,
     building: Building,
     climate: Climate,
     samples: Mapping[str, npt.ArrayLike] | pd.DataFrame,
     *,
-    outputs: Sequence[str],
-    objectives: Mapping[str, Objective] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    outputs: Sequence[str] | None = None,
+    start: TimeLike | None = None,
+    end: TimeLike | None = None,
     step: str | float = "15min",
-    start: object = None,
-    end: object = None,
     scheme: Scheme = "sdirk2",
     initial: Initial = "repeat",
+    first_period: str | float = "1d",
     measurements: Measurements | None = None,
+    progress: ProgressOption = None,
+    objectives: Mapping[str, Objective] | None = None,
     workers: int | Executor | None = None,
     seed: int | None = None,
-    report: Callable[[int], object] | None = None,
 ) -> Store:
     """Run an ensemble into a folder; killed at any moment and called again it goes on where it was.
 
@@ -119,12 +136,11 @@ def sweep_into(
     ----------
     store : Path
         Folder: new, empty, or with the same ensemble half done.
-    building, climate, samples, outputs, objectives, step, start, end, scheme, initial, measurements, workers
+    building, climate, samples, objectives, workers
         As in `sweep`.
+    <run options>
     seed : int, optional
-        Seed that the samples come from, for the manifest.
-    report : callable, optional
-        Called with the number of members done, those of earlier calls included.
+        Seed that the samples were drawn with, for the manifest.
 
     Returns
     -------
@@ -138,39 +154,48 @@ def sweep_into(
     SolverError
         A stretch of members kills its workers; what is finished is kept.
     """
-    found = read_members(building, samples)
-    recipe = _recipe(
-        building, climate, found, outputs=outputs, objectives=objectives, step=step, start=start, end=end,
-        scheme=scheme, initial=initial, measurements=measurements,
+    options = RunOptions(
+        parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
+        initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
+    recipe, found = _prepared(building, climate, samples, options, objectives)
     kept = Store.begin(store, _manifest(recipe, found, seed))
     before = kept.done
-    tell = None if report is None else (lambda done: report(before + done))
-    for piece in _pieces(recipe, found, kept.gaps(), workers, tell):
-        kept.add(piece, found.part(piece.first, piece.first + len(piece.closure)))
+    with reporting(progress, "members") as report:
+        told = lambda done: report(before + done, found.count)  # noqa: E731 (one line, used once)
+        for piece in _pieces(recipe, found, kept.gaps(), workers, told):
+            kept.add(piece, found.part(piece.first, piece.first + len(piece.closure)))
     kept.finish()
     return kept
 
 
-def _recipe(building: Building, climate: Climate, members: Members, **options: Any) -> Recipe:
-    """What the members share, with its hash. The first shape is compiled, so that faults show at once."""
+def _prepared(
+    building: Building,
+    climate: Climate,
+    samples: Mapping[str, npt.ArrayLike] | pd.DataFrame,
+    options: RunOptions,
+    objectives: Mapping[str, Objective] | None,
+) -> tuple[Recipe, Members]:
+    """What the members share, with its hash, and the members.
+
+    The first shape is compiled, so that what cannot be used is found before anything is run.
+    """
+    building = with_parameters(building, options.parameters)
+    members = read_members(building, samples)
     recipe = Recipe(
         building=building,
         climate=climate,
+        options=replace(options, parameters=None),
         ranges=members.ranges,
-        objectives=dict(options.pop("objectives") or {}),
-        outputs=tuple(options.pop("outputs")),
+        objectives=dict(objectives or {}),
         identity="",
-        **options,
     )
     clash = set(recipe.objectives) & {"member", "closure", "failure", "samples"}
     if clash:
         raise InputError(f"objectives: '{clash.pop()}' is the name of something else; choose another")
-    import hashlib
-
     whole = hashlib.sha256(recipe.compiled(_first_shape(members)).identity.encode())
     whole.update(repr([sorted(recipe.ranges.items()), list(recipe.objectives)]).encode())
-    return replace(recipe, identity=whole.hexdigest())
+    return replace(recipe, identity=whole.hexdigest()), members
 
 
 def _first_shape(members: Members) -> dict[str, Any]:
@@ -214,26 +239,35 @@ def _gathered(members: Members, pieces: Iterator[Piece]) -> tuple[Any, Any, dict
 def _dataset(recipe: Recipe, members: Members, values: Any) -> xr.Dataset:
     import xarray as xr
 
-    from mascarin.ensemble.work import dataset
-
     simulation = _first(recipe, members)
     if recipe.objectives:
         columns = {name: ("member", values[:, k]) for k, name in enumerate(recipe.objectives)}
         data = xr.Dataset(columns, attrs={"timezone": str(simulation.index.tz)})
     else:
         data = dataset(simulation.outputs, simulation.index, values)
-    data = data.assign_coords(member=np.arange(members.count))
+    data = data.assign_coords(member=np.arange(members.count)).assign_attrs(mascarin_version=__version__)
+    units = {path: _unit(recipe.building, path) for path in members.paths}
     if members.shapes:
         everything: dict[str, Any] = {**members.numbers, **members.shapes}
-        return data.assign({f"sample: {path}": ("member", column) for path, column in everything.items()})
+        found = {
+            f"sample: {path}": ("member", column, {"units": units[path]} if units[path] else {})
+            for path, column in everything.items()
+        }
+        return data.assign(found)
     samples = xr.DataArray(np.column_stack(list(members.numbers.values())), dims=("member", "parameter"))
-    return data.assign_coords(parameter=members.paths).assign(samples=samples)
+    coordinates = {"parameter": members.paths, "parameter_unit": ("parameter", list(units.values()))}
+    return data.assign_coords(coordinates).assign(samples=samples)
+
+
+def _unit(building: Building, path: str) -> str:
+    """Unit of a parameter; none of a whole part."""
+    try:
+        return building.parameter(path).unit
+    except InputError:
+        return ""
 
 
 def _manifest(recipe: Recipe, members: Members, seed: int | None) -> dict[str, Any]:
-    from mascarin import __version__
-    from mascarin.weather import summary
-
     simulation = _first(recipe, members)
     units = {output.name: output.unit for output in simulation.outputs}
     times = simulation.index.tz_convert("UTC").tz_localize(None)
@@ -246,11 +280,11 @@ def _manifest(recipe: Recipe, members: Members, seed: int | None) -> dict[str, A
         "members": members.count,
         "paths": members.paths,
         "seed": seed,
-        "outputs": list(recipe.outputs),
+        "outputs": [output.name for output in simulation.outputs],
         "objectives": list(recipe.objectives),
         "kept": dict.fromkeys(recipe.objectives, "") if recipe.objectives else units,
         "step_seconds": simulation.step_seconds,
-        "scheme": recipe.scheme,
+        "scheme": recipe.options.scheme,
         "timezone": str(simulation.index.tz),
         "time": [] if recipe.objectives else [str(time) for time in times],
     }

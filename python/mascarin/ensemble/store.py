@@ -16,7 +16,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.ensemble.work import CLOSURE
 from mascarin.errors import InputError
+from mascarin.simulation.labels import time_coordinates
+from mascarin.weather.timezones import parse_timezone
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -211,11 +214,12 @@ class Store:
             data[name] = xr.DataArray(numbers, dims=dims, attrs={"units": unit} if unit else {})
         for path in self.manifest["paths"]:
             data[f"sample: {path}"] = ("member", table.column(f"sample: {path}").to_pandas().to_numpy())
-        data["closure"] = ("member", table.column("closure").to_numpy())
+        data["closure"] = ("member", table.column("closure").to_numpy(), CLOSURE)
         reasons = zip(members, table.column("failure").to_pylist(), strict=True)
         coords: dict[str, Any] = {"member": members}
         if len(dims) > 1:
-            coords["time"] = pd.DatetimeIndex(self.manifest["time"])
+            times = pd.DatetimeIndex(self.manifest["time"]).tz_localize("UTC")
+            coords |= time_coordinates(times.tz_convert(parse_timezone(self.manifest["timezone"])))
         attributes = {
             "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
             "timezone": self.manifest["timezone"],

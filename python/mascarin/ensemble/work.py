@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin.errors import InputError, MascarinError
-from mascarin.simulation.simulation import Scheme, Simulation
+from mascarin.simulation.labels import time_coordinates
+from mascarin.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -19,11 +20,15 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building, Output
     from mascarin.ensemble.members import Members
-    from mascarin.weather import Climate, Measurements
+    from mascarin.simulation.options import RunOptions
+    from mascarin.weather import Climate
 
     Array = npt.NDArray[np.float64]
 
 Objective = Callable[["xr.Dataset"], Any]
+
+CLOSURE: Final = {"units": "1", "long_name": "relative energy-balance residual"}
+"""Attributes of the variable ``closure``."""
 
 #: Series that are held at once before they are reduced to objectives. [bytes]
 _HELD: Final = 64 * 2**20
@@ -37,8 +42,12 @@ class Recipe:
 
     Attributes
     ----------
-    building, climate, measurements, outputs, step, start, end, scheme, initial
-        As in `Simulation`.
+    building : Building
+        The building; parameters that all members share are in it.
+    climate : Climate
+        Its weather.
+    options : RunOptions
+        Options of the runs.
     ranges : mapping of str to (float, float)
         Ranges of the samples, so that every worker chooses the same mesh.
     objectives : mapping of str to callable
@@ -49,31 +58,15 @@ class Recipe:
 
     building: Building
     climate: Climate
-    measurements: Measurements | None
-    outputs: tuple[str, ...]
-    step: str | float
-    start: object
-    end: object
-    scheme: Scheme
-    initial: Any
+    options: RunOptions
     ranges: Mapping[str, tuple[float, float]]
     objectives: Mapping[str, Objective]
     identity: str
 
     def compiled(self, shape: Mapping[str, Any]) -> Simulation:
         """The building of a shape in the climate."""
-        return Simulation(
-            self.building.replace(shape) if shape else self.building,
-            self.climate,
-            step=self.step,
-            start=self.start,
-            end=self.end,
-            outputs=self.outputs,
-            scheme=self.scheme,
-            initial=self.initial,
-            measurements=self.measurements,
-            ranges=self.ranges,
-        )
+        building = self.building.replace(shape) if shape else self.building
+        return Simulation(building, self.climate, **self.options.keywords(), ranges=self.ranges)
 
     def simulation(self, shape: Mapping[str, Any]) -> Simulation:
         """The same, kept at hand for the next stretch."""
@@ -141,8 +134,8 @@ def run_stretch(
         for batch in _batches(recipe, simulation, places):
             vectors = _vectors(simulation, members, batch)
             before = done
-            tell = None if report is None else (lambda count, before=before: report(before + count))
-            records, closures, failed = simulation.ensemble(vectors, report=tell)
+            tell = None if report is None else (lambda count, _, before=before: report(before + count))
+            records, closures, failed = simulation.ensemble(vectors, progress=tell)
             kept = _reduced(recipe, simulation, records)
             if values is None:
                 values = np.full((members.count, *kept.shape[1:]), np.nan)
@@ -199,9 +192,13 @@ def dataset(outputs: list[Output], index: pd.DatetimeIndex, records: Array) -> x
 
     return xr.Dataset(
         {
-            output.name: xr.DataArray(records[:, :, k], dims=("member", "time"), attrs={"units": output.unit})
+            output.name: xr.DataArray(
+                records[:, :, k],
+                dims=("member", "time"),
+                attrs={"units": output.unit, "long_name": output.name},
+            )
             for k, output in enumerate(outputs)
         },
-        coords={"time": index.tz_convert("UTC").tz_localize(None)},
+        coords=time_coordinates(index),
         attrs={"timezone": str(index.tz)},
     )

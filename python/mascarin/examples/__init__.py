@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Final
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.examples.small import box as box
+from mascarin.examples.small import box_climate as box_climate
 
 FOLDER: Final = Path(__file__).parent
 #: Studies by the name they are called with.

@@ -35,7 +35,7 @@ class Sensitivity:
 
     Made by `mascarin.sensitivity_analysis`, or by `mascarin.sensitivity.run` for any model.
 
-    Attributes
+    Parameters
     ----------
     method : str
         Name of the method.

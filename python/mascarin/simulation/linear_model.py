@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mascarin import _engine
-from mascarin.errors import InputError
+from mascarin.simulation.engine_errors import translated
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -73,8 +73,6 @@ def state_space(building: Building, *, step: float = 900.0) -> StateSpace:
     Guichard et al., eq. 1: ``C dT/dt = A T + B``.
     """
     description = building.to_engine(step, {})
-    try:
+    with translated():
         raw = _engine.Plan(description.json).state_space(description.values)
-    except _engine.EngineInputError as error:
-        raise InputError(str(error)) from None
     return StateSpace(**raw)

@@ -19,6 +19,7 @@ from mascarin.calibration import CalibrationProblem, Fit, Profile, profiles
 from mascarin.errors import InputError
 from mascarin.progress import Progress
 from mascarin.simulation.initial import Initial, MeasuredStart
+from mascarin.simulation.options import TimeLike
 from mascarin.simulation.results import Results
 from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, identify, independent_weight, problem
@@ -304,7 +305,7 @@ class Study:
     # --- runs -------------------------------------------------------------------------------------------
 
     def _simulate(
-        self, building: Building, start: object, end: object, further: Sequence[str] = ()
+        self, building: Building, start: TimeLike, end: TimeLike, further: Sequence[str] = ()
     ) -> Simulation:
         """A model that records what the sensors see, then further outputs."""
         return Simulation(
@@ -518,7 +519,7 @@ class Study:
     def _compared(
         self, label: str, simulation: Simulation, values: Any, fit: Fit | None, note: str
     ) -> ModelRun:
-        results = simulation.run(values)
+        results = simulation.run_vector(values)
         return ModelRun(label, simulation, results, self.scores(results), fit, note)
 
     def nominal(self) -> ModelRun:

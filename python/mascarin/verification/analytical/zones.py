@@ -14,7 +14,8 @@ from mascarin.verification.analytical.check import Case, Check
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.simulation.simulation import Scheme, Simulation
+    from mascarin.simulation.options import Scheme
+    from mascarin.simulation.simulation import Simulation
 
 #: Dry air at sea level: ICAO standard pressure, 15 degC; specific heat of ASHRAE Fundamentals, ch. 1.
 AIR_DENSITY: Final = 101_325.0 / (287.055 * 288.15)
@@ -267,7 +268,7 @@ def _lanes(name: str) -> Iterator[Check]:
     for path in paths:
         samples[:, bench_of_all.position(path)] *= rng.uniform(0.6, 1.2, len(samples))
     records, closure, failures = bench_of_all.ensemble(samples)
-    alone = [bench_of_all.run(row) for row in samples]
+    alone = [bench_of_all.run_vector(row) for row in samples]
     apart = max(float(np.max(np.abs(records[k] - one.records))) for k, one in enumerate(alone))
     books = max(abs(float(closure[k]) - one.energy.closure) for k, one in enumerate(alone))
     yield Check.most(name, "largest difference of 11 members, alone and in lanes", "K", apart, high=0.0)
