@@ -22,8 +22,8 @@ from .simulation.derivatives import jacobian as jacobian
 from .simulation.initial import MeasuredStart as MeasuredStart
 from .simulation.linear_model import state_space as state_space
 from .simulation.results import Results as Results
+from .simulation.run import simulate as simulate
 from .simulation.simulation import Simulation as Simulation
-from .simulation.simulation import simulate as simulate
 from .study import Study as Study
 from .weather import Climate as Climate
 from .weather import Measurements as Measurements

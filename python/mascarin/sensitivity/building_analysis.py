@@ -17,7 +17,7 @@ from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
 from mascarin.simulation.options import described
 from mascarin.simulation.simulation import Simulation
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -11,7 +11,7 @@ import numpy as np
 from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
 from mascarin.sensitivity.methods import collector
 from mascarin.sensitivity.methods import plan as design
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
