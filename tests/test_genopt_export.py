@@ -17,7 +17,7 @@ from mascarin.calibration import Cost, Evaluator, Rules, solve
 from mascarin.calibration.problem import FitParameter
 from mascarin.errors import InputError, SolverError
 from mascarin.genopt import Options as RunOptions
-from mascarin.genopt import optimise
+from mascarin.genopt import optimize
 from mascarin.genopt.export.algorithms import ALGORITHMS, Plan
 from mascarin.genopt.export.algorithms import chosen as chosen_algorithm
 from mascarin.genopt.export.case import Case, inputs_of, open_case
@@ -288,7 +288,7 @@ def in_process(study: Study, reductions: int, starts: int, seed: int) -> tuple[R
         return single(value)
 
     rows = Rows()
-    optimiser = HookeJeeves(
+    optimizer = HookeJeeves(
         space,
         reductions=reductions,
         starts=uniform_starts(space, starts, seed, rounding=rounded),
@@ -296,13 +296,13 @@ def in_process(study: Study, reductions: int, starts: int, seed: int) -> tuple[R
         observer=rows,
     )
     evaluator = Evaluator(Cost(study.problem(), study.sought.cost))
-    while points := optimiser.ask():
+    while points := optimizer.ask():
         told = []
         for point in points:
             x = np.array([point.x])
             total = float(evaluator.costs(x)[0])
             told.append(Evaluation(point, total, tuple(evaluator.trace().of_sensors[-1])))
-        optimiser.tell(told)
+        optimizer.tell(told)
     return rows, evaluator
 
 
@@ -324,7 +324,7 @@ def test_the_project_is_searched_like_the_study_evaluation_by_evaluation(
     study: Study, bench: Path, tmp_path: Path, without_processes: list[Path]
 ) -> None:
     ini = write_project(str(bench / "study.yaml"), tmp_path / "a project", SHORT)
-    outcome = optimise(ini, RunOptions(workers=1))
+    outcome = optimize(ini, RunOptions(workers=1))
     rows, evaluator = in_process(study, reductions=3, starts=3, seed=5)
     trace = evaluator.trace()
     assert len(without_processes) == outcome.simulations == len(trace.x) > 30
@@ -363,7 +363,7 @@ def test_the_project_is_searched_like_a_calibration(
     command.write_text(
         command.read_text(encoding="utf-8").replace("Step = 0.1;", "Step = 0.125;"), encoding="utf-8"
     )
-    outcome = optimise(ini, RunOptions(workers=1))
+    outcome = optimize(ini, RunOptions(workers=1))
     rules = Rules(sequences=1, agree=1, step=0.125, reductions=3)
     fit = solve(Study(copy / "study.yaml").problem(), method="hooke-jeeves", cost="sd", rules=rules)
     assert len(fit.trace.x) == len(without_processes) > 20
@@ -375,7 +375,7 @@ def test_the_project_is_searched_like_a_calibration(
 def test_the_program_itself_gives_the_same_numbers(bench: Path, tmp_path: Path) -> None:
     options = replace(SHORT, evaluations=6, starts=1)
     ini = write_project(str(bench / "study.yaml"), tmp_path / "a project", options)
-    outcome = optimise(ini, RunOptions(workers=1))
+    outcome = optimize(ini, RunOptions(workers=1))
     assert outcome.runs >= 6
     inside = search(ini)
     assert [(r.key, r.costs) for r in outcome.records] == [(r.key, r.costs) for r in inside.records]

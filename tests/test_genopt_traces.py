@@ -12,7 +12,7 @@ import pytest
 from conftest import unavailable
 from genopt_support import body, in_process
 from mascarin.errors import MascarinError
-from mascarin.genopt import optimise
+from mascarin.genopt import optimize
 
 REAL = ["quad2_hj", "err_hj_logerror", "disc_parametric"]
 #: Recordings that are not reproduced yet: the precision control by Alpha (step numbers), and the last
@@ -64,7 +64,7 @@ def replay(traces: Path, name: str, folder: Path) -> None:
     shutil.copytree(traces / name, project)
     code, said = 0, ""
     try:
-        optimise(project / "opt.ini")
+        optimize(project / "opt.ini")
     except MascarinError as error:
         code, said = 1, str(error)
     assert code == int(index[name]["exit"]), said

@@ -124,7 +124,7 @@ def place_word(word: str, values: dict[str, str], folder: Path, own: set[str]) -
     if text.startswith(".") and not re.match(r"\.\d+\Z", text):
         return os.path.normpath(folder / text)
     # The name of one of the run's own files means that file, whatever lies in the directory from which the
-    # optimisation was started.
+    # optimization was started.
     literal = text == word and text not in own
     if literal and text and not Path(text).is_absolute() and Path(text).exists():
         return str(Path(text).absolute())

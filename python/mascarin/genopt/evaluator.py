@@ -79,7 +79,7 @@ class Policy:
     ahead : bool
         Whether idle workers run points that are likely to be needed.
     penalty : float or None
-        Cost of a failed run; None stops the optimisation.
+        Cost of a failed run; None stops the optimization.
     """
 
     workers: int = 1
@@ -95,7 +95,7 @@ class Evaluator:
     project : Project
         The project.
     built : Built
-        The optimiser, asked for guesses.
+        The optimizer, asked for guesses.
     run : callable
         Runs one point in a directory.
     policy : Policy
@@ -142,7 +142,7 @@ class Evaluator:
         Parameters
         ----------
         points : sequence of Point
-            What the optimiser asks for.
+            What the optimizer asks for.
 
         Returns
         -------
@@ -152,10 +152,10 @@ class Evaluator:
         Raises
         ------
         RunFailed
-            When a run fails and failures end the optimisation.
+            When a run fails and failures end the optimization.
         """
         first_batch = self.count == 0
-        step = self._built.optimiser.step_number
+        step = self._built.optimizer.step_number
         seen: dict[tuple[object, ...], int] = {}
         numbers: list[int] = []
         twins: list[int | None] = []
@@ -195,7 +195,7 @@ class Evaluator:
 
     def _group(self, p: Point, step: int) -> tuple[object, ...]:
         """What must be identical for two points to share a result."""
-        phase = self._built.optimiser.phase if self._project.discrete else 0
+        phase = self._built.optimizer.phase if self._project.discrete else 0
         return (step if self._project.settings.write_step else 1, p.choices, phase)
 
     def _evaluation(self, p: Point, record: Record, number: int, step: int) -> Evaluation:
@@ -269,7 +269,7 @@ class Evaluator:
         return again
 
     def _stops(self) -> bool:
-        """Whether a failure ends the optimisation."""
+        """Whether a failure ends the optimization."""
         return self._policy.penalty is None and self._built.stop_at_error
 
     def _finish(self, record: Record, p: Point, number: int) -> None:
@@ -293,7 +293,7 @@ class Evaluator:
             record.logged = True
 
     def _archive(self, record: Record, folder: Path, number: int) -> None:
-        """Keep the files of a failed run that the optimisation survives."""
+        """Keep the files of a failed run that the optimization survives."""
         keep = self._project.folder / FAILURES / f"run-{number}"
         if folder.exists():
             if keep.exists():
@@ -351,8 +351,8 @@ class Evaluator:
         idle = self._policy.workers - busy
         if not self._policy.ahead or self._pool is None or idle <= 0:
             return
-        optimiser = self._built.optimiser
-        for p in optimiser.guesses(idle + len(self._flying), self._known):
+        optimizer = self._built.optimizer
+        for p in optimizer.guesses(idle + len(self._flying), self._known):
             key = self._key(p)
             if idle > 0 and key not in self._flying and key not in self._ahead:
                 idle -= 1

@@ -174,7 +174,7 @@ class Log:
         self._put(record.line())
 
     def end(self, reason: str) -> None:
-        """Note that the optimisation came to its end."""
+        """Note that the optimization came to its end."""
         self._put(json.dumps({"end": reason}))
 
     def close(self) -> None:
@@ -191,7 +191,7 @@ class Log:
 
 
 def interrupted(path: Path) -> int:
-    """Number of runs in a log whose optimisation did not come to its end.
+    """Number of runs in a log whose optimization did not come to its end.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from mascarin.genopt.numbers import double_text
 from mascarin.genopt.program import RUN_PREFIX, SEPARATORS, Program
 from mascarin.genopt.project import Project
 from mascarin.genopt.records import Log, Record, Replay, check_table, fingerprint, write_table
-from mascarin.optimization.pattern import EXHAUSTED
+from mascarin.optimization import EXHAUSTED
 from mascarin.progress import Progress
 
 LOG_NAME = "GenOpt.log"
@@ -39,7 +39,7 @@ class Options:
     ahead : bool
         Whether idle workers run points that a sequential algorithm is likely to need.
     penalty : float, optional
-        Cost of a failed run; failures end the optimisation when absent [unit of the cost].
+        Cost of a failed run; failures end the optimization when absent [unit of the cost].
     time_limit : float, optional
         Longest time of one run [s].
     resume : bool
@@ -64,7 +64,7 @@ class Options:
 
 @dataclass
 class Outcome:
-    """The end of an optimisation.
+    """The end of an optimization.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ class Outcome:
         return out
 
 
-def optimise(path: str | Path, options: Options | None = None, *, run: Runner | None = None) -> Outcome:
+def optimize(path: str | Path, options: Options | None = None, *, run: Runner | None = None) -> Outcome:
     """Run a GenOpt project.
 
     Parameters
@@ -133,7 +133,7 @@ def optimise(path: str | Path, options: Options | None = None, *, run: Runner | 
     Returns
     -------
     Outcome
-        The end of the optimisation; the listings lie beside the command file.
+        The end of the optimization; the listings lie beside the command file.
 
     Raises
     ------
@@ -203,7 +203,7 @@ def _work(
     workers: int,
     stop: Callable[[], None],
 ) -> None:
-    """Drive the optimiser to its end."""
+    """Drive the optimizer to its end."""
     log = Log(log_path(project.ini))
     digests = fingerprint(project)
     earlier = log.resume(digests) if o.resume else []
@@ -214,9 +214,9 @@ def _work(
     policy = Policy(workers, o.ahead and workers > 1, o.penalty)
     evaluator = Evaluator(project, built, run, policy, log=log, replay=Replay(earlier), watch=watch)
     try:
-        while points := built.optimiser.ask():
-            built.optimiser.tell(evaluator.evaluate(points))
-        log.end(built.optimiser.reason)
+        while points := built.optimizer.ask():
+            built.optimizer.tell(evaluator.evaluate(points))
+        log.end(built.optimizer.reason)
     finally:
         evaluator.close(stop)
         log.close()
@@ -228,7 +228,7 @@ def _work(
         outcome.warnings = evaluator.notes
         if o.table is not None:
             write_table(o.table, project, outcome.records)
-    outcome.reason = built.optimiser.reason
+    outcome.reason = built.optimizer.reason
     outcome.exhausted = outcome.reason == EXHAUSTED
     outcome.lowest = listings.lowest
 
@@ -280,7 +280,7 @@ def check(path: str | Path, options: Options | None = None) -> tuple[Project, li
     path : str or Path
         The initialization file.
     options : Options, optional
-        As for `optimise`.
+        As for `optimize`.
 
     Returns
     -------
@@ -297,7 +297,7 @@ def check(path: str | Path, options: Options | None = None) -> tuple[Project, li
     workers = o.workers or project.settings.units or os.cpu_count() or 1
     built = build(project, Listings(project), workers)
     program = Program(project, time_limit=o.time_limit)
-    expected = built.optimiser.expected
+    expected = built.optimizer.expected
     return project, [
         f"{built.name}: {', '.join(project.names)}",
         f"cost: {project.objectives[0].name}",
@@ -308,10 +308,10 @@ def check(path: str | Path, options: Options | None = None) -> tuple[Project, li
 
 
 class _Watch:
-    """Shows how far an optimisation is."""
+    """Shows how far an optimization is."""
 
     def __init__(self, project: Project, built: Built) -> None:
-        self._optimiser = built.optimiser
+        self._optimizer = built.optimizer
         self._most = project.settings.max_iterations
         self._progress = Progress("simulations")
         self._done = 0
@@ -323,8 +323,8 @@ class _Watch:
         self._done += 1
         if record.costs is not None and (self._best is None or record.costs[0] < self._best):
             self._best = record.costs[0]
-        left = self._optimiser.remaining
-        exact = self._optimiser.expected is not None
+        left = self._optimizer.remaining
+        exact = self._optimizer.expected is not None
         total = self._done + left if left is not None else max(self._most, self._done)
         about = "" if exact else "about " if left is not None else "at most "
         best = "" if self._best is None else f", lowest {self._name} {self._best:.6g}"
@@ -389,7 +389,7 @@ def _write_log(project: Project, outcome: Outcome, started: dt.datetime, error: 
 
 
 def summary(outcome: Outcome) -> list[str]:
-    """The end of an optimisation in a few lines.
+    """The end of an optimization in a few lines.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""One evaluation of a study for an optimisation program: files in, files out."""
+"""One evaluation of a study for an optimization program: files in, files out."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _case(project: Path | None, study: Path | None, parameters: Path) -> Case:
 
 
 def _failure(text: str) -> list[str]:
-    """What the log says of a failure; the mark stands on the first line, which optimisation programs show."""
+    """What the log says of a failure; the mark stands on the first line, which optimization programs show."""
     first, *others = text.splitlines() or [""]
     return [f"{FAILURE}: {first}", *others]
 

@@ -1,4 +1,4 @@
-"""The files between an optimisation program and one evaluation: parameters in, costs and a log out."""
+"""The files between an optimization program and one evaluation: parameters in, costs and a log out."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def read_parameters(path: Path) -> Request:
 def _number(text: str, where: str) -> float:
     if text.startswith("%") and text.endswith("%"):
         raise InputError(
-            f"{where}: found {text}, which the optimisation program should have replaced by a number; name "
+            f"{where}: found {text}, which the optimization program should have replaced by a number; name "
             "the parameter in the command file exactly as it is written between the percent signs"
         )
     try:
@@ -145,7 +145,7 @@ def read_settings(folder: Path) -> Path:
 
 
 def result_lines(costs: Costs) -> list[str]:
-    """Costs as an optimisation program extracts them: at the start of a line, with all digits."""
+    """Costs as an optimization program extracts them: at the start of a line, with all digits."""
     return [
         f"cost= {costs.total!r}",
         *(f"cost_{name}= {value!r}" for name, value in costs.parts.items()),

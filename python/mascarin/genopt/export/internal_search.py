@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError, MascarinError
-from mascarin.genopt import Options, Outcome, optimise
+from mascarin.genopt import Options, Outcome, optimize
 from mascarin.genopt.export.compiling import compiled
 from mascarin.genopt.export.exchange import COMPILED, read_settings
 from mascarin.genopt.loading import load
@@ -39,7 +39,7 @@ def search(initialization: Path, options: Options | None = None) -> Outcome:
     InputError
         The project is not one of a study, or asks for other costs or discrete parameters.
     """
-    return optimise(initialization, options or Options(workers=1), run=_runner(initialization))
+    return optimize(initialization, options or Options(workers=1), run=_runner(initialization))
 
 
 def _runner(initialization: Path) -> Callable[[Point, Path], Result]:
