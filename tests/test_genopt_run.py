@@ -86,7 +86,7 @@ def test_workers_shorten_a_sequential_search(tmp_path: Path) -> None:
         assert most[0] == workers
 
 
-def test_without_looking_ahead_nothing_runs_in_vain(tmp_path: Path) -> None:
+def test_without_runs_in_advance_every_run_is_needed(tmp_path: Path) -> None:
     ini = write_project(tmp_path, vary=WIDE, algorithm=SEVERAL)
     outcome = optimize(ini, Options(workers=8, ahead=False), run=runner(two_wells))
     assert outcome.runs == outcome.simulations
@@ -105,7 +105,7 @@ def test_a_parallel_swarm_equals_the_serial_one(tmp_path: Path) -> None:
 # ---------------------------------------------------------------------- resume
 
 
-def test_a_killed_run_goes_on_where_it_was(tmp_path: Path) -> None:
+def test_a_killed_run_continues(tmp_path: Path) -> None:
     whole = write_project(tmp_path / "whole")
     program = (tmp_path / "whole" / "simulate.py").read_text()
     counting = program + "\nopen(sys.argv[0] + '.count', 'a').write('x')\n"
@@ -133,7 +133,7 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path) -> None:
     assert interrupted(cut) == ""
 
 
-def test_a_longer_search_uses_what_a_shorter_one_found(tmp_path: Path) -> None:
+def test_a_longer_search_uses_the_results_of_a_shorter_one(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
     first = optimize(ini, run=runner(bowl))
     longer = (tmp_path / "command.txt").read_text().replace("Reduction = 4", "Reduction = 6")
@@ -143,7 +143,7 @@ def test_a_longer_search_uses_what_a_shorter_one_found(tmp_path: Path) -> None:
     assert second.runs == second.simulations - first.simulations
 
 
-def test_the_log_of_another_project_is_refused(tmp_path: Path) -> None:
+def test_the_log_of_another_project_is_an_error(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
     optimize(ini, run=runner(bowl))
     (tmp_path / "template.txt").write_text("x1 = %x1%\nx2 = %x2%\nmore\n")
@@ -172,7 +172,7 @@ def fails(p: Point) -> bool:
     return p.x[0] > 0.95 or p.x[1] < 0.2
 
 
-def test_failures_cost_the_stated_penalty_and_are_kept(tmp_path: Path) -> None:
+def test_failures_have_the_given_cost_and_their_files_are_kept(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
     outcome = optimize(ini, Options(penalty=1e3), run=runner(bowl, fails))
     assert outcome.lowest is not None
@@ -221,7 +221,7 @@ def test_a_program_that_fails_at_every_first_try_gives_the_same_listings(tmp_pat
     assert "Try to evaluate simulation a second time." in outcome.warnings[0]
 
 
-def test_failures_in_a_grid_are_zeros_as_genopt_has_them_and_named(tmp_path: Path) -> None:
+def test_failures_in_a_grid_are_zeros_as_in_genopt_and_reported(tmp_path: Path) -> None:
     ini = write_project(tmp_path, vary=COARSE, algorithm=GRID)
     table = tmp_path / "all.csv"
     outcome = optimize(ini, Options(table=table), run=runner(bowl, lambda p: p.x == (0.5, 0.5)))
@@ -265,7 +265,9 @@ def mixed(p: Point) -> float:
         (HOOKE_JEEVES.replace("GPSHooke", "MascarinHooke"), False),
     ],
 )
-def test_discrete_parameters_where_genopt_refuses_them(tmp_path: Path, algorithm: str, lenient: bool) -> None:
+def test_discrete_parameters_that_genopt_does_not_accept(
+    tmp_path: Path, algorithm: str, lenient: bool
+) -> None:
     ini = write_project(tmp_path, vary=MIXED, algorithm=algorithm, template="%x1% %n%\n")
     outcome = optimize(ini, Options(lenient=lenient), run=runner(mixed))
     assert outcome.lowest is not None
@@ -300,7 +302,7 @@ def test_all_evaluations_as_a_table(tmp_path: Path, ending: str) -> None:
     assert (table["cost"] - expected).abs().max() < 1e-15
 
 
-def test_a_table_that_cannot_be_written_is_refused_first(tmp_path: Path) -> None:
+def test_a_table_that_cannot_be_written_is_an_error_before_the_runs(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
     with pytest.raises(InputError, match=r"expected \.csv or \.parquet"):
         optimize(ini, Options(table=tmp_path / "all.xlsx"), run=runner(bowl))

@@ -1,4 +1,4 @@
-"""Runs a project of a study inside this process: the same search, no program started for each point."""
+"""Runs the project of a study in this process: the same search, without a program for each point."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def search(initialization: Path, options: Options | None = None) -> Outcome:
     initialization : Path
         The initialization file.
     options : Options, optional
-        As for any project. One worker is used where none are given: the engine itself works in parallel.
+        As for any project. Default: one worker, because the engine itself works in parallel.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def search(initialization: Path, options: Options | None = None) -> Outcome:
     Raises
     ------
     InputError
-        The project is not one of a study, or asks for other costs or discrete parameters.
+        The project is not one of a study, or has other costs, functions or discrete parameters.
     """
     return optimize(initialization, options or Options(workers=1), run=_runner(initialization))
 
