@@ -184,8 +184,11 @@ class FibonacciSearch(IntervalSearch):
     """
 
     def _kept(self, done: int) -> float:
-        """Ratio of two neighboring Fibonacci numbers, counted down to one half at the last point."""
-        n = self._points - done + 2
+        """Ratio of two successive Fibonacci numbers, down to 2/3 at the last point.
+
+        The next ratio, 1/2, would evaluate the same point a second time.
+        """
+        n = self._points - done + 3
         return _fibonacci(n) / _fibonacci(n + 1)
 
 
@@ -206,7 +209,10 @@ def golden_points(reduction: float) -> int:
 
 
 def fibonacci_points(reduction: float) -> int:
-    """Number of points of a Fibonacci search.
+    """Number of points of a Fibonacci search, by the rule of GenOpt.
+
+    The number n is the smallest one with 1 / F(n + 2) <= `reduction`. The last interval is twice as long,
+    2 / F(n + 2), because the last point lies in its middle.
 
     Parameters
     ----------
@@ -219,7 +225,7 @@ def fibonacci_points(reduction: float) -> int:
         The number of points [-].
     """
     n = 1
-    while 1.0 / _fibonacci(n + 1) > reduction:
+    while 1.0 / _fibonacci(n + 2) > reduction:
         n += 1
     return n
 

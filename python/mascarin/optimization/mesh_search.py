@@ -190,9 +190,9 @@ class MeshSearch(Optimizer):
                 f"Set N = {self.step_number + 1}; Phi = {self._text(after)}; t = {by}; "
                 f"Delta = {self._text(self._delta)}."
             )
-        comment = f"{self._failed} Reduce step size to '{self._text(self._delta)}'."
-        self._both(best, comment)
-        best = yield from self._raise_step(best, comment)
+        # As in GenOpt, the failed iteration is reported once, after the counters have started again, and
+        # without the new step size.
+        best = yield from self._raise_step(best, self._failed)
         return exponent, best
 
     def _raise_step(self, best: Evaluation, comment: str) -> _Batch:
