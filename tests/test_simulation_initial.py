@@ -181,7 +181,7 @@ def test_what_melts_has_come_from_below() -> None:
         outputs=["slab.wax_liquid_fraction"], initial={"surfaces": {"slab": 26}},
     )  # fmt: skip
     assert run.records[0, 0] == pytest.approx(0.5, abs=1e-12)
-    assert run.provenance.start.endswith("what melts has come from below")
+    assert run.provenance.start.endswith("phase-change layers on the heating curve")
 
 
 @pytest.mark.parametrize(
@@ -189,7 +189,7 @@ def test_what_melts_has_come_from_below() -> None:
     [
         ({"zones": {"suny": 21}}, "zones.suny: found 'suny'.*Did you mean 'sunny'"),
         ({"zones": {"sunny": 21}, "surfaces": {"rof": 21}}, "surfaces.rof.*Did you mean 'roof'"),
-        ({"surfaces": {"roof": 21}}, "found no temperature of the air in sunny, shady"),
+        ({"surfaces": {"roof": 21}}, "found no air temperature in sunny, shady"),
         ({"zones": {"sunny": 500}}, "zones.sunny"),
         ({"zones": {"sunny": True}}, "zones.sunny"),
         ({"surfaces": {"roof": [1, 2, 3]}}, "surfaces.roof"),
