@@ -163,8 +163,8 @@ class Case:
             if not low <= x[k] <= high:
                 unit = f" {parameter.unit}" if parameter.unit else ""
                 raise InputError(
-                    f"{parameter.path}: found {x[k]:g}, expected {low:g} .. {high:g}{unit}, its limits; set "
-                    "Min and Max of the command file inside them"
+                    f"{parameter.path}: found {x[k]:g}, expected {low:g} .. {high:g}{unit}: "
+                    "narrow Min and Max of the command file"
                 )
         return x, tuple(path for path in known if path not in given)
 
