@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io import atomic
 from mascarin.calibration import plots
+from mascarin.figures import comparison
 from mascarin.figures.files import save
 from mascarin.sensitivity.files import save_all
 from mascarin.study.document.sensitivity import analyzed_hours
@@ -101,35 +102,27 @@ def _figures(findings: Findings, folder: Path) -> list[Path]:
 
 
 def _comparison(study: Setup, s: int, models: dict[str, Any]) -> Figure:
-    """Measured and simulated curves with the sensor's band; the error below."""
+    """Measured and simulated series with the uncertainty of the sensor; the error below."""
     from matplotlib.figure import Figure
 
     observation = study.observation
     name = observation.names[s]
     sensor, measured = study.plan.sensors[name], observation.measured[:, s]
     local = observation.times.tz_localize(None)
+    unit = study.building.output(sensor.output).unit
+    difference = unit.replace("degC", "K")
     figure = Figure(figsize=(9.0, 5.0), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    upper.fill_between(
-        local,
-        measured - sensor.uncertainty,
-        measured + sensor.uncertainty,
-        color="0.85",
-        lw=0,
-        label="sensor band",
+    comparison.series(
+        upper, local, measured, models, uncertainty=sensor.uncertainty, label=study.plan.observed
     )
-    upper.plot(local, measured, color="0.2", lw=1.0, label=study.plan.observed)
-    for (label, values), color in zip(models.items(), ("#0072b2", "#d55e00"), strict=True):
-        upper.plot(local, values, lw=1.0, color=color, label=label)
-        lower.plot(local, values - measured, lw=0.9, color=color)
+    comparison.errors(lower, local, {label: values - measured for label, values in models.items()})
     first, last = (stamp.tz_localize(None) for stamp in study.identification)
     for axes in (upper, lower):
         axes.axvspan(first, last, color="#009e73", alpha=0.08, lw=0, label="identification")
-        axes.grid(alpha=0.3)
     upper.set_title(sensor.label or name, loc="left", fontsize=11)
-    upper.set_ylabel("degC")
+    upper.set_ylabel(unit)
     upper.legend(fontsize="small", ncols=5, loc="upper left", bbox_to_anchor=(0.0, -0.02), frameon=False)
-    lower.axhline(0.0, color="0.2", lw=0.8)
-    lower.set_ylabel("simulated - observed [K]")
+    lower.set_ylabel(f"simulated minus measured [{difference}]")
     lower.set_xlabel(f"local time ({study.climate.timezone})")
     return figure
