@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Final
 
-from mascarin.calibration.building_problem import DEAD, MOST_DEAD
+from mascarin.calibration.building_calibration import CONSTANT, MOST_CONSTANT
 from mascarin.errors import InputError, did_you_mean
 from mascarin.study.calibration_step import free_parameter
 from mascarin.study.sensitivity_step import check_plan
@@ -58,7 +58,7 @@ def names(study: Study, faults: Faults) -> None:
     file, places = study.file, study.places
     for name, sensor in file.sensors.items():
         with places.noting(faults, "sensors", name, "output"):
-            study.building.output(sensor.output)
+            sensor.stated_uncertainty(study.building.output(sensor.output).unit, name)
     with places.noting(faults, "sensors"):
         if not any(sensor.use for sensor in file.sensors.values()):
             raise InputError("found use: false on every sensor, expected one at least that takes part")
@@ -142,12 +142,12 @@ def _alive(study: Study) -> None:
     """Refuse to fit to a sensor that repeats itself and that nobody asked to mask."""
     start, end = study.identification
     for name, sensor in study.file.sensors.items():
-        kinds = [kind for kind in DEAD if kind not in study.file.quality.mask]
+        kinds = [kind for kind in CONSTANT if kind not in study.file.quality.mask]
         for stretch in study.quality:
             if not sensor.use or stretch.channel not in sensor.columns or stretch.kind not in kinds:
                 continue
             shared = (min(end, stretch.end) - max(start, stretch.start)).total_seconds()
-            if shared > MOST_DEAD * (end - start).total_seconds():
+            if shared > MOST_CONSTANT * (end - start).total_seconds():
                 with study.places.blame("sensors", name, "column"):
                     raise InputError(
                         f"found column {stretch.channel} {stretch.kind.replace('_', '-')} from "

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, AliasChoices, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from mascarin.building.initial_state import Degrees, GivenStart
 from mascarin.building.names import Name
@@ -18,6 +18,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.validation.criteria import Criterion
+from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
 
 if TYPE_CHECKING:
     from typing import Self
@@ -95,7 +96,8 @@ Columns = str | tuple[str, ...] | dict[str, Any]
 #: Names that the results give to models, metrics and series, so that no variant may bear them.
 TAKEN: Final = (
     "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
-    "max_error_percent", "measured_range", "measured", "band", "as described", "observed", "weather", "state",
+    "max_error_percent", "cv_rmse", "nmbe", "rmse_over_range", "bias_over_range", "measured_range",
+    "measured", "band", "as described", "observed", "weather", "state",
 )  # fmt: skip
 
 
@@ -169,11 +171,25 @@ class Sensor(Part):
 
     column: str | tuple[str, ...] = Field(description="Column, or several whose mean is taken")
     output: str = Field(description="Output of the model")
-    uncertainty: float = Field(
-        0.5, gt=0, description="Half-width of the 95 % band of the sensor [unit of the output]"
+    expanded_uncertainty: float | None = Field(
+        None,
+        gt=0,
+        validation_alias=AliasChoices("expanded_uncertainty", "uncertainty"),
+        description="Half-width of the 95 % interval of a measured value (GUM, coverage factor 1.96), also "
+        "called uncertainty here; 0.5 for a sensor in degC when absent, required for other units "
+        "[unit of the output]",
+    )
+    standard_uncertainty: float | None = Field(
+        None,
+        gt=0,
+        description="Standard deviation of the error of a measured value (GUM), in place of "
+        "expanded_uncertainty [unit of the output]",
     )
     relative: float = Field(
-        0.0, ge=0, lt=1, description="Further half-width as a share of the measured value, such as 0.05 [-]"
+        0.0,
+        ge=0,
+        lt=1,
+        description="Further expanded uncertainty in proportion to the measured value, such as 0.05 [-]",
     )
     label: str | None = Field(None, description="What the report calls it")
     use: bool = Field(True, description="Whether it takes part in the identification")
@@ -182,6 +198,31 @@ class Sensor(Part):
     def columns(self) -> tuple[str, ...]:
         """The columns it is made of."""
         return (self.column,) if isinstance(self.column, str) else self.column
+
+    def stated_uncertainty(self, unit: str, name: str) -> SensorUncertainty:
+        """Standard uncertainty of the measured values.
+
+        Raises
+        ------
+        InputError
+            Standard and expanded uncertainty together, or none although the unit is not degC.
+        """
+        return SensorUncertainty.stated(
+            unit,
+            standard=self.standard_uncertainty,
+            expanded=self.expanded_uncertainty,
+            relative_expanded=self.relative or None,
+            where=f"sensors.{name}",
+        )
+
+    @property
+    def uncertainty(self) -> float:
+        """Expanded uncertainty (95 %), without the relative part. [unit of the output]"""
+        if self.expanded_uncertainty is not None:
+            return self.expanded_uncertainty
+        if self.standard_uncertainty is not None:
+            return COVERAGE_FACTOR * self.standard_uncertainty
+        return DEFAULT_EXPANDED["degC"]
 
 
 class Periods(Part):
@@ -286,8 +327,10 @@ class IdentificationPlan(Part):
     seed: int = Field(1, description="Of all random numbers")
     lead: Duration = Field("3d", description="Run before the identification period starts to be compared")
     budget: int | None = Field(None, ge=1, description="Largest number of evaluations of all sequences")
-    cost: Literal["nll", "sd", "rmse", "cv_rmse"] = Field(
-        "nll", description="What is minimised; least-squares and emcee know nll only, priors need it"
+    cost: Literal["nll", "sd", "rmse", "rmse_over_range", "cv_rmse"] = Field(
+        "nll",
+        description="What is minimized; least-squares and emcee know nll only, priors need it; cv_rmse is "
+        "that of ASHRAE Guideline 14, and stands for rmse_over_range where a sensor is in degC",
     )
     independent: Duration | None = Field(
         None,

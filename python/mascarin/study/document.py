@@ -13,7 +13,7 @@ from mascarin.examples import STUDIES
 from mascarin.study.phase_change import law_curve, melting_layers, path
 from mascarin.study.pipeline import scores_of
 from mascarin.study.prediction_intervals import band_entry, band_table
-from mascarin.validation.error_sources import words
+from mascarin.validation.error_sources import explain_missed_aims
 from mascarin.validation.observation import PERIODS
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
-    from mascarin.calibration import Fit, Profile
+    from mascarin.calibration import Calibration, Profile
     from mascarin.sensitivity import Sensitivity
     from mascarin.sensitivity.spectral import SpectralSensitivity
     from mascarin.study.description import IdentificationPlan, StudyFile
@@ -36,7 +36,8 @@ _COSTS: Final = {
     "nll": "negative log-likelihood",
     "sd": "sum of the standard deviations",
     "rmse": "sum of the root mean squares",
-    "cv_rmse": "sum of the root mean squares over the means",
+    "rmse_over_range": "sum of the root mean squares over the measured ranges",
+    "cv_rmse": "sum of CV(RMSE) of ASHRAE Guideline 14, over the means",
 }
 _WORDS: Final = {
     "identification": ("Identification", "the parameters were found on these days"),
@@ -106,7 +107,7 @@ def document(study: Study, findings: Findings) -> dict[str, Any]:
 def _missed(findings: Findings) -> list[str]:
     if findings.rest is None:
         return []
-    return words(findings.aims, findings.rest, "blind")
+    return explain_missed_aims(findings.aims, findings.rest, "blind")
 
 
 def header(study: Study, command: str) -> dict[str, Any]:
@@ -160,7 +161,7 @@ def comparison(models: Mapping[str, ModelRun], verdicts: Mapping[str, list[Verdi
     }
 
 
-def estimates(study: Study, fit: Fit) -> dict[str, Any]:
+def estimates(study: Study, fit: Calibration) -> dict[str, Any]:
     """Parameters with their uncertainty, and how they were found."""
     return {
         "parameters": _parameters(study, fit, study.sought),
@@ -294,7 +295,7 @@ def _scores(models: Mapping[str, ModelRun], main: str) -> dict[str, dict[str, di
     }
 
 
-def _parameters(study: Study, fit: Fit, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
+def _parameters(study: Study, fit: Calibration, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
     known = {parameter.path for parameter in study.building.parameters()}
     given = {
         study.building.parameter(path).path if path in known else path: free
@@ -319,7 +320,7 @@ def _parameters(study: Study, fit: Fit, plan: IdentificationPlan) -> dict[str, d
     return entries
 
 
-def _identification(fit: Fit) -> list[list[str]]:
+def _identification(fit: Calibration) -> list[list[str]]:
     return [
         ["method", fit.method.replace("_", " ")],
         ["cost", _COSTS.get(fit.cost_name, fit.cost_name)],

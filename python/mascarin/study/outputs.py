@@ -18,7 +18,8 @@ from mascarin.study.storage import Workspace, write_whole
 if TYPE_CHECKING:
     import pandas as pd
 
-    from mascarin.calibration import Fit, Profile
+    from mascarin.calibration import Calibration, Profile
+    from mascarin.calibration.result import PlotKind
     from mascarin.study.pipeline import Findings, ModelRun, Study
     from mascarin.validation.criteria import Verdict
     from mascarin.weather.quality import Stretch
@@ -69,7 +70,7 @@ def _folder(path: Path) -> Path:
 def _tables(study: Study, findings: Findings, folder: Path) -> list[Path]:
     tables = {
         "metrics": metrics_table(list(_runs(findings))),
-        "parameters": findings.fit.table(),
+        "parameters": estimates_table(findings.fit),
         "evaluations": findings.fit.evaluations(),
         "criteria": criteria_table(findings.verdicts),
         "quality": quality_table(findings.quality),
@@ -80,26 +81,39 @@ def _tables(study: Study, findings: Findings, folder: Path) -> list[Path]:
     return write_tables(folder, tables)
 
 
-def fit_figures(fit: Fit, profiles: Sequence[Profile], folder: Path) -> list[Path]:
+def estimates_table(fit: Calibration) -> pd.DataFrame:
+    """One row per parameter: nominal and fitted value, interval, unit, remark."""
+    table = fit.to_dataframe().reset_index().rename(columns={"estimate": "fitted"})
+    return table[["parameter", "nominal", "fitted", "low", "high", "unit", "remark"]]
+
+
+def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> list[Path]:
     """The course of the search, where its sequences ended, and the profiles, as far as there are any.
 
     Parameters
     ----------
-    fit : Fit
+    fit : Calibration
         The identification.
     profiles : sequence of Profile
         Perhaps none.
     folder : Path
         Where to.
     """
-    from mascarin.calibration import plots
+    from matplotlib.figure import Figure
+
+    from mascarin.calibration import plot_profiles
     from mascarin.sensitivity.plots import save
 
-    figures = {"identification-course": plots.course(fit)}
+    def drawn(kind: PlotKind) -> Figure:
+        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
+        fit.plot(kind, ax=figure.subplots())
+        return figure
+
+    figures = {"identification-course": drawn("convergence")}
     if len(fit.minima) > 1:
-        figures["identification-minima"] = plots.minima(fit)
+        figures["identification-minima"] = drawn("minima")
     if profiles:
-        figures["identification-profiles"] = plots.profiles(profiles)
+        figures["identification-profiles"] = plot_profiles(profiles)
     return [save(figure, folder / f"{name}.svg") for name, figure in figures.items()]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from mascarin import __version__
 from mascarin.building import Building, load
-from mascarin.calibration import CalibrationProblem, Fit, Profile, profiles
+from mascarin.calibration import Calibration, CalibrationProblem, Profile, profiles
 from mascarin.errors import InputError
 from mascarin.progress import Progress
 from mascarin.simulation.initial import Initial, MeasuredStart
@@ -30,11 +30,12 @@ from mascarin.study.phase_change import melting_layers
 from mascarin.study.prediction_intervals import Band, answers, band, band_words
 from mascarin.study.sensitivity_step import factors, screen
 from mascarin.study.storage import Workspace
+from mascarin.validation.comparison import Metrics, compare
 from mascarin.validation.criteria import Criterion, Verdict, judge
-from mascarin.validation.error_sources import Shortfall, shortfall
-from mascarin.validation.metrics import Metrics, compare
+from mascarin.validation.diagnosis import diagnose
+from mascarin.validation.error_sources import ErrorSources, find_error_sources
 from mascarin.validation.observation import PERIODS, Observation, observe
-from mascarin.validation.residuals import Examination, diagnose, examine
+from mascarin.validation.residuals import ResidualAnalysis, analyze_residuals
 from mascarin.weather import Climate, Measurements
 from mascarin.weather.quality import mask
 from mascarin.weather.table import file_hash, seconds_of
@@ -81,7 +82,7 @@ class ModelRun:
         Its series and ledger.
     scores : dict
         Metrics by sensor and period.
-    fit : Fit or None
+    fit : Calibration or None
         How its parameters were found.
     note : str
         What it is.
@@ -91,7 +92,7 @@ class ModelRun:
     simulation: Simulation
     results: Results
     scores: Scores
-    fit: Fit | None = None
+    fit: Calibration | None = None
     note: str = ""
 
 
@@ -107,17 +108,17 @@ class Findings:
         Other model choices.
     sensitivity : Sensitivity or None
         Which parameters matter.
-    fit : Fit
+    fit : Calibration
         The identification.
     verdicts : dict of str to list of Verdict
         Criteria of the nominal and of the fitted model.
-    examinations : dict of str to Examination
+    examinations : dict of str to ResidualAnalysis
         What is left of each sensor on the blind days, after the identification.
     diagnosis : list of str
         The same in words.
     aims : list of Verdict
         What one would have liked to reach, and whether the fitted model does.
-    rest : Shortfall or None
+    rest : ErrorSources or None
         What would take the rest of the error away on the blind days, of the sensors that show enough there;
         None where none does.
     band : Band
@@ -134,11 +135,11 @@ class Findings:
     fitted: ModelRun
     variants: dict[str, ModelRun]
     sensitivity: Sensitivity | None
-    fit: Fit
-    examinations: dict[str, Examination]
+    fit: Calibration
+    examinations: dict[str, ResidualAnalysis]
     diagnosis: list[str]
     aims: list[Verdict]
-    rest: Shortfall | None
+    rest: ErrorSources | None
     band: Band
     profiles: list[Profile]
     verdicts: dict[str, list[Verdict]]
@@ -516,7 +517,7 @@ class Study:
         )
 
     def _compared(
-        self, label: str, simulation: Simulation, values: Any, fit: Fit | None, note: str
+        self, label: str, simulation: Simulation, values: Any, fit: Calibration | None, note: str
     ) -> ModelRun:
         results = simulation.run(values)
         return ModelRun(label, simulation, results, self.scores(results), fit, note)
@@ -553,7 +554,7 @@ class Study:
                 progress,
             )
 
-    def fitted(self, workspace: Workspace, tell: Teller) -> tuple[ModelRun, Fit]:
+    def fitted(self, workspace: Workspace, tell: Teller) -> tuple[ModelRun, Calibration]:
         """The model after the identification, and how its parameters were found.
 
         Where the study names candidates, the identification period chooses between them as well.
@@ -567,7 +568,7 @@ class Study:
             note += f"; of {len(runs)} candidates {what} has the lowest cost on the identification period"
         return replace(run, label="fitted", note=note), fit
 
-    def profiled(self, fit: Fit, tell: Teller) -> list[Profile]:
+    def profiled(self, fit: Calibration, tell: Teller) -> list[Profile]:
         """Profile likelihoods, where the study asks for them."""
         if not self.sought.profiles:
             return []
@@ -581,7 +582,7 @@ class Study:
         """What may become the fitted model; None is the building as described."""
         return [None, *(name for name, variant in self.file.variants.items() if variant.candidate)]
 
-    def candidate(self, name: str | None, workspace: Workspace, tell: Teller) -> tuple[ModelRun, Fit]:
+    def candidate(self, name: str | None, workspace: Workspace, tell: Teller) -> tuple[ModelRun, Calibration]:
         """A variant, or the building as described for None, identified once."""
         if name not in self._identifications:
             note = "the building as described" if name is None else self._note(name)
@@ -590,7 +591,7 @@ class Study:
         return self._identifications[name]
 
     @cached_property
-    def _identifications(self) -> dict[str | None, tuple[ModelRun, Fit]]:
+    def _identifications(self) -> dict[str | None, tuple[ModelRun, Calibration]]:
         return {}
 
     def _varied(self, workspace: Workspace, tell: Teller) -> dict[str, ModelRun]:
@@ -610,7 +611,7 @@ class Study:
 
     def _identified(
         self, label: str, variant: str | None, workspace: Workspace, tell: Teller, note: str
-    ) -> tuple[ModelRun, Fit]:
+    ) -> tuple[ModelRun, Calibration]:
         with tell.about(f"identification ({label})") as progress:
             fit = identify(
                 self.short(variant),
@@ -658,13 +659,13 @@ class Study:
             if count < FEWEST_EXAMINED
         ]
 
-    def _examined(self, run: ModelRun) -> dict[str, Examination]:
+    def _examined(self, run: ModelRun) -> dict[str, ResidualAnalysis]:
         """What is left of each sensor on the blind days."""
         observation, local = self.observation, self.observation.times.tz_localize(None)
         simulated = observation.simulated(run.results.index, run.results.records)
         hour = np.asarray(local.hour + local.minute / 60.0, dtype=np.float64)
         return {
-            name: examine(
+            name: analyze_residuals(
                 observation.measured[:, s],
                 simulated[:, s],
                 step=observation.interval,
@@ -677,7 +678,7 @@ class Study:
             for name, s in self._telling.items()
         }
 
-    def _rest(self, run: ModelRun, fit: Fit, tell: Teller) -> Shortfall | None:
+    def _rest(self, run: ModelRun, fit: Calibration, tell: Teller) -> ErrorSources | None:
         """What would take the rest of the error away on the blind days."""
         observation, blind = self.observation, self.during["blind"].copy()
         if not self._telling:
@@ -691,11 +692,11 @@ class Study:
             found = effects.found(observation, blind, progress.update)
         local = observation.times.tz_localize(None)
         columns = list(self._telling.values())
-        return shortfall(
+        return find_error_sources(
             {name: error[blind, s] for name, s in self._telling.items()},
             {path: effect[:, columns] for path, effect in found.items()},
-            uncertainty=[self.file.sensors[name].uncertainty / NORMAL_95 for name in self._telling],
-            room=effects.room,
+            standard_uncertainty=[self.file.sensors[name].uncertainty / NORMAL_95 for name in self._telling],
+            allowed=effects.room,
             days=np.asarray((local[blind] - local[0]).days),
             weight=independent_weight(self.sought, observation.interval),
         )

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from mascarin.calibration import Fit
+    from mascarin.calibration import Calibration
     from mascarin.study.pipeline import ModelRun, Study
 
     Array = npt.NDArray[np.float64]
@@ -47,7 +47,7 @@ class Band:
     held: dict[str, Array]
 
 
-def answers(study: Study, run: ModelRun, fit: Fit) -> Array:
+def answers(study: Study, run: ModelRun, fit: Calibration) -> Array:
     """How the sensors answer to the fitted parameters over the record.
 
     Parameters
@@ -56,7 +56,7 @@ def answers(study: Study, run: ModelRun, fit: Fit) -> Array:
         Gives the instants of the comparison.
     run : ModelRun
         The fitted model.
-    fit : Fit
+    fit : Calibration
         What was fitted, and how far each parameter may go.
 
     Returns
@@ -78,7 +78,7 @@ def answers(study: Study, run: ModelRun, fit: Fit) -> Array:
     return np.asarray((series[1:] - series[0]) / np.array(steps)[:, None, None])
 
 
-def band(study: Study, run: ModelRun, fit: Fit, slope: Array) -> Band:
+def band(study: Study, run: ModelRun, fit: Calibration, slope: Array) -> Band:
     """The band in which the fitted model expects new measurements.
 
     Parameters
@@ -87,14 +87,14 @@ def band(study: Study, run: ModelRun, fit: Fit, slope: Array) -> Band:
         Gives periods and measurements.
     run : ModelRun
         The fitted model.
-    fit : Fit
+    fit : Calibration
         Gives the covariance of the estimates and the model's error on the identification days.
     slope : ndarray, shape (P, n, S)
         From `answers`. [unit of each sensor]
     """
     from scipy import stats
 
-    from mascarin.calibration.series import effective_samples
+    from mascarin.validation.series import effective_samples
 
     found, observation, seen = fit.uncertainty, study.observation, study.during["identification"]
     variance = np.maximum(np.einsum("pts,pq,qts->ts", slope, found.covariance, slope, optimize=True), 0.0)

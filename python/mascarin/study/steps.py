@@ -20,7 +20,14 @@ from mascarin.study.document import (
     importance,
     profile_entries,
 )
-from mascarin.study.outputs import criteria_table, fit_figures, metrics_table, quality_table, write_tables
+from mascarin.study.outputs import (
+    criteria_table,
+    estimates_table,
+    fit_figures,
+    metrics_table,
+    quality_table,
+    write_tables,
+)
 from mascarin.study.pipeline import Study, Teller
 from mascarin.study.prediction_intervals import answers, band, band_words
 from mascarin.study.storage import Workspace, write_whole
@@ -114,7 +121,7 @@ def calibration(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
             ],
         }
         tables = {
-            "parameters": fit.table(),
+            "parameters": estimates_table(fit),
             "evaluations": fit.evaluations(),
             "calibration_metrics": metrics_table([nominal, fitted]),
             "calibration_criteria": criteria_table(verdicts),

@@ -26,7 +26,7 @@ from mascarin.calibration.cost import Cost, CostName
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError, SolverError, did_you_mean
 from mascarin.simulation.simulation import _derive
-from mascarin.validation.observation import _instants, _means
+from mascarin.validation.observation import instants, means
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -153,9 +153,9 @@ class Case:
         self._reasons[:] = [reason for _, reason in failed]
         records = _derive(raw, self.run.recipes)
         series = [
-            _instants(records[..., c], self.place)
+            instants(records[..., c], self.place)
             if kind == "instant"
-            else _means(records[..., c], self.place, self.run.reach)
+            else means(records[..., c], self.place, self.run.reach)
             for c, kind in zip(self.run.columns, self.run.kinds, strict=True)
         ]
         return np.stack(series, axis=-1)
@@ -223,7 +223,10 @@ class Case:
             "format": _FORMAT,
             "run": asdict(self.run),
             "parameters": [asdict(p) for p in self.parameters],
-            "sensors": [[s.name, s.uncertainty, s.relative, s.unit, s.weight] for s in self.sensors],
+            "sensors": [
+                [s.name, s.standard_uncertainty, s.relative_standard_uncertainty, s.unit, s.weight]
+                for s in self.sensors
+            ],
             "cost": self.cost,
             "step": self.step,
             "inputs": self.inputs,
