@@ -239,7 +239,7 @@ CASES = {
         "materials.brick.conductivity:",
         "materials.brick.conductivity: {low: -1}",
         "{low: -1}",
-        ("range [-1, 1.2] W/(m K)", "can be, [0,", "narrow it"),
+        ("range [-1, 1.2] W/(m K)", "possible values, [0,", "narrow it"),
     ),
     "bounds backwards": Refused(
         "materials.brick.conductivity:",
