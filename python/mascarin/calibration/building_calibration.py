@@ -124,8 +124,8 @@ def calibrate(
     ... )
     >>> hours = np.arange(97)
     >>> climate = setup.climate(3600.0, {"air": 20.0 + 5.0 * np.sin(hours * np.pi / 12.0)})
-    >>> path, face = "materials.board.conductivity", "w.inside_temperature"
-    >>> run = mc.simulate(wall.replace({path: 0.3}), climate, step="1h", outputs=[face])
+    >>> path, output = "materials.board.conductivity", "w.inside_temperature"
+    >>> run = mc.simulate(wall.replace({path: 0.3}), climate, step="1h", outputs=[output])
     >>> noise = 0.05 * np.random.default_rng(1).normal(size=len(run.records))
     >>> table = pd.DataFrame({"T": run.records[:, 0] + noise}, index=run.index)
     >>> logger = mc.Measurements.from_table(table, timezone="UTC")
@@ -133,7 +133,7 @@ def calibrate(
     ...     wall,
     ...     climate,
     ...     logger,
-    ...     sensors={face: Sensor("T", standard_uncertainty=0.05)},
+    ...     sensors={output: Sensor("T", standard_uncertainty=0.05)},
     ...     vary={path: (0.1, 0.5)},
     ...     step="1h",
     ...     warm_up="1d",

@@ -41,6 +41,12 @@ class Trace:
         Cost of each sensor.
     replayed : int
         How many of them came from the record. [-]
+
+    Examples
+    --------
+    >>> trace = Trace(np.array([[1.0], [2.0]]), np.array([3.0, 2.0]), np.array([[3.0], [2.0]]), 0)
+    >>> trace.x[trace.cost.argmin()]
+    array([2.])
     """
 
     x: Floats

@@ -66,6 +66,19 @@ class Profile:
         Interval; the end of the range where the profile stays below the limit up to it. [unit]
     open_low, open_high : bool
         Whether the interval ends only because the range does.
+
+    Examples
+    --------
+    >>> from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, profiles, solve
+    >>> measured = 20.0 + 0.1 * np.random.default_rng(1).normal(size=48)
+    >>> problem = CalibrationProblem(
+    ...     (FitParameter("level", 10.0, 30.0),),
+    ...     (FitSensor("room", measured, 0.1),),
+    ...     lambda x: np.tile(x[:, :, None], (1, 48, 1)),
+    ... )
+    >>> one = profiles(solve(problem))[0]
+    >>> one.open_low, one.open_high
+    (False, False)
     """
 
     path: str
@@ -138,6 +151,15 @@ def plot_profiles(found: Sequence[Profile], *, columns: int = 3) -> Figure:
     ------
     InputError
         There is no profile.
+
+    Examples
+    --------
+    >>> one = Profile(
+    ...     "level", "m", 2.0, np.array([1.0, 2.0, 3.0]), np.array([4.0, 0.0, 4.0]), np.zeros((3, 1)),
+    ...     limit=3.84, low=1.02, high=2.98, open_low=False, open_high=False,
+    ... )
+    >>> len(plot_profiles([one]).axes)
+    1
     """
     from matplotlib.figure import Figure
 
@@ -207,18 +229,18 @@ def profiles(
         if path not in known:
             raise InputError(f"profile: '{path}' was not estimated. {did_you_mean(path, known)}")
     search = _Search(fit, batch)
-    held = [known.index(path) for path in wanted]
-    grids = [_grid(fit, i, points) for i in held]
-    found = [(np.empty(0), np.empty((0, len(known))), np.empty(0))] * len(held)
+    fixed = [known.index(path) for path in wanted]
+    grids = [_grid(fit, i, points) for i in fixed]
+    found = [(np.empty(0), np.empty((0, len(known))), np.empty(0))] * len(fixed)
     for _ in range(_EXTENSIONS):
-        z, rise = search.minima(np.repeat(held, [grid.size for grid in grids]), np.concatenate(grids))
+        z, rise = search.minima(np.repeat(fixed, [grid.size for grid in grids]), np.concatenate(grids))
         ends = np.cumsum([grid.size for grid in grids])[:-1]
         parts = zip(grids, np.split(z, ends), np.split(rise, ends), strict=True)
         found = [_joined(old, new) for old, new in zip(found, parts, strict=True)]
-        grids = [_further(fit, i, *piece) for i, piece in zip(held, found, strict=True)]
+        grids = [_further(fit, i, *piece) for i, piece in zip(fixed, found, strict=True)]
         if not any(grid.size for grid in grids):
             break
-    return [_profile(fit, i, *piece) for i, piece in zip(held, found, strict=True)]
+    return [_profile(fit, i, *piece) for i, piece in zip(fixed, found, strict=True)]
 
 
 _Piece = tuple[Floats, Floats, Floats]
@@ -277,20 +299,20 @@ class _Search:
         self._weight = variance / np.maximum(np.diag(fit.uncertainty.covariance), 1e-300)
         self._lowest = float(self._r @ self._r)
 
-    def minima(self, held: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
+    def minima(self, fixed: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
         """Return positions (N, P) of the lowest cost with one parameter fixed, and the scaled rise (N,)."""
-        count = len(held)
+        count = len(fixed)
         z = np.tile(self._center, (count, 1))
         jacobians = np.tile(self._j, (count, 1, 1))
         rows = np.arange(count)
         moved = np.zeros_like(z)
-        moved[rows, held] = at - self._center[held]
+        moved[rows, fixed] = at - self._center[fixed]
         for k in range(count):
-            free = self._others(int(held[k]))
-            follow = -np.linalg.lstsq(self._j[:, free], self._j[:, held[k]])[0] * moved[k, held[k]]
+            free = self._others(int(fixed[k]))
+            follow = -np.linalg.lstsq(self._j[:, free], self._j[:, fixed[k]])[0] * moved[k, fixed[k]]
             moved[k, free] = np.clip(z[k, free] + follow, 0.0, 1.0) - z[k, free]
         z = z + moved
-        z[rows, held] = at
+        z[rows, fixed] = at
         r = self._weighted(z)
         for k in range(count):
             _update(jacobians[k], r[k] - self._r, moved[k])
@@ -300,28 +322,28 @@ class _Search:
             todo = np.flatnonzero(active)
             if not todo.size:
                 break
-            trial = np.array([self._step(z[k], r[k], jacobians[k], int(held[k]), damping[k]) for k in todo])
+            trial = np.array([self._step(z[k], r[k], jacobians[k], int(fixed[k]), damping[k]) for k in todo])
             found = self._weighted(trial)
             for n, k in enumerate(todo.tolist()):
                 step = trial[n] - z[k]
                 if np.any(step != 0.0) and np.isfinite(found[n]).all():
                     _update(jacobians[k], found[n] - r[k], step)
-                gain = float(r[k] @ r[k] - found[n] @ found[n]) * self._weight[held[k]]
+                gain = float(r[k] @ r[k] - found[n] @ found[n]) * self._weight[fixed[k]]
                 if gain > 0.0:
                     z[k], r[k] = trial[n], found[n]
                     damping[k] /= 10.0
                 else:
                     damping[k] = max(10.0 * damping[k], 1e-3)
-                improved = gain > _CONVERGED * self._limit[held[k]]
+                improved = gain > _CONVERGED * self._limit[fixed[k]]
                 active[k] = improved or (gain <= 0.0 and 0.0 < damping[k] < 1.0)
-        risen = (np.einsum("ni,ni->n", r, r) - self._lowest) * self._weight[held]
+        risen = (np.einsum("ni,ni->n", r, r) - self._lowest) * self._weight[fixed]
         # A value at which the model cannot be run is outside.
         return z, np.where(np.isnan(risen), np.inf, np.maximum(risen, 0.0))
 
-    def _step(self, z: Floats, r: Floats, jacobian: Floats, held: int, damping: float) -> Floats:
+    def _step(self, z: Floats, r: Floats, jacobian: Floats, fixed: int, damping: float) -> Floats:
         """Take a damped Gauss-Newton step within the range; what would leave it at a bound stays."""
         slope = jacobian.T @ r
-        free = self._others(held)
+        free = self._others(fixed)
         stuck = ((z <= 0.0) & (slope > 0.0)) | ((z >= 1.0) & (slope < 0.0))
         free = free[~stuck[free]]
         square = jacobian[:, free].T @ jacobian[:, free]
@@ -330,8 +352,8 @@ class _Search:
         new[free] = np.clip(z[free] - np.linalg.pinv(damped, hermitian=True) @ slope[free], 0.0, 1.0)
         return new
 
-    def _others(self, held: int) -> NDArray[np.int64]:
-        return np.delete(np.arange(self._center.size), held)
+    def _others(self, fixed: int) -> NDArray[np.int64]:
+        return np.delete(np.arange(self._center.size), fixed)
 
     def _weighted(self, z: Floats) -> Floats:
         """Return residuals over their uncertainty, then those of the priors, for positions (N, P)."""

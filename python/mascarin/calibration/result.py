@@ -45,6 +45,11 @@ class Minimum:
         Number of evaluations of the search. [-]
     reason : str
         Why it ended.
+
+    Examples
+    --------
+    >>> Minimum(0, np.array([1.0]), np.array([2.0]), 0.5, 12, "converged").cost
+    0.5
     """
 
     sequence: int

@@ -82,13 +82,18 @@ class _Sequence:
     number: int
     start: Floats
     optimizer: Optimiser
-    asked: int = 0
+    evaluations: int = 0
 
     def minimum(self, problem: CalibrationProblem) -> Minimum:
         best = self.optimizer.best
         x = problem.values(np.array([best.point.x]))[0]
         return Minimum(
-            self.number, problem.values(self.start[None])[0], x, best.cost, self.asked, self.optimizer.reason
+            self.number,
+            problem.values(self.start[None])[0],
+            x,
+            best.cost,
+            self.evaluations,
+            self.optimizer.reason,
         )
 
 
@@ -137,12 +142,12 @@ def multi_start(
             started += 1
         batch = [(s, s.optimizer.ask()) for s in running]
         _require_points(batch)
-        points = [point.x for _, asked in batch for point in asked]
+        points = [point.x for _, requested in batch for point in requested]
         costs = iter(evaluator.costs(problem.values(np.array(points)))) if points else iter(())
-        for sequence, asked in batch:
-            sequence.asked += len(asked)
-            evaluations += len(asked)
-            sequence.optimizer.tell([Evaluation(point, float(next(costs))) for point in asked])
+        for sequence, requested in batch:
+            sequence.evaluations += len(requested)
+            evaluations += len(requested)
+            sequence.optimizer.tell([Evaluation(point, float(next(costs))) for point in requested])
             if sequence.optimizer.done:
                 ended[sequence.number] = sequence.minimum(problem)
         running = [s for s in running if not s.optimizer.done]
@@ -153,15 +158,15 @@ def multi_start(
         if len(first) == rules.sequences:
             return first, f"all {rules.sequences} sequences searched, without agreement of {agree}"
         if rules.evaluations is not None and evaluations >= rules.evaluations:
-            unfinished = [s.minimum(problem) for s in running if s.asked]
+            unfinished = [s.minimum(problem) for s in running if s.evaluations]
             minima = sorted([*ended.values(), *unfinished], key=lambda m: m.sequence)
             return minima, f"budget of {rules.evaluations} evaluations used"
 
 
 def _require_points(batch: list[tuple[_Sequence, list[Point]]]) -> None:
     """Refuse an optimizer that asks for no point and is not done: it would never end."""
-    for sequence, asked in batch:
-        if not asked and not sequence.optimizer.done:
+    for sequence, requested in batch:
+        if not requested and not sequence.optimizer.done:
             kind = type(sequence.optimizer).__name__
             msg = f"the optimizer {kind} of sequence {sequence.number} asks for no point and is not done"
             raise SolverError(msg)

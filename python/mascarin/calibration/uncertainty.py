@@ -82,6 +82,19 @@ class Uncertainty:
     stretch : ndarray, shape (P, P)
         Symmetric matrix by which distances from the estimates are multiplied, so that the likelihood of
         independent errors has the covariance of the data without priors. [-]
+
+    Examples
+    --------
+    >>> from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, solve
+    >>> measured = 20.0 + 0.1 * np.random.default_rng(1).normal(size=48)
+    >>> problem = CalibrationProblem(
+    ...     (FitParameter("level", 10.0, 30.0),),
+    ...     (FitSensor("room", measured, 0.1),),
+    ...     lambda x: np.tile(x[:, :, None], (1, 48, 1)),
+    ... )
+    >>> found = solve(problem).uncertainty
+    >>> found.order, round(found.effective_samples[0])
+    ((0,), 48)
     """
 
     low: Floats

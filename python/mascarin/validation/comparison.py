@@ -140,6 +140,12 @@ class Metrics:
         `bias` over the measured range, with its sign. [%]
     remark : str
         Why metrics are missing (NaN); empty where all are given.
+
+    Examples
+    --------
+    >>> found = metrics([20.0, 22.0, 24.0], [20.5, 22.5, 24.5])
+    >>> found.bias, found.bias_over_range, found.cv_rmse
+    (0.5, 12.5, nan)
     """
 
     unit: str

@@ -120,6 +120,11 @@ class Verdict:
         Unit of value and limit.
     passed : bool
         Whether the size of the value is at most the limit; False when there was nothing to compare.
+
+    Examples
+    --------
+    >>> Verdict("|bias| <= 1 degC", "room", "july", "bias", 0.5, 1.0, "degC", passed=True).to_dict()["value"]
+    0.5
     """
 
     name: str

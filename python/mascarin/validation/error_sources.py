@@ -77,6 +77,11 @@ class ErrorSources:
         The parameter that explains most, then together with the next, and so on; empty where none does.
     every : Correction
         All parameters together: the best that these equations can do.
+
+    Examples
+    --------
+    >>> ErrorSources(("air",), (0.3,), (), Correction(("absorptance",), (0.1,), (0.05,))).floor("air")
+    0.05
     """
 
     sensors: tuple[str, ...]

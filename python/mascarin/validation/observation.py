@@ -111,7 +111,7 @@ class Observation:
 def observe(
     simulation: Simulation, measurements: Measurements, sensors: Mapping[str, SensorLike], start: pd.Timestamp
 ) -> Observation:
-    """Collect the measured series that a simulation is compared with.
+    r"""Collect the measured series that a simulation is compared with.
 
     Parameters
     ----------
@@ -133,6 +133,30 @@ def observe(
     ------
     InputError
         A column is missing.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> import mascarin as mc
+    >>> from mascarin.validation import Sensor
+    >>> from mascarin.verification.analytical import setup
+    >>> simulation = setup.simulation(
+    ...     setup.building(
+    ...         "materials: {panel: {kind: resistance, resistance: 1}}\n"
+    ...         "constructions: {panel: {layers: [{material: panel}]}}\n"
+    ...         "surfaces: {w: {construction: panel, area: 1, tilt: 90, outside: {measured: air}, "
+    ...         "inside: {measured: air}}}"
+    ...     ),
+    ...     setup.climate(3600.0, {"air": np.full(25, 20.0)}),
+    ...     step=3600.0,
+    ...     outputs=["w.inside_flux"],
+    ...     initial=20.0,
+    ... )
+    >>> table = pd.DataFrame({"q": np.zeros(24)}, index=simulation.index[:24])
+    >>> logger = mc.Measurements.from_table(table, timezone="UTC")
+    >>> observe(simulation, logger, {"flux": Sensor("q", 1.0)}, simulation.start).measured.shape
+    (24, 1)
     """
     import pandas as pd
 

@@ -54,6 +54,11 @@ class DriverCorrelation:
         Change of the residual per unit of the driver. [unit per unit of the driver]
     lags, correlations : tuple of float
         The correlation at each lag; NaN where there is none. [h], [-]
+
+    Examples
+    --------
+    >>> DriverCorrelation("sun", correlation=0.6, lag=1.0, limit=0.2, slope=0.002).significant
+    True
     """
 
     driver: str
@@ -122,6 +127,14 @@ class ResidualAnalysis:
         Part that it explains by chance. [-]
     measured, simulated : DailyCycle, optional
         The daily cycle of both series; None when the period is shorter than a day.
+
+    Examples
+    --------
+    >>> hour = np.arange(192) / 4.0
+    >>> noise = np.random.default_rng(3).normal(size=hour.size)
+    >>> found = analyze_residuals(20.0 + 0.0 * hour, 20.0 + noise, step=900.0, hour=hour % 24.0)
+    >>> found.white, found.n
+    (True, 192)
     """
 
     sensor: str

@@ -1,7 +1,7 @@
 """Sensors: the columns of a measured table, and the uncertainty of a measured value by the GUM.
 
 The standard uncertainty u is the standard deviation of the error of a measured value; the expanded
-uncertainty U = k u with k = 1.96 is the half-width of the interval that holds the true value with a
+uncertainty U = k u with k = 1.96 is the half-width of the interval that contains the true value with a
 probability of 95 %, when the error has a normal distribution. Datasheets usually state U.
 
 References

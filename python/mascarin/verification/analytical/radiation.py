@@ -64,10 +64,10 @@ def balance(surfaces: Sequence[EnclosureSurface], leaving: setup.Array) -> setup
     area = np.array([one.area for one in surfaces])
 
     def residual(x: setup.Array) -> setup.Array:
-        face, air = x[:-1], x[-1]
-        emitted = SIGMA * (face + KELVIN) ** 4
-        heat = area * ((behind - face) / _RESISTANCE - _CONVECTION * (face - air)) - leaving @ emitted
-        return np.append(heat, np.sum(area * (face - air)))
+        surface, air = x[:-1], x[-1]
+        emitted = SIGMA * (surface + KELVIN) ** 4
+        heat = area * ((behind - surface) / _RESISTANCE - _CONVECTION * (surface - air)) - leaving @ emitted
+        return np.append(heat, np.sum(area * (surface - air)))
 
     answer = root(residual, np.append(behind, behind.mean()), tol=1e-13)
     return np.asarray(answer.x)

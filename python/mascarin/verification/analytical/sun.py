@@ -48,7 +48,7 @@ def _transposition(name: str) -> Iterator[Check]:
         for k, (tilt, azimuth) in enumerate(_PLANES)
     )
     weather = setup.climate(600.0, {**_weather(4), "behind": 20.0})
-    for model, theirs in _MODELS.items():
+    for model, pvlib_model in _MODELS.items():
         described = setup.building(
             f"site: {{latitude: {_PLACE[0]}, longitude: {_PLACE[1]}, altitude: 0, timezone: UTC, "
             f"diffuse: {model}, ground_reflectance: {_ALBEDO}, sky: {{kind: offset, depression: 0}}}}\n"
@@ -75,7 +75,7 @@ def _transposition(name: str) -> Iterator[Check]:
             expected = irradiance.get_total_irradiance(
                 tilt, azimuth, zenith[lit], bearing[lit], channel["direct_normal"][lit],
                 channel["global_horizontal"][lit], channel["diffuse_horizontal"][lit],
-                albedo=_ALBEDO, model=theirs, **extra,
+                albedo=_ALBEDO, model=pvlib_model, **extra,
             )["poa_global"]  # fmt: skip
             worst = max(worst, float(np.max(np.abs(simulated[lit] - np.asarray(expected)))))
         yield Check.most(
@@ -101,10 +101,10 @@ def _position(name: str) -> Iterator[Check]:
             times = pd.date_range(day, periods=480, freq="197s")
             seconds = (times - pd.Timestamp(0, tz="UTC")).total_seconds().to_numpy(dtype=np.float64)
             simulated = SunPath.over(latitude, longitude, seconds[0], seconds[-1]).vector(seconds)
-            theirs = solarposition.get_solarposition(times, latitude, longitude)
+            reference = solarposition.get_solarposition(times, latitude, longitude)
             zenith, azimuth = (
-                np.radians(theirs["zenith"].to_numpy()),
-                np.radians(theirs["azimuth"].to_numpy()),
+                np.radians(reference["zenith"].to_numpy()),
+                np.radians(reference["azimuth"].to_numpy()),
             )
             vector = np.stack(
                 [np.sin(zenith) * np.sin(azimuth), np.sin(zenith) * np.cos(azimuth), np.cos(zenith)], axis=-1

@@ -26,18 +26,18 @@ AIR_HEAT: Final = 1006.0
 
 def _lumped(name: str) -> Iterator[Check]:
     volume, factor, changes, resistance, area = 30.0, 4.0, 1.5, 0.5, 12.0
-    films = (20.0, 5.0)
+    convection = (20.0, 5.0)
     text = f"""\
 materials: {{panel: {{kind: resistance, resistance: {resistance}}}}}
 constructions: {{panel: {{layers: [{{material: panel}}]}}}}
 zones: {{room: {{volume: {volume}, capacity_factor: {factor}, infiltration: {changes}, longwave: none}}}}
 surfaces:
   panel: {{construction: panel, area: {area}, tilt: 90, azimuth: 0,
-          outside: {{measured: cold, convection: {films[0]}}},
-          inside: {{zone: room, convection: {films[1]}}}}}
+          outside: {{measured: cold, convection: {convection[0]}}},
+          inside: {{zone: room, convection: {convection[1]}}}}}
 """
     air = AIR_DENSITY * AIR_HEAT * volume
-    conductance = area / (resistance + 1.0 / films[0] + 1.0 / films[1]) + air * changes / 3600.0
+    conductance = area / (resistance + 1.0 / convection[0] + 1.0 / convection[1]) + air * changes / 3600.0
     constant = factor * air / conductance
     step, end = 60.0, 3 * setup.HOUR
     columns = {"air_temperature": setup.steady(0.0), "cold": setup.steady(0.0)}
