@@ -2,6 +2,8 @@
 #
 #   make demo   build, run the study of the LGI cell on shipped data, print where the report is
 #   make test   build, run formatting, lints, types and every test
+#   make coverage     build, run the Python tests, print the lines that no test reaches
+#   make test-lowest  run the Python tests with the lowest versions that pyproject.toml declares
 #   make bench  build, measure, and write the tables of docs/speed.md; make bench ENERGYPLUS=path with its peer
 #
 # They need Python 3.11 or later, cargo and make, and nothing else.
@@ -28,7 +30,7 @@ export PIP_NO_INPUT := 1
 # The same interpreter for every cargo call, so that the binding is not rebuilt between them.
 export PYO3_PYTHON := $(CURDIR)/$(PY)
 
-.PHONY: help demo test bench build check-tools check-rust check-python pytest
+.PHONY: help demo test coverage test-lowest bench build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:
 
 help:
@@ -41,6 +43,16 @@ demo: $(BUILT)
 	$(BIN)/mascarin study lgi -o demo
 
 test: check-rust check-python pytest
+
+coverage: $(BUILT)
+	$(PY) -m pytest $(PYTEST_FLAGS) --cov=mascarin --cov-report=term-missing:skip-covered
+
+LOWEST := .venv-lowest
+test-lowest: $(BUILT)
+	@test -x $(LOWEST)/bin/python || "$(PYTHON)" -m venv $(LOWEST)
+	$(PY) tests/lowest_versions.py pyproject.toml > $(LOWEST)/requirements.txt
+	$(LOWEST)/bin/python -m pip install --quiet --requirement $(LOWEST)/requirements.txt
+	PYTHONPATH=python $(LOWEST)/bin/python -m pytest --numprocesses=auto --dist=loadfile
 
 # ENERGYPLUS is the program of version 25.2 (bench/energyplus.py says where to get it). Leave the machine alone meanwhile.
 bench: $(BUILT) $(HYPERFINE)

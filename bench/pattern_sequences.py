@@ -27,9 +27,9 @@ from matplotlib.figure import Figure
 from mascarin.calibration import Calibration, CalibrationProblem, Rules, solve
 from mascarin.calibration.result import PlotKind
 from mascarin.examples import FOLDER
+from mascarin.figures.files import save
 from mascarin.progress import Progress
-from mascarin.sensitivity.plots import save
-from mascarin.study.pipeline import Study
+from mascarin.study import Study
 
 TOGETHER = 64
 KINDS: tuple[PlotKind, ...] = ("minima", "convergence")

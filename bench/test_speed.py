@@ -45,7 +45,7 @@ def test_jacobian(benchmark: Any, cell: Simulation) -> None:
     """All series and their slopes by the parameters that ensembles vary, seven at most."""
     paths = [path for path in VARIED if path in cell.paths]
     benchmark.extra_info["parameters"] = len(paths)
-    _, slopes = benchmark.pedantic(cell.jacobian, args=(paths,), rounds=3, warmup_rounds=1)
+    _, slopes = benchmark.pedantic(cell.jacobian_vector, args=(paths,), rounds=3, warmup_rounds=1)
     assert np.isfinite(slopes).all()
 
 

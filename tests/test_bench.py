@@ -154,9 +154,9 @@ def test_the_engine_alone_is_handed_what_a_run_is(tmp_path: Path) -> None:
     assert [file.stem for file in files] == list(engine_speed.MODELS)
     of = engine_speed.simulation(engine_speed.MODELS["shipped"], 2)
     case = json.loads((tmp_path / "shipped.json").read_text(encoding="utf-8"))
-    assert case["description"] == json.loads(of._description.json)
+    assert case["description"] == json.loads(of.compiled.description)
     np.testing.assert_array_equal(case["values"], of.values)
-    np.testing.assert_array_equal(np.fromfile(tmp_path / "shipped.f64"), of._forcing.ravel())
+    np.testing.assert_array_equal(np.fromfile(tmp_path / "shipped.f64"), of.compiled.forcing.ravel())
     assert np.shape(case["members"]) == (8 * len(of.values),)
 
 

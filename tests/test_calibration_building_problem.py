@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,7 @@ from mascarin.calibration.least_squares import derivative
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
 from mascarin.simulation.simulation import Simulation
-from mascarin.study.pipeline import Study
+from mascarin.study import Study
 from mascarin.validation.observation import observe
 from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, FINE, NOISE, TRUTH, logger_table, open_climate
@@ -333,6 +334,14 @@ def test_the_calibrated_building_has_the_estimates_and_can_be_simulated(
     ).run()  # fmt: skip
     compared = run.records[24 : 24 + 96, 0] - calibration.problem.sensors[0].measured
     np.testing.assert_allclose(compared, calibration.residuals[:, 0], atol=1e-9)
+
+
+def test_a_calibration_of_a_building_is_pickled(calibration: Calibration) -> None:
+    again = pickle.loads(pickle.dumps(calibration))  # noqa: S301 (our own bytes)
+    assert again.building.to_yaml() == calibration.building.to_yaml()
+    x = calibration.x[None]
+    np.testing.assert_array_equal(again.problem.residuals(x), calibration.problem.residuals(x))
+    np.testing.assert_array_equal(again.problem.jacobian(x[0]), calibration.problem.jacobian(x[0]))
 
 
 def test_residuals_have_local_times(calibration: Calibration) -> None:

@@ -35,12 +35,12 @@ def test_summary(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(call) == 0
     out, err = capsys.readouterr()
     assert "warning: zones.room: 9.00 m2 of faces cannot enclose 27 m3" in err
-    assert "values were assumed: 'mascarin check' lists them" in err
+    assert "assumed values: 'mascarin check' lists them" in err
     name, unit, low, mean, high = out.splitlines()[1].split()
     assert (name, unit) == ("room.air_temperature", "degC")
     assert -15.0 < float(low) < float(mean) < float(high) < 25.0
     assert "start: first 24 h repeated" in out
-    assert float(out.split("closure")[1]) < 1e-10
+    assert float(out.split("energy-balance residual")[1]) < 1e-10
 
 
 def test_json(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
@@ -165,5 +165,5 @@ def test_a_run_says_how_often_a_state_switched_within_a_step(
     assert result["warnings"] == []
     assert result["reversals"] > 0
     assert cli.main(call) == 0
-    said = f"{result['reversals']} times a cell with hysteresis melted and froze within one step"
+    said = f"{result['reversals']} changes between melting and freezing within one time step"
     assert said in capsys.readouterr().out

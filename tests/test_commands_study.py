@@ -46,7 +46,7 @@ def test_sensitivity_ranks_every_parameter(
     # Again, from what was kept: the same, as a table.
     code, printed, _ = run(capsys, "sensitivity", str(bench.study), "-o", str(tmp_path))
     lines = printed.splitlines()
-    assert lines[0].split() == ["sensor", "parameter", "share", "low", "high"]
+    assert lines[0].split() == ["sensor", "parameter", "S1", "low", "high"]
     assert lines[1].split()[:2] == ["joint", "materials.insulation.conductivity"]
 
 
@@ -88,7 +88,7 @@ def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
     assert set(content["parameters"]) == set(TRUTH)
     assert content["sensors"]["joint"]["corroboration"]["fitted"]["rmse"] < 0.05
     assert content["sensors"]["joint"]["corroboration"]["nominal"]["rmse"] > 0.4
-    assert "criteria kept: 6 of 6" in said
+    assert "criteria met: 6 of 6" in said
     assert {path.name for path in (tmp_path / "tables").iterdir()} == {
         "parameters.csv", "calibration_metrics.csv", "calibration_criteria.csv", "quality.csv",
         "evaluations.csv",
@@ -116,7 +116,7 @@ def test_validate_compares_the_building_as_described(
         content["sensors"]["core"]["blind"]["rmse"] == content["sensors"]["core"]["blind"]["nominal"]["rmse"]
     )
     assert "parameters" not in content
-    assert "criteria kept: 0 of 6" in said
+    assert "criteria met: 0 of 6" in said
     assert said.count("missed: ") == 6
     code, printed, _ = run(capsys, "validate", str(bench.study), "-o", str(tmp_path / "out"))
     assert code == 1
@@ -134,7 +134,7 @@ def test_validate_ends_with_0_when_every_criterion_is_kept(
     study.write_text(bench.study.read_text("utf-8").replace("limit: 0.25", "limit: 5"), "utf-8")
     code, _, said = run(capsys, "validate", str(study))
     assert code == 0
-    assert "criteria kept: 6 of 6" in said
+    assert "criteria met: 6 of 6" in said
 
 
 def test_a_run_may_start_from_a_temperature_that_is_given(

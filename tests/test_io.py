@@ -95,3 +95,12 @@ def test_html_is_escaped() -> None:
     for tag in ("<i>", "<a>", "<u>", "<em>", "<b>", "<script>"):
         assert tag not in found
     assert found.count("<details>") == 1
+
+
+def test_a_library_that_writes_to_a_name_replaces_whole(tmp_path: Path) -> None:
+    target = tmp_path / "a.csv"
+    with atomic.drafted(target) as draft:
+        draft.write_text("whole")
+        assert not target.exists()
+    assert target.read_text() == "whole"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]

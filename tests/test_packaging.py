@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import ast
 import re
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,12 @@ from packaging.version import Version
 import mascarin
 
 # Where the name to import is not the name to install.
-IMPORT_NAMES = {"ruamel.yaml": "ruamel"}
+IMPORT_NAMES = {
+    "lazy-loader": "lazy_loader",
+    "pillow": "PIL",
+    "pydantic-core": "pydantic_core",
+    "ruamel.yaml": "ruamel",
+}
 # Not imported by us: the time zones of systems without their own, and the NetCDF engine behind xarray.
 USED_BY_NAME = {"tzdata", "h5netcdf"}
 
@@ -67,7 +73,8 @@ def test_constraints_hold_versions_only(repository: Path) -> None:
         assert re.fullmatch(r"[A-Za-z0-9._-]+==[A-Za-z0-9.]+", line), line
 
 
-def test_every_dependency_is_used(project: dict[str, Any], repository: Path) -> None:
+def imported_packages(repository: Path) -> set[str]:
+    """Packages from elsewhere that the modules import, in functions and for types as well."""
     imported: set[str] = set()
     for path in (repository / "python" / "mascarin").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -75,8 +82,28 @@ def test_every_dependency_is_used(project: dict[str, Any], repository: Path) -> 
                 imported |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module:
                 imported.add(node.module.split(".")[0])
-    declared = {Requirement(text).name for text in project["dependencies"]} - USED_BY_NAME
-    assert {IMPORT_NAMES.get(name, name) for name in declared} <= imported
+    return imported - sys.stdlib_module_names - {"mascarin"}
+
+
+def names(texts: list[str]) -> set[str]:
+    found = {Requirement(text).name for text in texts}
+    return {IMPORT_NAMES.get(name, name) for name in found}
+
+
+def test_what_is_imported_is_declared_and_the_reverse(project: dict[str, Any], repository: Path) -> None:
+    imported = imported_packages(repository)
+    extras = [t for name, texts in project["optional-dependencies"].items() if name != "dev" for t in texts]
+    assert imported <= names(project["dependencies"] + extras)
+    assert names(project["dependencies"]) - USED_BY_NAME <= imported
+
+
+def test_every_dependency_has_its_reason(project: dict[str, Any], repository: Path) -> None:
+    text = (repository / "docs" / "architecture.md").read_text(encoding="utf-8")
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    extras = [t for name, texts in project["optional-dependencies"].items() if name != "dev" for t in texts]
+    for dependency in project["dependencies"] + extras:
+        name = Requirement(dependency).name
+        assert any(re.search(rf"\b{re.escape(name)}\b", row) for row in rows), f"{name}: no reason"
 
 
 def test_nothing_is_built_for_one_processor_only(repository: Path) -> None:

@@ -12,7 +12,10 @@ import mascarin as mc
 from mascarin import cli
 from mascarin.building import Building
 from mascarin.errors import InputError, SolverError
-from mascarin.simulation.simulation import Simulation, globe_temperature, simulate, unreached
+from mascarin.simulation.inactive import inactive_parameters
+from mascarin.simulation.readings import globe_temperature
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.verification.analytical import setup, zones
 from mascarin.weather import Climate, Measurements
 from simulation_samples import LINEAR, hours, measured, read, weather
@@ -160,7 +163,7 @@ def test_a_vector_changes_one_number(linear: Building, climate: Climate) -> None
     position = bench_of_linear.position(path)
     assert bench_of_linear.paths[position] == "zones.sunny.infiltration.constant"
     assert np.flatnonzero(vector != bench_of_linear.vector({})).tolist() == [position]
-    drafty = bench_of_linear.run(vector)
+    drafty = bench_of_linear.run_vector(vector)
     assert drafty.provenance.changed == {"zones.sunny.infiltration.constant": 5.0}
     direct = simulate(linear.replace({path: 5.0}), climate, step="1h", outputs=["sunny.air_temperature"])
     assert np.array_equal(drafty.records, direct.records)
@@ -177,7 +180,7 @@ def test_an_unknown_or_structural_number_is_refused(linear: Building, climate: C
 def test_vectors_of_the_wrong_length_are_refused(linear: Building, climate: Climate) -> None:
     run = Simulation(linear, climate, step="1h")
     with pytest.raises(InputError, match="parameter"):
-        run.run(run.vector({})[:-1])
+        run.run_vector(run.vector({})[:-1])
     for members in (3, len(run.paths)):
         with pytest.raises(InputError, match="one value for each parameter"):
             run.ensemble(np.tile(run.vector({})[:-1], (members, 1)))
@@ -187,11 +190,12 @@ def test_members_are_the_same_bits_alone_and_together(everything: Building, isla
     run = Simulation(everything, island, step="15min", end="2001-01-02", initial=23.0)
     samples = np.tile(run.vector({}), (9, 1))
     samples[:, run.position("materials.energain.latent_heat")] *= np.linspace(0.5, 1.5, 9)
-    told: list[int] = []
-    records, closure, failures = run.ensemble(samples, report=told.append)
+    told: list[tuple[int, int]] = []
+    records, closure, failures = run.ensemble(samples, progress=lambda *done: told.append(done))
     assert failures == []
+    assert all(total == 9 for _, total in told)
     for member in (0, 4, 8):
-        alone = run.run(samples[member])
+        alone = run.run_vector(samples[member])
         assert np.array_equal(alone.records, records[member])
         assert alone.energy.closure == closure[member]
 
@@ -233,7 +237,7 @@ def test_a_member_that_fails_leaves_the_others(everything: Building, island: Cli
     assert np.array_equal(records[0], records[2])
     assert np.array_equal(records[0], run.run().records)
     with pytest.raises(SolverError):
-        run.run(samples[1])
+        run.run_vector(samples[1])
 
 
 # --- what is derived from what the engine records ---
@@ -352,7 +356,7 @@ def test_every_number_is_reached_or_says_why_not(name: str, linear: Building, ev
         building = mc.load(package)
     columns = columns_for(building)
     climate = weather(3, **columns) if name == "linear" else _anywhere(columns)
-    found = unreached(building, climate, step="30min")
+    found = inactive_parameters(building, climate, step="30min")
     assert found == claimed(building)
     assert len(found) < 0.5 * len(building.to_engine().paths)
 
@@ -370,7 +374,7 @@ def _anywhere(columns: dict[str, Any]) -> Climate:
 
 def test_a_number_that_only_the_period_keeps_idle_is_told(linear: Building) -> None:
     """At night the absorptance of a wall does nothing."""
-    found = unreached(linear, weather(1, **measured(1)), step="1h", end="2001-01-01 03:00")
+    found = inactive_parameters(linear, weather(1, **measured(1)), step="1h", end="2001-01-01 03:00")
     assert found["surfaces.north.outside.absorptance"] == "did not act in this period"
     assert "surfaces.north.area" not in found
 

@@ -13,8 +13,10 @@ import pytest
 from mascarin.building import load
 from mascarin.errors import InputError
 from mascarin.examples import STUDIES
+from mascarin.simulation.compiled import MEMORY
 from mascarin.simulation.derivatives import Mean, SquaredResiduals, gradient, jacobian
-from mascarin.simulation.simulation import MEMORY, Simulation, simulate
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
 from mascarin.verification.bestest.catalogue import CASES
 from mascarin.weather import Climate
@@ -65,7 +67,7 @@ def quotient(run: Simulation, path: str, relative: float) -> Array:
     def at(steps: float) -> Array:
         vector = run.vector({path: parameter.value + steps * nudge})
         # With derivatives Newton's iteration goes one further: its tolerance would show in the quotient.
-        return run.jacobian([path], vector)[0]
+        return run.jacobian_vector([path], vector)[0]
 
     if parameter.value - nudge < parameter.lower:
         return (4.0 * at(1.0) - 3.0 * at(0.0) - at(2.0)) / (2.0 * nudge)
@@ -76,7 +78,7 @@ def quotient(run: Simulation, path: str, relative: float) -> Array:
 
 def misses(run: Simulation) -> dict[str, tuple[float, list[float]]]:
     """Paths whose slope no quotient confirms, with the largest slope and the errors."""
-    slopes = run.jacobian(run.paths)[1]
+    slopes = run.jacobian_vector(run.paths)[1]
     missed = {}
     for k, path in enumerate(run.paths):
         largest = np.abs(slopes[k]).max()
@@ -92,7 +94,7 @@ def misses(run: Simulation) -> dict[str, tuple[float, list[float]]]:
 
 
 def test_every_path_of_the_cell_agrees_with_central_differences(days: Simulation) -> None:
-    records, slopes = days.jacobian(days.paths)
+    records, slopes = days.jacobian_vector(days.paths)
     assert slopes.shape == (len(days.paths), 193, 7)
     missed = misses(days)
     assert not missed
@@ -105,18 +107,18 @@ def test_the_repeated_start_is_derived_too(cell: Study) -> None:
         measurements=cell.measurements,
     )  # fmt: skip
     path = "surfaces.roof.outside.absorptance"
-    start = simulation.jacobian([path])[1][0, 0, 0]
+    start = simulation.jacobian_vector([path])[1][0, 0, 0]
     vectors = [simulation.vector({path: 0.8 + nudge}) for nudge in (-1e-4, 1e-4)]
-    low, high = (simulation.jacobian([path], vector)[0][0, 0] for vector in vectors)
+    low, high = (simulation.jacobian_vector([path], vector)[0][0, 0] for vector in vectors)
     # The first record is that of a room already warmed through by a darker roof.
     assert start > 3.0
-    at = simulation.jacobian([path], simulation.vector({path: 0.8}))[1][0, 0, 0]
+    at = simulation.jacobian_vector([path], simulation.vector({path: 0.8}))[1][0, 0, 0]
     assert (high - low) / 2e-4 == pytest.approx(at, rel=1e-4)
 
 
 def test_dataset_names_units_and_parameters(cell: Study) -> None:
     found = jacobian(
-        cell.building, cell.climate, THREE, outputs=["room.air_temperature"], values={THREE[1]: 0.7},
+        cell.building, cell.climate, THREE, outputs=["room.air_temperature"], parameters={THREE[1]: 0.7},
         start="2010-09-20", end="2010-09-21", measurements=cell.measurements, initial=23.0,
     )  # fmt: skip
     series = found["room.air_temperature"]
@@ -141,7 +143,7 @@ def test_a_globe_follows_the_temperatures_it_is_made_of(cell: Study) -> None:
         measurements=cell.measurements, initial=23.0,
     )  # fmt: skip
     path = "surfaces.roof.outside.absorptance"
-    records, slopes = simulation.jacobian([path])
+    records, slopes = simulation.jacobian_vector([path])
     exact = quotient(simulation, path, 1e-5)
     # The slope of its film is infinite where globe and air are equally warm.
     apart = np.abs(exact[:, 0]) > 0.1
@@ -152,11 +154,11 @@ def test_a_globe_follows_the_temperatures_it_is_made_of(cell: Study) -> None:
 
 def test_refusals(days: Simulation) -> None:
     with pytest.raises(InputError, match="no parameters"):
-        days.jacobian([])
+        days.jacobian_vector([])
     with pytest.raises(InputError, match=r"surfaces\.roof\.outside\.absorptance"):
-        days.jacobian(["surfaces.roof.outside.absorptanc"])
+        days.jacobian_vector(["surfaces.roof.outside.absorptanc"])
     with pytest.raises(InputError, match="structural"):
-        days.jacobian(["site.latitude"])
+        days.jacobian_vector(["site.latitude"])
 
 
 # --- in reverse ----------------------------------------------------------------------------------------
@@ -166,7 +168,7 @@ def both_ways(simulation: Simulation, *, memory: int = MEMORY) -> tuple[Array, A
     """Slopes of a random sum of records by each parameter, times its range: in reverse and forward."""
     trajectory = simulation.trajectory(memory=memory)
     weights = np.random.default_rng(7).normal(size=trajectory.records.shape)
-    records, forward = simulation.jacobian(simulation.paths)
+    records, forward = simulation.jacobian_vector(simulation.paths)
     np.testing.assert_allclose(trajectory.records, records, rtol=0.0, atol=2e-6)
     parameters = [simulation.building.parameter(path) for path in simulation.paths]
     ranges = np.array([p.high - p.low for p in parameters])
@@ -227,12 +229,12 @@ def test_a_gradient_leads_downhill(cell: Study) -> None:
     objective = SquaredResiduals({"room.air_temperature": seen}, {"room.air_temperature": 0.3})
     at = gradient(cell.building, cell.climate, objective, **options)
     assert at.value == pytest.approx(len(seen) * (0.5 / 0.3) ** 2, rel=1e-6)
-    table = at.table()
+    table = at.to_dataframe()
     path = str(table.index[0])
     span = np.ptp(at.ranges[path])
     step = -1e-4 * span * np.sign(at.slopes[path])
     nominal = cell.building.parameter(path).value
-    there = gradient(cell.building, cell.climate, objective, values={path: nominal + step}, **options)
+    there = gradient(cell.building, cell.climate, objective, parameters={path: nominal + step}, **options)
     assert there.value - at.value == pytest.approx(at.slopes[path] * step, rel=0.02)
     assert there.value < at.value
     mean = gradient(cell.building, cell.climate, Mean("room.air_temperature"), **options)

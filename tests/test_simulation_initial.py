@@ -19,7 +19,8 @@ from mascarin.building.initial_state import Ambient, GivenStart, Known, Profile,
 from mascarin.errors import InputError
 from mascarin.examples import STUDIES
 from mascarin.simulation.initial import MeasuredStart
-from mascarin.simulation.simulation import Simulation, simulate
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
 from mascarin.verification.analytical import setup
 from mascarin.weather import Climate, Measurements
@@ -221,7 +222,7 @@ def test_members_start_alike_and_slopes_take_the_start_as_constant(
     assert not failures
     assert (records[:, 0, 0] == 25.0).all()
     assert np.array_equal(records[1], trial.run().records)
-    _, slopes = trial.jacobian([path])
+    _, slopes = trial.jacobian_vector([path])
     middle = (records[2] - records[0]) / (2.0 * nudge)
     assert np.abs(slopes[0] - middle).max() < 1e-5 * np.abs(middle).max()
     trajectory = trial.trajectory()

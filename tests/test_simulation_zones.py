@@ -15,7 +15,8 @@ from mascarin.building.air import SPECIFIC_HEAT, density
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from mascarin.simulation.results import Results
-from mascarin.simulation.simulation import Simulation, simulate
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate
 from simulation_samples import hours
 
@@ -268,7 +269,7 @@ def test_set_points_that_cross_in_a_member_are_refused() -> None:
     climate = dark(np.zeros(25))
     simulation = Simulation(building, climate, step="1h")
     with pytest.raises(InputError, match=r"zones\.room: found heating to 27 degC above cooling to 26 degC"):
-        simulation.run(simulation.vector({"zones.room.heating.setpoint": 27.0}))
+        simulation.run({"zones.room.heating.setpoint": 27.0})
 
 
 def test_set_points_of_a_measured_column_that_cross_are_refused() -> None:

@@ -1,7 +1,7 @@
 """The command line: which commands there are, and what their exit codes mean.
 
 A command is a plain function in `mascarin.commands`; one line of `COMMANDS` registers it. Its
-module is imported only when the command is called, so that ``mascarin --help`` stays quick.
+module is imported only when the command is called, so that ``mascarin --help`` starts quickly.
 Data go to standard output, everything else to standard error.
 """
 
@@ -25,7 +25,7 @@ EXIT_OK: Final = 0
 EXIT_CRITERION: Final = 1
 EXIT_INPUT: Final = InputError.exit_code
 EXIT_SOLVER: Final = SolverError.exit_code
-EXIT_DEFECT: Final = 70  # a defect of Mascarin itself, so that it is never read as an answer
+EXIT_DEFECT: Final = 70  # a defect of Mascarin itself, so that it is not mistaken for a result
 EXIT_INTERRUPTED: Final = 130
 
 
@@ -42,13 +42,13 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command(
             "init",
             "mascarin.commands.new_study:init",
-            "Start a study of your own from one that comes with Mascarin.",
+            "Copy an example study into a new folder.",
         ),
         Command(
             "schema", "mascarin.commands.building:schema", "Print the JSON Schema of a building description."
         ),
         Command(
-            "check", "mascarin.commands.building:check", "Check a building description and say what it holds."
+            "check", "mascarin.commands.building:check", "Check a building description and print a summary."
         ),
         Command("parameters", "mascarin.commands.building:parameters", "List every parameter of a building."),
         Command(
@@ -59,37 +59,37 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command(
             "dsc",
             "mascarin.commands.materials:dsc",
-            "Make a phase-change material from a calorimeter's file.",
+            "Make a phase-change material from a DSC measurement.",
         ),
-        Command("cite", "mascarin.commands.building:cite", "List the sources that a building rests on."),
+        Command("cite", "mascarin.commands.building:cite", "List the sources of numbers and methods."),
     ),
     "Run": (
-        Command("run", "mascarin.commands.run:run", "Run a building in a climate."),
-        Command("sweep", "mascarin.commands.sweep:sweep", "Run many members of a building into a folder."),
+        Command("run", "mascarin.commands.run:run", "Simulate a building with a weather file."),
+        Command("sweep", "mascarin.commands.sweep:sweep", "Simulate a building with many parameter values."),
     ),
-    "Prove": (
-        Command(
-            "study", "mascarin.commands.study:study", "Compare, identify and corroborate on measurements."
-        ),
+    "Compare with measurements": (
+        Command("study", "mascarin.commands.study:study", "Run a whole study: compare, calibrate, validate."),
         Command(
             "sensitivity",
             "mascarin.commands.study:sensitivity",
-            "Find which parameters of a study matter.",
+            "Run the sensitivity analysis of a study.",
         ),
-        Command("calibrate", "mascarin.commands.study:calibrate", "Identify the parameters of a study."),
+        Command("calibrate", "mascarin.commands.study:calibrate", "Calibrate the parameters of a study."),
         Command(
             "validate",
             "mascarin.commands.study:validate",
-            "Hold a building as described against measurements.",
+            "Compare the uncalibrated model with measurements.",
         ),
-        Command("verify", "mascarin.commands.verify:verify", "Hold the simulation against closed answers."),
+    ),
+    "Verify": (
+        Command("verify", "mascarin.commands.verify:verify", "Verify against analytical solutions."),
         Command(
             "bestest",
             "mascarin.commands.bestest:bestest",
-            "Hold the cases of ASHRAE Standard 140 against six programs.",
+            "Compare the cases of ASHRAE Standard 140 with six programs.",
         ),
     ),
-    "Optimise": (
+    "Optimize": (
         Command(
             "optimize",
             "mascarin.commands.genopt:optimize",
@@ -98,21 +98,21 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command(
             "genopt",
             "mascarin.commands.genopt_export:genopt",
-            "Write a study's identification as a GenOpt project.",
+            "Write the calibration of a study as a GenOpt project.",
         ),
         Command(
             "cost",
             "mascarin.commands.genopt_export:cost",
-            "Evaluate the cost of a study's identification once.",
+            "Evaluate the calibration cost of a study once.",
         ),
     ),
 }
 """Every command, by the group it is listed under."""
 
 _EPILOGUE: Final = (
-    "Exit codes: 0 done, 1 a criterion is not met, 2 something given cannot be used, "
+    "Exit codes: 0 done, 1 a criterion is not met, 2 an input cannot be used, "
     "3 the solver failed, 130 interrupted. "
-    "With --debug (or MASCARIN_DEBUG=1) an error shows where it came from."
+    "With --debug (or MASCARIN_DEBUG=1) an error shows its traceback."
 )
 
 
@@ -122,12 +122,12 @@ def build_app(chosen: str | None = None) -> App:
     Parameters
     ----------
     chosen : str, optional
-        The command that is called. Its help is its docstring, which is read with its module; the others
-        have the one line that stands here.
+        The command that is called. Its help is its docstring, which is read with its module; the other
+        commands have one line from `GROUPS`.
     """
     app = App(
         name="mascarin",
-        help="Simulate buildings with phase-change materials, and prove the model on measurements.",
+        help="Simulate buildings with phase-change materials and validate the model against measurements.",
         help_epilogue=_EPILOGUE,
         help_format="markdown",
         version=__version__,
@@ -159,7 +159,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
     """
     if arguments is None:
-        # What is imported stays: looking through it again and again finds nothing to free.
+        # Imported modules stay in memory: collecting garbage among them often would free nothing.
         gc.set_threshold(100_000)
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = _take_debug(words)
@@ -181,7 +181,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _take_debug(words: list[str]) -> bool:
-    """Take ``--debug`` out of `words`: every command understands it."""
+    """Take ``--debug`` out of `words`; every command accepts it."""
     own = words[: words.index("--")] if "--" in words else words
     if "--debug" in own:
         words.remove("--debug")
@@ -190,7 +190,7 @@ def _take_debug(words: list[str]) -> bool:
 
 
 def _report(error: Exception) -> int:
-    """Say what went wrong; the exit code that goes with it."""
+    """Print the error; return its exit code."""
     if isinstance(error, CycloptsError):
         command = " ".join(("mascarin", *(error.command_chain or ())))
         _say(f"error: {_usage_text(error)}\nSee: {command} --help")
@@ -213,39 +213,39 @@ def _usage_text(error: CycloptsError) -> str:
 
 
 class _Output:
-    """A stream whose reader may leave (``| head``): the work goes on, and its exit code is the same.
+    """A stream that ignores a closed pipe (``| head``): the command goes on with the same exit code.
 
     Parameters
     ----------
     stream : TextIO
-        Where it goes.
+        Where the output goes.
     """
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
     def __getattr__(self, name: str) -> Any:
-        """Everything else is the stream's."""
+        """Other attributes are those of the stream."""
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        """Write, or drop what nobody reads."""
+        """Write, or drop the text when the pipe is closed."""
         try:
             return self._stream.write(text)
         except BrokenPipeError:
-            self._leave()
+            self._discard()
             return len(text)
 
     def flush(self) -> None:
-        """Pass on what was written, or drop what nobody reads."""
+        """Flush, or drop the text when the pipe is closed."""
         try:
             self._stream.flush()
         except BrokenPipeError:
-            self._leave()
+            self._discard()
 
-    def _leave(self) -> None:
-        # Python flushes the stream once more when it ends: give it somewhere to go. Where it is no real
-        # file there is nothing to flush.
+    def _discard(self) -> None:
+        # Python flushes the stream again when it exits, so its file descriptor is directed to the null
+        # device. A stream without a file descriptor needs no such thing.
         with contextlib.suppress(OSError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
 

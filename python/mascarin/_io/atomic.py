@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -59,6 +60,34 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     _flush_folder(path.parent)
 
 
+@contextlib.contextmanager
+def drafted(path: Path) -> Iterator[Path]:
+    """Give the name of a temporary file, for libraries that write to a name; see `replacing`.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; its folder exists.
+
+    Yields
+    ------
+    Path
+        The temporary file, with the ending of `path`.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written; the file that was there before is unchanged.
+    """
+    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", suffix=PART, dir=path.parent) as folder:
+        draft = Path(folder) / path.name
+        yield draft
+        with draft.open("rb+") as file:
+            os.fsync(file.fileno())
+        draft.replace(path)
+    _flush_folder(path.parent)
+
+
 def write(path: Path, content: str | bytes) -> Path:
     """Write a whole file at once; see `replacing`.
 
@@ -87,7 +116,10 @@ def write(path: Path, content: str | bytes) -> Path:
 def remove_drafts(folder: Path) -> None:
     """Remove what killed processes left half written in a folder that this process has locked."""
     for draft in folder.glob(f"*{PART}"):
-        draft.unlink(missing_ok=True)
+        if draft.is_dir():
+            shutil.rmtree(draft, ignore_errors=True)
+        else:
+            draft.unlink(missing_ok=True)
 
 
 def _usual_mode() -> int:

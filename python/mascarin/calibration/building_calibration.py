@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -18,10 +17,11 @@ from mascarin.calibration.rules import MethodName, Rules
 from mascarin.calibration.search import solve
 from mascarin.errors import InputError
 from mascarin.progress import ProgressOption
-from mascarin.simulation.simulation import Scheme, Simulation
+from mascarin.simulation.options import Scheme, TimeLike
+from mascarin.simulation.simulation import Simulation
 from mascarin.validation.observation import observe
 from mascarin.validation.sensors import Sensor, SensorUncertainty
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,8 +45,8 @@ def calibrate(
     sensors: Mapping[str, str | Sensor],
     vary: Sequence[str | FitParameter] | Mapping[str, tuple[float, float] | FitParameter],
     parameters: Mapping[str, float] | None = None,
-    start: str | datetime | pd.Timestamp | None = None,
-    end: str | datetime | pd.Timestamp | None = None,
+    start: TimeLike | None = None,
+    end: TimeLike | None = None,
     step: str | float = "15min",
     scheme: Scheme = "sdirk2",
     initial: Initial = "repeat",

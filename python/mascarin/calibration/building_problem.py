@@ -122,7 +122,7 @@ class BuildingModel:
     def slopes(self, x: Array) -> Array:
         """Differentiate the series at a parameter vector (P,), shape (T, S, P). [unit of each]"""
         vector = self.simulation.vector(dict(zip(self.paths, x.tolist(), strict=True)))
-        _, by_parameter = self.simulation.jacobian(list(self.paths), vector)
+        _, by_parameter = self.simulation.jacobian_vector(list(self.paths), vector)
         # Instants and means are linear in the records, and so are their derivatives.
         return np.moveaxis(self._compared(by_parameter), 0, -1)
 

@@ -172,7 +172,7 @@ class Calibration:
         """
         if self.nominal_building is None:
             raise InputError("building: this calibration was made by solve() on arrays and has no building")
-        return self.nominal_building.replace(self.values)
+        return self.nominal_building.with_values(self.values)
 
     def to_dict(self) -> dict[str, dict[str, float | str | None]]:
         """Return the parameters as ``{path: {nominal, fitted, low, high, unit}}``, ready for JSON."""

@@ -20,7 +20,7 @@ from mascarin.calibration.sequences import Make, maker, multi_start
 from mascarin.calibration.uncertainty import estimate
 from mascarin.calibration.warnings import on_bounds, warnings
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.optimization import Optimiser, Space
+from mascarin.optimization import Optimizer, Space
 from mascarin.progress import ProgressOption, reporting
 
 Floats = NDArray[np.float64]
@@ -33,7 +33,7 @@ def solve(
     cost: CostName = "nll",
     seed: int = 0,
     rules: Rules | None = None,
-    optimizer: Callable[[Space], Optimiser] | None = None,
+    optimizer: Callable[[Space], Optimizer] | None = None,
     record: Path | None = None,
     batch: int = 64,
     confidence: float = 0.95,
@@ -120,7 +120,7 @@ def _solved(
     cost: CostName,
     seed: int,
     rules: Rules | None,
-    optimizer: Callable[[Space], Optimiser] | None,
+    optimizer: Callable[[Space], Optimizer] | None,
     record: Path | None,
     batch: int,
     confidence: float,
@@ -165,7 +165,7 @@ def _require(method: str, cost: str, confidence: float, own: bool) -> None:
         raise InputError(msg)
 
 
-def _own(optimizer: Callable[[Space], Optimiser]) -> Make:
+def _own(optimizer: Callable[[Space], Optimizer]) -> Make:
     return lambda space, _: optimizer(space)
 
 

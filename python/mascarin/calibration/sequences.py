@@ -20,7 +20,7 @@ from mascarin.optimization import (
     CovarianceSearch,
     Evaluation,
     HookeJeeves,
-    Optimiser,
+    Optimizer,
     ParticleSwarm,
     Point,
     Space,
@@ -31,7 +31,7 @@ from mascarin.optimization import (
 
 Floats = NDArray[np.float64]
 
-Make = Callable[[Space, int], Optimiser]
+Make = Callable[[Space, int], Optimizer]
 """Makes the optimizer of one sequence from its space and its seed."""
 
 _GRID: Final = 2.0**26
@@ -81,7 +81,7 @@ class _Sequence:
 
     number: int
     start: Floats
-    optimizer: Optimiser
+    optimizer: Optimizer
     evaluations: int = 0
 
     def minimum(self, problem: CalibrationProblem) -> Minimum:

@@ -1,1 +1,1 @@
-"""The commands, one module for each room; registered in `mascarin.cli`."""
+"""The commands of the command line, registered in `mascarin.cli`."""

@@ -1,4 +1,4 @@
-"""The command that holds the cases of Standard 140 against six programs."""
+"""The command that compares the cases of Standard 140 with six programs."""
 
 from __future__ import annotations
 
@@ -31,25 +31,25 @@ def bestest(
     list_cases: Annotated[bool, Flag, Parameter(name="--list")] = False,
     as_json: AsJson = False,
 ) -> int:
-    """Hold the cases of ASHRAE Standard 140 against six programs.
+    """Compare the cases of ASHRAE Standard 140 with six programs.
 
-    Runs building thermal fabric cases (BESTEST) through the year of Denver, and puts their loads, peaks,
-    free-floating temperatures and sun beside what six programs found. Ends with 1 if any number is outside
-    their range. docs/bestest.md says what the cases are, and what was chosen where they leave a choice.
+    Runs the building thermal fabric cases (BESTEST) with the weather of Denver, and compares loads, peaks,
+    free-floating temperatures and solar radiation with the results of six programs. Exits with 1 if a number
+    is outside their range. docs/bestest.md describes the cases and the choices that the standard leaves open.
 
     Parameters
     ----------
     cases : str
-        Numbers of cases, such as 600 900FF, and building files (.yaml) of your own, which are run in the same
-        way and held against nothing. Default: all 39 cases.
+        Numbers of cases, such as 600 900FF, and your own building files (.yaml), which are run in the
+        same way and compared with nothing. Default: all 39 cases.
     weather : Path
         The standard's weather file, 725650TYCST.epw.
     out : Path
         Folder for a page with charts, hourly days and tables (bestest.html).
     workers : int
-        How many cases run at a time.
+        Number of cases that run at the same time.
     list_cases : bool
-        Only list the cases: what each changes, and its building file.
+        Only list the cases: the change from the base case, and the building file.
 
     Returns
     -------
@@ -67,7 +67,7 @@ def bestest(
         else:
             print_table(("case", "base", "change", "file"), rows)
         return 0
-    _can_be_made(out)
+    _require_possible_folder(out)
     if workers < 1:
         raise InputError(f"--workers: found {workers}; expected 1 or more")
     from mascarin.progress import Progress
@@ -105,8 +105,8 @@ def bestest(
     return 1 if outside else 0
 
 
-def _can_be_made(out: Path | None) -> None:
-    """Refuse a folder that could not be made, before the work is done."""
+def _require_possible_folder(out: Path | None) -> None:
+    """Refuse a folder that cannot be made, before the simulations start."""
     if out is not None and (out.is_file() or not out.parent.is_dir()):
         raise InputError(f"--out: found '{out}'; expected a folder, or a name in a folder that exists")
 
@@ -119,7 +119,7 @@ def _print(rows: Sequence[Quantity]) -> None:
             row.unit,
             number(row.value),
             row.when,
-            *_beside(row.range),
+            *_range_cells(row.range),
             _verdict(row.passed),
         )
         for row in rows
@@ -127,7 +127,7 @@ def _print(rows: Sequence[Quantity]) -> None:
     print_table(("case", "quantity", "unit", "value", "hour", "min", "mean", "max", ""), lines)
 
 
-def _beside(theirs: Range | None) -> tuple[str, str, str]:
+def _range_cells(theirs: Range | None) -> tuple[str, str, str]:
     return ("", "", "") if theirs is None else (number(theirs.low), number(theirs.mean), number(theirs.high))
 
 

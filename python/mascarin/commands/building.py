@@ -1,4 +1,4 @@
-"""Commands that look at a description without running it."""
+"""Commands that read a building without simulating it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def schema() -> None:
     """Print the JSON Schema of a building description.
 
-    Give it to an editor, and it completes and checks building files while they are written.
+    With this file an editor can complete and check building files.
     """
     from mascarin.building import json_schema
 
@@ -28,10 +28,10 @@ def schema() -> None:
 def check(
     building: Path, /, *, step: Step = "15min", settings: Settings = None, as_json: AsJson = False
 ) -> None:
-    """Check a building description and say what it holds.
+    """Check a building description and print a summary.
 
-    Zones, surfaces with their U value, constructions with their mesh, then warnings, and everything that
-    is assumed rather than known.
+    Prints zones, surfaces with their U value, constructions with their mesh, warnings, and all values that
+    are assumed.
 
     Parameters
     ----------
@@ -66,20 +66,20 @@ def parameters(
 ) -> None:
     """List every parameter of a building.
 
-    Each with its path, value, unit and the range in which its true value is believed to lie. A note says
-    why a parameter has no effect or cannot vary. With --reach each one is moved a little in a run of three
-    days, and only those are listed that no output and no flow of heat depends on.
+    Each with its path, value, unit and plausible range. A note gives the reason when a parameter has no
+    effect or cannot vary. With --reach each parameter is changed a little in a simulation of three days, and
+    only the parameters are listed on which no output and no heat flow depends.
 
     Parameters
     ----------
     building : Path
         Description of a building.
     patterns : str
-        Only paths like these, such as "surfaces.roof.*".
+        Only paths that fit these patterns, such as "surfaces.roof.*".
     varying : bool
-        Only parameters that have a range and act on a result.
+        Only parameters that have a range and affect a result.
     reach : bool
-        Only parameters that nothing depended on when they were moved; needs --weather.
+        Only parameters on which nothing depends; needs --weather.
     weather : Path
         Weather file for --reach: EPW, or TMY3 as CSV.
     """
@@ -95,7 +95,9 @@ def parameters(
     if not shown and not reach:
         paths = [row["path"] for row in table]
         hint = did_you_mean(patterns[0], paths) if patterns else ""
-        raise InputError(f"found no parameter like {' '.join(patterns)}; expected a path. {hint}".rstrip())
+        raise InputError(
+            f"found no parameter that fits {' '.join(patterns)}; expected a path. {hint}".rstrip()
+        )
     if varying:
         shown = [row for row in shown if described.parameter(row["path"]).varies]
     if as_json:
@@ -109,13 +111,13 @@ def parameters(
 
 
 def _unreached(building: Building, weather: Path | None) -> dict[str, str]:
-    """Parameters that nothing depends on, each with the reason."""
+    """Parameters on which nothing depends, each with the reason."""
     if weather is None:
         raise InputError("--reach: found no --weather; expected a weather file to run the building in")
     from mascarin.commands.run import read_weather
-    from mascarin.simulation.simulation import unreached
+    from mascarin.simulation.inactive import inactive_parameters
 
-    return unreached(building, read_weather(weather))
+    return inactive_parameters(building, read_weather(weather))
 
 
 def _matches(path: str, patterns: tuple[str, ...]) -> bool:
@@ -123,9 +125,9 @@ def _matches(path: str, patterns: tuple[str, ...]) -> bool:
 
 
 def cite(building: Path, /, *, as_json: AsJson = False) -> None:
-    """List the sources that a building rests on.
+    """List the sources of numbers and methods.
 
-    Where its numbers come from, and who the correlations it uses are by.
+    Sources of the numbers in the building file, and references of the correlations and methods it uses.
 
     Parameters
     ----------

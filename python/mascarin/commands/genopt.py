@@ -30,7 +30,7 @@ def optimize(
 ) -> int:
     """Run a GenOpt project with any simulation program.
 
-    Without options it does what GenOpt does and writes the same listings. The exit code is GenOpt's too: 0 at
+    Without options it works like GenOpt and writes the same listings. The exit code is that of GenOpt: 0 at
     the end and when MaxIte is reached, 1 for every error.
 
     Parameters
@@ -38,24 +38,24 @@ def optimize(
     project : Path
         The initialization file, such as opt.ini.
     workers : int
-        Number of simulations at a time, in place of UnitsOfExecution. [-]
+        Number of simulations at the same time, instead of UnitsOfExecution. [-]
     ahead : bool
-        With several workers, let idle ones run points that a sequential search is likely to need. The results
-        do not change; some runs may turn out not to be needed.
+        With several workers: free workers simulate points that a sequential search will probably need. The
+        results do not change; some of these simulations may not be needed.
     on_failure : str
-        What a failed simulation means: "stop", or a number that it costs.
+        What to do after a failed simulation: "stop", or a number to use as its cost.
     time_limit : float
         Longest time of one simulation. [s]
     resume : bool
-        Go on from the log of an interrupted run.
+        Continue an interrupted run from its log.
     lenient : bool
-        Accept what GenOpt cannot run, and say each time.
+        Accept what GenOpt rejects, with a note each time.
     table : Path
         Write all evaluations to this file, .csv or .parquet.
     check : bool
-        Read and check the project, run nothing.
+        Only read and check the project.
     quiet : bool
-        Print the result only.
+        Print only the result.
 
     Returns
     -------
@@ -129,7 +129,7 @@ def _optimize(
     try:
         outcome = optimise(project, options)
     except KeyboardInterrupt:
-        _say(f"interrupted; go on with: mascarin optimize {project} --resume")
+        _say(f"interrupted; continue with: mascarin optimize {project} --resume")
         raise
     if not quiet:
         _report(outcome)

@@ -1,4 +1,4 @@
-"""Commands that couple a study to GenOpt."""
+"""Commands that export the calibration of a study to GenOpt."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ def genopt(
     program: str | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
-    """Write a study's identification as a GenOpt project.
+    """Write the calibration of a study as a GenOpt project.
 
     The project starts ``mascarin cost`` for each simulation. Run it with ``mascarin optimize`` or GenOpt.
 
     Parameters
     ----------
     study : str
-        Study file (YAML), or the name of a study that comes with Mascarin: wall-bench, lgi.
+        Study file (YAML), or the name of an example study: wall-bench, lgi.
     out : Path
         Folder for the project.
     algorithm : str
         hooke-jeeves, coordinate-search, pso, pso-inertia, pso-mesh, hybrid, nelder-mead, gradient,
         golden-section, fibonacci, mesh, parametric, or GenOpt's own name.
     starts : int
-        Number of starts, in place of the study's. [-]
+        Number of starts, instead of the number in the study. [-]
     evaluations : int
-        Largest number of simulations, in place of the study's budget. [-]
+        Largest number of simulations, instead of the budget in the study. [-]
     reductions : int
-        How often a pattern search halves its step before it ends. [-]
+        Number of times a pattern search halves its step before it stops. [-]
     seed : int
-        Of the random numbers, in place of the study's.
+        Seed of the random numbers, instead of the seed in the study.
     program : str
-        How the simulation program is started, if not as ``mascarin``.
+        Command that starts the simulation program. Default: ``mascarin``.
     force : bool
         Write into a folder that is not empty.
     """
@@ -62,21 +62,21 @@ def cost(
     out: Annotated[Path, Parameter(alias="-o")] = Path("result.txt"),
     log: Path = Path("log.txt"),
 ) -> int:
-    """Evaluate the cost of a study's identification once.
+    """Evaluate the calibration cost of a study once.
 
-    This is the simulation program of the projects that ``mascarin genopt`` writes. What goes wrong stands
-    in the log too, behind the words MASCARIN ERROR.
+    This is the simulation program of the projects that ``mascarin genopt`` writes. Errors are also written
+    to the log, after the words MASCARIN ERROR.
 
     Parameters
     ----------
     parameters : Path
         Parameter file: lines ``path = value``, and ``project = FOLDER`` relative to the file.
     study : str
-        Study file, in place of that of the project.
+        Study file, instead of the one of the project.
     out : Path
         File for the costs, the sum first, then each sensor.
     log : Path
-        File for what was done or what went wrong.
+        Log file.
     """
     from mascarin.genopt.export.evaluation import evaluate_files
 

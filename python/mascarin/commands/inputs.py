@@ -1,4 +1,4 @@
-"""What the commands read alike: a building with ``--set``, a time step."""
+"""Options shared by the commands: a building with ``--set``, a time step."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from mascarin.building import Building
 
 Flag: Final = Parameter(negative="", show_default=False)
-"""An option that is there or not."""
+"""An option without a value."""
 
 Settings = Annotated[
     list[str] | None,
     Parameter(
-        name="--set", negative="", help="Other value for a parameter, as PATH=VALUE; may be given again."
+        name="--set", negative="", help="New value of a parameter, as PATH=VALUE; can be given several times."
     ),
 ]
 AsJson = Annotated[bool, Flag, Parameter(name="--json", help="Print the result as JSON.")]
@@ -27,12 +27,12 @@ Step = Annotated[str, Parameter(help="Time step, such as 900, 15min or 1h.")]
 
 
 def read_building(file: Path, settings: Sequence[str] | None) -> Building:
-    """Read a building and give it the values of ``--set``.
+    """Read a building and set the values of ``--set``.
 
     Parameters
     ----------
     file : Path
-        Its description.
+        File of the building.
     settings : sequence of str or None
         Each as ``path=value``.
 
@@ -59,12 +59,12 @@ def _setting(text: str) -> tuple[str, float]:
 
 
 def seconds(text: str) -> float:
-    """Time step in words as a number.
+    """Read a time step.
 
     Parameters
     ----------
     text : str
-        A number with ``s``, ``min`` or ``h``, or without: seconds.
+        A number with the unit ``s``, ``min`` or ``h``; without a unit in seconds.
 
     Returns
     -------
@@ -74,8 +74,8 @@ def seconds(text: str) -> float:
     Raises
     ------
     InputError
-        If it is no such text, or not positive.
+        The text is not a positive time.
     """
-    from mascarin.weather.table import seconds_of
+    from mascarin.weather.times import seconds_of
 
     return seconds_of(text, "--step")

@@ -1,4 +1,4 @@
-"""Commands about phase-change materials: the library, and a calorimeter's file."""
+"""Commands for phase-change materials: the library of products, and DSC measurements."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from mascarin._io.atomic import drafted
 from mascarin.commands.inputs import AsJson
-from mascarin.commands.output import print_json, print_table, writing
+from mascarin.commands.output import print_json, print_table
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,17 +31,17 @@ def materials(
 ) -> None:
     """Search the library of phase-change products.
 
-    A building file takes a product by its name: "ceiling_pcm: {product: RT25HC}". A query that names one
-    product shows all that is known of it.
+    A building file names a product: "ceiling_pcm: {product: RT25HC}". The name of one product prints all its
+    data.
 
     Parameters
     ----------
     query : str
-        Name of a product, or part of a name, a maker or a form; none: all.
+        Name of a product, or a part of its name, its maker or its form. Default: all products.
     kind : str
         Only products of this kind: organic, salt hydrate, powder, board, sheet.
     plot : Path
-        Write a picture of enthalpy and apparent specific heat of what was found: SVG, PNG or PDF.
+        File for a figure of enthalpy and apparent specific heat: SVG, PNG or PDF.
     """
     from mascarin.materials import search
     from mascarin.materials.library import suggestion
@@ -51,7 +52,7 @@ def materials(
     if not chosen:
         hint = suggestion(query) if query else ""
         raise InputError(
-            f"found no product that fits; expected a part of a name, or a wider search. {hint}".rstrip()
+            f"found no such product; expected a part of a name, or a wider search. {hint}".rstrip()
         )
     if as_json:
         print_json([described(one) for one in chosen])
@@ -166,7 +167,7 @@ def _bare(raw: Any) -> Any:
 
 
 def described(one: Product) -> dict[str, Any]:
-    """A product as plain data, SI units; null where the source does not say."""
+    """Data of a product in SI units; None where the source gives no value."""
     from mascarin.materials.library import curves
 
     return {
@@ -207,7 +208,7 @@ def dsc(
     plot: Path | None = None,
     as_json: AsJson = False,
 ) -> None:
-    """Make a phase-change material from a calorimeter's file.
+    """Make a phase-change material from a DSC measurement.
 
     The file is CSV: a column of temperature, and heat flow, apparent specific heat or enthalpy, with units in
     the names, such as "temperature [degC]" and "cp heating [J/(g K)]". Prints latent heat, onset, peak and
@@ -216,27 +217,27 @@ def dsc(
     Parameters
     ----------
     file : Path
-        The calorimeter's file.
+        File of the measurement (differential scanning calorimeter).
     out : Path
-        Write the material as the lines of a building file.
+        File for the material, in the form of a building file.
     name : str
-        Its name there; else that of the file.
+        Name of the material. Default: the name of the file.
     law : str
-        What to write: table, the curve as measured, or a law of the report, such as "gumbel, tail low".
+        Form of the melting curve: "table" as measured, or a law of the report, such as "gumbel, tail low".
     unit : str
-        Unit of the signal, where the file does not say: mW/mg, mW, J/(g K), J/(kg K), J/g, kJ/kg.
+        Unit of the signal, if the file does not state it: mW/mg, mW, J/(g K), J/(kg K), J/g, kJ/kg.
     rate : float
-        Heating rate, where a heat flow has no column of time. [K/min]
+        Heating rate, for a heat flow without a time column. [K/min]
     mass : float
-        Mass of the sample, where the heat flow is that of all of it. [mg]
+        Mass of the sample, for a heat flow of the whole sample. [mg]
     specific_heat : str
-        SOLID,LIQUID, where the file's baseline was taken off. [J/(kg K)]
+        SOLID,LIQUID, if the baseline was subtracted from the signal. [J/(kg K)]
     conductivity : str
-        VALUE or SOLID,LIQUID to write beside the curve: a calorimeter does not measure it. [W/(m K)]
+        VALUE or SOLID,LIQUID; DSC does not measure it. [W/(m K)]
     density : str
-        VALUE or SOLID,LIQUID likewise. [kg/m3]
+        VALUE or SOLID,LIQUID; DSC does not measure it. [kg/m3]
     plot : Path
-        Write a picture of enthalpy and apparent specific heat: SVG, PNG or PDF.
+        File for a figure of enthalpy and apparent specific heat: SVG, PNG or PDF.
     """
     from mascarin.materials.dsc import from_dsc
 
@@ -270,14 +271,14 @@ def _write(material: DscMaterial, name: str, described: dict[str, Any], out: Pat
 
     usable = re.sub(r"\W", "_", name)
     usable = usable if usable[:1].isalpha() else f"pcm_{usable}"
-    with writing(out) as part:
+    with drafted(out) as part:
         text = to_yaml(usable, described, [f"from {material.name}", *material.report().splitlines()])
         part.write_text(text, encoding="utf-8")
     print(f"wrote {out}", file=sys.stderr)
 
 
 def _values(text: str | None, option: str, count: int = 0) -> Any:
-    """One value, or one for the solid and one for the liquid."""
+    """Read one value, or one for the solid and one for the liquid."""
     if text is None:
         return None
     try:

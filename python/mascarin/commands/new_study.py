@@ -1,4 +1,4 @@
-"""The command that starts a study of one's own."""
+"""The command that copies an example study into a new folder."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from mascarin.errors import InputError, did_you_mean
 
 
 def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example", "-e"))] = "lgi") -> None:
-    """Start a study of your own from one that comes with Mascarin.
+    """Copy an example study into a new folder.
 
-    Copies its building, study and tables into a new folder, and says how to go on.
+    Copies building, study and measurements, and prints the next commands.
 
     Parameters
     ----------
     folder : Path
-        Where to; made when it is missing.
+        The new folder.
     example : str
-        lgi, a cell under a roof with a ceiling that melts; wall-bench, a single wall.
+        lgi: a test cell with a phase-change material in the roof; wall-bench: a single wall.
     """
     from mascarin.examples import STUDIES
 
@@ -33,7 +33,7 @@ def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example"
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: is a file; expected a new folder: choose another name")
     if folder.is_dir() and any(folder.iterdir()):
-        raise InputError(f"{folder}: is not empty; expected a new folder, nothing is overwritten")
+        raise InputError(f"{folder}: is not empty; expected a new folder, as nothing is overwritten")
     folder.mkdir(parents=True, exist_ok=True)
     for source in sorted(STUDIES[example].parent.iterdir()):
         if source.is_file():

@@ -1,17 +1,15 @@
-"""How a command prints a result: JSON for programs, a table or lines for people."""
+"""Printing results: JSON for programs, tables for people."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 
 def print_json(result: Any) -> None:
-    """Print a result as JSON; what is not finite becomes null, as JSON has no word for it."""
+    """Print a result as JSON; NaN and infinity become null, as JSON has no such numbers."""
     print(json.dumps(_finite(result), indent=2, ensure_ascii=False, allow_nan=False))
 
 
@@ -25,29 +23,15 @@ def _finite(value: Any) -> Any:
     return value
 
 
-@contextmanager
-def writing(path: Path) -> Iterator[Path]:
-    """Give a file to write to that takes the name `path` only once it is whole.
-
-    Whatever goes wrong in between leaves no half a file, and an older one as it was.
-    """
-    part = path.with_name(f"{path.name}.part")
-    try:
-        yield part
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
 def print_table(header: Sequence[str], rows: Sequence[Sequence[str | float]]) -> None:
-    """Print rows in columns as wide as they need; numbers are aligned right.
+    """Print rows as a table; numbers are aligned right.
 
     Parameters
     ----------
     header : sequence of str
         Names of the columns.
     rows : sequence of sequences
-        Words or numbers.
+        Texts or numbers.
     """
     right = [all(not isinstance(row[k], str) for row in rows) for k in range(len(header))]
     cells = [list(header), *([number(cell) for cell in row] for row in rows)]
@@ -61,5 +45,5 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str | float]]) ->
 
 
 def number(cell: str | float) -> str:
-    """Cell of a table as text: six significant digits, and no more zeros than are needed."""
+    """Format a cell: text as it is, numbers with six significant digits."""
     return cell if isinstance(cell, str) else f"{cell:.6g}"

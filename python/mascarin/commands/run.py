@@ -1,8 +1,9 @@
-"""The command that runs a building in a climate."""
+"""The command that simulates a building with a weather file."""
 
 from __future__ import annotations
 
 import sys
+import tempfile
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -10,8 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from mascarin._io.atomic import drafted
 from mascarin.commands.inputs import AsJson, Settings, Step, read_building, seconds
-from mascarin.commands.output import print_json, print_table, writing
+from mascarin.commands.output import print_json, print_table
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -38,9 +40,9 @@ def run(
     settings: Settings = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run a building in a climate.
+    """Simulate a building with a weather file.
 
-    Writes the series to a file, or prints their extremes, their mean and the energy ledger.
+    Writes the time series to a file, or prints minimum, mean and maximum of each and the energy balance.
 
     Parameters
     ----------
@@ -49,22 +51,23 @@ def run(
     weather : Path
         Weather file: EPW, or TMY3 as CSV.
     out : Path
-        File for the series: NetCDF (.nc) or CSV (.csv, in local time). Without it a summary is printed.
+        File for the time series: NetCDF (.nc) or CSV (.csv, in local time). Without it a summary is printed.
     start : str
-        First moment, such as 2012-09-20 or "2012-09-20 12:00", local time. Default: where the weather starts.
+        Start of the period, such as 2012-09-20 or "2012-09-20 12:00", local time. Default: the start
+        of the weather file.
     end : str
-        Last moment. Default: where the weather ends.
+        End of the period. Default: the end of the weather file.
     interval : str
-        Spacing of the series that are written, such as 1h; independent of the step. Default: the step.
+        Time between the written values, such as 1h; independent of the time step. Default: the time step.
     outputs : list of str
-        What to record, such as room.air_temperature or "roof.*"; may be given again. Default: the
-        temperatures of air, faces, interfaces and sensors.
+        Output to record, such as room.air_temperature or "roof.*"; can be given several times. Default: the
+        temperatures of air, surfaces, interfaces and sensors.
     scheme : str
         Time-stepping scheme.
     """
     described = read_building(building, settings)
     if out is not None:
-        _can_be_written(out)
+        _require_writable(out)
     from mascarin.simulation.simulation import Simulation
 
     simulation = Simulation(
@@ -76,7 +79,7 @@ def run(
         outputs=_matching(described, outputs),
         scheme=scheme,
     )
-    _tell(described, simulation)
+    _print_warnings(described, simulation)
     results = simulation.run()
     for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
@@ -90,8 +93,8 @@ def run(
         _print(results)
 
 
-def _tell(building: Building, simulation: Simulation) -> None:
-    """Warn of what may be wrong, and say how much was assumed."""
+def _print_warnings(building: Building, simulation: Simulation) -> None:
+    """Print warnings about the building, and how many values were assumed."""
     from mascarin.building import check
 
     lines = check(building, simulation.step_seconds)
@@ -100,11 +103,11 @@ def _tell(building: Building, simulation: Simulation) -> None:
             print(line, file=sys.stderr)
     assumed = sum(line.startswith("assumed: ") for line in lines)
     if assumed:
-        print(f"{assumed} values were assumed: 'mascarin check' lists them", file=sys.stderr)
+        print(f"{assumed} assumed values: 'mascarin check' lists them", file=sys.stderr)
 
 
 def read_weather(file: Path) -> Climate:
-    """Read a weather file by what its name ends in.
+    """Read a weather file; the ending of its name gives its format.
 
     Raises
     ------
@@ -124,23 +127,22 @@ def read_weather(file: Path) -> Climate:
             )
 
 
-def _can_be_written(out: Path) -> None:
-    """Refuse a file that could not be written, before the work is done."""
+def _require_writable(out: Path) -> None:
+    """Refuse a file that cannot be written, before the simulation starts."""
     if out.suffix.lower() not in FORMATS:
         raise InputError(f"--out: found '{out}'; expected a file ending in {' or '.join(FORMATS)}")
     if not out.parent.is_dir():
         raise InputError(f"--out: found '{out}'; expected an existing folder; make '{out.parent}' first")
-    attempt = out.with_name(f"{out.name}.part")
     try:
-        attempt.touch()
-        attempt.unlink()
+        with tempfile.TemporaryFile(dir=out.parent):
+            pass
     except OSError as error:
         why = f"cannot be written ({error.strerror})"
         raise InputError(f"--out: found '{out}', which {why}; choose another folder") from None
 
 
 def _matching(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
-    """Names of the outputs that are meant; none: the usual ones."""
+    """Names of the outputs that fit the patterns; None for the default outputs."""
     if patterns is None:
         return None
     names = [output.name for output in building.outputs()]
@@ -149,15 +151,15 @@ def _matching(building: Building, patterns: Sequence[str] | None) -> list[str] |
         meant = [name for name in names if fnmatchcase(name, pattern)]
         if not meant and any(sign in pattern for sign in "*?["):
             raise InputError(
-                f"--output: found no output like '{pattern}'; expected a pattern that fits one. "
-                f"{_meant(pattern, names)}".rstrip()
+                f"--output: found no output that fits '{pattern}'; expected a pattern that fits one. "
+                f"{_suggestion(pattern, names)}".rstrip()
             )
         found |= dict.fromkeys(meant or [building.output(pattern).name])
     return list(found)
 
 
-def _meant(pattern: str, names: Sequence[str]) -> str:
-    """Patterns like this one that do fit: its owner, or what it asks of the owner, taken from a name."""
+def _suggestion(pattern: str, names: Sequence[str]) -> str:
+    """Suggest patterns that fit: with the zone or surface, or the quantity, taken from an existing name."""
     owner, _, what = pattern.partition(".")
     pairs = [(left, right) for left, _, right in (name.partition(".") for name in names)]
     near = {f"{left}.{what}" for left, right in pairs if fnmatchcase(right, what)}
@@ -166,7 +168,7 @@ def _meant(pattern: str, names: Sequence[str]) -> str:
 
 
 def _write(results: Results, out: Path) -> None:
-    with writing(out) as part:
+    with drafted(out) as part:
         if out.suffix.lower() == ".nc":
             results.to_netcdf(part)
         else:
@@ -205,6 +207,6 @@ def _print(results: Results) -> None:
             print(f"{output.name} at the start: {at_start:.3f}")
     print(results.energy)
     if notes.reversals:
-        print(f"{notes.reversals} times a cell with hysteresis melted and froze within one step")
+        print(f"{notes.reversals} changes between melting and freezing within one time step (hysteresis)")
     if notes.halved_steps:
-        print(f"{notes.halved_steps} steps were halved to converge")
+        print(f"{notes.halved_steps} time steps were halved to converge")

@@ -1,4 +1,4 @@
-"""The commands that run a study, or one step of it."""
+"""The commands that run a study or one of its steps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mascarin.commands.inputs import AsJson
 from mascarin.commands.output import print_json, print_table
 
 if TYPE_CHECKING:
-    from mascarin.study import Findings, Study
+    from mascarin.study import Study, StudyResults
 
 
 _SHOWN: Final = 10
@@ -27,26 +27,26 @@ def study(
     out: Annotated[Path, Parameter(alias="-o")],
     as_json: AsJson = False,
 ) -> int:
-    """Compare, identify and corroborate on measurements.
+    """Run a whole study: compare, calibrate, validate.
 
-    The five steps: compare, find what matters, identify, compare again, corroborate. Survives interruption:
-    started again with the same folder it goes on where it was, and ends with the same result. Exits with 1
-    when the fitted model misses a criterion.
+    Five steps: compare the uncalibrated model with the measurements, sensitivity analysis, calibration,
+    comparison of the calibrated model, validation on days that were not used. After an interruption the same
+    command continues the work and gives the same result. Exits with 1 when the calibrated model misses a
+    criterion.
 
     Parameters
     ----------
     file : str
-        Study file (YAML), or the name of a study that comes with Mascarin: wall-bench, lgi.
+        Study file (YAML), or the name of an example study: wall-bench, lgi.
     out : Path
-        Folder for study.json, tables, figures, the report, and unfinished work.
+        Folder for study.json, tables, figures, the report and intermediate results.
     """
     opened = _open(file)
-    findings = opened.run(out)
-    _report(out)
+    results = opened.run(out, progress=True)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
-    _tell(opened, findings, out)
-    return _judge([verdict.to_dict() for verdict in findings.verdicts["fitted"]])
+    _print_summary(opened, results, out)
+    return _exit_code([verdict.to_dict() for verdict in results.criteria["fitted"]])
 
 
 def sensitivity(
@@ -57,19 +57,19 @@ def sensitivity(
     method: Literal["spectral", "rbd-fast", "sobol", "morris"] | None = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find which parameters of a study matter.
+    """Run the sensitivity analysis of a study.
 
-    Over every parameter that has a range, on the days of the identification. Survives interruption as the
-    whole study does, which goes on from what is done here.
+    Varies every parameter that has a range, on the days of the calibration. After an interruption the same
+    command continues the work; the whole study uses its results.
 
     Parameters
     ----------
     file : str
-        Study file (YAML), or the name of a study that comes with Mascarin.
+        Study file (YAML), or the name of an example study.
     out : Path
-        Folder for sensitivity.json, a table, figures, and unfinished work.
+        Folder for sensitivity.json, a table, figures and intermediate results.
     method : str
-        In the place of the study's; all but spectral need the package SALib.
+        Method to use instead of the one in the study; all but spectral need the package SALib.
     """
     from mascarin.study import steps
 
@@ -84,7 +84,7 @@ def sensitivity(
             (output, path, *(round(value[key] or 0.0, 4) for key in ("share", "low", "high")))
             for path, value in ranked[:_SHOWN]
         ]
-    print_table(("sensor", "parameter", "share", "low", "high"), rows)
+    print_table(("sensor", "parameter", "S1", "low", "high"), rows)
 
 
 def calibrate(
@@ -94,18 +94,18 @@ def calibrate(
     out: Annotated[Path, Parameter(alias="-o")],
     as_json: AsJson = False,
 ) -> int:
-    """Identify the parameters of a study.
+    """Calibrate the parameters of a study.
 
-    The identification alone, and how close the fitted model is on the days it has not seen. Survives
-    interruption as the whole study does, which goes on from what is done here. Exits with 1 when the fitted
-    model misses a criterion.
+    The calibration alone, and the errors of the calibrated model on days that were not used. After an
+    interruption the same command continues the work; the whole study uses its results. Exits with 1 when the
+    calibrated model misses a criterion.
 
     Parameters
     ----------
     file : str
-        Study file (YAML), or the name of a study that comes with Mascarin.
+        Study file (YAML), or the name of an example study.
     out : Path
-        Folder for calibration.json, tables, and unfinished work.
+        Folder for calibration.json, tables and intermediate results.
     """
     from mascarin.study import steps
 
@@ -123,7 +123,7 @@ def calibrate(
         _print_scores(content)
         for note in content["notes"]:
             print(f"note: {note['text']}", file=sys.stderr)
-    return _judge(_verdicts(content, "fitted"))
+    return _exit_code(_verdicts(content, "fitted"))
 
 
 def validate(
@@ -133,14 +133,14 @@ def validate(
     out: Annotated[Path | None, Parameter(alias="-o")] = None,
     as_json: AsJson = False,
 ) -> int:
-    """Hold a building as described against measurements.
+    """Compare the uncalibrated model with measurements.
 
-    Only the comparison of a study: nothing is identified. Exits with 1 when a criterion is missed.
+    Only the first step of a study: nothing is calibrated. Exits with 1 when a criterion is missed.
 
     Parameters
     ----------
     file : str
-        Study file (YAML), or the name of a study that comes with Mascarin.
+        Study file (YAML), or the name of an example study.
     out : Path
         Folder for validation.json and tables. Default: nothing is written.
     """
@@ -151,14 +151,14 @@ def validate(
         print_json(content)
     else:
         _print_scores(content)
-    return _judge(_verdicts(content, "nominal"))
+    return _exit_code(_verdicts(content, "nominal"))
 
 
 def _open(file: str) -> Study:
     from mascarin.examples import locate
     from mascarin.study import Study
 
-    return Study(locate(file))
+    return Study.from_yaml(locate(file))
 
 
 def _print_scores(content: Mapping[str, Any]) -> None:
@@ -179,46 +179,39 @@ def _verdicts(content: Mapping[str, Any], model: str) -> list[Mapping[str, Any]]
     return [verdict for verdict in content["criteria"] if verdict["model"] == model]
 
 
-def _judge(verdicts: Sequence[Mapping[str, Any]]) -> int:
-    """Name the criteria that are missed; the exit code."""
+def _exit_code(verdicts: Sequence[Mapping[str, Any]]) -> int:
+    """Print the criteria that are missed; return the exit code."""
     missed = [verdict for verdict in verdicts if not verdict["passed"]]
     for verdict in missed:
         value, unit = verdict["value"], verdict["unit"]
-        found = "nothing to compare" if value is None else f"{value:.3f} {unit.replace('degC', 'K')}"
+        found = "no common values" if value is None else f"{value:.3f} {unit.replace('degC', 'K')}"
         where = f"{verdict['sensor']}, {verdict['period']}"
         print(f"missed: {where}: {verdict['name']}; found {found}", file=sys.stderr)
     if verdicts:
-        print(f"criteria kept: {len(verdicts) - len(missed)} of {len(verdicts)}", file=sys.stderr)
+        print(f"criteria met: {len(verdicts) - len(missed)} of {len(verdicts)}", file=sys.stderr)
     return 1 if missed else 0
 
 
-def _report(out: Path) -> None:
-    """Make the report from what the study left in its folder."""
-    from mascarin.report import write
-    from mascarin.report.folder import read_folder
-
-    write(out / "report.html", *read_folder(out))
-
-
-def _tell(opened: Study, findings: Findings, out: Path) -> None:
-    """A summary for the person at the terminal."""
+def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
+    """Print a summary on standard error."""
     count = len(opened.file.sensors)
     lines = [f"{opened.file.name}: {opened.file.observed}, {count} sensor{'s' * (count != 1)}"]
     if opened.quality:
-        lines.append("suspicious stretches:")
+        lines.append("suspicious periods in the measurements:")
         lines += [
             f"  {s.channel}: {s.kind} from {s.start:%Y-%m-%d %H:%M}, {s.detail}" for s in opened.quality
         ]
     lines.append(f"{'sensor':<16}{'period':<16}{'model':<10}{'rmse':>8}{'sd':>8}{'bias':>8}{'max':>8}")
-    for run in (findings.nominal, findings.fitted):
+    for run in (results.nominal, results.fitted):
         for sensor, periods in run.scores.items():
             lines += [
                 f"{sensor:<16}{period:<16}{run.label:<10}{m.rmse:8.3f}{m.sd:8.3f}{m.bias:8.3f}{m.max_error:8.3f}"
                 for period, m in periods.items()
             ]
-    if findings.aims:
-        reached = sum(aim.passed for aim in findings.aims)
-        lines.append(f"aims reached: {reached} of {len(findings.aims)}; the report says what the rest lacks")
-    lines.append(f"energy closure {findings.fitted.results.energy.closure:.1e}; {findings.seconds:.0f} s")
+    if results.aims:
+        reached = sum(aim.passed for aim in results.aims)
+        lines.append(f"aims reached: {reached} of {len(results.aims)}; the report shows the others")
+    residual = results.fitted.results.energy.closure
+    lines.append(f"relative energy-balance residual {residual:.1e}; {results.seconds:.0f} s")
     lines.append(f"report: {out / 'report.html'}")
     print("\n".join(lines), file=sys.stderr)

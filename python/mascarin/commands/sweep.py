@@ -1,4 +1,4 @@
-"""The command that runs many members of a building."""
+"""The command that simulates a building with many parameter values."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def sweep(
     settings: Settings = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run many members of a building into a folder.
+    """Simulate a building with many parameter values.
 
-    Stopped and called again, it goes on where it was.
+    Each row of the samples is one member of the ensemble. After an interruption the same command continues.
 
     Parameters
     ----------
@@ -50,26 +50,27 @@ def sweep(
     weather : Path
         Weather file: EPW, or TMY3 as CSV.
     out : Path
-        Folder for the results (Parquet) and their manifest: new, empty, or of the same ensemble.
+        Folder for the results (Parquet) and their manifest: new, empty, or with the same ensemble.
     samples : Path
         Table of the members, CSV or Parquet: a column for each parameter path, a row for each member.
     draw : int
-        Draw so many members instead, as a Latin hypercube over the ranges of the parameters.
+        Number of members to draw instead, as a Latin hypercube over the ranges of the parameters.
     seed : int
-        Seed of the draw.
+        Seed of the random numbers.
     vary : list of str
-        Parameters to draw; may be given again. Default: all that are not structural.
+        Parameters to draw; can be given several times. Default: all that are not structural.
     objectives : list of str
-        Keep a number of each member: min:, mean:, max: or sd: and an output, or hours above:LIMIT: or
-        below:LIMIT:, such as max:room.air_temperature or above:26:room.air_temperature; may be given again.
+        One number to keep of each member: min:, mean:, max: or sd: and an output, or the hours above:LIMIT:
+        or below:LIMIT:, such as max:room.air_temperature or above:26:room.air_temperature; can be
+        given several times.
     outputs : list of str
-        Keep the series of these outputs instead; may be given again.
+        Output whose time series is kept instead; can be given several times.
     start : str
-        First moment, local time. Default: where the weather starts.
+        Start of the period, local time. Default: the start of the weather file.
     end : str
-        Last moment. Default: where the weather ends.
+        End of the period. Default: the end of the weather file.
     workers : int
-        Processes that share the work. Default: the threads of this one.
+        Number of processes. Default: threads of one process.
     """
     from mascarin.ensemble import Statistic, sweep_into
     from mascarin.progress import Progress
@@ -82,7 +83,6 @@ def sweep(
             "--objective max:room.air_temperature"
         )
     kept = {text: Statistic.read(text) for text in objectives or ()}
-    total = len(table)
     with Progress("members") as progress:
         store = sweep_into(
             out,
@@ -96,7 +96,7 @@ def sweep(
             end=end,
             workers=workers,
             seed=None if samples is not None else seed,
-            report=lambda done: progress(done, total),
+            progress=progress,
         )
     _print(store, as_json)
 
@@ -110,7 +110,7 @@ def _samples(
         return _read(file)
     from mascarin.ensemble import latin_hypercube
 
-    return latin_hypercube(building, draw or 0, seed=seed, paths=vary)
+    return latin_hypercube(building, draw or 0, seed=seed, vary=vary)
 
 
 def _read(file: Path) -> pd.DataFrame:
@@ -149,9 +149,10 @@ def _print(store: Store, as_json: bool) -> None:
         return
     if rows:
         print_table(("objective", "min", "mean", "max"), rows)
-    print(f"{result['members']} members, largest closure {result['closure']:.1e}; in {store.path}")
+    residual = result["closure"]
+    print(f"{len(table)} members, largest relative energy-balance residual {residual:.1e}; in {store.path}")
     if len(failed):
-        # Said on standard error as well as kept: a failure is no result.
+        # Failures are in the results, and shown here so that they are not overlooked.
         print(
             f"{len(failed)} members failed; the first, {failed.index[0]}: {failed.iloc[0]}", file=sys.stderr
         )

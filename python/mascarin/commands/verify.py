@@ -1,4 +1,4 @@
-"""The command that holds the simulation against closed answers."""
+"""The command that verifies the simulation against analytical solutions."""
 
 from __future__ import annotations
 
@@ -14,22 +14,23 @@ if TYPE_CHECKING:
 
 
 def verify(*, pcm: Annotated[bool, Flag] = False, as_json: AsJson = False) -> int:
-    """Hold the simulation against closed answers.
+    """Verify against analytical solutions.
 
-    Exact solutions of conduction, phase change, rooms, radiation and the sun, each simulated by the whole
-    chain from the description on, and the promises of this project: order, energy closure, same bits. Ends
-    with 1 if any number leaves its bounds. docs/verification.md says what each case is and where its bounds
-    come from.
+    Exact solutions of conduction, phase change, zones, radiation and solar position, each simulated from the
+    building description on; further the order of the time scheme, the energy balance and identical results
+    of ensembles. Exits with 1 if a number is outside its bounds. docs/verification.md describes each case and
+    the source of its bounds.
 
     Parameters
     ----------
     pcm : bool
-        The cases of phase change: fronts, films, mushy ranges, cycles, hard steps.
+        The cases of phase change: fronts, surface heat transfer coefficients, melting ranges, cycles, large
+        time steps.
 
     Returns
     -------
     int
-        0, or 1 if a number leaves its bounds.
+        0, or 1 if a number is outside its bounds.
     """
     from mascarin.progress import Progress
     from mascarin.verification.analytical import run

@@ -1,3 +1,3 @@
-"""Figures: functions that draw plain arrays on matplotlib axes, one module for each kind of result."""
+"""Figures: functions that draw arrays on matplotlib axes, and the writing of figures to files."""
 
 from __future__ import annotations

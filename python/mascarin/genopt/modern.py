@@ -1,28 +1,27 @@
-"""Optimisers beyond GenOpt's, under names of their own."""
+"""Optimization algorithms that GenOpt does not have."""
 
 from __future__ import annotations
 
-from mascarin.genopt.algorithm import Algorithm, Context, Keys
-from mascarin.optimization import CovarianceSearch, DifferentialEvolution, Optimiser
+from mascarin.genopt.searches import Context
+from mascarin.genopt.settings import Keys
+from mascarin.optimization import CovarianceSearch, Optimizer
 
 
-def _differential(context: Context, keys: Keys) -> Optimiser:
-    """Differential evolution; MaxIte is the largest number of generations where none is given."""
-    return DifferentialEvolution(
-        context.space,
-        population=keys.get("PopulationSize", 10 * len(context.space.names)),
-        generations=keys.get("NumberOfGeneration", context.project.settings.max_iterations),
-        seed=keys["Seed"],
-        weight=keys.get("Weight", 0.7),
-        crossover=keys.get("Crossover", 0.9),
-        tolerance=keys.get("Tolerance", 1e-6),
-        observer=context.observer,
-        remember=False,
-    )
+def covariance(context: Context, keys: Keys) -> Optimizer:
+    """Make a CMA-ES search; MaxIte is the largest number of evaluations.
 
+    Parameters
+    ----------
+    context : Context
+        The project and its parameters.
+    keys : Keys
+        Settings of the section.
 
-def _covariance(context: Context, keys: Keys) -> Optimiser:
-    """CMA-ES; MaxIte is the largest number of evaluations."""
+    Returns
+    -------
+    Optimizer
+        The search.
+    """
     return CovarianceSearch(
         context.space,
         sigma=keys.get("Sigma", 0.25),
@@ -32,15 +31,3 @@ def _covariance(context: Context, keys: Keys) -> Optimiser:
         observer=context.observer,
         remember=False,
     )
-
-
-_DIFFERENTIAL = ("PopulationSize", "NumberOfGeneration", "Weight", "Crossover", "Tolerance")
-
-ALGORITHMS: dict[str, Algorithm] = {
-    "MascarinDE": Algorithm(
-        ("Seed", *_DIFFERENTIAL), _differential, _DIFFERENTIAL, discrete=True, bounds=True, own=True
-    ),
-    "MascarinCMAES": Algorithm(
-        ("Seed", "Sigma", "PopulationSize"), _covariance, ("Sigma", "PopulationSize"), own=True
-    ),
-}

@@ -1,1 +1,10 @@
-"""See docs/architecture.md."""
+"""Runs of a building in a climate, their results and their derivatives.
+
+The public names are listed in ``__init__.pyi`` and imported when they are first used.
+"""
+
+from __future__ import annotations
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

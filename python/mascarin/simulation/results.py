@@ -1,168 +1,74 @@
-"""What a run leaves behind: labelled series, the energy ledger, and where it all came from."""
+"""The series of a run by name, with their units, times, energy balance and provenance."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from mascarin import __version__
+from mascarin._io import atomic, display
 from mascarin.errors import InputError, did_you_mean
+from mascarin.simulation.energy import EnergyLedger
+from mascarin.simulation.labels import time_coordinates
+from mascarin.simulation.provenance import Provenance
+from mascarin.simulation.spacing import means, state_means
+from mascarin.weather.times import seconds_of
+from mascarin.weather.timezones import parse_timezone
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
     import pandas as pd
     import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from mascarin.building import Output
 
     Array = npt.NDArray[np.float64]
 
-FLOWS: Final = (
-    "solar",
-    "convection",
-    "longwave",
-    "boundary",
-    "infiltration",
-    "ventilation",
-    "interzone",
-    "gains",
-    "heating",
-    "cooling",
-    "transmitted",
-    "glass",
-)
-"""Ways in which heat enters a building; cooling takes it out, as a negative number."""
+Default = TypeVar("Default")
+
+#: Names that are kept for old programs.
+_DEPRECATED: Final = frozenset({"frame", "dataset"})
+_FORMAT: Final = 1
+#: Series that the figure in a notebook shows.
+_DRAWN: Final = 8
 
 
-@dataclass(frozen=True)
-class EnergyLedger:
-    """Where heat came from over a run, and whether the books close.
+@dataclass(frozen=True, eq=False, repr=False)
+class Results(Mapping[str, "xr.DataArray"]):
+    """The series of a run, a mapping from the names of outputs to series.
 
-    Attributes
-    ----------
-    into : mapping of str to float
-        Net heat into the building by flow. [J]
-    stored : float
-        Rise of the heat stored in walls and air. [J]
-    turnover : float
-        Sum of the magnitudes of all flows. [J]
-    closure : float
-        Sum over steps of |stored - into|, over the turnover. [-]
-    """
+    ``results["room.air_temperature"]`` is an xarray.DataArray over ``time`` (UTC) with the coordinate
+    ``local_time``. Names and aliases of outputs are keys.
 
-    into: Mapping[str, float]
-    stored: float
-    turnover: float
-    closure: float
-
-    @classmethod
-    def read(cls, raw: Mapping[str, Any]) -> Self:
-        """From what the engine returns."""
-        into = {flow: float(raw[flow]) for flow in FLOWS}
-        return cls(into, float(raw["stored"]), float(raw["turnover"]), float(raw["closure"]))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers for JSON."""
-        into = {f"{flow}_joule": value for flow, value in self.into.items()}
-        return {
-            "closure": self.closure,
-            "stored_joule": self.stored,
-            "turnover_joule": self.turnover,
-            **into,
-        }
-
-    def __str__(self) -> str:
-        lines = [f"{flow:<14}{value / 3.6e6:>12.3f} kWh" for flow, value in self.into.items()]
-        return "\n".join(
-            [*lines, f"{'stored':<14}{self.stored / 3.6e6:>12.3f} kWh", f"closure {self.closure:.1e}"]
-        )
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """Everything that made a run.
-
-    Attributes
-    ----------
-    building : str
-        Name of the building.
-    building_hash : str
-        SHA-256 of the description the engine got.
-    climate : dict
-        File, hash, period and conversions of the climate.
-    step_seconds : float
-        Time step. [s]
-    scheme : str
-        Time-stepping scheme.
-    start : str
-        How the run was started.
-    changed : mapping of str to float
-        Parameters that differ from the description. [unit of each]
-    newton_iterations : int
-        Newton iterations over all stages.
-    nested_stages : int
-        Stages that only the nested iteration of Casulli & Zanolli solved.
-    halved_steps : int
-        Steps, or parts of steps, that had to be halved.
-    reversals : int
-        How often a phase-change cell with hysteresis melted and froze within one step: its memory, which
-        changes at the end of a step, saw only the sum. A shorter step makes it smaller.
-    version : str
-        Version of Mascarin.
-    """
-
-    building: str
-    building_hash: str
-    climate: Mapping[str, Any]
-    step_seconds: float
-    scheme: str
-    start: str
-    changed: Mapping[str, float]
-    newton_iterations: int
-    nested_stages: int = 0
-    halved_steps: int = 0
-    reversals: int = 0
-    version: str = field(default=__version__)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
-        return {
-            "mascarin_version": self.version,
-            "building": self.building,
-            "building_sha256": self.building_hash,
-            "climate": dict(self.climate),
-            "step_seconds": self.step_seconds,
-            "scheme": self.scheme,
-            "start": self.start,
-            "changed": dict(self.changed),
-            "newton_iterations": self.newton_iterations,
-            "nested_stages": self.nested_stages,
-            "halved_steps": self.halved_steps,
-            "reversals": self.reversals,
-        }
-
-
-@dataclass(frozen=True, eq=False)
-class Results:
-    """Series of a run, by output name.
-
-    Attributes
+    Parameters
     ----------
     outputs : sequence of Output
         What was recorded.
     index : pandas.DatetimeIndex
-        Times with their zone, shape (rows,): the state at the start, then at the end of every step.
+        Local times with their zone, shape (rows,): the state at the start, then at the end of every step.
     records : ndarray, shape (rows, outputs)
         Values. [unit of each output]
     energy : EnergyLedger
-        The energy ledger.
+        The energy balance.
     provenance : Provenance
         Version, inputs and options.
     warnings : tuple of str
         Phase-change layers that neither melted nor froze.
+
+    Examples
+    --------
+    >>> import mascarin as mc
+    >>> from mascarin.examples import box, box_climate
+    >>> run = mc.simulate(box(), box_climate(), step="1h")
+    >>> "room.air_temperature" in run
+    True
+    >>> run.to_dataframe().columns[0]
+    'room.air_temperature'
     """
 
     outputs: Sequence[Output]
@@ -172,8 +78,10 @@ class Results:
     provenance: Provenance
     warnings: tuple[str, ...] = ()
 
+    # --- a mapping ----------------------------------------------------------------------------------------
+
     def __getitem__(self, name: str) -> xr.DataArray:
-        """One series, labelled with UTC times.
+        """One series by the name or alias of its output.
 
         Raises
         ------
@@ -186,7 +94,7 @@ class Results:
         output = self.outputs[position]
         return xr.DataArray(
             self.records[:, position],
-            coords={"time": self._utc()},
+            coords=time_coordinates(self.index),
             dims="time",
             name=output.name,
             attrs={"units": output.unit, "long_name": output.name, "timezone": str(self.index.tz)},
@@ -197,6 +105,43 @@ class Results:
 
     def __len__(self) -> int:
         return len(self.outputs)
+
+    def __contains__(self, name: object) -> bool:
+        return any(name == output.name or name in output.aliases for output in self.outputs)
+
+    def get(self, name: str, default: Default | None = None) -> xr.DataArray | Default | None:  # type: ignore[override]
+        """One series, or the default where it was not recorded.
+
+        Parameters
+        ----------
+        name : str
+            Name or alias of the output.
+        default : object, optional
+            What to return where it was not recorded.
+        """
+        return self[name] if name in self else default  # noqa: SIM401 (this is get itself)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether two results hold the same values, times, units, energy balance, provenance and warnings."""
+        if not isinstance(other, Results):
+            return NotImplemented
+        return (
+            tuple(self.outputs) == tuple(other.outputs)
+            and self.index.equals(other.index)
+            and str(self.index.tz) == str(other.index.tz)
+            and self.records.shape == other.records.shape
+            and self.records.tobytes() == other.records.tobytes()
+            and self.energy == other.energy
+            and self.provenance.to_dict() == other.provenance.to_dict()
+            and self.warnings == other.warnings
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in _DEPRECATED]
+
+    # --- other spacings -----------------------------------------------------------------------------------
 
     def every(self, interval: str | float) -> Results:
         """The same series at another spacing, from the start of the run.
@@ -220,15 +165,13 @@ class Results:
         import numpy as np
         import pandas as pd
 
-        from mascarin.weather.table import seconds_of
-
         seconds = seconds_of(interval, "interval")
         place = np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64)
         times = np.arange(0.0, place[-1] + 1e-6, seconds)
         if len(times) < 2:
             raise InputError(f"interval: found {interval!r}; expected a time shorter than the run")
         columns = [
-            _means(place, self.records[:, k], times)
+            means(place, self.records[:, k], times)
             if output.mean
             else np.interp(times, place, self.records[:, k])
             for k, output in enumerate(self.outputs)
@@ -269,12 +212,17 @@ class Results:
             raise InputError(
                 f"{name}: the run covers no whole hour; expected one from full hour to full hour"
             )
-        means = (_means(place, values, times) if output.mean else _state_means(place, values, times))[1:]
+        found = (means(place, values, times) if output.mean else state_means(place, values, times))[1:]
         index = first + pd.to_timedelta(times[:-1] - early, unit="s")
-        return pd.Series(means, index=index, name=output.name)
+        return pd.Series(found, index=index, name=output.name)
 
     def heat(self, name: str) -> float:
         """Heat of a load over the run. [J]
+
+        Parameters
+        ----------
+        name : str
+            Output in W, such as ``room.heating_load``.
 
         Raises
         ------
@@ -292,68 +240,197 @@ class Results:
         seconds = np.diff(np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64))
         return float(np.sum(self.records[1:, position] * seconds))
 
-    def frame(self) -> pd.DataFrame:
-        """All series as a table in local time, one column an output."""
+    # --- tables, files, figures ---------------------------------------------------------------------------
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """All series as a table over local time, one column an output.
+
+        Examples
+        --------
+        >>> import mascarin as mc
+        >>> from mascarin.examples import box, box_climate
+        >>> mc.simulate(box(), box_climate(), step="1h").to_dataframe().index.tz is not None
+        True
+        """
         import pandas as pd
 
         return pd.DataFrame(self.records, index=self.index, columns=[output.name for output in self.outputs])
 
-    def dataset(self) -> xr.Dataset:
-        """All series as an xarray data set, with provenance and ledger among its attributes."""
-        import json
+    def to_xarray(self) -> xr.Dataset:
+        """All series as an xarray data set, with provenance and energy balance among its attributes.
 
+        Returns
+        -------
+        xarray.Dataset
+            Each output over ``time`` (UTC, without a zone), with the coordinate ``local_time`` (the local
+            clock, without a zone) and the attribute ``timezone``.
+
+        Examples
+        --------
+        >>> import mascarin as mc
+        >>> from mascarin.examples import box, box_climate
+        >>> sorted(mc.simulate(box(), box_climate(), step="1h").to_xarray().coords)
+        ['local_time', 'time']
+        """
         import xarray as xr
 
         attributes = {
             "mascarin_version": self.provenance.version,
+            "mascarin_format": _FORMAT,
+            "timezone": str(self.index.tz),
             "provenance": json.dumps(self.provenance.to_dict()),
             "energy": json.dumps(self.energy.to_dict()),
-            "timezone": str(self.index.tz),
+            "warnings": json.dumps(list(self.warnings)),
+            "outputs": json.dumps([asdict(output) for output in self.outputs]),
         }
         return xr.Dataset({name: self[name] for name in self}, attrs=attributes)
 
     def to_netcdf(self, path: str | Path) -> None:
-        """Write everything to a NetCDF file.
+        """Write everything to a NetCDF file, which appears when it is complete.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; one that exists is replaced.
 
         Raises
         ------
         OSError
             The file cannot be written.
-        """
-        self.dataset().to_netcdf(path, engine="h5netcdf")
 
-    def plot(self, names: Sequence[str] | None = None) -> Any:
-        """Draw series over local time, one axis a unit.
+        Examples
+        --------
+        >>> import tempfile
+        >>> import mascarin as mc
+        >>> from mascarin.examples import box, box_climate
+        >>> run = mc.simulate(box(), box_climate(), step="1h")
+        >>> file = Path(tempfile.mkdtemp()) / "run.nc"
+        >>> run.to_netcdf(file)
+        >>> mc.Results.open(file) == run
+        True
+        """
+        with atomic.drafted(Path(path)) as draft:
+            self.to_xarray().to_netcdf(draft, engine="h5netcdf")
+
+    @classmethod
+    def open(cls, path: str | Path) -> Results:
+        """Read what `to_netcdf` wrote.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Results
+            Equal to those that were written.
+
+        Raises
+        ------
+        InputError
+            There is no such file, or it was not written by `to_netcdf`.
+        """
+        import numpy as np
+        import pandas as pd
+        import xarray as xr
+
+        try:
+            with xr.open_dataset(path, engine="h5netcdf") as data:
+                data.load()
+            outputs = [_output(fields) for fields in json.loads(data.attrs["outputs"])]
+            times = pd.DatetimeIndex(data["time"].to_numpy()).tz_localize("UTC")
+            return cls(
+                outputs=outputs,
+                index=times.tz_convert(parse_timezone(data.attrs["timezone"])),
+                records=np.stack([data[output.name].to_numpy() for output in outputs], axis=-1),
+                energy=EnergyLedger.from_dict(json.loads(data.attrs["energy"])),
+                provenance=Provenance.from_dict(json.loads(data.attrs["provenance"])),
+                warnings=tuple(json.loads(data.attrs["warnings"])),
+            )
+        except (OSError, KeyError, ValueError, TypeError) as error:
+            raise InputError(
+                f"{path}: found no results of a run ({error}); expected a file that Results.to_netcdf or "
+                "`mascarin run -o FILE.nc` wrote"
+            ) from None
+
+    def plot(
+        self, names: Sequence[str] | str | None = None, ax: Axes | Sequence[Axes] | None = None
+    ) -> Figure:
+        """Draw series over local time.
 
         Parameters
         ----------
         names : sequence of str, optional
             Default: all.
+        ax : matplotlib.axes.Axes or sequence of them, optional
+            Where to draw: one for each unit, or one for all. Default: a new figure with one for each unit.
 
         Returns
         -------
         matplotlib.figure.Figure
             The figure.
+
+        Raises
+        ------
+        InputError
+            A name that was not recorded, or a number of axes that is neither one nor that of the units.
+
+        Examples
+        --------
+        >>> import mascarin as mc
+        >>> from mascarin.examples import box, box_climate
+        >>> figure = mc.simulate(box(), box_climate(), step="1h").plot(["room.air_temperature"])
+        >>> figure.axes[0].get_ylabel()
+        'degC'
         """
-        from matplotlib.figure import Figure
+        from mascarin.figures.series import draw  # matplotlib
 
-        positions = [self._position(name) for name in (names or list(self))]
-        units = list(dict.fromkeys(self.outputs[p].unit for p in positions))
-        figure = Figure(figsize=(9.0, 2.8 * len(units) + 0.6), layout="constrained")
-        axes = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
-        local = self.index.tz_localize(None)
-        for axis, unit in zip(axes, units, strict=True):
-            for position in positions:
-                if self.outputs[position].unit == unit:
-                    axis.plot(local, self.records[:, position], label=self.outputs[position].name, lw=1.1)
-            axis.set_ylabel(unit)
-            axis.legend(fontsize="small")
-            axis.grid(alpha=0.3)
-        axes[-1].set_xlabel(f"local time ({self.index.tz})")
-        return figure
+        chosen = [names] if isinstance(names, str) else list(self) if names is None else names
+        positions = [self._position(name) for name in chosen]
+        series = [(self.outputs[p].name, self.outputs[p].unit, self.records[:, p]) for p in positions]
+        return draw(series, self.index, ax)
 
-    def _utc(self) -> pd.DatetimeIndex:
-        return self.index.tz_convert("UTC").tz_localize(None)
+    # --- in words -----------------------------------------------------------------------------------------
+
+    def __repr__(self) -> str:
+        return display.text(f"Results of '{self.provenance.building}'", self._rows())
+
+    def _repr_html_(self) -> str:
+        table = self.to_dataframe().describe().T
+        return display.page(
+            f"Results of '{self.provenance.building}'",
+            self._rows(),
+            tables={"Statistics": table},
+            figures={"Plot": self.plot(list(self)[:_DRAWN])},
+        )
+
+    def _rows(self) -> list[tuple[str, str]]:
+        names = list(self)
+        shown = ", ".join(names[:3]) + (f", ... {len(names) - 3} more" if len(names) > 3 else "")
+        source = self.provenance.climate.get("file")
+        changed = [f"{path} = {value:g}" for path, value in self.provenance.changed.items()]
+        rows = [
+            ("climate", str(source) if source else "table"),
+            ("period", f"{self.index[0]:%Y-%m-%d %H:%M} to {self.index[-1]:%Y-%m-%d %H:%M} {self.index.tz}"),
+            ("step", f"{self.provenance.step_seconds:g} s, {self.provenance.scheme}, {len(self.index)} rows"),
+            ("start", self.provenance.start),
+            (f"{len(names)} outputs", shown),
+            ("energy balance", f"relative residual {self.energy.relative_residual:.1e}"),
+        ]
+        if changed:
+            rows.append(("parameters", ", ".join(changed)))
+        return [*rows, *(("warning", warning) for warning in self.warnings)]
+
+    # --- old names ----------------------------------------------------------------------------------------
+
+    def frame(self) -> pd.DataFrame:
+        """Deprecated name of `to_dataframe`."""
+        return self.to_dataframe()
+
+    def dataset(self) -> xr.Dataset:
+        """Deprecated name of `to_xarray`."""
+        return self.to_xarray()
 
     def _position(self, name: str) -> int:
         for position, output in enumerate(self.outputs):
@@ -365,24 +442,7 @@ class Results:
         )
 
 
-def _means(place: Array, values: Array, times: Array) -> Array:
-    """Means over the intervals that end at the times, of a flux recorded at the end of each step."""
-    import numpy as np
+def _output(fields: Mapping[str, Any]) -> Output:
+    from mascarin.building import Output  # pydantic, which an evaluation for GenOpt does without
 
-    # A recorded flux stands for the step that it ends.
-    heat = np.concatenate([[0.0], np.cumsum(values[1:] * np.diff(place))])
-    at = np.interp(times, place, heat)
-    return np.concatenate([values[:1], np.diff(at) / np.diff(times)])
-
-
-def _state_means(place: Array, values: Array, times: Array) -> Array:
-    """Means over the intervals that end at the times, of a state on straight lines between its records."""
-    import numpy as np
-
-    # Two rising runs: a stable sort merges them.
-    points = np.sort(np.concatenate([place, times]), kind="stable")
-    points = points[np.append(True, np.diff(points) > 0.0)]
-    level = np.interp(points, place, values)
-    sums = np.concatenate([[0.0], np.cumsum(0.5 * (level[1:] + level[:-1]) * np.diff(points))])
-    at = np.interp(times, points, sums)
-    return np.concatenate([values[:1], np.diff(at) / np.diff(times)])
+    return Output(**{**fields, "aliases": tuple(fields["aliases"])})

@@ -1,4 +1,4 @@
-"""The sensitivity step of a study: runs in chunks of about a second, each kept as soon as it is done."""
+"""Sensitivity analysis of a study: runs in chunks of about a second, each saved when it is done."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.sensitivity.building_analysis import checked_range, factors_of, made
+from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
+from mascarin.sensitivity.methods import collector
 from mascarin.sensitivity.methods import plan as design
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.progress import Progress
+    from mascarin.progress import Report
     from mascarin.sensitivity import Factor, Sensitivity
-    from mascarin.sensitivity.runs import Plan
+    from mascarin.sensitivity.methods import Plan
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.description import SensitivityPlan
     from mascarin.study.locations import Places
@@ -26,18 +27,18 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: At most so much work is lost when a study is killed. [s]
+#: Work that is lost at most when a study is killed. [s]
 CHUNK_SECONDS: Final = 1.0
 _FIRST_CHUNK: Final = 8
 
 
 def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> None:
-    """Refuse what a plan says about parameters that are none, or cannot be so.
+    """Check the parameters of a plan.
 
     Raises
     ------
     InputError
-        Unknown or structural path, a range the wrong way round or beyond what the parameter can be.
+        Unknown or structural path, a reversed range, or a range beyond the limits of the parameter.
     """
     for path, span in plan.ranges.items():
         with places.blame("sensitivity", "ranges", path):
@@ -57,7 +58,7 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
 
 
 def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
-    """All parameters that act and have a range, as the plan says.
+    """All active parameters with a range, as the plan says.
 
     Raises
     ------
@@ -74,12 +75,12 @@ def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
 
 
 def runs_of(plan: SensitivityPlan, chosen: list[Factor]) -> Plan:
-    """The runs that a plan asks for.
+    """The runs of a plan.
 
     Raises
     ------
     InputError
-        Numbers or groups that the method cannot use; SALib is not installed.
+        The method does not support the numbers or groups; SALib is not installed.
     """
     return design(
         chosen,
@@ -91,33 +92,33 @@ def runs_of(plan: SensitivityPlan, chosen: list[Factor]) -> Plan:
     )
 
 
-def screen(
+def analyze(
     simulation: Simulation,
     plan: SensitivityPlan,
     chosen: list[Factor],
     lead_seconds: float,
     names: tuple[str, ...],
     workspace: Workspace,
-    progress: Progress,
+    progress: Report,
 ) -> Sensitivity:
-    """Make the runs and analyse them.
+    """Carry out the runs and analyze them.
 
     Parameters
     ----------
     simulation : Simulation
-        Covers the lead and the period that is analysed.
+        Covers the warm-up and the analyzed period.
     plan : SensitivityPlan
         Method, replicates, seed.
     chosen : list of Factor
-        What varies.
+        Parameters that vary.
     lead_seconds : float
-        Run before the outputs are analysed. [s]
+        Length of the warm-up. [s]
     names : tuple of str
         Names of the outputs, in the order of the simulation.
     workspace : Workspace
-        Keeps finished chunks.
-    progress : Progress
-        Is told how far it is.
+        Stores finished chunks.
+    progress : callable
+        Called with the number of runs done and their total.
 
     Raises
     ------
@@ -125,40 +126,40 @@ def screen(
         A run failed; the text names its parameters.
     """
     runs = runs_of(plan, chosen)
-    collector = runs.collector(names, [output.unit for output in simulation.outputs])
+    taken = collector(runs, names, [output.unit for output in simulation.outputs])
     done = np.zeros(len(runs), dtype=bool)
     name = f"sensitivity-{plan.method}"
     for first, values in workspace.kept(name):
-        collector.add(first, values)
+        taken.add(first, values)
         done[first : first + len(values)] = True
     skipped = round(lead_seconds / simulation.step_seconds)
     every = max(1, round(seconds_of(plan.interval) / simulation.step_seconds))
     pace = _Pace()
     for first, samples in _missing(runs, done, pace):
         began = time.monotonic()
-        records = made(simulation, runs.paths, samples, first, start=skipped, every=every)
+        records = run_samples(simulation, runs.paths, samples, first, start=skipped, every=every)
         workspace.keep(name, first, records)
-        collector.add(first, records)
+        taken.add(first, records)
         done[first : first + len(samples)] = True
-        pace.learn(len(samples), time.monotonic() - began)
-        progress.update(int(done.sum()), len(runs))
-    return collector.result()
+        pace.update(len(samples), time.monotonic() - began)
+        progress(int(done.sum()), len(runs))
+    return taken.result()
 
 
 class _Pace:
-    """How many runs fill a chunk, in whole packs of lanes where they fit; learnt from the last one."""
+    """Number of runs in a chunk, from the time of the last chunk; whole groups of 8 where they fit."""
 
     def __init__(self) -> None:
         self.size = _FIRST_CHUNK
 
-    def learn(self, runs: int, seconds: float) -> None:
+    def update(self, runs: int, seconds: float) -> None:
         wanted = runs * CHUNK_SECONDS / max(seconds, 1e-3)
         whole = 8 * round(wanted / 8) if wanted >= 8 else int(wanted)
         self.size = int(np.clip(whole, 1, 2048))
 
 
 def _missing(runs: Plan, done: npt.NDArray[np.bool_], pace: _Pace) -> Iterator[tuple[int, Array]]:
-    """Runs that have not been made, in consecutive pieces of one replicate."""
+    """Runs that are not done yet, in consecutive chunks of one replicate."""
     for replicate in range(runs.replicates):
         start = replicate * runs.runs
         samples = runs.samples(replicate)

@@ -12,8 +12,7 @@ import io
 import json
 import os
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
@@ -21,11 +20,12 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from mascarin import __version__, _engine
+from mascarin import __version__
+from mascarin._io import atomic
 from mascarin.calibration.cost import Cost, CostName
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.simulation.simulation import _derive
+from mascarin.simulation.compiled import CompiledRun
 from mascarin.validation.observation import instants, means
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-_FORMAT: Final = 1
+_FORMAT: Final = 2
 _PACKAGE: Final = Path(__file__).resolve().parent.parent
 _ARRAYS: Final = ("forcing", "values", "positions", "place", "measured", "mask")
 
@@ -58,17 +58,11 @@ class Costs:
 
 
 @dataclass(frozen=True)
-class Run:
-    """What the engine is asked for.
+class Observed:
+    """How the series of the sensors follow from the outputs of a run.
 
     Attributes
     ----------
-    description : str
-        The building as JSON.
-    options : dict
-        Step, scheme, start and probes.
-    recipes : list
-        How each output follows from the records: kind and columns.
     columns : list of int
         Output of each sensor. [-]
     kinds : list of str
@@ -77,9 +71,6 @@ class Run:
         Interval of means. [steps]
     """
 
-    description: str
-    options: dict[str, Any]
-    recipes: list[tuple[str, tuple[int, ...]]]
     columns: list[int]
     kinds: list[str]
     reach: float
@@ -91,14 +82,12 @@ class Case:
 
     Attributes
     ----------
-    run : Run
-        What the engine is asked for.
-    forcing : ndarray, shape (steps, stages, channels)
-        Weather and measured boundaries. [unit of each channel]
-    values : ndarray, shape (P,)
-        Nominal parameter vector. [unit of each]
+    run : CompiledRun
+        The building in its climate over the identification period.
+    seen : Observed
+        How the series of the sensors follow from its outputs.
     positions : ndarray of int, shape (F,)
-        Where the free parameters stand in it. [-]
+        Positions of the free parameters in the parameter vector. [-]
     place : ndarray, shape (n,)
         Where the compared instants lie. [steps]
     parameters : tuple of FitParameter, length F
@@ -113,9 +102,8 @@ class Case:
         What it was made from, see `inputs_of`.
     """
 
-    run: Run
-    forcing: Array
-    values: Array
+    run: CompiledRun
+    seen: Observed
     positions: npt.NDArray[np.int64]
     place: Array
     parameters: tuple[FitParameter, ...]
@@ -136,27 +124,20 @@ class Case:
         return CalibrationProblem(self.parameters, self.sensors, self._model, step=self.step)
 
     @cached_property
-    def _plan(self) -> _engine.Plan:
-        with _told():
-            return _engine.Plan(self.run.description)
-
-    @cached_property
     def _reasons(self) -> list[str]:
         """Why the members of the last batch failed."""
         return []
 
     def _model(self, x: Array) -> Array:
-        vectors = np.tile(self.values, (len(x), 1))
+        vectors = np.tile(self.run.values, (len(x), 1))
         vectors[:, self.positions] = x
-        with _told():
-            raw, _, failed = self._plan.ensemble(vectors, self.forcing, self.run.options, None)
-        self._reasons[:] = [reason for _, reason in failed]
-        records = _derive(raw, self.run.recipes)
+        records, _, failures = self.run.ensemble(vectors)
+        self._reasons[:] = [failure.reason for failure in failures]
         series = [
             instants(records[..., c], self.place)
             if kind == "instant"
-            else means(records[..., c], self.place, self.run.reach)
-            for c, kind in zip(self.run.columns, self.run.kinds, strict=True)
+            else means(records[..., c], self.place, self.seen.reach)
+            for c, kind in zip(self.seen.columns, self.seen.kinds, strict=True)
         ]
         return np.stack(series, axis=-1)
 
@@ -177,7 +158,7 @@ class Case:
                 )
         x = np.empty(len(self.parameters))
         for k, parameter in enumerate(self.parameters):
-            x[k] = given.get(parameter.path, self.values[self.positions[k]])
+            x[k] = given.get(parameter.path, self.run.values[self.positions[k]])
             low, high = parameter.limits
             if not low <= x[k] <= high:
                 unit = f" {parameter.unit}" if parameter.unit else ""
@@ -221,7 +202,8 @@ class Case:
         """Write the case; the file appears when it is complete, also beside others that write it."""
         header = {
             "format": _FORMAT,
-            "run": asdict(self.run),
+            "run": self.run.header(),
+            "seen": asdict(self.seen),
             "parameters": [asdict(p) for p in self.parameters],
             "sensors": [
                 [s.name, s.standard_uncertainty, s.relative_standard_uncertainty, s.unit, s.weight]
@@ -235,31 +217,14 @@ class Case:
         np.savez(
             buffer,
             header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8),
-            forcing=self.forcing,
-            values=self.values,
+            forcing=self.run.forcing,
+            values=self.run.values,
             positions=self.positions,
             place=self.place,
             measured=self.problem.measured,
             mask=self.problem.mask,
         )
-        # Of one process alone: several runs at a time may find that there is no case yet.
-        draft = path.with_name(f"{path.name}.{os.getpid()}.part")
-        try:
-            draft.write_bytes(buffer.getvalue())
-            draft.replace(path)
-        finally:
-            draft.unlink(missing_ok=True)
-
-
-@contextmanager
-def _told() -> Iterator[None]:
-    """Engine errors as Mascarin's."""
-    try:
-        yield
-    except _engine.EngineInputError as error:
-        raise InputError(str(error)) from None
-    except _engine.EngineSolverError as error:
-        raise SolverError(str(error)) from None
+        atomic.write(path, buffer.getvalue())
 
 
 def open_case(path: Path, study: str) -> Case | None:
@@ -287,8 +252,6 @@ def open_case(path: Path, study: str) -> Case | None:
 
 
 def _case(header: Mapping[str, Any], arrays: Mapping[str, Any]) -> Case:
-    run = header["run"]
-    recipes = [(kind, tuple(columns)) for kind, columns in run["recipes"]]
     sensors = tuple(
         FitSensor(
             name,
@@ -302,9 +265,8 @@ def _case(header: Mapping[str, Any], arrays: Mapping[str, Any]) -> Case:
         for s, (name, uncertainty, relative, unit, weight) in enumerate(header["sensors"])
     )
     return Case(
-        run=Run(**{**run, "recipes": recipes}),
-        forcing=arrays["forcing"],
-        values=arrays["values"],
+        run=CompiledRun.read(header["run"], arrays["forcing"], arrays["values"]),
+        seen=Observed(**header["seen"]),
         positions=arrays["positions"],
         place=arrays["place"],
         parameters=tuple(_parameter(p) for p in header["parameters"]),

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.genopt.export.case import Case, Run, inputs_of, open_case
-from mascarin.simulation.simulation import _probes
+from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
 from mascarin.study import Study
 from mascarin.study.inputs import find
-from mascarin.weather.table import epoch_seconds
+from mascarin.weather.times import epoch_seconds
 
 if TYPE_CHECKING:
     from mascarin.study.description import StudyFile
@@ -55,22 +54,17 @@ def compile_study(study: Study) -> Case:
         A parameter or a sensor that cannot be used.
     """
     problem, simulation, observation = study.problem(), study.short(), study.observation
-    probes, recipes = _probes(simulation.outputs)
     seconds, at = epoch_seconds(simulation.index), epoch_seconds(observation.times)
     step = seconds[1] - seconds[0]
     columns = [observation.names.index(sensor.name) for sensor in problem.sensors]
-    run = Run(
-        description=simulation._description.json,
-        options=simulation._options(probes, 0, 1),
-        recipes=recipes,
+    seen = Observed(
         columns=columns,
         kinds=[observation.kinds[c] for c in columns],
         reach=float(observation.interval / step),
     )
     return Case(
-        run=run,
-        forcing=simulation._forcing,
-        values=simulation.values,
+        run=simulation.compiled,
+        seen=seen,
         positions=np.array([simulation.position(path) for path in problem.paths], dtype=np.int64),
         place=((at - seconds[0]) / step)[np.flatnonzero(study.during["identification"])],
         parameters=problem.parameters,

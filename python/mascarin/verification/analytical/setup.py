@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
+    from mascarin.simulation.options import Scheme
     from mascarin.simulation.results import Results
-    from mascarin.simulation.simulation import Scheme, Simulation
+    from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate
 
     Array = npt.NDArray[np.float64]

@@ -14,7 +14,8 @@ from mascarin.verification.analytical.check import Case, Check
 
 if TYPE_CHECKING:
     from mascarin.building import Building
-    from mascarin.simulation.simulation import Scheme, Simulation
+    from mascarin.simulation.options import Scheme
+    from mascarin.simulation.simulation import Simulation
 
 #: Dry air at sea level: ICAO standard pressure, 15 degC; specific heat of ASHRAE Fundamentals, ch. 1.
 AIR_DENSITY: Final = 101_325.0 / (287.055 * 288.15)
@@ -268,7 +269,7 @@ def _lanes(name: str) -> Iterator[Check]:
     for path in paths:
         samples[:, prepared.position(path)] *= rng.uniform(0.6, 1.2, len(samples))
     records, closure, failures = prepared.ensemble(samples)
-    alone = [prepared.run(row) for row in samples]
+    alone = [prepared.run_vector(row) for row in samples]
     apart = max(float(np.max(np.abs(records[k] - one.records))) for k, one in enumerate(alone))
     residual = max(abs(float(closure[k]) - one.energy.closure) for k, one in enumerate(alone))
     yield Check.most(name, "largest difference of 11 members, alone and in an ensemble", "K", apart, high=0.0)

@@ -124,7 +124,7 @@ def _simulate(
     """Hourly means over the year by output, and the relative energy-balance residual."""
     from datetime import datetime, timedelta
 
-    from mascarin.simulation.simulation import simulate
+    from mascarin.simulation.run import simulate
 
     new_year = datetime(YEAR, 1, 1)
     results = simulate(

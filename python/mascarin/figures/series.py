@@ -1,0 +1,83 @@
+"""Figures of series over local time, on axes for each unit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from mascarin.errors import InputError
+from mascarin.progress import in_notebook
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+    import pandas as pd
+
+    Array = npt.NDArray[np.float64]
+
+
+def draw(
+    series: Sequence[tuple[str, str, Array]], index: pd.DatetimeIndex, ax: Axes | Sequence[Axes] | None
+) -> Figure:
+    """Draw series over local time.
+
+    Parameters
+    ----------
+    series : sequence of (str, str, ndarray)
+        Name, unit and values of each series, shape (rows,). [its unit]
+    index : pandas.DatetimeIndex, shape (rows,)
+        Local times with their zone.
+    ax : matplotlib.axes.Axes or sequence of them, or None
+        One for each unit, or one for all; None makes a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure of the axes.
+
+    Raises
+    ------
+    InputError
+        Another number of axes.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> index = pd.date_range("2001-07-01", periods=3, freq="1h", tz="UTC")
+    >>> draw([("room", "degC", np.array([20.0, 21.0, 20.5]))], index, None).axes[0].get_xlabel()
+    'local time (UTC)'
+    """
+    units = list(dict.fromkeys(unit for _, unit, _ in series))
+    axes = _axes(ax, units)
+    local = index.tz_localize(None)
+    for name, unit, values in series:
+        axes[units.index(unit)].plot(local, values, label=name, lw=1.1)
+    for axis in dict.fromkeys(axes):
+        here = [unit for unit, other in zip(units, axes, strict=True) if other is axis]
+        axis.set_ylabel(", ".join(here))
+        axis.legend(fontsize="small")
+        axis.grid(alpha=0.3)
+    if axes:
+        axes[-1].set_xlabel(f"local time ({index.tz})")
+    return (axes[0].get_figure(root=True) if axes else None) or Figure()
+
+
+def _axes(ax: Axes | Sequence[Axes] | None, units: Sequence[str]) -> list[Axes]:
+    """One axes for each unit; the same one may stand for several."""
+    if ax is None:
+        if in_notebook():
+            import matplotlib.pyplot  # noqa: F401 (lets the notebook show figures)
+        figure = Figure(figsize=(9.0, 2.8 * len(units) + 0.6), layout="constrained")
+        return list(figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]) if units else []
+    given = [ax] if isinstance(ax, Axes) else list(ax)
+    if len(given) == 1:
+        return given * len(units)
+    if len(given) != len(units):
+        raise InputError(
+            f"ax: found {len(given)} axes, expected one, or one for each unit ({', '.join(units)})"
+        )
+    return given

@@ -1,0 +1,350 @@
+"""A run as plain arrays: all that the engine needs, without the description, the weather or pandas."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin import _engine
+from mascarin.simulation.engine_errors import translated
+from mascarin.simulation.readings import Readings
+from mascarin.weather.timezones import parse_timezone
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.progress import Report
+
+    Array = npt.NDArray[np.float64]
+
+#: Memory that a run with derivatives in reverse may keep before it calculates parts again. [B]
+MEMORY: Final = 256 * 2**20
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A member of an ensemble that did not finish.
+
+    Parameters
+    ----------
+    member : int
+        Its row.
+    reason : str
+        Message of the engine.
+
+    Examples
+    --------
+    >>> Failure(2, "step 4 did not converge").member
+    2
+    """
+
+    member: int
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledRun:
+    """A building in a climate, compiled for the engine: text and arrays that can be pickled or saved.
+
+    Methods take parameter vectors; `Simulation` takes values by path.
+
+    Parameters
+    ----------
+    description : str
+        The building as the engine reads it, JSON.
+    forcing : ndarray, shape (steps, stages, channels)
+        Weather, measured boundaries and schedules. [unit of each channel]
+    paths : tuple of str, length P
+        Path of each parameter.
+    values : ndarray, shape (P,)
+        Parameter vector of the building. [unit of each]
+    settings : dict
+        Step [s], scheme, start and repeated period, as the engine reads them.
+    readings : Readings
+        What is recorded, and how the outputs follow from it.
+    start : float
+        Start, in seconds since 1970-01-01 UTC. [s]
+    timezone : str
+        Time zone of the climate, for messages.
+
+    Examples
+    --------
+    >>> import pickle
+    >>> import mascarin as mc
+    >>> from mascarin.examples import box, box_climate
+    >>> simulation = mc.Simulation(box(), box_climate(), step="1h", outputs=["room.air_temperature"])
+    >>> compiled = pickle.loads(pickle.dumps(simulation.compiled))
+    >>> records, _ = compiled.run(compiled.values)
+    >>> bool((records == simulation.run().records).all())
+    True
+    """
+
+    description: str
+    forcing: Array
+    paths: tuple[str, ...]
+    values: Array
+    settings: Mapping[str, Any]
+    readings: Readings
+    start: float
+    timezone: str
+
+    @cached_property
+    def plan(self) -> _engine.Plan:
+        """The engine's form of the description; made when it is first used, also after unpickling."""
+        with translated():
+            return _engine.Plan(self.description)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {key: value for key, value in self.__dict__.items() if key != "plan"}
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 of the description."""
+        return hashlib.sha256(self.description.encode()).hexdigest()
+
+    def options(
+        self, readings: Readings | None = None, record_from: int = 0, record_every: int = 1
+    ) -> dict[str, Any]:
+        """Options of a run as the engine reads them.
+
+        Parameters
+        ----------
+        readings : Readings, optional
+            Outputs other than those of the compiled run.
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        """
+        return {
+            **self.settings,
+            "probes": (readings or self.readings).probes,
+            "record_from": record_from,
+            "record_every": record_every,
+        }
+
+    def run(self, vector: Array, readings: Readings | None = None) -> tuple[Array, dict[str, Any]]:
+        """Run once.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        readings : Readings, optional
+            Outputs other than those of the compiled run.
+
+        Returns
+        -------
+        records : ndarray, shape (rows, outputs)
+            Outputs. [unit of each]
+        raw : dict
+            Energy ledger [J] and counters of the solver.
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        recorded = readings or self.readings
+        with translated(self.dated):
+            raw = self.plan.simulate(vector, self.forcing, self.options(recorded))
+        return recorded.values(raw["records"]), raw
+
+    def ensemble(
+        self, vectors: Array, *, record_from: int = 0, record_every: int = 1, progress: Report | None = None
+    ) -> tuple[Array, Array, list[Failure]]:
+        """Run many parameter vectors, several at a time in lanes and threads.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (M, P)
+            One parameter vector a row. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        progress : callable, optional
+            Called with the number of members done and their total.
+
+        Returns
+        -------
+        records : ndarray, shape (M, rows, outputs)
+            NaN for a member that failed.
+        residuals : ndarray, shape (M,)
+            Relative energy-balance residual of each member. [-]
+        failures : list of Failure
+            Members that failed, and why.
+        """
+        options = self.options(None, record_from, record_every)
+        with translated(self.dated):
+            raw, residuals, failed = self.plan.ensemble(
+                vectors, self.forcing, options, _of_total(progress, len(vectors))
+            )
+        failures = [Failure(member, self.dated(reason)) for member, reason in failed]
+        return self.readings.values(raw), residuals, failures
+
+    def jacobian(
+        self,
+        positions: Sequence[int],
+        vector: Array,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        progress: Report | None = None,
+    ) -> tuple[Array, Array]:
+        """Run once with the derivatives of every output by some parameters, in forward mode.
+
+        Parameters
+        ----------
+        positions : sequence of int
+            Positions of the parameters in the vector.
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        progress : callable, optional
+            Called with the number of parameters done and their total.
+
+        Returns
+        -------
+        records : ndarray, shape (rows, outputs)
+            Outputs. [unit of each]
+        slopes : ndarray, shape (parameters, rows, outputs)
+            Derivatives. [unit of the output / unit of the parameter]
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        options = self.options(None, record_from, record_every)
+        told = _of_total(progress, len(positions))
+        with translated(self.dated):
+            raw, slopes = self.plan.jacobian(vector, list(positions), self.forcing, options, told)
+        return self.readings.values(raw), self.readings.slopes(raw, slopes)
+
+    def trajectory(
+        self, vector: Array, *, record_from: int = 0, record_every: int = 1, memory: int = MEMORY
+    ) -> Trajectory:
+        """Run once and keep what the derivatives in reverse mode need.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        memory : int
+            About how much may be kept: beyond it parts of the run are calculated again. [B]
+
+        Returns
+        -------
+        Trajectory
+            Its records, and the derivatives of quantities made of them by all parameters.
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        options = self.options(None, record_from, record_every)
+        with translated(self.dated):
+            run = _engine.Trajectory(self.plan, vector, self.forcing, options, memory)
+        return Trajectory(run, run.run()["records"], self.readings)
+
+    def dated(self, message: str) -> str:
+        """Add the local time to a message of the engine that names a step.
+
+        Parameters
+        ----------
+        message : str
+            The message.
+        """
+
+        def stamped(match: re.Match[str]) -> str:
+            step = min(int(match[1]), len(self.forcing) - 1)
+            begin = datetime.fromtimestamp(0, UTC) + timedelta(
+                seconds=self.start + step * self.settings["dt"]
+            )
+            local = begin.astimezone(parse_timezone(self.timezone))
+            return f"step {step} from {local:%Y-%m-%d %H:%M:%S}"
+
+        return re.sub(r"step (\d+)", stamped, message, count=1)
+
+    def header(self) -> dict[str, Any]:
+        """All but the arrays, as plain values for JSON."""
+        return {
+            "description": self.description,
+            "paths": list(self.paths),
+            "settings": dict(self.settings),
+            "probes": self.readings.probes,
+            "recipes": [[kind, list(columns)] for kind, columns in self.readings.recipes],
+            "start": self.start,
+            "timezone": self.timezone,
+        }
+
+    @classmethod
+    def read(cls, header: Mapping[str, Any], forcing: Array, values: Array) -> CompiledRun:
+        """Make a compiled run again from its `header` and arrays.
+
+        Parameters
+        ----------
+        header : mapping
+            What `header` returned.
+        forcing : ndarray, shape (steps, stages, channels)
+            Weather, measured boundaries and schedules. [unit of each channel]
+        values : ndarray, shape (P,)
+            Parameter vector of the building. [unit of each]
+        """
+        recipes = tuple((kind, tuple(columns)) for kind, columns in header["recipes"])
+        return cls(
+            description=header["description"],
+            forcing=forcing,
+            paths=tuple(header["paths"]),
+            values=values,
+            settings=header["settings"],
+            readings=Readings(header["probes"], recipes),
+            start=header["start"],
+            timezone=header["timezone"],
+        )
+
+
+class Trajectory:
+    """A run that keeps what its derivatives in reverse mode need; see `CompiledRun.trajectory`.
+
+    Attributes
+    ----------
+    records : ndarray, shape (rows, outputs)
+        Outputs of the run.
+    """
+
+    def __init__(self, run: _engine.Trajectory, raw: Array, readings: Readings) -> None:
+        self._run = run
+        self._raw = raw
+        self._readings = readings
+        self.records = readings.values(raw)
+
+    def pull(self, weights: Array) -> Array:
+        """Derivatives of a quantity by all parameters, from its derivatives by all records.
+
+        Parameters
+        ----------
+        weights : ndarray, shape (rows, outputs)
+            Derivative of the quantity by each record.
+
+        Returns
+        -------
+        ndarray, shape (P,)
+            Derivative of the quantity by each parameter, in the order of the parameter vector.
+        """
+        return self._run.pull(np.ascontiguousarray(self._readings.weights(self._raw, weights)))
+
+
+def _of_total(progress: Report | None, total: int) -> Callable[[int], object] | None:
+    """The engine's form of a progress callback: with the number done alone."""
+    if progress is None:
+        return None
+    return lambda done: progress(done, total)

@@ -1,0 +1,202 @@
+"""From a building and a climate to what the engine needs: period, outputs, forcing and start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.building.initial_state import Ambient, GivenStart
+from mascarin.errors import InputError
+from mascarin.simulation.initial import MeasuredStart, resolved
+from mascarin.simulation.initial import read as read_initial
+from mascarin.weather import CHANNELS, IRRADIANCES, TEMPERATURES, parse_timezone, scheduled
+from mascarin.weather.times import stamps_of
+from mascarin.weather.timezones import moment
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.building import Building, EngineDescription, Output
+    from mascarin.building.initial_state import Profile
+    from mascarin.simulation.options import Scheme, TimeLike
+    from mascarin.weather import Climate, Measurements
+
+    Array = npt.NDArray[np.float64]
+
+__all__ = [
+    "changed_parameters",
+    "chosen_outputs",
+    "forcing_of",
+    "period",
+    "read_initial",
+    "settings_of",
+    "start_of",
+    "with_parameters",
+]
+
+#: Largest change of any temperature between two repetitions of the first period. [K]
+REPEATED_WITHIN: Final = 0.01
+#: Repetitions after which the first period counts as not converged.
+MAX_REPETITIONS: Final = 1000
+_USUAL: Final = ("air_temperature", "face_temperature", "interface_temperature", "sensor", "liquid_fraction")
+
+
+def with_parameters(building: Building, parameters: Mapping[str, float] | None) -> Building:
+    """The building with other values of some parameters.
+
+    Raises
+    ------
+    InputError
+        Unknown path, something that is no number, or a value that the parameter cannot have.
+    """
+    if not parameters:
+        return building
+    for path, value in parameters.items():
+        if isinstance(value, str | bool) or not np.isscalar(value):
+            unit = building.parameter(path).unit or "its unit"
+            raise InputError(
+                f"parameters: {path}: found {value!r}, expected a number in {unit}. Replace a whole "
+                "part with Building.replace()"
+            )
+    return building.with_values(parameters)
+
+
+def changed_parameters(
+    before: Building, after: Building, parameters: Mapping[str, float] | None
+) -> dict[str, float]:
+    """Parameters that `with_parameters` changed, by whole path. [unit of each]"""
+    old = {before.parameter(path).path: before.parameter(path).value for path in parameters or {}}
+    new = {path: after.parameter(path).value for path in old}
+    return {path: float(value) for path, value in new.items() if value != old[path]}
+
+
+def period(
+    climate: Climate, start: TimeLike | None, end: TimeLike | None
+) -> tuple[pd.Timestamp, pd.Timestamp]:
+    """Start and end in local time; by default those of the climate."""
+    grid = climate.grid
+    first, last = stamps_of(np.array([grid.start, grid.end]), grid.zone)
+    begin = first if start is None else moment(start, grid.zone, "start")
+    finish = last if end is None else moment(end, grid.zone, "end")
+    if finish <= begin:
+        raise InputError(f"period: found start {begin} and end {finish}, expected the end after the start")
+    return begin, finish
+
+
+def chosen_outputs(building: Building, names: Sequence[str] | None) -> list[Output]:
+    """Outputs by name, or the usual ones."""
+    if names is not None:
+        return [building.output(name) for name in names]
+    return [output for output in building.outputs() if output.kind in _USUAL]
+
+
+def forcing_of(
+    building: Building,
+    climate: Climate,
+    description: EngineDescription,
+    *,
+    start: pd.Timestamp,
+    end: pd.Timestamp,
+    step_seconds: float,
+    scheme: Scheme,
+    measurements: Measurements | None,
+) -> Array:
+    """Climate, measured columns and schedules at every stage, shape (steps, stages, channels).
+
+    Raises
+    ------
+    InputError
+        A channel that the building needs has no values.
+    """
+    names = description.schedules
+    columns = description.channels[: len(description.channels) - len(names)]
+    weather = climate.forcing(
+        building.site, start, end, step_seconds, scheme, columns, measurements, limits=_limits(building)
+    )
+    if names:
+        profiles = scheduled(
+            climate,
+            {name: building.schedules[name] for name in names},
+            parse_timezone(building.site.timezone),
+            start,
+            end,
+            step_seconds,
+            scheme,
+            measurements,
+        )
+        forcing = np.concatenate([weather, profiles], axis=-1)
+    else:
+        forcing = np.ascontiguousarray(weather, dtype=np.float64)
+    _require_numbers(forcing, description.channels, building)
+    return forcing
+
+
+def start_of(
+    wanted: float | GivenStart | MeasuredStart | None,
+    building: Building,
+    description: EngineDescription,
+    forcing: Array,
+    start: pd.Timestamp,
+) -> float | Profile | None:
+    """Temperature or temperatures at the start; None to repeat the first period."""
+    if wanted is None or isinstance(wanted, float):
+        return wanted
+    # The weather of the first stage stands for that of the start.
+    now = dict(zip((*CHANNELS, *description.channels), forcing[0, 0].tolist(), strict=True))
+    ambient = Ambient(now["air_temperature"], now["day_of_year"], now)
+    return resolved(wanted, building, description.nodes, ambient, start)
+
+
+def settings_of(
+    initial: float | Profile | None,
+    forcing: Array,
+    *,
+    step_seconds: float,
+    scheme: Scheme,
+    first_period: float,
+) -> dict[str, Any]:
+    """Step, scheme, start and repeated period, as the engine reads them."""
+    steps = min(max(round(first_period / step_seconds), 1), len(forcing))
+    temperatures: float | dict[str, list[float]]
+    if initial is None:
+        # The temperature that the repetition starts from changes only its length.
+        temperatures = float(forcing[:, -1, 0].mean())
+    elif isinstance(initial, float):
+        temperatures = initial
+    else:
+        temperatures = {key: list(getattr(initial, key)) for key in ("cells", "faces", "air")}
+    return {
+        "dt": step_seconds,
+        "scheme": scheme,
+        "initial": temperatures,
+        "warmup_steps": steps if initial is None else 0,
+        "warmup_tolerance": REPEATED_WITHIN,
+        "warmup_max_cycles": MAX_REPETITIONS,
+    }
+
+
+def _limits(building: Building) -> dict[str, tuple[float, float]]:
+    """Limits of the measured columns that act on a building, by what each is used for."""
+    sides = [side for surface in building.surfaces.values() for side in surface.sides]
+    temperatures = {side.measured: TEMPERATURES for side in sides if side.measured is not None}
+    irradiances = {side.irradiance: IRRADIANCES for side in sides if side.irradiance is not None}
+    return temperatures | irradiances
+
+
+def _require_numbers(forcing: Array, channels: Sequence[str], building: Building) -> None:
+    """Channels that the engine reads must hold numbers; some may be absent."""
+    names = (*CHANNELS, *channels)
+    absent = {"pressure"} | (set() if building.site.sky.kind == "measured" else {"infrared"})
+    if building.site.sky.kind in ("offset", "measured"):
+        absent.add("dew_point")
+    bad = [bool(np.isnan(forcing[..., k]).any()) for k in range(len(names))]
+    missing = [name for name, empty in zip(names, bad, strict=True) if empty and name not in absent]
+    if missing:
+        raise InputError(
+            f"climate: no values for {', '.join(missing)}, which this building needs (sky model "
+            f"'{building.site.sky.kind}'). Give the column, or choose another sky model, for example "
+            "site.sky: {kind: offset}"
+        )

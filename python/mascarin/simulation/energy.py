@@ -1,0 +1,99 @@
+"""The energy balance of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Self
+
+FLOWS: Final = (
+    "solar",
+    "convection",
+    "longwave",
+    "boundary",
+    "infiltration",
+    "ventilation",
+    "interzone",
+    "gains",
+    "heating",
+    "cooling",
+    "transmitted",
+    "glass",
+)
+"""Heat flows into a building; cooling removes heat and is negative."""
+
+
+@dataclass(frozen=True)
+class EnergyLedger:
+    """Heat by flow over a run, the heat stored, and how well they balance.
+
+    Parameters
+    ----------
+    into : mapping of str to float
+        Net heat into the building by flow. [J]
+    stored : float
+        Rise of the heat stored in walls and air. [J]
+    turnover : float
+        Total heat exchanged: sum of the magnitudes of all flows. [J]
+    relative_residual : float
+        Relative energy-balance residual: sum over steps of |stored - into|, over the total heat exchanged.
+        [-]
+
+    Examples
+    --------
+    >>> import mascarin as mc
+    >>> from mascarin.examples import box, box_climate
+    >>> ledger = mc.simulate(box(), box_climate(), step="1h").energy
+    >>> ledger.relative_residual < 1e-9
+    True
+    """
+
+    into: Mapping[str, float]
+    stored: float
+    turnover: float
+    relative_residual: float
+
+    @property
+    def closure(self) -> float:
+        """The same as `relative_residual`. [-]"""
+        return self.relative_residual
+
+    @classmethod
+    def read(cls, raw: Mapping[str, Any]) -> Self:
+        """Make one from the values that the engine returns.
+
+        Parameters
+        ----------
+        raw : mapping
+            Heat by flow, ``stored``, ``turnover`` [J] and ``closure`` [-].
+        """
+        into = {flow: float(raw[flow]) for flow in FLOWS}
+        return cls(into, float(raw["stored"]), float(raw["turnover"]), float(raw["closure"]))
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Self:
+        """Make one from the values of `to_dict`.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            The values.
+        """
+        into = {flow: float(values[f"{flow}_joule"]) for flow in FLOWS}
+        numbers = (values[key] for key in ("stored_joule", "turnover_joule", "closure"))
+        return cls(into, *(float(number) for number in numbers))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers for JSON."""
+        into = {f"{flow}_joule": value for flow, value in self.into.items()}
+        return {
+            "closure": self.relative_residual,
+            "stored_joule": self.stored,
+            "turnover_joule": self.turnover,
+            **into,
+        }
+
+    def __str__(self) -> str:
+        lines = [f"{flow:<14}{value / 3.6e6:>12.3f} kWh" for flow, value in self.into.items()]
+        residual = f"relative energy-balance residual {self.relative_residual:.1e}"
+        return "\n".join([*lines, f"{'stored':<14}{self.stored / 3.6e6:>12.3f} kWh", residual])

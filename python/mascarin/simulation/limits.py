@@ -1,0 +1,121 @@
+"""Checks of parameter vectors: limits of each parameter, and heating set points below cooling ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.weather.channels import CHANNELS
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.building import Building, Parameter
+
+    Array = npt.NDArray[np.float64]
+
+
+class Limits:
+    """Limits of parameters, in the order of a parameter vector.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter, length P
+        The parameters.
+    """
+
+    def __init__(self, parameters: Sequence[Parameter]) -> None:
+        self._parameters = list(parameters)
+        self._lower = np.array([p.lower for p in parameters])
+        self._upper = np.array([p.upper for p in parameters])
+
+    def require(self, vectors: Array) -> None:
+        """Refuse vectors of the wrong length, or with a value outside its limits.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (M, P)
+            Parameter vectors. [unit of each]
+
+        Raises
+        ------
+        InputError
+            Naming the parameter, the member, the value and the limits.
+        """
+        if vectors.ndim != 2 or vectors.shape[1] != len(self._parameters):
+            raise InputError(
+                f"samples: found an array of shape {vectors.shape}, expected (members, "
+                f"{len(self._parameters)}): one value for each parameter"
+            )
+        # A value that is no number makes only its own member fail.
+        bad = np.argwhere((vectors < self._lower) | (vectors > self._upper))
+        if bad.size:
+            member, k = (int(i) for i in bad[0])
+            parameter = self._parameters[k]
+            raise InputError(
+                f"samples: {parameter.path} of member {member}: found {vectors[member, k]:g} "
+                f"{parameter.unit}; expected a value from {parameter.lower:g} to {parameter.upper:g}"
+            )
+
+
+def require_set_points_apart(
+    building: Building,
+    vectors: Array,
+    forcing: Array,
+    *,
+    positions: Mapping[str, int],
+    channels: Sequence[str],
+    times: pd.DatetimeIndex,
+) -> None:
+    """Refuse heating above cooling.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    vectors : ndarray, shape (M, P)
+        Parameter vectors. [unit of each]
+    forcing : ndarray, shape (steps, stages, channels)
+        What acts on the building, schedules included. [unit of each]
+    positions : mapping of str to int
+        Position of each parameter in a vector.
+    channels : sequence of str
+        Channels of the forcing after those of the climate.
+    times : pandas.DatetimeIndex, shape (rows,)
+        Times of the records.
+
+    Raises
+    ------
+    InputError
+        Naming the zone, the member, the time and both set points.
+    """
+
+    def set_point(zone: str, which: str) -> Array:
+        """Set points at the ends of the steps, shape (members, 1) or (1, steps). [degC]"""
+        loads = building.zones[zone].plants[which]
+        if loads.setpoint.schedule is None:
+            return vectors[:, [positions[f"zones.{zone}.{which}.setpoint.temperature"]]]
+        place = len(CHANNELS) + list(channels).index(f"schedule {loads.setpoint.schedule}")
+        return forcing[None, :, -1, place]
+
+    for name, zone in building.zones.items():
+        if zone.heating is None or zone.cooling is None:
+            continue
+        heating, cooling = set_point(name, "heating"), set_point(name, "cooling")
+        bad = np.argwhere(heating > cooling + 1e-9)
+        if not len(bad):
+            continue
+        member, step = (int(i) for i in bad[0])
+        warm, cold = (
+            float(np.broadcast_to(x, (len(vectors), len(forcing)))[member, step]) for x in (heating, cooling)
+        )
+        raise InputError(
+            f"zones.{name}: found heating to {warm:g} degC above cooling to {cold:g} degC at the end "
+            f"of the step from {times[step]:%Y-%m-%d %H:%M}"
+            f"{f' (member {member})' if len(vectors) > 1 else ''}; expected a heating set point at or "
+            "below the cooling set point at all times: lower the one or raise the other"
+        )

@@ -1,0 +1,87 @@
+"""What a run was made from: version, building, climate, options and counters of the solver."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final, Self
+
+from mascarin import __version__
+
+_KEYS: Final = {"version": "mascarin_version", "building_hash": "building_sha256"}
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """What a run was made from.
+
+    Parameters
+    ----------
+    building : str
+        Name of the building.
+    building_hash : str
+        SHA-256 of the description that the engine read.
+    climate : dict
+        File, hash, period and conversions of the climate.
+    step_seconds : float
+        Time step. [s]
+    scheme : str
+        Time-stepping scheme.
+    start : str
+        How the run was started.
+    changed : mapping of str to float
+        Parameters that differ from the description. [unit of each]
+    newton_iterations : int
+        Newton iterations over all stages.
+    nested_stages : int
+        Stages that only the nested iteration of Casulli & Zanolli solved.
+    halved_steps : int
+        Steps, or parts of steps, that had to be halved.
+    reversals : int
+        How often a phase-change cell with hysteresis melted and froze within one step: its history, which is
+        updated at the end of a step, contains only the sum. A shorter step makes it smaller.
+    version : str
+        Version of Mascarin.
+    """
+
+    building: str
+    building_hash: str
+    climate: Mapping[str, Any]
+    step_seconds: float
+    scheme: str
+    start: str
+    changed: Mapping[str, float]
+    newton_iterations: int
+    nested_stages: int = 0
+    halved_steps: int = 0
+    reversals: int = 0
+    version: str = field(default=__version__)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return {
+            "mascarin_version": self.version,
+            "building": self.building,
+            "building_sha256": self.building_hash,
+            "climate": dict(self.climate),
+            "step_seconds": self.step_seconds,
+            "scheme": self.scheme,
+            "start": self.start,
+            "changed": dict(self.changed),
+            "newton_iterations": self.newton_iterations,
+            "nested_stages": self.nested_stages,
+            "halved_steps": self.halved_steps,
+            "reversals": self.reversals,
+        }
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Self:
+        """Make one from the values of `to_dict`.
+
+        Parameters
+        ----------
+        values : mapping
+            The values.
+        """
+        names = {_KEYS.get(name, name): name for name in cls.__dataclass_fields__}
+        return cls(**{names[key]: value for key, value in values.items() if key in names})
