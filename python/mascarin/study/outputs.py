@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io import atomic
-from mascarin.calibration import plots
+from mascarin.calibration import plot_profiles
 from mascarin.figures import comparison
 from mascarin.figures.files import save
 from mascarin.sensitivity.files import save_all
@@ -21,7 +21,8 @@ from mascarin.study.tables import tables_of, write_tables
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from mascarin.calibration import Fit, Profile
+    from mascarin.calibration import Calibration, Profile
+    from mascarin.calibration.result import PlotKind
     from mascarin.study.findings import Findings
     from mascarin.study.setup import Setup
     from mascarin.study.storage import Workspace
@@ -64,23 +65,31 @@ def run_facts(findings: Findings) -> dict[str, Any]:
     }
 
 
-def fit_figures(fit: Fit, profiles: Sequence[Profile], folder: Path) -> list[Path]:
+def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> list[Path]:
     """Write the figures of a calibration: cost of the evaluations, minima and profiles.
 
     Parameters
     ----------
-    fit : Fit
+    fit : Calibration
         The calibration.
     profiles : sequence of Profile
         May be empty.
     folder : Path
         Where to write.
     """
-    figures = {"identification-course": plots.course(fit)}
+
+    def drawn(kind: PlotKind) -> Figure:
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
+        fit.plot(kind, ax=figure.subplots())
+        return figure
+
+    figures = {"identification-course": drawn("convergence")}
     if len(fit.minima) > 1:
-        figures["identification-minima"] = plots.minima(fit)
+        figures["identification-minima"] = drawn("minima")
     if profiles:
-        figures["identification-profiles"] = plots.profiles(profiles)
+        figures["identification-profiles"] = plot_profiles(profiles)
     return [save(figure, folder / f"{name}.svg") for name, figure in figures.items()]
 
 
