@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, AliasChoices, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from mascarin.building.initial_state import Degrees, GivenStart
 from mascarin.building.names import Name
@@ -18,6 +18,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.validation.criteria import Criterion
+from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
 
 if TYPE_CHECKING:
     from typing import Self
@@ -93,7 +94,8 @@ Columns = str | tuple[str, ...] | dict[str, Any]
 #: Names of models, metrics and series in the results; variants need other names.
 TAKEN: Final = (
     "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
-    "max_error_percent", "measured_range", "measured", "band", "as described", "observed", "weather", "state",
+    "max_error_percent", "cv_rmse", "nmbe", "rmse_over_range", "bias_over_range", "measured_range",
+    "measured", "band", "as described", "observed", "weather", "state",
 )  # fmt: skip
 
 
@@ -178,11 +180,25 @@ class Sensor(Part):
 
     column: str | tuple[str, ...] = Field(description="Column, or several columns, of which the mean is used")
     output: str = Field(description="Output of the model")
-    uncertainty: float = Field(
-        0.5, gt=0, description="Half-width of the 95 % band of the sensor [unit of the output]"
+    expanded_uncertainty: float | None = Field(
+        None,
+        gt=0,
+        validation_alias=AliasChoices("expanded_uncertainty", "uncertainty"),
+        description="Half-width of the 95 % interval of a measured value (GUM, coverage factor 1.96); the "
+        "older name uncertainty works as well; 0.5 for a sensor in degC when absent, required for other "
+        "units [unit of the output]",
+    )
+    standard_uncertainty: float | None = Field(
+        None,
+        gt=0,
+        description="Standard deviation of the error of a measured value (GUM), in place of "
+        "expanded_uncertainty [unit of the output]",
     )
     relative: float = Field(
-        0.0, ge=0, lt=1, description="Further half-width as a share of the measured value, such as 0.05 [-]"
+        0.0,
+        ge=0,
+        lt=1,
+        description="Further expanded uncertainty in proportion to the measured value, such as 0.05 [-]",
     )
     label: str | None = Field(None, description="Name in the report")
     use: bool = Field(True, description="Whether it is used in the identification")
@@ -191,6 +207,31 @@ class Sensor(Part):
     def columns(self) -> tuple[str, ...]:
         """The columns it is made of."""
         return (self.column,) if isinstance(self.column, str) else self.column
+
+    def stated_uncertainty(self, unit: str, name: str) -> SensorUncertainty:
+        """Standard uncertainty of the measured values.
+
+        Raises
+        ------
+        InputError
+            Standard and expanded uncertainty together, or none although the unit is not degC.
+        """
+        return SensorUncertainty.stated(
+            unit,
+            standard=self.standard_uncertainty,
+            expanded=self.expanded_uncertainty,
+            relative_expanded=self.relative or None,
+            where=f"sensors.{name}",
+        )
+
+    @property
+    def uncertainty(self) -> float:
+        """Expanded uncertainty (95 %), without the relative part. [unit of the output]"""
+        if self.expanded_uncertainty is not None:
+            return self.expanded_uncertainty
+        if self.standard_uncertainty is not None:
+            return COVERAGE_FACTOR * self.standard_uncertainty
+        return DEFAULT_EXPANDED["degC"]
 
 
 class Periods(Part):
@@ -303,8 +344,10 @@ class IdentificationPlan(Part):
     seed: int = Field(1, description="Seed of all random numbers")
     lead: Duration = Field("3d", description="Length of the warm-up before the identification period")
     budget: int | None = Field(None, ge=1, description="Largest number of evaluations of all searches")
-    cost: Literal["nll", "sd", "rmse", "cv_rmse"] = Field(
-        "nll", description="Cost function; least-squares, emcee and priors need nll"
+    cost: Literal["nll", "sd", "rmse", "rmse_over_range", "cv_rmse"] = Field(
+        "nll",
+        description="Cost function; least-squares, emcee and priors need nll; cv_rmse is that of ASHRAE "
+        "Guideline 14, and stands for rmse_over_range where a sensor is in degC",
     )
     independent: Duration | None = Field(
         None,

@@ -26,7 +26,7 @@ from mascarin.calibration.cost import Cost, CostName
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError, SolverError, did_you_mean
 from mascarin.simulation.compiled import CompiledRun
-from mascarin.validation.observation import _instants, _means
+from mascarin.validation.observation import instants, means
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -134,9 +134,9 @@ class Case:
         records, _, failures = self.run.ensemble(vectors)
         self._reasons[:] = [failure.reason for failure in failures]
         series = [
-            _instants(records[..., c], self.place)
+            instants(records[..., c], self.place)
             if kind == "instant"
-            else _means(records[..., c], self.place, self.seen.reach)
+            else means(records[..., c], self.place, self.seen.reach)
             for c, kind in zip(self.seen.columns, self.seen.kinds, strict=True)
         ]
         return np.stack(series, axis=-1)
@@ -205,7 +205,10 @@ class Case:
             "run": self.run.header(),
             "seen": asdict(self.seen),
             "parameters": [asdict(p) for p in self.parameters],
-            "sensors": [[s.name, s.uncertainty, s.relative, s.unit, s.weight] for s in self.sensors],
+            "sensors": [
+                [s.name, s.standard_uncertainty, s.relative_standard_uncertainty, s.unit, s.weight]
+                for s in self.sensors
+            ],
             "cost": self.cost,
             "step": self.step,
             "inputs": self.inputs,
