@@ -13,8 +13,9 @@
 use core::cell::RefCell;
 use core::marker::PhantomData;
 use core::mem::ManuallyDrop;
-use core::ops::{Add, AddAssign, Div, Mul, Neg, Range, Sub};
+use core::ops::{Add, Div, Mul, Neg, Range, Sub};
 
+use crate::number::macros::{add_assign, chain_rule};
 use crate::number::real::{Equations, LinearSystem, Logistic, Real};
 
 thread_local! {
@@ -305,12 +306,7 @@ impl Neg for Taped {
         self.chain(-self.value, -1.0)
     }
 }
-impl AddAssign for Taped {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
+add_assign!([] Taped);
 
 impl Real for Taped {
     type Mask = bool;
@@ -334,57 +330,8 @@ impl Real for Taped {
     fn carries(self) -> bool {
         self.place != NOWHERE
     }
-    #[inline(never)]
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chain(root, 0.5 / root)
-    }
-    #[inline(never)]
-    fn exp(self) -> Self {
-        let value = Real::exp(self.value);
-        self.chain(value, value)
-    }
-    #[inline(never)]
-    fn ln(self) -> Self {
-        self.chain(Real::ln(self.value), 1.0 / self.value)
-    }
-    #[inline(never)]
-    fn logistic(self) -> Logistic<Self> {
-        let at = self.value.logistic();
-        let slopes = at.slopes(self.value);
-        Logistic {
-            rise: self.chain(at.rise, slopes.rise),
-            rest: self.chain(at.rest, slopes.rest),
-            tail: self.chain(at.tail, slopes.tail),
-        }
-    }
-    #[inline(never)]
-    fn inverse_cbrt(self) -> Self {
-        // d x^(-1/3)/dx = -1/3 x^(-4/3)
-        let y = self.value.inverse_cbrt();
-        let square = y * y;
-        self.chain(y, square * square * (-1.0 / 3.0))
-    }
-    #[inline(never)]
-    fn sin(self) -> Self {
-        self.chain(Real::sin(self.value), Real::cos(self.value))
-    }
-    #[inline(never)]
-    fn cos(self) -> Self {
-        self.chain(Real::cos(self.value), -Real::sin(self.value))
-    }
-    #[inline(always)]
-    fn scale(self, factor: f64) -> Self {
-        self.chain(self.value * factor, factor)
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> bool {
-        self.value < other.value
-    }
-    #[inline(always)]
-    fn select(mask: bool, yes: Self, no: Self) -> Self {
-        if mask { yes } else { no }
-    }
+    // One copy only: inlining multiplies compile time.
+    chain_rule!(never);
 }
 
 #[cfg(test)]

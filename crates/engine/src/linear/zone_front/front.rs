@@ -67,7 +67,7 @@ impl<S: Real> ZoneFront<S> {
         let layout = Layout {
             surfaces: surfaces.len(),
             eliminated,
-            stride: (surfaces.len() + 2).next_multiple_of(S::SIDE),
+            stride: (surfaces.len() + 2).next_multiple_of(S::CHUNK),
             first_row: order.first().map_or(0, |&i| of_plan.surface_rows[i]),
             retained_rows: retained.chain([of_plan.air_row]).collect(),
             walls: surfaces[..eliminated].to_vec(),
