@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mascarin_engine::derivatives::jacobian::jacobian;
-use mascarin_engine::derivatives::trajectory::Trajectory;
+use mascarin_engine::derivatives::jacobian;
+use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::description::Description;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
@@ -153,9 +153,9 @@ impl Case {
     /// When a slope is not finite.
     pub fn gradient(&self, steps: Option<usize>) -> Result<(), EngineError> {
         let (forcing, watch) = (self.forcing(steps), Watch::default());
-        let way = Trajectory::new(&self.plan, &self.values, &forcing, &self.options, &watch, MEMORY)?;
-        let weights = vec![1.0; way.run.records.len()];
-        let slopes = way.pull(&self.plan, &self.values, &forcing, &self.options, &watch, &weights)?;
+        let trajectory = Trajectory::new(&self.plan, &self.values, &forcing, &self.options, &watch, MEMORY)?;
+        let weights = vec![1.0; trajectory.run.records.len()];
+        let slopes = trajectory.pull(&self.plan, &self.values, &forcing, &self.options, &watch, &weights)?;
         assert!(slopes.iter().all(|slope| slope.is_finite()), "slopes are finite");
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Members of an ensemble side by side in an array, one in each lane.
+//! Members of an ensemble in an array, one in each lane.
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -6,7 +6,7 @@ use crate::number::elementary::{Bits, cos, logistic, sin};
 use crate::number::macros::{add_assign, elementary_functions};
 use crate::number::real::{Logistic, Mask, Real};
 
-/// `N` members side by side.
+/// `N` members.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub struct Lanes<const N: usize>(pub [f64; N]);

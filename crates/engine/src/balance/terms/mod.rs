@@ -9,13 +9,13 @@
 //! - zone air: storage, convection from surfaces, infiltration, ventilation and openings, air paths, convective gains,
 //!   ideal load.
 //!
-//! Laws that are not linear stand as their tangents. [`Balances`] walks all terms and passes each of them to a [`Sink`]:
+//! Nonlinear laws are replaced by their tangents. [`Balances`] goes through all terms and passes each of them to a [`Sink`]:
 //! the residual ([`residual`]), the slopes of the equations (`derivatives`), the linear model (`linear_model`), the energy
-//! ledger ([`booking`]). The run itself solves the same balances by a fast elimination (`linear`, `step`): the only
-//! second copy, held to this one by a test.
+//! ledger ([`heat_flows`]). The run itself solves the same balances by a fast elimination (`linear`, `step`): the only
+//! second copy; a test compares it with this one.
 
-pub(crate) mod booking;
 pub(crate) mod evaluation;
+pub(crate) mod heat_flows;
 pub(crate) mod residual;
 #[cfg(test)]
 mod tests;

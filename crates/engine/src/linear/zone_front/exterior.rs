@@ -1,7 +1,7 @@
 //! The exterior surfaces of the walls in a front: eliminated first, each onto the interior surface of its wall.
 //!
 //! With all laws as straight lines its balance holds for `T = offset + slope T_interior`. This is
-//! [`surface_balance`](crate::linear::surface_balance) for many walls side by side.
+//! [`surface_balance`](crate::linear::surface_balance) for many walls at once.
 
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::ids::{BySurface, SurfaceId};

@@ -40,7 +40,7 @@ pub(super) struct Influence<S> {
     pub(super) of_right: Vec<S>,
     /// By retained unknown (rows): temperatures of the eliminated surfaces.
     pub(super) of_retained: Vec<S>,
-    /// Influence of the right-hand side at hand.
+    /// Influence of the current right-hand side.
     pub(super) applied: Vec<S>,
 }
 

@@ -1,6 +1,6 @@
 //! The laws of several surfaces, linearised: convection and emission as straight lines.
 //!
-//! Numbers stand by the place of their surface in the front, so that neighbouring surfaces are computed together, as many as
+//! Arrays are in the order of the surfaces in the front, so that neighbouring surfaces are computed together, as many as
 //! fill a register ([`Chunk`]). A register may hold surfaces of several correlations: each correlation is computed for all
 //! of them, and a flag selects those that it belongs to.
 

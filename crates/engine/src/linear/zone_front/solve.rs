@@ -38,7 +38,7 @@ impl<S: Real> ZoneFront<S> {
         }
     }
 
-    /// Influence of the right-hand side at hand, where the matrix is constant.
+    /// Influence of the current right-hand side, where the matrix is constant.
     #[inline(always)]
     pub(super) fn apply_influence<V: Chunk<S>>(&mut self) {
         let Layout { surfaces, eliminated, stride, .. } = self.layout;
@@ -164,7 +164,7 @@ impl<S: Real> ZoneFront<S> {
         }
     }
 
-    /// Eliminates the surfaces from another right-hand side; `place` is where an unknown of the front stands in it.
+    /// Eliminates the surfaces from another right-hand side; `place` is the position of an unknown of the front in it.
     #[inline(always)]
     pub(super) fn forward<P: Product<S, R>, R: Real>(
         &self,

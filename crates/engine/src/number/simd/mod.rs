@@ -1,4 +1,4 @@
-//! Eight numbers at once in the vector registers of the machine at hand.
+//! Eight numbers at once in the vector registers of the machine.
 //!
 //! The only module with `unsafe` code. Each type `Eight` below holds eight numbers and computes with one set of vector
 //! instructions; a token ([`Avx512`]) proves that the machine has them. No operation is contracted or reordered: every

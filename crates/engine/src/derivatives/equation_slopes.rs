@@ -1,7 +1,7 @@
 //! Slopes of the balances of a stage at its solution.
 //!
-//! Each term of each balance ([`crate::balance::terms`]) is differentiated by the product rule in the numbers that it is made of, the
-//! temperatures held at the solution. Equations count heat into a node as positive, in the order and scale of
+//! Each term of each balance ([`crate::balance::terms`]) is differentiated by its coefficients with the product rule; the
+//! temperatures are constants, those of the solution. Equations count heat into a node as positive, in the order and scale of
 //! [`crate::linear::stage_matrix`]: of cells and of surfaces outside the zones per square metre, of all others whole; the equation
 //! of a surface held at a temperature is that temperature.
 
@@ -17,7 +17,7 @@ use crate::number::real::{Equations, Real};
 use crate::physics::longwave::Emission;
 use crate::step::Stepper;
 
-/// Which numbers that never change have derivatives: terms of the others need not be differentiated by them.
+/// Which constant coefficients have derivatives. Terms are not differentiated by the others.
 #[derive(Debug, Clone)]
 pub(super) struct Carries {
     /// By wall: its area, conductances, heat capacities.
@@ -81,9 +81,9 @@ pub(super) struct EquationSlopes<'a, S: Real> {
     equations: &'a mut S::Equations,
     /// The solution: cells, surfaces, airs [degC].
     at: &'a [f64],
-    /// Whether the size of the term in hand has derivatives: an area, a share, or the number 1.
+    /// Whether the size of the current term has derivatives: an area, a share, or the number 1.
     size_carries: bool,
-    /// The wall and the zone in hand.
+    /// The current wall and zone.
     wall: usize,
     zone: usize,
 }
@@ -247,7 +247,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         let slopes = [(law.offset, 1.0), (law.slope, difference)];
         self.size_carries = match ends[0] {
             End::Node(Node::Surface(surface)) => self.carries.area[surface.wall()],
-            // Outdoor air enters zones with no area.
+            // Outdoor air that flows into zones has no area.
             _ => false,
         };
         match ends {
@@ -272,7 +272,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
             self.size_carries = true;
             self.between(ends, area, Line::of(from).at(a) - Line::of(to).at(b), []);
         }
-        // An exact law depends on the solution alone. A linear one is the same at both ends: its offsets cancel.
+        // The exact law depends on the solution only. A linear law is the same at both ends: its offsets cancel.
         if self.carries.emission[self.zone] {
             let heat = area.lane(0) * (a - b);
             for (node, sign) in ends.into_iter().zip([-1.0, 1.0]) {
