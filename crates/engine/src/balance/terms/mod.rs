@@ -139,6 +139,12 @@ pub(crate) trait Sink<S: Real> {
     #[inline(always)]
     fn begin_zone(&mut self, _zone: usize) {}
 
+    /// Whether the sink takes the radiation between the surfaces of the zone: their pairs are many.
+    #[inline(always)]
+    fn takes_radiation(&self) -> bool {
+        true
+    }
+
     /// A node of constant heat capacity stores `area thickness capacity (T - held) / length` [W].
     fn store_heat(&mut self, node: Node, sizes: [S; 2], capacity: S, held: Held<S>);
 
@@ -264,10 +270,11 @@ impl<S: Real> Balances<'_, S> {
             let held = stage.held(stage.start.air[z], stage.first.air[z]);
             sink.store_heat(Node::Air(z), [one; 2], numbers.capacity, held);
             let n = zone.surfaces.len();
+            let radiation = !numbers.exchange.is_empty() && sink.takes_radiation();
             for (i, &surface) in zone.surfaces.iter().enumerate() {
                 let ends = [End::Node(Node::Surface(surface)), End::Node(Node::Air(z))];
                 sink.exchange(ends, numbers.areas[i], &self.laws.surfaces[surface].convection);
-                if numbers.exchange.is_empty() {
+                if !radiation {
                     continue;
                 }
                 for (j, &other) in zone.surfaces.iter().enumerate().skip(i + 1) {
@@ -332,7 +339,7 @@ impl<S: Real> Balances<'_, S> {
         }
     }
 
-    /// The sun in panes, and what windows let in, less what is lost through them again and what panes absorb of it.
+    /// The sun absorbed in panes, and the sun that windows transmit, less what leaves through them again or is absorbed in panes.
     #[inline(always)]
     pub(crate) fn windows(&self, sink: &mut impl Sink<S>) {
         if self.model.plan.windows.is_empty() {
