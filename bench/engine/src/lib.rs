@@ -3,16 +3,16 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::derivatives::Trajectory;
+use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::Description;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::state::Initial;
-use mascarin_engine::march::Scheme;
 use mascarin_engine::{batch, dispatch};
 use serde::Deserialize;
 
