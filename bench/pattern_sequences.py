@@ -25,8 +25,8 @@ from lgi_seven import VARIANT
 
 from mascarin.calibration import CalibrationProblem, Fit, Rules, plots, solve
 from mascarin.examples import FOLDER
+from mascarin.figures.files import save
 from mascarin.progress import Progress
-from mascarin.sensitivity.plots import save
 from mascarin.study.pipeline import Study
 
 TOGETHER = 64

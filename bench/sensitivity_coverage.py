@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.sensitivity.factors import unit_factors
-from mascarin.sensitivity.spectral import analyse, design
+from mascarin.sensitivity.spectral import analyze, design
 
 Floats = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def ishigami(order: int) -> Case:
 def g_function(a: Floats, order: int) -> Case:
     """Sobol's g-function."""
     variance = float(np.prod(1.0 + 1.0 / 3.0 / (1.0 + a) ** 2) - 1.0)
-    # Only the first part swings; a constant added to it changes nothing.
+    # Only the first part varies; a constant added to it changes nothing.
     slope = kept(lambda u: np.abs(4.0 * u - 2.0), order)
     first = slope / (1.0 + a) ** 2
 
@@ -107,11 +107,11 @@ def cover(case: Case, repetitions: int, replicates: int) -> str:
     for seed in range(repetitions):
         plan = design(factors, order=case.order, replicates=replicates, seed=seed)
         y = case.model(plan.all_samples())
-        result = analyse(plan, y.reshape(len(plan), -1, 1))
+        result = analyze(plan, y.reshape(len(plan), -1, 1))
         low, high = result.low[:, 0], result.high[:, 0]
         inside += (low <= case.share + 1e-12) & (case.share <= high + 1e-12)
         width += high - low
-        shares += result.share[:, 0]
+        shares += result.index[:, 0]
     heard = case.share > 0.01
     coverage = inside / repetitions
     bias = np.abs(shares / repetitions - case.share)[heard].max()

@@ -14,6 +14,7 @@ PACKAGE = ROOT / "python" / "mascarin"
 # From first to last (docs/architecture.md). Entries of one line may use each other, without circles.
 ORDER = [
     {"errors", "progress", "_engine", "_io"},
+    {"figures"},
     {"materials"},
     {"building"},
     {"weather"},

@@ -11,17 +11,17 @@ from mascarin.building.parameters import Parameter
 from mascarin.building.reading import parse
 
 
-def settled(path: str) -> Parameter:
+def derived(path: str) -> Parameter:
     return everything()[0].parameter(path)
 
 
 def test_area_and_direction_from_vertices() -> None:
     """A roof 3 m wide that rises 0.5 m to the north over 3 m."""
     slope = math.hypot(3.0, 0.5)
-    assert settled("surfaces.roof.area").value == pytest.approx(3.0 * slope)
-    assert settled("surfaces.roof.tilt").value == pytest.approx(math.degrees(math.atan2(0.5, 3.0)))
-    assert settled("surfaces.roof.azimuth").value == pytest.approx(180.0)
-    assert settled("surfaces.roof.area").source == "from the vertices"
+    assert derived("surfaces.roof.area").value == pytest.approx(3.0 * slope)
+    assert derived("surfaces.roof.tilt").value == pytest.approx(math.degrees(math.atan2(0.5, 3.0)))
+    assert derived("surfaces.roof.azimuth").value == pytest.approx(180.0)
+    assert derived("surfaces.roof.area").source == "from the vertices"
 
 
 def test_an_area_that_is_written_wins_over_the_vertices() -> None:
@@ -30,11 +30,11 @@ def test_an_area_that_is_written_wins_over_the_vertices() -> None:
 
 
 def test_facts_of_the_wind() -> None:
-    assert settled("surfaces.roof.outside.height").value == pytest.approx(3.25)
+    assert derived("surfaces.roof.outside.height").value == pytest.approx(3.25)
     perimeter = 2 * (3.0 + math.hypot(3.0, 0.5))
-    assert settled("surfaces.roof.outside.convection.perimeter").value == pytest.approx(perimeter)
-    assert settled("surfaces.roof.outside.convection.roughness").value == 1.52
-    assert settled("surfaces.roof.outside.convection.roughness").assumed
+    assert derived("surfaces.roof.outside.convection.perimeter").value == pytest.approx(perimeter)
+    assert derived("surfaces.roof.outside.convection.roughness").value == 1.52
+    assert derived("surfaces.roof.outside.convection.roughness").assumed
     building = room().replace({"surfaces.south.outside.convection": "tarp"})
     assert building.parameter("surfaces.south.outside.convection.perimeter").value == pytest.approx(16.0)
 
@@ -62,16 +62,16 @@ def test_length_of_a_buoyant_film(vertices: list[list[float]], length: float) ->
 
 
 def test_length_without_vertices_is_the_edge_of_a_square() -> None:
-    assert settled("surfaces.ceiling.outside.convection.length").value == pytest.approx(3.0)
+    assert derived("surfaces.ceiling.outside.convection.length").value == pytest.approx(3.0)
 
 
 def test_terrain_gives_the_profile_at_the_building() -> None:
-    assert (settled("site.wind.exponent").value, settled("site.wind.layer").value) == (0.22, 370.0)
-    assert (settled("site.wind.mast_exponent").value, settled("site.wind.mast_layer").value) == (0.14, 270.0)
+    assert (derived("site.wind.exponent").value, derived("site.wind.layer").value) == (0.22, 370.0)
+    assert (derived("site.wind.mast_exponent").value, derived("site.wind.mast_layer").value) == (0.14, 270.0)
     own = everything()[0].replace({"site.wind": {"terrain": "city", "exponent": 0.3}})
     assert (own.parameter("site.wind.exponent").value, own.parameter("site.wind.layer").value) == (0.3, 460.0)
 
 
 def test_a_direction_that_does_not_act_need_not_be_written() -> None:
-    assert settled("surfaces.floor.azimuth").value == 0.0
-    assert settled("surfaces.held.azimuth").reason
+    assert derived("surfaces.floor.azimuth").value == 0.0
+    assert derived("surfaces.held.azimuth").reason

@@ -28,9 +28,9 @@ def test_a_number_is_a_float() -> None:
 
 
 def test_a_range_that_is_not_written_is_the_default_one() -> None:
-    assert LENGTH.read(2.0).believable == pytest.approx((1.8, 2.2))
-    assert LENGTH.read({"value": 2.0, "range": [1.0, 2.0]}).believable == (1.0, 2.0)
-    assert Number(3.0).believable == (3.0, 3.0)
+    assert LENGTH.read(2.0).plausible == pytest.approx((1.8, 2.2))
+    assert LENGTH.read({"value": 2.0, "range": [1.0, 2.0]}).plausible == (1.0, 2.0)
+    assert Number(3.0).plausible == (3.0, 3.0)
 
 
 @pytest.mark.parametrize(

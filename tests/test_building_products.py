@@ -109,7 +109,7 @@ def test_what_nobody_knows_must_be_given(monkeypatch: pytest.MonkeyPatch) -> Non
     )
     monkeypatch.setattr(library, "products", lambda: {"Bare": bare})
     with pytest.raises(
-        InputError, match="no conductivity and no specific_heat; the source of Bare does not say"
+        InputError, match="no conductivity and no specific_heat; the source of Bare does not give it"
     ):
         pcm("product: Bare")
     given = "product: Bare, conductivity: 0.2, specific_heat: 2000"

@@ -17,7 +17,8 @@ from mascarin.ensemble import Statistic, Store, latin_hypercube, sweep, sweep_in
 from mascarin.ensemble import workers as sweep_workers
 from mascarin.errors import InputError, SolverError
 from mascarin.simulation.compiled import Failure
-from mascarin.simulation.simulation import Simulation, simulate
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, drivers, open_climate
 

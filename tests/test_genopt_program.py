@@ -10,7 +10,8 @@ import pytest
 from genopt_support import TWO_CONTINUOUS, write_project
 from mascarin.errors import InputError
 from mascarin.genopt import load
-from mascarin.genopt.program import Program, RunFailed, _word_behind
+from mascarin.genopt.extraction import word_behind
+from mascarin.genopt.program import Program, RunFailed
 from mascarin.optimization import Point
 
 POINT = Point((0.25, -0.5))
@@ -22,11 +23,11 @@ LINES = ["5, 1.2345, 11", "6, 12.345, 22"]
     [("5,", 0, "22"), ("5,", 1, "1.2345"), ("", 0, "6"), ("7,", 0, None), ("6,", 1, "12.345")],
 )
 def test_places_of_the_number(delimiter: str, column: int, word: str | None) -> None:
-    assert _word_behind(LINES, delimiter, column, ":;,") == word
+    assert word_behind(LINES, delimiter, column, ":;,") == word
 
 
 def test_a_delimiter_at_the_end_of_its_line_is_cut_first() -> None:
-    assert _word_behind(["cost= 3.5; cost="], "cost=", 0, ":;,") == "3.5"
+    assert word_behind(["cost= 3.5; cost="], "cost=", 0, ":;,") == "3.5"
 
 
 def run(ini: Path, point: Point = POINT, *, time_limit: float | None = None) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""Intervals from replicates: what they hold, whatever the tails of the replicates' deviations."""
+"""Intervals from replicates: coverage for any tails of the deviations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 
 def ratio(values: Floats) -> tuple[Ratio, Ratio]:
-    """Replicates (R, n) of n shares over a denominator of one."""
+    """Replicates (R, n) of n indices with a denominator of one."""
     return Ratio.mean(values), Ratio.mean(np.ones_like(values))
 
 
@@ -27,11 +27,11 @@ def deviations(kind: str, replicates: int, count: int) -> Floats:
 
 @pytest.mark.parametrize("replicates", [6, 8, 16])
 @pytest.mark.parametrize("kind", ["normal", "heavy"])
-def test_95_percent_hold_the_truth_whatever_the_tails(kind: str, replicates: int) -> None:
-    share, low, high = interval(*ratio(0.4 + deviations(kind, replicates, 20_000)), 0.95)
+def test_95_percent_contain_the_true_value_for_any_tails(kind: str, replicates: int) -> None:
+    index, low, high = interval(*ratio(0.4 + deviations(kind, replicates, 20_000)), 0.95)
     inside = np.mean((low <= 0.4) & (high >= 0.4))
     assert 0.940 < inside < 0.960
-    assert np.all((low <= share) & (share <= high))
+    assert np.all((low <= index) & (index <= high))
 
 
 def test_ends_are_means_of_subsets_of_known_rank() -> None:
@@ -44,13 +44,13 @@ def test_ends_are_means_of_subsets_of_known_rank() -> None:
 
 def test_few_replicates_get_students_interval() -> None:
     values = np.array([0.2, 0.3, 0.4])[:, None]
-    share, low, high = interval(*ratio(values), 0.95)
-    assert (share[0], low[0], high[0]) == pytest.approx(
+    index, low, high = interval(*ratio(values), 0.95)
+    assert (index[0], low[0], high[0]) == pytest.approx(
         (0.3, 0.3 - 4.3026527 * 0.1 / 3**0.5, 0.3 + 4.3026527 * 0.1 / 3**0.5)
     )
 
 
-def test_noise_is_rarely_called_more() -> None:
+def test_noise_is_rarely_significant() -> None:
     for kind in ("normal", "heavy"):
         assert np.mean(above_zero(*ratio(deviations(kind, 8, 20_000)), 0.99)) < 0.0125
     assert above_zero(*ratio(0.4 + deviations("normal", 8, 100)), 0.9999).all()

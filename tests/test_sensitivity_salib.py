@@ -1,9 +1,10 @@
-"""SALib's methods on our plans: known indices, series, groups, seeds, refusals."""
+"""SALib's methods: known indices, time series, groups, seeds, errors."""
 
 from __future__ import annotations
 
 import builtins
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin.errors import InputError
-from mascarin.sensitivity import METHODS, Factor, Sensitivity, plan, run
+from mascarin.sensitivity import METHODS, Factor, MorrisSensitivity, Sensitivity, collector, plan, run
 from mascarin.sensitivity.salib import SQUARES, SalibPlan
 from mascarin.sensitivity.spectral import SpectralSensitivity
 
@@ -30,17 +31,17 @@ def made(method: Any, model: Any, factors: list[Factor], **keywords: Any) -> Sen
     return run(plan(factors, method, **keywords), model, outputs=["y"], units=["K"])
 
 
-def test_first_order_shares_of_ishigami() -> None:
+def test_first_order_indices_of_ishigami() -> None:
     for method, size, within in (("rbd-fast", 1024, 0.02), ("sobol", 512, 0.02)):
         found = made(method, ishigami, ISHIGAMI, samples=size)
-        assert found.share[:, 0] == pytest.approx(FIRST, abs=within)
+        assert found.index[:, 0] == pytest.approx(FIRST, abs=within)
         assert found.significant[:, 0].tolist() == [True, True, False]
-        assert np.all((found.low <= found.share) & (found.share <= found.high))
+        assert np.all((found.low <= found.index) & (found.index <= found.high))
         assert found.method == method
         assert found.runs == 8 * size * (5 if method == "sobol" else 1)
 
 
-def test_total_shares_are_sobols_alone() -> None:
+def test_only_sobol_gives_total_indices() -> None:
     found = made("sobol", ishigami, ISHIGAMI, samples=512)
     assert found.total is not None
     assert found.total_low is not None
@@ -58,7 +59,7 @@ def test_morris_is_exact_on_a_linear_model() -> None:
     found = made("morris", lambda x: (x @ slope)[:, None, None], factors)
     effect = slope * [1.0, 2.0, 2.0]
     assert found.effect[:, 0] == pytest.approx(effect, rel=1e-9)
-    assert found.share[:, 0] == pytest.approx(effect**2 / np.sum(effect**2), rel=1e-9)
+    assert found.index[:, 0] == pytest.approx(effect**2 / np.sum(effect**2), rel=1e-9)
     assert found.high[:, 0] == pytest.approx(found.low[:, 0], abs=1e-9)
     assert found.measure == SQUARES
 
@@ -73,24 +74,24 @@ def test_effects_are_signed_and_over_the_range(method: Any) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_series_is_worth_the_sum_of_its_times(method: Any) -> None:
+def test_the_index_of_a_time_series_is_that_of_the_sum_over_time(method: Any) -> None:
     wave = np.sin(np.arange(24) * math.pi / 12.0)
 
     def series(x: Floats) -> Floats:
         first, second = 2.0 * np.outer(x[:, 0], wave), np.outer(x[:, 1], 1.0 - wave)
         return np.stack([first + second, first * 0.0 + 5.0], axis=2)
 
-    factors = [Factor("a", 0.0, 1.0), Factor("b", 0.0, 1.0), Factor("idle", 0.0, 1.0)]
+    factors = [Factor("a", 0.0, 1.0), Factor("b", 0.0, 1.0), Factor("inactive", 0.0, 1.0)]
     found = run(plan(factors, method), series, outputs=["y", "still"], units=["K", "K"])
     a, b = 4.0 * float(wave @ wave), float((1.0 - wave) @ (1.0 - wave))
-    assert found.share[:, 0] == pytest.approx([a / (a + b), b / (a + b), 0.0], abs=0.03)
-    assert found.share[:, 1].tolist() == [0.0, 0.0, 0.0]
+    assert found.index[:, 0] == pytest.approx([a / (a + b), b / (a + b), 0.0], abs=0.03)
+    assert found.index[:, 1].tolist() == [0.0, 0.0, 0.0]
     assert found.warnings == ("'still' does not depend on any of the varied parameters",)
     assert not found.significant[2].any()
 
 
 @pytest.mark.parametrize("method", ["spectral", "sobol", "morris"])
-def test_groups_are_judged_together(method: Any) -> None:
+def test_groups_are_analyzed_together(method: Any) -> None:
     factors = [
         Factor("a", 0.0, 1.0, group="pair"), Factor("b", 0.0, 1.0), Factor("c", 0.0, 1.0, group="pair"),
     ]  # fmt: skip
@@ -100,7 +101,7 @@ def test_groups_are_judged_together(method: Any) -> None:
     assert math.isnan(found.effect[0, 0])
     assert found.effect[1, 0] == pytest.approx(2.0, rel=0.1)
     # Morris moves a group's members up or down at once: (1 + 1)^2 or 0, on average 2.
-    assert found.share[:, 0] == pytest.approx(
+    assert found.index[:, 0] == pytest.approx(
         [1.0 / 3.0, 2.0 / 3.0], abs=0.12 if method == "morris" else 0.04
     )
 
@@ -110,9 +111,9 @@ def test_the_seed_decides_and_numpys_own_state_is_left_alone(method: Any) -> Non
     state = str(np.random.get_state(legacy=False))  # noqa: NPY002 (the state that must not move)
     drawn = np.random.get_state(legacy=False)["state"]["key"].copy()  # noqa: NPY002
     one, two, other = (made(method, ishigami, ISHIGAMI, seed=seed) for seed in (0, 0, 1))
-    assert np.array_equal(one.share, two.share)
+    assert np.array_equal(one.index, two.index)
     assert np.array_equal(one.low, two.low)
-    assert not np.array_equal(one.share, other.share)
+    assert not np.array_equal(one.index, other.index)
     assert str(np.random.get_state(legacy=False)) == state  # noqa: NPY002
     assert np.array_equal(np.random.get_state(legacy=False)["state"]["key"], drawn)  # noqa: NPY002
 
@@ -120,13 +121,13 @@ def test_the_seed_decides_and_numpys_own_state_is_left_alone(method: Any) -> Non
 def test_order_of_the_outputs_does_not_matter() -> None:
     runs = plan(ISHIGAMI, "rbd-fast", replicates=3)
     assert isinstance(runs, SalibPlan)
-    forth, back = runs.collector(["y"]), runs.collector(["y"])
+    forth, back = collector(runs, ["y"]), collector(runs, ["y"])
     pieces = [(r * runs.runs, ishigami(runs.samples(r))) for r in range(3)]
     for first, y in pieces:
         forth.add(first, y)
     for first, y in reversed(pieces):
         back.add(first, y)
-    assert np.array_equal(forth.result().share, back.result().share)
+    assert np.array_equal(forth.result().index, back.result().index)
 
 
 @pytest.mark.parametrize(
@@ -140,14 +141,14 @@ def test_order_of_the_outputs_does_not_matter() -> None:
         ("morris", {"samples": 1}, "expected at least 2"),
     ],
 )
-def test_what_a_method_cannot_use(method: Any, keywords: dict[str, Any], text: str) -> None:
+def test_errors_of_options(method: Any, keywords: dict[str, Any], text: str) -> None:
     with pytest.raises(InputError, match=text):
         plan(ISHIGAMI, method, **keywords)
 
 
 def test_rbd_fast_takes_no_groups() -> None:
     factors = [Factor("a", 0.0, 1.0, group="g"), Factor("b", 0.0, 1.0, group="g"), Factor("c", 0.0, 1.0)]
-    with pytest.raises(InputError, match="judges single parameters"):
+    with pytest.raises(InputError, match="analyzes single parameters"):
         plan(factors, "rbd-fast")
 
 
@@ -155,7 +156,7 @@ def test_a_distribution_without_end_is_refused() -> None:
     from scipy.special import ndtri
 
     factors = [Factor("endless", 0.0, 1.0, distribution=ndtri), Factor("b", 0.0, 1.0)]
-    with pytest.raises(InputError, match="endless: its distribution gives"):
+    with pytest.raises(InputError, match="endless: found the value"):
         plan(factors, "morris").samples(0)
 
 
@@ -177,5 +178,49 @@ def test_without_salib_the_package_is_named(monkeypatch: pytest.MonkeyPatch) -> 
         plan(ISHIGAMI, "sobol")
 
 
-def test_the_spectral_method_comes_through_the_same_call() -> None:
+def test_plan_makes_the_spectral_method_too() -> None:
     assert isinstance(made("spectral", ishigami, ISHIGAMI), SpectralSensitivity)
+
+
+def test_morris_gives_the_statistics_of_salib() -> None:
+    """One replicate of all trajectories, analyzed by SALib itself."""
+    from SALib.analyze import morris
+
+    runs = plan(ISHIGAMI, "morris", replicates=5, samples=6)
+    assert isinstance(runs, SalibPlan)
+    found = run(runs, ishigami, outputs=["y"])
+    assert isinstance(found, MorrisSensitivity)
+    u = np.concatenate([runs.unit_samples(r) for r in range(5)])
+    y = np.concatenate([ishigami(runs.samples(r))[:, 0, 0] for r in range(5)])
+    expected = morris.analyze(runs.problem, u, y, num_levels=4, seed=1)
+    for name in ("mu", "mu_star", "sigma"):
+        assert getattr(found, name)[:, 0] == pytest.approx(
+            np.asarray(expected[name], dtype=float), rel=1e-9
+        ), name
+    table = found.to_dataframe()
+    assert list(table.columns[:6]) == ["output", "parameter", "mu", "mu_star", "sigma", "mu_star_conf"]
+    assert found.first_order is None
+    assert "S1" not in table
+
+
+def test_tables_have_the_columns_of_salib() -> None:
+    found = made("sobol", ishigami, ISHIGAMI, samples=128)
+    table = found.to_dataframe()
+    assert list(table.columns[:6]) == ["output", "parameter", "S1", "S1_conf", "ST", "ST_conf"]
+    assert table["parameter"].tolist() == found.ranking("y")
+    row = table.set_index("parameter").loc["x1"]
+    assert row["S1"] == found.index[0, 0]
+    assert row["S1_conf"] == pytest.approx(0.5 * (row["S1_high"] - row["S1_low"]))
+    arrays = found.to_xarray()
+    assert arrays["ST"].sel(parameter="x3", output="y").item() == found.total[2, 0]  # type: ignore[index]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_results_are_short_in_print_and_can_be_pickled(method: Any) -> None:
+    factors = [Factor(f"x{k}", 0.0, 1.0) for k in range(12)]
+    names = [f"room {k}.air_temperature" for k in range(5)]
+    found = run(plan(factors, method), lambda x: x[:, None, :5] + x[:, None, 5:10], outputs=names)
+    assert len(repr(found).splitlines()) <= 15
+    assert method in repr(found)
+    assert "<svg" in found._repr_html_()
+    assert np.array_equal(pickle.loads(pickle.dumps(found)).index, found.index)  # noqa: S301 (written here)

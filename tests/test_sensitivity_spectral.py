@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from mascarin.errors import InputError
 from mascarin.sensitivity.factors import Factor
-from mascarin.sensitivity.runs import batches, run
-from mascarin.sensitivity.spectral import Accumulator, analyse, design
+from mascarin.sensitivity.methods import run
+from mascarin.sensitivity.runs import batches
+from mascarin.sensitivity.spectral import SpectralCollector, analyze, design
 
 Floats = NDArray[np.float64]
 
@@ -40,15 +41,15 @@ def test_linear_model_gives_squared_standardised_coefficients_exactly() -> None:
     factors = [Factor(f"p{k}", low[k], low[k] + span[k], distribution="sine") for k in range(30)]
     plan = design(factors, order=1, seed=2)
     assert plan.runs == 2 * 32 + 1
-    result = analyse(plan, (7.0 + plan.all_samples() @ slope)[:, :, None])
+    result = analyze(plan, (7.0 + plan.all_samples() @ slope)[:, :, None])
     part = (slope * span[:, None]) ** 2  # the variance of a sine is a eighth of its squared range
-    np.testing.assert_allclose(result.share_t[:, :, 0], part / part.sum(axis=0), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(result.share[:, 0], part.sum(axis=1) / part.sum(), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(result.raw_share, result.share, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(result.index_t[:, :, 0], part / part.sum(axis=0), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(result.index[:, 0], part.sum(axis=1) / part.sum(), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(result.raw_index, result.index, rtol=0, atol=1e-12)
     np.testing.assert_allclose(result.high, result.low, rtol=0, atol=1e-9)
     np.testing.assert_allclose(result.effect_t[:, :, 0], slope * span[:, None], rtol=0, atol=1e-10)
     np.testing.assert_allclose(result.variance_t[:, 0], part.sum(axis=0) / 8.0, rtol=1e-12)
-    np.testing.assert_allclose(result.rest, 0.0, atol=1e-12)
+    np.testing.assert_allclose(result.interactions, 0.0, atol=1e-12)
 
 
 def test_uniform_curve_keeps_all_but_a_seventieth_in_the_fundamental() -> None:
@@ -57,8 +58,8 @@ def test_uniform_curve_keeps_all_but_a_seventieth_in_the_fundamental() -> None:
     expected = slope**2 / np.sum(slope**2)
     for order, kept in ((1, 96.0 / math.pi**4), (3, 96.0 / math.pi**4 * (1.0 + 1.0 / 81.0))):
         plan = design(factors, order=order, runs=1001, frequencies=[11, 21, 31], replicates=16)
-        result = analyse(plan, plan.all_samples() @ slope)
-        np.testing.assert_allclose(result.share[:, 0], kept * expected, rtol=2e-4)
+        result = analyze(plan, plan.all_samples() @ slope)
+        np.testing.assert_allclose(result.index[:, 0], kept * expected, rtol=2e-4)
         np.testing.assert_allclose(result.effect[:, 0], slope, rtol=2e-3)
 
 
@@ -66,7 +67,7 @@ def test_uniform_curve_keeps_all_but_a_seventieth_in_the_fundamental() -> None:
 def test_samples_follow_their_distribution(distribution: str) -> None:
     factor = Factor("p", 1.0, 10.0, distribution=distribution)  # type: ignore[arg-type]
     angle = 2.0 * np.pi * np.arange(100_001) / 100_001
-    along = np.sort(factor.swing(angle))
+    along = np.sort(factor.curve(angle))
     u = (np.arange(along.size) + 0.5) / along.size
     np.testing.assert_allclose(along, factor.quantile(u), atol=1e-3)
     moments = {
@@ -82,21 +83,21 @@ def test_samples_follow_their_distribution(distribution: str) -> None:
     assert along.var() == pytest.approx(variance, rel=1e-3)
 
 
-def test_own_inverse_distribution_function() -> None:
+def test_inverse_distribution_function_of_the_user() -> None:
     factor = Factor("p", 0.0, 4.0, distribution=lambda u: 4.0 * u**2)
-    np.testing.assert_allclose(factor.swing(np.array([0.0, np.pi / 2.0])), [1.0, 4.0])
+    np.testing.assert_allclose(factor.curve(np.array([0.0, np.pi / 2.0])), [1.0, 4.0])
 
 
 def test_ishigami() -> None:
     plan = design(ishigami_factors(), order=8, replicates=16, seed=1)
-    result = analyse(plan, ishigami(plan.all_samples()))
-    np.testing.assert_allclose(result.share[:, 0], ISHIGAMI, atol=0.02)
+    result = analyze(plan, ishigami(plan.all_samples()))
+    np.testing.assert_allclose(result.index[:, 0], ISHIGAMI, atol=0.02)
     assert np.all(result.low[:, 0] <= np.array(ISHIGAMI))
     assert np.all(result.high[:, 0] >= np.array(ISHIGAMI) - 1e-4)
     assert np.all(result.high[:2, 0] - result.low[:2, 0] < 0.06)
     assert result.significant[:, 0].tolist() == [True, True, False]
     assert result.variance_t[0, 0] == pytest.approx(13.8446, rel=0.02)
-    assert result.rest[0] == pytest.approx(1.0 - sum(ISHIGAMI), abs=0.03)
+    assert result.interactions[0] == pytest.approx(1.0 - sum(ISHIGAMI), abs=0.03)
 
 
 def test_g_function_and_coverage_over_seeds() -> None:
@@ -107,27 +108,27 @@ def test_g_function_and_coverage_over_seeds() -> None:
 
     part = 1.0 / 3.0 / (1.0 + a) ** 2
     first = part / (np.prod(1.0 + part) - 1.0)
-    # |4 u - 2| swings at twice the frequency: of its variance harmonics 2 and 6 hold this much.
+    # |4 u - 2| varies at twice the frequency: of its variance harmonics 2 and 6 hold this much.
     expected = first * 96.0 / math.pi**4 * (1.0 + 1.0 / 81.0)
-    inside, shares = np.zeros(8), np.zeros(8)
+    inside, indices = np.zeros(8), np.zeros(8)
     for seed in range(60):
         plan = design(8, order=6, seed=seed)
-        result = analyse(plan, g(plan.all_samples()))
+        result = analyze(plan, g(plan.all_samples()))
         inside += (result.low[:, 0] <= expected) & (expected <= result.high[:, 0])
-        shares += result.share[:, 0]
-    np.testing.assert_allclose(shares / 60, expected, atol=0.003)
+        indices += result.index[:, 0]
+    np.testing.assert_allclose(indices / 60, expected, atol=0.003)
     assert np.all(inside >= 54)  # 95 % of 60, less two and a half standard deviations
 
 
-def test_coincidences_do_not_survive() -> None:
+def test_harmonics_on_the_lines_of_others_are_not_counted() -> None:
     # With w_i = i the second harmonic of every parameter falls on another one. Only p3 acts, squared.
     plan = design(sines(8), order=2, frequencies=range(1, 9), seed=4)
-    result = analyse(plan, plan.all_samples()[:, 3] ** 2)
-    assert result.share[3, 0] == pytest.approx(1.0)
+    result = analyze(plan, plan.all_samples()[:, 3] ** 2)
+    assert result.index[3, 0] == pytest.approx(1.0)
     others = np.delete(np.arange(8), 3)
     assert np.all(result.low[others, 0] == 0.0)
-    assert np.all(result.share[others, 0] < 0.05)
-    assert np.max(result.raw_share[others, 0]) > 0.05
+    assert np.all(result.index[others, 0] < 0.05)
+    assert np.max(result.raw_index[others, 0]) > 0.05
 
 
 def test_estimates_are_free_of_bias_where_lines_are_crowded() -> None:
@@ -137,15 +138,15 @@ def test_estimates_are_free_of_bias_where_lines_are_crowded() -> None:
     cross = np.triu(np.sqrt(np.outer(slope, slope)), 1)
     expected = slope**2 / 8.0
     expected = expected / (expected.sum() + np.sum(cross**2) / 64.0)
-    shares = np.zeros(20)
+    indices = np.zeros(20)
     for seed in range(30):
         plan = design(
             [Factor(f"p{k}", -0.5, 0.5, distribution="sine") for k in range(20)], order=1, seed=seed
         )
         x = plan.all_samples()
         y = x @ slope + np.einsum("ni,ij,nj->n", x, cross, x)
-        shares += analyse(plan, y).share[:, 0]
-    np.testing.assert_allclose(shares / 30, expected, atol=0.004)
+        indices += analyze(plan, y).index[:, 0]
+    np.testing.assert_allclose(indices / 30, expected, atol=0.004)
 
 
 def test_threshold_is_what_noise_stays_under_and_nothing_in_noise_is_significant() -> None:
@@ -153,10 +154,10 @@ def test_threshold_is_what_noise_stays_under_and_nothing_in_noise_is_significant
     exceeded = significant = 0
     for seed in range(150):
         plan = design(12, order=2, replicates=4, seed=seed)
-        result = analyse(plan, rng.normal(size=len(plan)))
-        exceeded += bool(np.any(result.raw_share > result.threshold))
+        result = analyze(plan, rng.normal(size=len(plan)))
+        exceeded += bool(np.any(result.raw_index > result.threshold))
         significant += bool(np.any(result.significant))
-        assert result.raw_share.mean() == pytest.approx(2.0 / ((plan.runs - 1) // 2), rel=0.4)
+        assert result.raw_index.mean() == pytest.approx(2.0 / ((plan.runs - 1) // 2), rel=0.4)
     assert 1 <= exceeded <= 16  # 5 % of 150, give or take
     assert significant <= 3
 
@@ -164,13 +165,13 @@ def test_threshold_is_what_noise_stays_under_and_nothing_in_noise_is_significant
 def test_streaming_gives_the_same_bits_in_any_order_of_batches() -> None:
     plan = design(ishigami_factors(), replicates=3, seed=7)
     y = np.stack([ishigami(plan.all_samples()), plan.all_samples()[:, 2]], axis=1)[:, None, :]
-    whole = analyse(plan, y, names=["f", "c"])
-    accumulator = Accumulator(plan, ["f", "c"])
+    whole = analyze(plan, y, names=["f", "c"])
+    accumulator = SpectralCollector(plan, ["f", "c"])
     pieces = [(first, y[first : first + x.shape[0]]) for first, x in batches(plan, 50)]
     for first, values in pieces[::-1]:
         accumulator.add(first, values)
     assert accumulator.missing == 0
-    np.testing.assert_array_equal(accumulator.result().share, whole.share)
+    np.testing.assert_array_equal(accumulator.result().index, whole.index)
     np.testing.assert_array_equal(accumulator.result().high_t, whole.high_t)
 
 
@@ -189,47 +190,47 @@ def test_runs_are_made_in_batches_with_progress() -> None:
     result = run(plan, evaluate, outputs=["f"], units=["degC"], batch=100, progress=progress)
     assert max(sizes) == 100
     assert seen[-1] == (len(plan), len(plan))
-    np.testing.assert_array_equal(result.share, analyse(plan, ishigami(plan.all_samples())).share)
+    np.testing.assert_array_equal(result.index, analyze(plan, ishigami(plan.all_samples())).index)
 
 
-def test_shares_follow_the_day() -> None:
+def test_indices_over_the_day() -> None:
     plan = design(sines(2), order=1, seed=8)
     hour = np.arange(24)
     sun = np.maximum(0.0, np.sin((hour - 6) / 12 * np.pi))
     x = plan.all_samples()
     y = x[:, :1] * sun + 0.5 * x[:, 1:]
     y[:, 3] = 20.0  # before anything has happened nothing varies
-    result = analyse(plan, y[:, :, None], names=["room"], units=["degC"])
+    result = analyze(plan, y[:, :, None], names=["room"], units=["degC"])
     night = [0, 22]
-    np.testing.assert_allclose(result.share_t[0, night, 0], 0.0, atol=1e-12)
-    assert result.share_t[0, 12, 0] == pytest.approx(0.8)
-    assert np.all(np.isnan(result.share_t[:, 3, 0]))
-    assert np.isfinite(result.share).all()
+    np.testing.assert_allclose(result.index_t[0, night, 0], 0.0, atol=1e-12)
+    assert result.index_t[0, 12, 0] == pytest.approx(0.8)
+    assert np.all(np.isnan(result.index_t[:, 3, 0]))
+    assert np.isfinite(result.index).all()
     assert result.units == ("degC",)
 
 
-def test_an_output_that_nothing_moves_is_said() -> None:
+def test_an_output_that_no_parameter_changes_is_reported() -> None:
     plan = design(3, replicates=3)
-    result = analyse(plan, np.full((len(plan), 4, 1), 21.3), names=["dead"])
-    assert np.all(result.share == 0.0)
+    result = analyze(plan, np.full((len(plan), 4, 1), 21.3), names=["constant"])
+    assert np.all(result.index == 0.0)
     assert not result.significant.any()
-    assert result.warnings == ("'dead' does not depend on any of the varied parameters",)
+    assert result.warnings == ("'constant' does not depend on any of the varied parameters",)
 
 
-def test_group_has_the_share_of_its_members() -> None:
+def test_index_of_a_group_is_that_of_its_members() -> None:
     slope = np.array([1.0, -1.0, 0.5, 1.5, -0.7])
     factors = [
-        Factor("a", -1, 1, distribution="sine", group="films"),
-        Factor("b", -1, 1, distribution="sine", group="films"),
-        Factor("c", -1, 1, distribution="sine", group="films"),
+        Factor("a", -1, 1, distribution="sine", group="coefficients"),
+        Factor("b", -1, 1, distribution="sine", group="coefficients"),
+        Factor("c", -1, 1, distribution="sine", group="coefficients"),
         Factor("d", -1, 1, distribution="sine"),
         Factor("e", -1, 1, distribution="sine"),
     ]
     plan = design(factors, seed=9)
-    assert plan.groups == ("films", "d", "e")
-    result = analyse(plan, plan.all_samples() @ slope)
+    assert plan.groups == ("coefficients", "d", "e")
+    result = analyze(plan, plan.all_samples() @ slope)
     expected = np.array([2.25, 2.25, 0.49]) / 4.99
-    np.testing.assert_allclose(result.share[:, 0], expected, atol=0.05)
+    np.testing.assert_allclose(result.index[:, 0], expected, atol=0.05)
     assert np.all((result.low[:, 0] <= expected + 1e-9) & (expected <= result.high[:, 0] + 1e-9))
     assert math.isnan(result.effect[0, 0])
     assert result.effect[2, 0] == pytest.approx(-1.4, rel=0.2)
@@ -247,7 +248,7 @@ def test_same_seed_same_design_and_frequencies_never_collide() -> None:
 
 def test_result_as_dictionary_and_table() -> None:
     plan = design(ishigami_factors(), order=8, seed=1)
-    result = analyse(plan, ishigami(plan.all_samples()), names=["room"], units=["degC"])
+    result = analyze(plan, ishigami(plan.all_samples()), names=["room"], units=["degC"])
     entry = result.to_dict()["room"]["b"]
     assert set(entry) == {"share", "low", "high", "effect"}
     assert entry["low"] is not None
@@ -275,7 +276,7 @@ def test_result_as_dictionary_and_table() -> None:
         ({"factors": [Factor("a", 0, 1), Factor("b", 0, 2, group="a")]}, "rename the group"),
     ],
 )
-def test_designs_that_cannot_work_are_refused(keywords: dict[str, object], text: str) -> None:
+def test_errors_of_designs(keywords: dict[str, object], text: str) -> None:
     with pytest.raises(InputError, match=text):
         design(**keywords)  # type: ignore[arg-type]
 
@@ -289,23 +290,21 @@ def test_designs_that_cannot_work_are_refused(keywords: dict[str, object], text:
         (0.0, 1.0, "gauss", "is none of uniform"),
     ],
 )
-def test_factors_that_cannot_be_meant_are_refused(
-    low: float, high: float, distribution: str, text: str
-) -> None:
+def test_errors_of_factors(low: float, high: float, distribution: str, text: str) -> None:
     with pytest.raises(InputError, match=text):
         Factor("p", low, high, distribution=distribution)  # type: ignore[arg-type]
 
 
-def test_outputs_that_do_not_belong_are_refused() -> None:
+def test_errors_of_outputs() -> None:
     plan = design(3, replicates=3)
-    accumulator = Accumulator(plan, ["f"])
+    accumulator = SpectralCollector(plan, ["f"])
     y = np.zeros((10, 4, 1))
     accumulator.add(0, y)
     with pytest.raises(InputError, match="run 5 was added before"):
         accumulator.add(5, y)
-    with pytest.raises(InputError, match="at 3 times, before there were 4"):
+    with pytest.raises(InputError, match="at 3 times, expected 4"):
         accumulator.add(20, y[:, :3])
-    with pytest.raises(InputError, match="the design has runs 0 to"):
+    with pytest.raises(InputError, match="expected runs 0 to"):
         accumulator.add(len(plan) - 5, y)
     y[2, 1] = math.nan
     with pytest.raises(InputError, match="run 22: 'f' is not a finite number at time 1"):

@@ -6,15 +6,15 @@ from scipy import stats
 
 from mascarin.errors import InputError
 from mascarin.sensitivity.factors import Factor
-from mascarin.sensitivity.spectral import SpectralSensitivity, analyse, design
-from mascarin.sensitivity.spectrum import line_threshold, power_threshold
+from mascarin.sensitivity.spectral import SpectralSensitivity, analyze, design
+from mascarin.sensitivity.spectral.spectrum import line_threshold, power_threshold
 
 
 def _result(order: int = 8) -> SpectralSensitivity:
     factors = [Factor(name, -1.0, 1.0, distribution="sine") for name in "abcd"]
     plan = design(factors, order=order, seed=3)
     a, b, c, _ = plan.all_samples().T
-    return analyse(plan, a + 0.8 * b**2 + b * c, names=["room"])
+    return analyze(plan, a + 0.8 * b**2 + b * c, names=["room"])
 
 
 def test_peaks_are_named_in_every_replicate() -> None:
@@ -54,7 +54,7 @@ def test_lines_beyond_half_the_runs_are_found_where_they_fold() -> None:
     factors = [Factor(name, -1.0, 1.0, distribution="sine") for name in "ab"]
     plan = design(factors, order=1, frequencies=[90, 100], runs=202, seed=0)
     a, b = plan.all_samples().T
-    result = analyse(plan, a + a * b)
+    result = analyze(plan, a + a * b)
     labels = {peak.label: peak.line for peak in result.peaks("y1")}
     assert labels["a + b"] == 202 - 190
 

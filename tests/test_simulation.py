@@ -14,7 +14,8 @@ from mascarin.building import Building
 from mascarin.errors import InputError, SolverError
 from mascarin.simulation.inactive import inactive_parameters
 from mascarin.simulation.readings import globe_temperature
-from mascarin.simulation.simulation import Simulation, simulate
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.verification.analytical import setup, zones
 from mascarin.weather import Climate, Measurements
 from simulation_samples import LINEAR, hours, measured, read, weather

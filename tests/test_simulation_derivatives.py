@@ -15,7 +15,8 @@ from mascarin.errors import InputError
 from mascarin.examples import STUDIES
 from mascarin.simulation.compiled import MEMORY
 from mascarin.simulation.derivatives import Mean, SquaredResiduals, gradient, jacobian
-from mascarin.simulation.simulation import Simulation, simulate
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
 from mascarin.verification.bestest.catalogue import CASES
 from mascarin.weather import Climate

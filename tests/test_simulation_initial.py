@@ -19,7 +19,8 @@ from mascarin.building.initial_state import Ambient, GivenStart, Known, Profile,
 from mascarin.errors import InputError
 from mascarin.examples import STUDIES
 from mascarin.simulation.initial import MeasuredStart
-from mascarin.simulation.simulation import Simulation, simulate
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
 from mascarin.verification.analytical import setup
 from mascarin.weather import Climate, Measurements

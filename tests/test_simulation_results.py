@@ -12,7 +12,7 @@ from mascarin import __version__
 from mascarin.errors import InputError
 from mascarin.simulation.energy import FLOWS, EnergyLedger
 from mascarin.simulation.results import Results
-from mascarin.simulation.simulation import simulate
+from mascarin.simulation.run import simulate
 from mascarin.weather import Climate
 from simulation_samples import LINEAR, hours, measured, read
 

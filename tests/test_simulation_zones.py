@@ -15,7 +15,8 @@ from mascarin.building.air import SPECIFIC_HEAT, density
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
 from mascarin.simulation.results import Results
-from mascarin.simulation.simulation import Simulation, simulate
+from mascarin.simulation.run import simulate
+from mascarin.simulation.simulation import Simulation
 from mascarin.weather import Climate
 from simulation_samples import hours
 

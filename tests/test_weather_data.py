@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-import builtins
 import hashlib
 from pathlib import Path
 from typing import Any
 
+import pooch
 import pytest
 
 from mascarin.errors import InputError
@@ -57,45 +57,32 @@ def test_cache_is_used_only_with_the_pinned_hash(
     assert data_file("pcm_products.csv") == cached
 
 
-def test_download_goes_to_the_cache(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    pooch = pytest.importorskip("pooch")
-    asked: list[tuple[str, str]] = []
+def test_download_goes_to_the_cache(empty: Path, monkeypatch: pytest.MonkeyPatch, data_dir: Path) -> None:
+    asked: list[str] = []
+    content = (data_dir / FILES[0].path).read_bytes()
 
-    def retrieve(url: str, known_hash: str, fname: str, path: Path) -> str:
-        asked.append((url, known_hash))
-        path.mkdir(parents=True)
-        (path / fname).write_text("from afar", encoding="utf-8")
-        return str(path / fname)
+    def download(url: str, output_file: Any, *_: Any, **__: Any) -> None:
+        asked.append(url)
+        Path(output_file).write_bytes(content)
 
-    monkeypatch.setattr(pooch, "retrieve", retrieve)
+    monkeypatch.setattr(
+        pooch.HTTPDownloader, "__call__", lambda _, *given, **named: download(*given, **named)
+    )
     path = data_file("wall_bench_2024.csv")
-    assert path.read_text(encoding="utf-8") == "from afar"
-    assert path.parent.parent == cache_folder()
-    assert asked[0][0].startswith("https://")
-    assert asked[0][1] == f"sha256:{FILES[0].sha256}"
+    assert path == cache_folder() / "wall_bench" / "wall_bench_2024.csv"
+    assert path.read_bytes() == content
+    assert asked == [FILES[0].url]
+    assert data_file("wall_bench_2024.csv") == path
+    assert len(asked) == 1
 
 
-def test_failed_download_and_missing_pooch_say_what_to_do(
-    empty: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    pooch = pytest.importorskip("pooch")
+def test_another_file_at_the_source_is_refused(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def download(_: Any, __: str, output_file: Any, *___: Any, **____: Any) -> None:
+        Path(output_file).write_text("changed", encoding="utf-8")
 
-    def refuse(*_: Any, **__: Any) -> str:
-        raise ValueError("SHA256 hash of downloaded file does not match")
-
-    monkeypatch.setattr(pooch, "retrieve", refuse)
+    monkeypatch.setattr(pooch.HTTPDownloader, "__call__", download)
     with pytest.raises(
         InputError, match=r"does not match.*set MASCARIN_DATA to a folder that holds wall_bench/"
     ):
         data_file("wall_bench_2024.csv")
-
-    real = builtins.__import__
-
-    def without_pooch(name: str, *rest: Any, **named: Any) -> Any:
-        if name == "pooch":
-            raise ImportError(name)
-        return real(name, *rest, **named)
-
-    monkeypatch.setattr(builtins, "__import__", without_pooch)
-    with pytest.raises(InputError, match=r"needs the package pooch: install mascarin\[data\]"):
-        data_file("wall_bench_2024.csv")
+    assert not (cache_folder() / "wall_bench" / "wall_bench_2024.csv").exists()

@@ -135,7 +135,7 @@ def test_missing_irradiances_are_derived_and_said(columns: dict[str, str], basis
         latitude=45.0,
         longitude=0.0,
     )
-    assert climate.radiation_basis() == basis
+    assert climate.record.radiation_basis == basis
     assert {"direct_normal", "diffuse_horizontal", "global_horizontal", "cloud_cover"} <= set(
         climate.data.columns
     )
@@ -188,7 +188,7 @@ def test_absent_channels_are_assumed_only_when_stated() -> None:
             "'air_temprature' is no climate channel. Did you mean 'air_temperature'",
         ),
         ({"columns": {"air_temperature": "Tair"}}, "no column 'Tair'"),
-        ({"timezone": None}, "a time zone is required"),
+        ({"timezone": ""}, "a time zone is required"),
         (
             {"absent": ["humidity"]},
             "'humidity' is no channel that may be absent. Did you mean 'relative_humidity'",

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.weather import Climate, Place, require_place
+from mascarin.weather import Climate, Place
+from mascarin.weather.place_check import require_place
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ def denver(data_dir: Path) -> Climate:
     ],
 )
 def test_the_same_region_passes(denver: Climate, site: Site) -> None:
-    require_place(denver, site)
+    require_place(denver.record, site)
 
 
 @pytest.mark.parametrize(
@@ -44,9 +45,9 @@ def test_the_same_region_passes(denver: Climate, site: Site) -> None:
         (
             Site(latitude=-39.83),
             r"^725650TYCST.epw: the weather is of latitude 39.83 deg \(DENVER.*\), the building stands at "
-            r"latitude -39.83 deg \(the sign is the other way round\).*Correct site: latitude in",
+            r"latitude -39.83 deg \(opposite sign\).*Correct site: latitude in",
         ),
-        (Site(longitude=104.65), "longitude 104.65 deg .the sign is the other way round"),
+        (Site(longitude=104.65), "longitude 104.65 deg .opposite sign"),
         (Site(longitude=-108.0), "longitude -108 deg; expected a difference of at most 2 deg"),
         (Site(altitude=165.0), "altitude 1650 m .*, the building stands at altitude 165 m; .* at most 500 m"),
         (Site(timezone="UTC+4"), r"clock is UTC-7 .*time zone is UTC\+4 .*expected the same winter time"),
@@ -68,14 +69,14 @@ def test_weather_from_elsewhere_can_be_wanted(data_dir: Path) -> None:
 
 
 def test_a_table_is_held_to_what_it_says_of_itself(denver: Climate) -> None:
-    table = replace(denver, of_year=False, site=Place(39.83, -104.65), _ready={})
+    table = replace(denver.record, of_year=False, site=Place(39.83, -104.65))
     # Its clock may be any, and an altitude that was not stated is not compared.
     require_place(table, Site(timezone="UTC"))
     with pytest.raises(InputError, match="or the latitude given with the table"):
         require_place(table, Site(latitude=-39.83))
-    require_place(replace(table, site=None, _ready={}), Site(latitude=-39.83))
+    require_place(replace(table, site=None), Site(latitude=-39.83))
 
 
 def test_places_on_either_side_of_the_date_line_are_near(denver: Climate) -> None:
-    fiji = replace(denver, site=Place(-17.0, 179.5, 1650.0), _ready={})
+    fiji = replace(denver.record, site=Place(-17.0, 179.5, 1650.0))
     require_place(fiji, Place(-17.0, -179.5, 1650.0))

@@ -10,7 +10,7 @@ import pytest
 from pvlib import irradiance, solarposition
 
 from mascarin.weather.sun import SOLAR_CONSTANT, SunPath
-from mascarin.weather.table import epoch_seconds
+from mascarin.weather.times import epoch_seconds
 
 PLACES = {
     "Denver": (39.83, -104.65),

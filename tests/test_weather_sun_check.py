@@ -10,7 +10,7 @@ import pytest
 from mascarin.errors import InputError
 from mascarin.weather import Climate, Place
 from mascarin.weather.sun import SunPath
-from mascarin.weather.table import epoch_seconds
+from mascarin.weather.times import epoch_seconds
 
 SITE = Place(45.0, 5.0)
 
@@ -45,7 +45,7 @@ def test_right_clock_passes() -> None:
     ],
 )
 def test_wrong_zone_is_refused_with_the_shift(zone: str, hours: str, when: str) -> None:
-    words = rf"centred {hours} h {when} solar noon.*time zone \(now {re.escape(zone)}\)"
+    words = rf"centered {hours} h {when} solar noon.*time zone \(now {re.escape(zone)}\)"
     with pytest.raises(InputError, match=words):
         record(zone).completed(SITE)
 

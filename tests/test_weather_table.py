@@ -9,7 +9,9 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.weather.table import Column, epoch_seconds, read_table, seconds_of, stamps_of
+from mascarin.weather.columns import Column
+from mascarin.weather.table import read_table
+from mascarin.weather.times import epoch_seconds, seconds_of, stamps_of
 from mascarin.weather.timezones import parse_timezone
 
 HEADER = "time,T,G\n"

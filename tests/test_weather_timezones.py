@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.weather.timezones import fixed_zone, localise, moment, parse_timezone, zone_name
+from mascarin.weather.timezones import fixed_zone, localize, moment, parse_timezone, zone_name
 
 PARIS = parse_timezone("Europe/Paris")
 
@@ -54,7 +54,7 @@ def test_fixed_zone_from_hours() -> None:
 def test_stamps_skipped_in_spring_are_named() -> None:
     stamps = pd.date_range("2024-03-31 00:00", periods=8, freq="30min")
     with pytest.raises(InputError) as caught:
-        localise(stamps, PARIS, "logger.csv")
+        localize(stamps, PARIS, "logger.csv")
     text = str(caught.value)
     assert text.startswith(
         "logger.csv: Europe/Paris skips the local stamps 2024-03-31 02:00, 2024-03-31 02:30 (when "
@@ -66,7 +66,7 @@ def test_stamps_skipped_in_spring_are_named() -> None:
 def test_stamps_doubled_in_autumn_are_named() -> None:
     stamps = pd.date_range("2024-10-27 00:00", periods=200, freq="1min")
     with pytest.raises(InputError) as caught:
-        localise(stamps, PARIS, "logger.csv")
+        localize(stamps, PARIS, "logger.csv")
     text = str(caught.value)
     assert (
         "has twice the local stamps 2024-10-27 02:00, 2024-10-27 02:01, 2024-10-27 02:02 and 57 more" in text
@@ -78,7 +78,7 @@ def test_stamps_doubled_in_autumn_are_named() -> None:
 def test_winter_time_is_named_south_of_the_equator() -> None:
     stamps = pd.DatetimeIndex(["2024-04-07 02:30"])
     with pytest.raises(InputError, match=r"state timezone: UTC\+10"):
-        localise(stamps, parse_timezone("Australia/Sydney"), "logger.csv")
+        localize(stamps, parse_timezone("Australia/Sydney"), "logger.csv")
 
 
 def test_moments_are_local_unless_they_say_otherwise() -> None:

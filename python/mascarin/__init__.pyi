@@ -16,14 +16,14 @@ from .errors import MascarinError as MascarinError
 from .errors import SolverError as SolverError
 from .materials.dsc import from_dsc as from_dsc
 from .sensitivity import Sensitivity as Sensitivity
-from .sensitivity import screen as screen
+from .sensitivity import sensitivity_analysis as sensitivity_analysis
 from .simulation.derivatives import gradient as gradient
 from .simulation.derivatives import jacobian as jacobian
 from .simulation.initial import MeasuredStart as MeasuredStart
 from .simulation.linear_model import state_space as state_space
 from .simulation.results import Results as Results
+from .simulation.run import simulate as simulate
 from .simulation.simulation import Simulation as Simulation
-from .simulation.simulation import simulate as simulate
 from .study import Study as Study
 from .weather import Climate as Climate
 from .weather import Measurements as Measurements

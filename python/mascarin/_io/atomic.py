@@ -45,47 +45,13 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     >>> target.read_text()
     'a,b\n'
     """
-    with drafting(path) as draft, draft.open("wb") as file:
-        yield file
-        file.flush()
-
-
-@contextlib.contextmanager
-def drafting(path: Path) -> Iterator[Path]:
-    """Give the path of a temporary file that takes the place of another only when it is complete.
-
-    For libraries that write to a path and not to an open file; as `replacing`.
-
-    Parameters
-    ----------
-    path : Path
-        File to write; its folder exists.
-
-    Yields
-    ------
-    Path
-        The temporary file, which exists and is empty.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written; the file that was there before is unchanged.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> target = Path(tempfile.mkdtemp()) / "table.csv"
-    >>> with drafting(target) as draft:
-    ...     size = draft.write_text("a,b")
-    >>> target.read_text()
-    'a,b'
-    """
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PART, dir=path.parent)
-    os.close(handle)
     draft = Path(name)
     try:
-        yield draft
-        _flush(draft)
+        with os.fdopen(handle, "wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
         draft.chmod(_usual_mode())
         draft.replace(path)
     except BaseException:
@@ -161,12 +127,6 @@ def _usual_mode() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return 0o666 & ~mask
-
-
-def _flush(file: Path) -> None:
-    """Write the content of a file to the disk."""
-    with file.open("rb+") as opened:
-        os.fsync(opened.fileno())
 
 
 def _flush_folder(folder: Path) -> None:

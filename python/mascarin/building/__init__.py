@@ -1,20 +1,160 @@
-"""The description of a building: YAML in, parameters by path, the engine's description out."""
+"""Buildings: their parts as objects, YAML files, parameters by path, checks.
+
+`Building` is made from the parts below, from a YAML file (`load`) or from a mapping. Parts refer to each
+other by name.
+"""
 
 from __future__ import annotations
 
 from mascarin.building.building import Building
 from mascarin.building.checks import check
+from mascarin.building.convection import (
+    AlamdariHammond,
+    Constant,
+    Doe2,
+    Iso15099,
+    LinearWind,
+    Mowitt,
+    PaperEq5,
+    Power,
+    PowerLaw,
+    Tarp,
+)
 from mascarin.building.engine_input import EngineDescription
+from mascarin.building.glazing import (
+    Angular,
+    DiffuseOptics,
+    FilledGap,
+    GivenGap,
+    Pane,
+    PaneGlazing,
+    SimpleGlazing,
+)
+from mascarin.building.material import PhaseChangeMaterial, Resistance, Solid
+from mascarin.building.number import Number
 from mascarin.building.outputs import Output
 from mascarin.building.parameters import Parameter
+from mascarin.building.phase_change import (
+    CapacityLaw,
+    FractionsLaw,
+    GaussianLaw,
+    GumbelLaw,
+    Hysteresis,
+    LinearLaw,
+    SmoothStepLaw,
+    TableLaw,
+    TanhLaw,
+    TriangleLaw,
+)
 from mascarin.building.reading import load
+from mascarin.building.schedule import (
+    FractionDays,
+    FractionPoint,
+    FractionSchedule,
+    TemperatureDays,
+    TemperaturePoint,
+    TemperatureSchedule,
+)
+from mascarin.building.site import (
+    BruntSky,
+    ClarkAllenSky,
+    Cloud,
+    MartinBerdahlSky,
+    MeasuredSky,
+    OffsetSky,
+    Site,
+    Wind,
+)
+from mascarin.building.surface import Construction, Exposure, Ground, Layer, Sensor, Side, Surface
 from mascarin.building.tables import json_schema, parameter_table
+from mascarin.building.window import Frame, Shade, Window, WindowInside, WindowOutside
+from mascarin.building.zone import (
+    AirPath,
+    EvenSun,
+    Gain,
+    GivenSun,
+    IdealLoads,
+    Infiltration,
+    Opening,
+    SetPoint,
+    TracedSun,
+    Ventilation,
+    Zone,
+)
 
 __all__ = [
+    "AirPath",
+    "AlamdariHammond",
+    "Angular",
+    "BruntSky",
     "Building",
+    "CapacityLaw",
+    "ClarkAllenSky",
+    "Cloud",
+    "Constant",
+    "Construction",
+    "DiffuseOptics",
+    "Doe2",
     "EngineDescription",
+    "EvenSun",
+    "Exposure",
+    "FilledGap",
+    "FractionDays",
+    "FractionPoint",
+    "FractionSchedule",
+    "FractionsLaw",
+    "Frame",
+    "Gain",
+    "GaussianLaw",
+    "GivenGap",
+    "GivenSun",
+    "Ground",
+    "GumbelLaw",
+    "Hysteresis",
+    "IdealLoads",
+    "Infiltration",
+    "Iso15099",
+    "Layer",
+    "LinearLaw",
+    "LinearWind",
+    "MartinBerdahlSky",
+    "MeasuredSky",
+    "Mowitt",
+    "Number",
+    "OffsetSky",
+    "Opening",
     "Output",
+    "Pane",
+    "PaneGlazing",
+    "PaperEq5",
     "Parameter",
+    "PhaseChangeMaterial",
+    "Power",
+    "PowerLaw",
+    "Resistance",
+    "Sensor",
+    "SetPoint",
+    "Shade",
+    "Side",
+    "SimpleGlazing",
+    "Site",
+    "SmoothStepLaw",
+    "Solid",
+    "Surface",
+    "TableLaw",
+    "TanhLaw",
+    "Tarp",
+    "TemperatureDays",
+    "TemperaturePoint",
+    "TemperatureSchedule",
+    "TracedSun",
+    "TriangleLaw",
+    "Ventilation",
+    "Wind",
+    "Window",
+    "WindowInside",
+    "WindowOutside",
+    "Zone",
     "check",
     "json_schema",
     "load",

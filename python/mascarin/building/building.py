@@ -1,132 +1,298 @@
-"""The building: the root of a description."""
+"""The building: a description that is checked, with what can be asked of it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import ValidationError, model_validator
 
-from mascarin.building.derived import settle_surfaces, settle_windows, settle_zones
-from mascarin.building.glazing import Glazing
-from mascarin.building.leaves import steps
-from mascarin.building.material import Material
-from mascarin.building.names import Name, known_names
+from mascarin._io import atomic, display
+from mascarin.building import outputs as results
+from mascarin.building import summary
+from mascarin.building.checks import check
+from mascarin.building.derived import derive_surfaces, derive_windows, derive_zones
+from mascarin.building.description import Description
+from mascarin.building.engine_input import EngineDescription, describe
+from mascarin.building.explaining import explained
+from mascarin.building.leaves import leaves
+from mascarin.building.names import known_names
 from mascarin.building.number import Interval, Number
+from mascarin.building.outputs import Output
 from mascarin.building.parameters import Parameter, lookup, parameters, resolve
-from mascarin.building.part import Part, insist, is_number
+from mascarin.building.part import Part, insist, is_number, plain_value
+from mascarin.building.references import sources
+from mascarin.building.replacing import piece_at, put, without_parts
 from mascarin.building.rules import faults
-from mascarin.building.schedule import Schedule
-from mascarin.building.site import Site
-from mascarin.building.surface import Construction, Sensor, Surface
-from mascarin.building.window import Shade, Window
-from mascarin.building.zone import AirPath, Opening, Zone
+from mascarin.building.yaml_document import read
+from mascarin.building.yaml_text import text_of
+from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from pydantic import ModelWrapValidatorHandler
 
-    from mascarin.building.engine_input import EngineDescription
-    from mascarin.building.outputs import Output
 
+class Building(Description):
+    """A building: its site, and everything that it is made of.
 
-class Building(Part):
-    """A building, its site, and everything it is made of."""
+    A building is made from objects, as below, from a file (`from_yaml`) or from a mapping (`from_dict`). It
+    is immutable: `replace` and `with_values` return another one. Numbers are given in the units that the
+    parts name; ``{"value": 0.5, "range": [0.2, 1], "source": "blower door"}`` gives a number with its
+    plausible range and its source.
 
-    name: str = Field("building", description="What the results are headed with")
-    site: Site = Field(description="Where it stands")
-    materials: dict[Name, Material] = Field(default_factory=dict, description="Materials by name")
-    constructions: dict[Name, Construction] = Field(
-        default_factory=dict, description="Layered constructions by name"
-    )
-    schedules: dict[Name, Schedule] = Field(default_factory=dict, description="Schedules by name")
-    zones: dict[Name, Zone] = Field(default_factory=dict, description="Air zones by name")
-    air_paths: dict[Name, AirPath] = Field(
-        default_factory=dict, description="Air exchanged between zones, by name"
-    )
-    openings: dict[Name, Opening] = Field(
-        default_factory=dict, description="Openings between zones and outdoors, by name"
-    )
-    surfaces: dict[Name, Surface] = Field(
-        default_factory=dict, description="Walls, roofs, floors, doors by name"
-    )
-    glazings: dict[Name, Glazing] = Field(default_factory=dict, description="Glazings by name")
-    windows: dict[Name, Window] = Field(default_factory=dict, description="Windows in the surfaces by name")
-    shades: dict[Name, Shade] = Field(
-        default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
-    )
-    sensors: dict[Name, Sensor] = Field(default_factory=dict, description="Thermometers inside walls by name")
+    Raises
+    ------
+    InputError
+        If the parts do not fit together. The text names each error by its path.
+
+    Examples
+    --------
+    >>> import mascarin as mc
+    >>> b = mc.building
+    >>> outdoors = b.Side(outdoors=True, convection=15, emissivity=0.9, absorptance=0.6)
+    >>> indoors = b.Side(zone="room", convection=3, emissivity=0.9)
+    >>> room = mc.Building(
+    ...     name="room",
+    ...     site=b.Site(latitude=48, longitude=2, altitude=100, timezone="Europe/Paris"),
+    ...     materials={"concrete": b.Solid(conductivity=1.75, density=2240, specific_heat=900)},
+    ...     constructions={"wall": b.Construction(layers=[b.Layer(material="concrete", thickness=0.2)])},
+    ...     zones={"room": b.Zone(volume=30, infiltration=0.5)},
+    ...     surfaces={
+    ...         "south": b.Surface(
+    ...             construction="wall", area=16, tilt=90, azimuth=180, outside=outdoors, inside=indoors
+    ...         ),
+    ...         "rest": b.Surface(
+    ...             construction="wall", area=50, tilt=90, azimuth=0,
+    ...             outside=b.Side(adiabatic=True), inside=indoors,
+    ...         ),
+    ...     },
+    ... )
+    >>> room.parameter("zones.room.volume").value
+    30.0
+    >>> room.with_values({"zones.room.volume": 32}).parameter("zones.room.volume").value
+    32.0
+    >>> mc.Building.from_dict(room.to_dict()) == room
+    True
+    """
 
     @model_validator(mode="wrap")
     @classmethod
     def _whole(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        """Let parts refer to each other, then check what holds between them."""
+        """Let parts refer to each other by name, then check how they fit together."""
+        if isinstance(data, Building):
+            return handler(data)
+        data = without_parts(data)
         with known_names(data):
             building = handler(data)
         insist(*faults(building))
-        building._settle(surfaces=settle_surfaces(building.surfaces))
-        building._settle(windows=settle_windows(building.windows, building.surfaces))
-        building._settle(zones=settle_zones(building.zones, building.surfaces))
+        building._fill(surfaces=derive_surfaces(building.surfaces))
+        building._fill(windows=derive_windows(building.windows, building.surfaces))
+        building._fill(zones=derive_zones(building.zones, building.surfaces))
         return building
+
+    # --- from and to files and mappings ---------------------------------------------------------------------
+
+    @classmethod
+    def from_yaml(cls, path: str | Path) -> Self:
+        """Read a building from a YAML file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Building
+            Checked and immutable.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read or its description has errors. The text names each error by file, line
+            and path, with what was found, what was expected and what to do.
+        """
+        return read(path, cls, "a building", blanks=False)
+
+    @classmethod
+    def from_dict(cls, description: Mapping[str, Any]) -> Self:
+        """Make a building from a mapping that holds what a YAML file would hold.
+
+        Parameters
+        ----------
+        description : mapping
+            Sections of the description; parts may be mappings or objects of `mascarin.building`.
+
+        Returns
+        -------
+        Building
+            Checked and immutable.
+
+        Raises
+        ------
+        InputError
+            If the description has errors. The text names each error by its path.
+        """
+        if not isinstance(description, Mapping):
+            raise InputError(
+                f"description: found {type(description).__name__}; expected a mapping with the sections of a "
+                "building. Read files with Building.from_yaml"
+            )
+        return cls._read(without_parts(dict(description)), str(description.get("name", "building")))
+
+    @classmethod
+    def _read(cls, plain: dict[str, Any], name: str) -> Self:
+        try:
+            return cls.model_validate(plain)
+        except ValidationError as error:
+            raise explained(error, plain, name) from None
+
+    def to_dict(self) -> dict[str, Any]:
+        """What a YAML file of this building holds: mappings, lists, texts and numbers.
+
+        Returns
+        -------
+        dict
+            What was given, with ranges and sources. Defaults are left out, and so is what Mascarin derives
+            (such as areas from vertices), unless it no longer follows from the rest because a value was
+            replaced.
+        """
+        given = self.written()
+        again = {path: number for path, number, _ in leaves(type(self).model_validate(given))}
+        for path, number, _ in leaves(self):
+            if number.derived and again.get(path) != number:
+                put(given, self, path.split("."), Number(number, assumed=number.assumed))
+        plain: dict[str, Any] = plain_value(given)
+        return plain
+
+    def to_yaml(self, path: str | Path | None = None) -> str:
+        """Write the building as YAML; `from_yaml` reads an equal building from it.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            File to write; none: the text is only returned.
+
+        Returns
+        -------
+        str
+            The text.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written.
+        """
+        text = text_of(self.to_dict())
+        if path is not None:
+            atomic.write(Path(path), text)
+        return text
+
+    # --- parameters -----------------------------------------------------------------------------------------
 
     @cached_property
     def _parameters(self) -> dict[str, Parameter]:
         return {parameter.path: parameter for parameter in parameters(self)}
 
     def parameters(self) -> list[Parameter]:
-        """All numeric leaves, in the order of the description."""
+        """All numbers of the description, each with its path, unit, range and source.
+
+        Returns
+        -------
+        list of Parameter
+            In the order of the description.
+        """
         return list(self._parameters.values())
 
     def parameter(self, path: str) -> Parameter:
-        """One numeric leaf, by its path or one of the short ways to write it.
+        """One number of the description.
+
+        Parameters
+        ----------
+        path : str
+            Its path, such as ``materials.concrete.conductivity``, or a short form of it:
+            ``constructions.wall.layers.concrete.conductivity`` is the same number, and
+            ``surfaces.south.inside.convection`` stands for its coefficient.
+
+        Returns
+        -------
+        Parameter
+            Value, unit, range, source.
 
         Raises
         ------
         InputError
-            If there is no such leaf; the text names the nearest ones.
+            If there is no such parameter; the text names the nearest ones.
         """
         return self._parameters[resolve(self, path, self._parameters)]
 
-    def replace(self, values: Mapping[str, Any]) -> Building:
-        """Give the same building with other values.
+    def replace(self, values: Mapping[str, Any]) -> Self:
+        """Return the same building with other values or parts.
 
         Parameters
         ----------
-        values : mapping of str to float
-            New values by path; a number keeps its range. A whole part may be replaced as well: its path and
-            what the YAML file would hold there (``surfaces.roof.outside.convection: tarp``). None removes
-            a key.
+        values : mapping of str to float, part or other
+            By path: a number, which keeps its range; a whole part, as an object or as what the YAML file
+            would hold there (``"tarp"``, ``{"kind": "tarp", "roughness": "smooth"}``); a word; or None,
+            which removes the key.
 
         Returns
         -------
         Building
-            Checked like a description that has been read. What Mascarin had derived from the description
-            stays as it was when only parameters change, and is derived anew when structure changes.
+            Checked as a description that is read from a file. What Mascarin derived from the rest is derived
+            again when a part, a word or a structural number is replaced. When only parameters that may vary
+            in a run are replaced it stays as it was, as in a sweep over these parameters.
 
         Raises
         ------
         InputError
-            If a path does not exist or a value cannot be.
+            If a path does not exist or a value is not possible.
         """
-        from mascarin.building.reading import explained
-
-        places = {self._place(path, value): value for path, value in values.items()}
+        places = {self._place(path, value): without_parts(value) for path, value in values.items()}
         structural = any(self._is_structural(path) for path in places)
-        plain = _plain(self, keep_settled=not structural)
+        plain = self.written(keep_derived=not structural)
         for path, value in places.items():
-            _put(plain, path.split("."), value)
-        try:
-            return Building.model_validate(plain)
-        except ValidationError as error:
-            raise explained(error, plain, self.name) from None
+            put(plain, self, path.split("."), value)
+        return self._read(plain, self.name)
+
+    def with_values(self, values: Mapping[str, float]) -> Self:
+        """Return the same building with other numbers.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            New values by path; each keeps its range. [unit of each]
+
+        Returns
+        -------
+        Building
+            See `replace`.
+
+        Raises
+        ------
+        InputError
+            If a path is not that of a parameter, or a value is no number or outside its limits.
+        """
+        for path, value in values.items():
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                try:
+                    float(value)
+                except (TypeError, ValueError):
+                    raise InputError(
+                        f"{path}: found {value!r}; expected a number [{self.parameter(path).unit}]. Use "
+                        "Building.replace for parts and words"
+                    ) from None
+        return self.replace({self.parameter(path).path: float(value) for path, value in values.items()})
 
     def _place(self, path: str, value: Any) -> str:
-        """Find what a path means: a number, or a whole part, written so far or not."""
+        """Find what a path means: a number, or a whole part, given so far or not."""
         number = lookup(self, path, self._parameters)
         if number is not None and (number == path or is_number(value)):
             return number
         *above, key = path.split(".")
-        holder = _get(self, above)
+        holder = piece_at(self, above)
         fields = type(holder).model_fields if isinstance(holder, Part) else holder
         if isinstance(fields, Mapping) and key in fields:
             return path
@@ -136,29 +302,62 @@ class Building(Part):
         parameter = self._parameters.get(path)
         return parameter is None or parameter.structural
 
-    def outputs(self) -> list[Output]:
-        """All results that a run of this building can give."""
-        from mascarin.building.outputs import outputs
+    # --- what a run needs and gives -------------------------------------------------------------------------
 
-        return outputs(self)
+    def outputs(self) -> list[Output]:
+        """All results that a run of this building can give.
+
+        Returns
+        -------
+        list of Output
+            In the order of the description.
+        """
+        return results.outputs(self)
 
     def output(self, name: str) -> Output:
-        """One result by its name or alias.
+        """One result.
+
+        Parameters
+        ----------
+        name : str
+            Its name or another name of it.
+
+        Returns
+        -------
+        Output
+            Name, unit, kind.
 
         Raises
         ------
         InputError
             If there is no such result; the text names the nearest ones.
         """
-        from mascarin.building.outputs import find
-
-        return find(self, name)
+        return results.find(self, name)
 
     def sources(self) -> list[str]:
-        """Where the numbers that act in this building and the methods of a run come from, once each."""
-        from mascarin.building.references import sources
-
+        """Sources of the numbers that act in this building and of the methods of a run, once each."""
         return sources(self)
+
+    def check(self, step: str | float = "15min") -> list[str]:
+        """Check the building for implausible values and describe it.
+
+        Parameters
+        ----------
+        step : str or float
+            Time step of the runs, such as ``"15min"``; a number is in seconds.
+
+        Returns
+        -------
+        list of str
+            Zones, surfaces with their U values, constructions with their mesh, time constants; then lines
+            that start with ``warning:`` or ``assumed:``.
+
+        Raises
+        ------
+        InputError
+            If the step is no duration.
+        """
+        return check(self, _seconds(step))
 
     def to_engine(
         self, step_seconds: float = 900.0, ranges: Mapping[str, Interval] | None = None
@@ -170,57 +369,41 @@ class Building(Part):
         step_seconds : float
             Time step for which the mesh is chosen. [s]
         ranges : mapping of str to (low, high), optional
-            Ranges of the parameters that will vary; the mesh holds at their worst ends. [unit of each]
+            Ranges of the parameters that will vary; the mesh resolves the worst ends. [unit of each]
+
+        Returns
+        -------
+        EngineDescription
+            The description as text, and the values of the parameters in its order.
 
         Raises
         ------
         InputError
-            If a range names no parameter, or the vertices of a zone do not close.
+            If a range names no parameter, or the vertices of a zone do not enclose it.
         """
-        from mascarin.building.engine_input import describe
+        return describe(self, self.parameters(), step_seconds, ranges or {})
 
-        return describe(self, step_seconds, ranges or {})
+    # --- how it is shown ------------------------------------------------------------------------------------
 
+    def __repr__(self) -> str:
+        return display.text(f"Building '{self.name}'", summary.rows(self, self.parameters()))
 
-def _plain(part: Any, *, keep_settled: bool) -> Any:
-    """Write a part as the mapping that reads as this part; numbers keep their notes."""
-    if isinstance(part, Number):
-        return part if keep_settled or not part.settled else None
-    if isinstance(part, tuple):
-        return [_plain(piece, keep_settled=keep_settled) for piece in part]
-    if isinstance(part, Part | Mapping):
-        pieces = steps(part) if isinstance(part, Part) else part.items()
-        plain = {key: _plain(piece, keep_settled=keep_settled) for key, piece in pieces}
-        return {key: value for key, value in plain.items() if value is not None}
-    return part
+    def __str__(self) -> str:
+        return repr(self)
+
+    def _repr_html_(self) -> str:
+        rows = summary.rows(self, self.parameters())
+        return display.page(f"Building '{self.name}'", rows, tables=summary.tables(self, self.parameters()))
 
 
-def _index(pieces: Any, step: str) -> Any:
-    """Key of a step in a mapping or list; layers of a list go by name."""
-    if not isinstance(pieces, list | tuple):
-        return step if step in pieces else None
-    for index, piece in enumerate(pieces):
-        name = piece.get("name") if isinstance(piece, Mapping) else getattr(piece, "name", None)
-        if (name or str(index)) == step:
-            return index
-    return None
+def _seconds(step: str | float) -> float:
+    if not isinstance(step, str):
+        return float(step)
+    import pandas as pd
 
-
-def _get(part: Any, path: list[str]) -> Any:
-    for step in path:
-        part = next((piece for key, piece in steps(part) if key == step), None)
-    return part
-
-
-def _put(plain: Any, path: list[str], value: Any) -> None:
-    for step in path[:-1]:
-        plain = plain[_index(plain, step)]
-    key = _index(plain, path[-1])
-    key = path[-1] if key is None else key
-    before = plain[key] if not isinstance(plain, Mapping) or key in plain else None
-    if value is None and isinstance(plain, dict):
-        plain.pop(key, None)
-        return
-    if isinstance(before, Number) and isinstance(value, int | float) and not isinstance(value, Number | bool):
-        value = Number(value, range=before.range)
-    plain[key] = value
+    try:
+        return float(pd.Timedelta(step).total_seconds())
+    except ValueError:
+        raise InputError(
+            f"step: found '{step}'; expected a duration such as '15min' or a number [s]"
+        ) from None

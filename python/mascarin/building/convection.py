@@ -16,14 +16,14 @@ _AS_PUBLISHED = Remark("the correlation as published")
 class Constant(Part):
     """A constant film coefficient."""
 
-    kind: Literal["constant"]
+    kind: Literal["constant"] = "constant"
     coefficient: q.Film
 
 
 class LinearWind(Part):
     """``constant + wind V``, V the wind speed at the face."""
 
-    kind: Literal["linear_wind"]
+    kind: Literal["linear_wind"] = "linear_wind"
     constant: q.Film
     wind: q.FilmPerSpeed
 
@@ -31,7 +31,7 @@ class LinearWind(Part):
 class AlamdariHammond(Part):
     """Buoyant convection by orientation and direction of heat flow (Alamdari & Hammond 1983)."""
 
-    kind: Literal["alamdari_hammond"]
+    kind: Literal["alamdari_hammond"] = "alamdari_hammond"
     length: q.ConvectionLength | None = None
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
 
@@ -39,7 +39,7 @@ class AlamdariHammond(Part):
 class PaperEq5(Part):
     """Eq. 5 of Guichard et al. as it is printed there."""
 
-    kind: Literal["paper_eq5"]
+    kind: Literal["paper_eq5"] = "paper_eq5"
     length: q.ConvectionLength | None = None
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
 
@@ -47,7 +47,7 @@ class PaperEq5(Part):
 class Tarp(Part):
     """TARP (Walton 1983): buoyant part, and outdoors a forced part by roughness and perimeter."""
 
-    kind: Literal["tarp"]
+    kind: Literal["tarp"] = "tarp"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
     roughness: q.Roughness | None = None
     perimeter: q.Perimeter | None = None
@@ -56,14 +56,14 @@ class Tarp(Part):
 class Mowitt(Part):
     """MoWiTT (Yazdanian & Klems 1994), for smooth faces outdoors."""
 
-    kind: Literal["mowitt"]
+    kind: Literal["mowitt"] = "mowitt"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
 
 
 class Doe2(Part):
     """DOE-2: TARP's buoyant part, and MoWiTT's wind on faces of any roughness, outdoors."""
 
-    kind: Literal["doe2"]
+    kind: Literal["doe2"] = "doe2"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
     roughness: q.Roughness | None = None
 
@@ -71,7 +71,7 @@ class Doe2(Part):
 class Iso15099(Part):
     """Free convection at the room's face of a glazing, by its height and tilt (ISO 15099:2003)."""
 
-    kind: Literal["iso15099"]
+    kind: Literal["iso15099"] = "iso15099"
     length: q.ConvectionLength | None = None
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
 
@@ -89,7 +89,7 @@ class PowerLaw(Part):
 class Power(Part):
     """A power law for each direction of heat flow."""
 
-    kind: Literal["power"]
+    kind: Literal["power"] = "power"
     upward: PowerLaw = Field(description="Heat flows up, or the face is vertical")
     downward: PowerLaw = Field(description="Heat flows down")
 

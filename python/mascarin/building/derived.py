@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
 from mascarin.building.number import Number, Remark
-from mascarin.building.part import Location, fault, insist, refuse, settled
+from mascarin.building.part import Location, derived_number, fault, insist, refuse
 from mascarin.building.surface import Side, Surface
 from mascarin.building.window import Window, WindowOutside
 from mascarin.building.zone import Zone
@@ -63,10 +63,10 @@ def enclosure(zone: str, surfaces: Mapping[str, Surface]) -> list[Polygon] | Non
     return [drawn[name] if side == "outside" else drawn[name].reversed() for name, side in faces]
 
 
-def settle_surfaces(surfaces: Mapping[str, Surface]) -> dict[str, Surface]:
+def derive_surfaces(surfaces: Mapping[str, Surface]) -> dict[str, Surface]:
     """Give every surface its area and direction, and its faces their lengths and heights."""
     drawn, areas = outlines(surfaces), drawn_areas(surfaces)
-    return {name: _settled_surface(one, drawn.get(name), areas.get(name)) for name, one in surfaces.items()}
+    return {name: _derived_surface(one, drawn.get(name), areas.get(name)) for name, one in surfaces.items()}
 
 
 def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
@@ -82,46 +82,46 @@ def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
         refuse(fault(("surfaces",), *_sentence(error)))
 
 
-def _settled_surface(surface: Surface, polygon: Polygon | None, area: float | None) -> Surface:
+def _derived_surface(surface: Surface, polygon: Polygon | None, area: float | None) -> Surface:
     shape: dict[str, Number] = {}
     if polygon is not None and area is not None:
         derived = {"area": area, "tilt": polygon.tilt, "azimuth": polygon.azimuth}
         shape = {
-            key: settled(Surface, key, value, _FROM_VERTICES)
+            key: derived_number(Surface, key, value, _FROM_VERTICES)
             for key, value in derived.items()
             if getattr(surface, key) is None
         }
     elif surface.azimuth is None:
         shape = {
-            "azimuth": settled(
+            "azimuth": derived_number(
                 Surface, "azimuth", 0.0, Remark("not written: the direction does not act here")
             )
         }
     placed = surface.model_copy(update=shape)
-    sides = {name: _settled_side(getattr(placed, name), placed, polygon) for name in ("outside", "inside")}
+    sides = {name: _derived_side(getattr(placed, name), placed, polygon) for name in ("outside", "inside")}
     return placed.model_copy(update=sides)
 
 
-def _settled_side(side: Side, surface: Surface, polygon: Polygon | None) -> Side:
+def _derived_side(side: Side, surface: Surface, polygon: Polygon | None) -> Side:
     update: dict[str, object] = {}
     if side.convection is not None:
         area, tilt = float(surface.area or 0.0), float(surface.tilt or 0.0)
-        update["convection"] = _settled_convection(side.convection, bool(side.outdoors), area, tilt, polygon)
+        update["convection"] = _derived_convection(side.convection, bool(side.outdoors), area, tilt, polygon)
     if polygon is not None and side.outdoors and side.height is None and polygon.centroid[2] > 0.0:
-        update["height"] = settled(
+        update["height"] = derived_number(
             Side, "height", float(polygon.centroid[2]), Remark("centroid of the vertices")
         )
     return side.model_copy(update=update)
 
 
-def _settled_convection(
+def _derived_convection(
     convection: Convection, outdoors: bool, area: float, tilt: float, polygon: Polygon | None
 ) -> Convection:
     match convection:
         case AlamdariHammond(length=None) | PaperEq5(length=None) | Iso15099(length=None):
             length, source = _length(area, tilt, polygon)
             kind = type(convection)
-            return convection.model_copy(update={"length": settled(kind, "length", length, source)})
+            return convection.model_copy(update={"length": derived_number(kind, "length", length, source)})
         case Tarp() if outdoors:
             return convection.model_copy(update=_wind_facts(convection, area, polygon))
         case Doe2(roughness=None) if outdoors:
@@ -146,23 +146,23 @@ def _wind_facts(tarp: Tarp, area: float, polygon: Polygon | None) -> dict[str, N
     if tarp.perimeter is None:
         edge = 4.0 * math.sqrt(area)
         facts["perimeter"] = (
-            settled(Tarp, "perimeter", edge, Remark("perimeter of a square of this area"))
+            derived_number(Tarp, "perimeter", edge, Remark("perimeter of a square of this area"))
             if polygon is None
-            else settled(Tarp, "perimeter", polygon.perimeter, _FROM_VERTICES)
+            else derived_number(Tarp, "perimeter", polygon.perimeter, _FROM_VERTICES)
         )
     return facts
 
 
 def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:
     source = "Walton 1983: medium rough, as plaster, concrete and brick"
-    return {"roughness": settled(film, "roughness", _USUAL_ROUGHNESS, source, assumed=True)}
+    return {"roughness": derived_number(film, "roughness", _USUAL_ROUGHNESS, source, assumed=True)}
 
 
-def settle_windows(windows: Mapping[str, Window], surfaces: Mapping[str, Surface]) -> dict[str, Window]:
+def derive_windows(windows: Mapping[str, Window], surfaces: Mapping[str, Surface]) -> dict[str, Window]:
     """Give every window its area, and its faces and gaps their lengths and heights."""
     drawn = window_outlines(windows)
     return {
-        name: _settled_window(window, surfaces[window.surface], drawn.get(name))
+        name: _derived_window(window, surfaces[window.surface], drawn.get(name))
         for name, window in windows.items()
     }
 
@@ -177,31 +177,31 @@ def shade_outlines(shades: Mapping[str, Shade]) -> dict[str, Polygon]:
     return _outlines("shades", {name: shade.vertices for name, shade in shades.items()})
 
 
-def _settled_window(window: Window, wall: Surface, polygon: Polygon | None) -> Window:
+def _derived_window(window: Window, wall: Surface, polygon: Polygon | None) -> Window:
     update: dict[str, object] = {}
     area = float(window.area or (polygon.area if polygon is not None else 0.0))
     if window.area is None:
-        update["area"] = settled(Window, "area", area, _FROM_VERTICES)
+        update["area"] = derived_number(Window, "area", area, _FROM_VERTICES)
     if window.cavity_height is None:
         high, source = _length(area, 90.0, polygon)
-        update["cavity_height"] = settled(Window, "cavity_height", high, source)
+        update["cavity_height"] = derived_number(Window, "cavity_height", high, source)
     outside, inside = window.outside, window.inside
     films = {
-        side: _settled_convection(film, side == "outside", area, float(wall.tilt or 0.0), polygon)
+        side: _derived_convection(film, side == "outside", area, float(wall.tilt or 0.0), polygon)
         for side, film in (("outside", outside.convection), ("inside", inside.convection))
     }
     height = outside.height
     if height is None and polygon is not None and polygon.centroid[2] > 0.0:
         source = Remark("centroid of the vertices")
-        height = settled(WindowOutside, "height", float(polygon.centroid[2]), source)
+        height = derived_number(WindowOutside, "height", float(polygon.centroid[2]), source)
     elif height is None and wall.outside.height is not None:
-        height = settled(WindowOutside, "height", wall.outside.height, Remark("that of the wall"))
+        height = derived_number(WindowOutside, "height", wall.outside.height, Remark("that of the wall"))
     update["outside"] = outside.model_copy(update={"convection": films["outside"], "height": height})
     update["inside"] = inside.model_copy(update={"convection": films["inside"]})
     return window.model_copy(update=update)
 
 
-def settle_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> dict[str, Zone]:
+def derive_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> dict[str, Zone]:
     """Give every zone its volume."""
     return {
         name: zone if zone.volume is not None else zone.model_copy(update={"volume": _volume(name, surfaces)})
@@ -221,7 +221,7 @@ def _volume(zone: str, surfaces: Mapping[str, Surface]) -> Number:
     from mascarin.building.geometry import volume
 
     try:
-        return settled(Zone, "volume", volume(faces), _FROM_VERTICES)
+        return derived_number(Zone, "volume", volume(faces), _FROM_VERTICES)
     except InputError as error:
         refuse(fault(at, *_sentence(error)))
 

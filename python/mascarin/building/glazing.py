@@ -207,7 +207,7 @@ class Angular(Part):
 class PaneGlazing(Part):
     """Panes and the gaps between them, outside to inside."""
 
-    kind: Literal["panes"]
+    kind: Literal["panes"] = "panes"
     panes: tuple[Pane, ...] = Field(description="Outside to inside")
     gaps: tuple[Gap, ...] = Field((), description="Between the panes, outside to inside")
     angular: Angular | None = Field(
@@ -265,7 +265,7 @@ class SimpleGlazing(Part):
     Transmittance at normal incidence by Arasteh et al. 2009, change with the angle by Karlsson & Roos 2000.
     """
 
-    kind: Literal["simple"]
+    kind: Literal["simple"] = "simple"
     u_value: q.GlazingU
     solar_heat_gain: q.SolarHeatGain
     panes: q.PaneCount = Number(2.0, source=f"{_FIT}: double glazing", assumed=True)

@@ -28,7 +28,7 @@ from mascarin.building.zone import GivenSun
 from mascarin.building.zone_surfaces import closed, zone_faces
 
 if TYPE_CHECKING:
-    from mascarin.building.building import Building
+    from mascarin.building.description import Description
 
 Reasons = Iterator[tuple[str, str]]
 
@@ -70,7 +70,7 @@ def has_height(side: Side | WindowOutside | WindowInside) -> bool:
     return not isinstance(side, WindowInside) and side.height is not None
 
 
-def without_effect(building: Building) -> dict[str, str]:
+def without_effect(building: Description) -> dict[str, str]:
     """Paths of the numbers that do not act in this building, each with the reason."""
     every = faces(building)
     found = dict(_unused(building))
@@ -85,20 +85,20 @@ def without_effect(building: Building) -> dict[str, str]:
     return found
 
 
-def faces(building: Building) -> list[Face]:
+def faces(building: Description) -> list[Face]:
     """Both sides of every surface, in the order of the description."""
     walls = [face for name, surface in building.surfaces.items() for face in _faces(name, surface)]
     return [*walls, *(face for name in building.windows for face in _window_faces(building, name))]
 
 
-def _window_faces(building: Building, name: str) -> Iterator[Face]:
+def _window_faces(building: Description, name: str) -> Iterator[Face]:
     window = building.windows[name]
     tilt = float(building.surfaces[window.surface].tilt or 0.0)
     yield Face(f"windows.{name}.outside", window.outside, tilt)
     yield Face(f"windows.{name}.inside", window.inside, 180.0 - tilt)
 
 
-def _behind_walls(building: Building) -> Reasons:
+def _behind_walls(building: Description) -> Reasons:
     """Find absorptances that no sun reaches, and heights of gaps that there are none of."""
     for zone in building.zones:
         faces = zone_faces(zone, building.surfaces, building.windows)
@@ -134,7 +134,7 @@ def _faces(name: str, surface: Surface) -> Iterator[Face]:
     yield Face(f"surfaces.{name}.inside", surface.inside, 180.0 - tilt)
 
 
-def _unused(building: Building) -> Reasons:
+def _unused(building: Description) -> Reasons:
     built = {surface.construction for surface in building.surfaces.values()}
     contained = {layer.material for name in built for layer in building.constructions[name].layers}
     for name, construction in building.constructions.items():
@@ -164,7 +164,7 @@ def _in_glazing(path: str, glazing: PaneGlazing) -> Reasons:
             yield f"{path}.panes.{index}.emissivity{which}", "the conductance of the gap is given"
 
 
-def _in_site(building: Building, every: list[Face]) -> Reasons:
+def _in_site(building: Description, every: list[Face]) -> Reasons:
     site = building.site
     seeing = [face for face in every if face.sees_sky]
     if not any(face.sunlit and face.tilt > 0.0 for face in every):
@@ -222,7 +222,7 @@ def _in_power(face: Face, film: Power) -> Reasons:
             yield f"{path}.m", "c is 0"
 
 
-def _in_direction(building: Building, name: str, surface: Surface) -> Reasons:
+def _in_direction(building: Description, name: str, surface: Surface) -> Reasons:
     """Tilt and azimuth act through sun, sky and wind; through buoyancy and view they only choose a case."""
     faces = list(_faces(name, surface))
     for window, _ in windows_of(name, building.windows):
@@ -254,14 +254,14 @@ def _only(choices: list[str]) -> str:
     return f"it only decides: {', '.join(choices)}" if choices else "neither sun, sky, wind nor zone see it"
 
 
-def _by_direction(building: Building, zone: str) -> bool:
+def _by_direction(building: Description, zone: str) -> bool:
     """Tell whether the view factors of a zone are approximated from areas, tilts and azimuths."""
     if isinstance(building.zones[zone].longwave, NoLongwave) or building.zones[zone].view_factors is not None:
         return False
     return not closed(zone_faces(zone, building.surfaces, building.windows))
 
 
-def _between_faces(building: Building) -> Reasons:
+def _between_faces(building: Description) -> Reasons:
     for name, zone in building.zones.items():
         faces = faces_of(name, building.surfaces)
         lone = len(zone_faces(name, building.surfaces, building.windows)) == 1
@@ -272,7 +272,7 @@ def _between_faces(building: Building) -> Reasons:
             yield f"zones.{name}.longwave.reference", reason
 
 
-def _in_air(building: Building) -> Reasons:
+def _in_air(building: Description) -> Reasons:
     for name, zone in building.zones.items():
         for gain, numbers in zone.gains.items():
             if numbers.power == 0.0:

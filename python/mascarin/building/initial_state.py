@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from mascarin.building.glazing import GivenGap, Glazing, SimpleGlazing
-from mascarin.building.material import PhaseChangeMaterial, Resistance, phase
+from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.part import Part, fault, refuse
+from mascarin.building.phases import phase
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:

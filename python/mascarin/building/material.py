@@ -1,31 +1,35 @@
-"""Materials: solids, bare resistances, phase-change materials."""
+"""Materials: solids, thermal resistances, phase-change materials."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic_core import InitErrorDetails
 
+from mascarin.building import phase_change_rules as rules
 from mascarin.building import quantities as q
+from mascarin.building.leaves import leaves
+from mascarin.building.melting import Melting
 from mascarin.building.number import Fixed, Number
-from mascarin.building.part import Pair, Part, insist
-from mascarin.building.phase_change import (
-    CapacityLaw,
-    ClosedLaw,
-    FractionLaw,
-    FractionsLaw,
-    Hysteresis,
-    Law,
-    TableLaw,
-)
-from mascarin.building.products import FromLibrary
+from mascarin.building.part import Part, fault, insist, written_value
+from mascarin.building.phase_change import CapacityLaw, Law, TableLaw
+from mascarin.building.products import DEFAULT_CURVE, expand
 
 
 class Solid(Part):
-    """A material with constant properties."""
+    """A material with constant properties.
 
+    Examples
+    --------
+    >>> concrete = Solid(conductivity=1.75, density=2240, specific_heat=900, source="EN ISO 10456:2007")
+    >>> float(concrete.density)
+    2240.0
+    """
+
+    has_usual_kind: ClassVar[bool] = True
     kind: Literal["solid"] = "solid"
     conductivity: q.Conductivity
     density: q.Density
@@ -34,130 +38,126 @@ class Solid(Part):
 
 
 class Resistance(Part):
-    """A layer that resists and stores nothing: an air space, a contact, a mask."""
+    """A layer with a thermal resistance and without heat capacity, such as an air space.
 
-    kind: Literal["resistance"]
+    Examples
+    --------
+    >>> air_space = Resistance(resistance=0.15)
+    >>> float(air_space.resistance)
+    0.15
+    """
+
+    kind: Literal["resistance"] = "resistance"
     resistance: q.Resistance
     source: str | None = Field(None, description="Where the value comes from")
 
 
-class Phases(Pair):
-    """A property of the solid and of the liquid; short form ``[solid, liquid]``."""
+def _or_product(schema: dict[str, Any]) -> None:
+    """Allow a product of the library, with whatever differs from it, in the JSON Schema."""
+    written = dict(schema)
+    name = {"type": "string", "description": "Product of the library: 'mascarin materials' lists them"}
+    schema.clear()
+    schema["anyOf"] = [
+        written,
+        {"type": "object", "properties": {"product": name}, "required": ["product"]},
+    ]
 
 
-class PhaseConductivities(Phases):
-    """Thermal conductivity of the solid and of the liquid; short form ``[solid, liquid]``."""
-
-    solid: q.Conductivity
-    liquid: q.Conductivity
-
-
-class PhaseDensities(Phases):
-    """Density of the solid and of the liquid; short form ``[solid, liquid]``."""
-
-    solid: q.Density
-    liquid: q.Density
-
-
-class PhaseSpecificHeats(Phases):
-    """Specific heat of the solid and of the liquid; short form ``[solid, liquid]``."""
-
-    solid: q.PhaseSpecificHeat
-    liquid: q.PhaseSpecificHeat
-
-
-def _one_or_two(raw: Any) -> str:
-    pair = isinstance(raw, list | tuple | Phases) or (isinstance(raw, Mapping) and "value" not in raw)
-    return "phases" if pair else "both"
-
-
-_EITHER = Discriminator(_one_or_two)
-ConductivityByPhase = Annotated[
-    Annotated[q.Conductivity, Tag("both")] | Annotated[PhaseConductivities, Tag("phases")], _EITHER
-]
-DensityByPhase = Annotated[
-    Annotated[q.Density, Tag("both")] | Annotated[PhaseDensities, Tag("phases")], _EITHER
-]
-SpecificHeatByPhase = Annotated[
-    Annotated[q.PhaseSpecificHeat, Tag("both")] | Annotated[PhaseSpecificHeats, Tag("phases")], _EITHER
-]
-
-
-class PhaseChangeMaterial(Part):
+class PhaseChangeMaterial(Melting):
     """A material that melts and freezes; each property may differ between solid and liquid.
 
-    A layer keeps its mass: the density of the solid times the thickness as built. The liquid is thicker by
-    the ratio of the densities.
+    A layer keeps its mass: the density of the solid times the thickness of the layer. The liquid is thicker
+    by the ratio of the densities. With `product`, whatever is not given comes from the library
+    (`mascarin.materials`).
+
+    Examples
+    --------
+    >>> board = PhaseChangeMaterial(
+    ...     conductivity=[0.22, 0.18],
+    ...     density=855,
+    ...     specific_heat=[3134, 2833],
+    ...     latent_heat=71000,
+    ...     melting_temperature=23.4,
+    ...     law={"kind": "tanh", "width": 1.0},
+    ... )
+    >>> board.melting[0] < 23.4 < board.melting[1]
+    True
+    >>> PhaseChangeMaterial(product="RT25HC", law="cooling").melting
+    (14.0, 28.0)
     """
 
-    kind: Literal["pcm"]
-    conductivity: ConductivityByPhase
-    density: DensityByPhase
-    specific_heat: SpecificHeatByPhase
-    latent_heat: q.LatentHeat | None = None
-    melting_temperature: q.MeltingTemperature | None = None
-    law: Law
-    hysteresis: Hysteresis | None = Field(
-        None, description="A cooling curve of its own; none: it freezes as it melts"
-    )
+    model_config = ConfigDict(json_schema_extra=_or_product)
+
+    kind: Literal["pcm"] = "pcm"
     product: str | None = Field(None, description="Product of the library that the rest comes from")
     source: str | None = Field(None, description="Where the properties come from")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _from_library(cls, raw: Any) -> Any:
+        """Take what is not given from the product."""
+        return expand(raw)
+
     @model_validator(mode="after")
     def _law_fits(self) -> PhaseChangeMaterial:
-        from mascarin.building import phase_change_rules as rules
-
-        insist(*rules.missing_or_idle(self))
+        insist(*rules.missing_or_inactive(self), *self._curve_of_nothing())
         insist(*rules.unit_slips(self))
         insist(*rules.falling_enthalpy(self))
         insist(*rules.contradicted_latent_heat(self))
         insist(*rules.crossing_curves(self))
         if self.latent_heat is not None and isinstance(self.law, TableLaw | CapacityLaw):
-            self._settle(latent_heat=_only_compared(self.latent_heat))
+            self._fill(latent_heat=_only_compared(self.latent_heat))
         return self
 
-    @property
-    def heat_capacities(self) -> tuple[float, float]:
-        """Sensible heat capacity of solid and liquid per volume as built [J/(m3 K)]."""
-        density = phase(self.density, "solid")
-        return density * phase(self.specific_heat, "solid"), density * phase(self.specific_heat, "liquid")
+    def _curve_of_nothing(self) -> list[InitErrorDetails]:
+        law = self.law
+        if self.product is not None or not isinstance(law, TableLaw) or law.curve is None:
+            return []
+        if any(number.derived for _, number, _ in leaves(law)):
+            return []  # the law of a material with a product, used in another one
+        return [
+            fault(
+                ("law", "curve"),
+                f"'{law.curve}'",
+                "none: there is no 'product:' beside it",
+                "Remove 'curve:'.",
+            )
+        ]
 
-    @property
-    def centre(self) -> float:
-        """Temperature from which the heating curve is reckoned [degC]."""
-        if isinstance(self.law, ClosedLaw):
-            return float(self.melting_temperature or 0.0)
-        return float(self.law.temperature_shift)
+    def written(self, *, keep_derived: bool = False) -> dict[str, Any]:
+        """What a file would hold: the product, and only what differs from it."""
+        if self.product is None:
+            # A law taken from a material with a product keeps its numbers.
+            return super().written(keep_derived=True)
+        # What comes from the product is read again, so that it follows when the product is replaced.
+        fields: dict[str, Any] = {"product": self.product}
+        for key in type(self).model_fields:
+            if key in ("kind", "product") or key not in self.model_fields_set:
+                continue
+            value = _beside_product(self.law) if key == "law" else written_value(getattr(self, key))
+            if value not in (None, {}):
+                fields[key] = value
+        return fields
 
-    @property
-    def reference(self) -> float:
-        """Temperature that the latent heat is given at [degC]."""
-        if isinstance(self.law, FractionsLaw):
-            return self.centre + 0.5 * sum(self.law.reach)
-        return self.centre
 
-    @property
-    def melting(self) -> tuple[float, float]:
-        """Temperatures at which melting starts and is complete, tails cut [degC]."""
-        if isinstance(self.law, TableLaw | CapacityLaw):
-            low, high = self.law.melting
-            return (low + self.centre, high + self.centre)
-        low, high = self.law.reach
-        return (self.centre + low, self.centre + high)
-
-    @property
-    def cooling(self) -> tuple[FractionLaw, float] | None:
-        """Law of the cooling curve and where it is reckoned from [degC]; none: no hysteresis."""
-        if self.hysteresis is None or isinstance(self.law, TableLaw | CapacityLaw):
-            return None
-        law = self.hysteresis.law or self.law
-        if isinstance(law, FractionsLaw):
-            return law, float(law.temperature_shift)
-        return law, float(self.hysteresis.freezing_temperature or 0.0)
+def _beside_product(law: Law) -> Any:
+    """What a file would hold of a law beside a product: all of it, or what differs from the product."""
+    if not any(number.derived for _, number, _ in leaves(law)):
+        return law.written()
+    fields = {key: written_value(getattr(law, key)) for key in law.model_fields_set - {"kind", "curve"}}
+    fields = {
+        key: value
+        for key, value in fields.items()
+        if value is not None and not (isinstance(value, list) and None in value)
+    }
+    curve = law.curve if isinstance(law, TableLaw) else None
+    if curve in (None, DEFAULT_CURVE):
+        return fields
+    return {"curve": curve, **fields} if fields else curve
 
 
 def _only_compared(number: Number) -> Number:
-    """Mark a number that the engine has no use for."""
+    """Mark a number that the engine does not use."""
     if number.quantity is None:
         return number
     return number.of(
@@ -165,14 +165,10 @@ def _only_compared(number: Number) -> Number:
     )
 
 
-def phase(value: Number | Phases, name: str) -> float:
-    """Value of a property in the solid or the liquid phase."""
-    return float(value) if isinstance(value, Number) else float(getattr(value, name))
-
-
 def _kind(raw: Any) -> str:
-    kind = raw.get("kind", "solid") if isinstance(raw, Mapping) else getattr(raw, "kind", "solid")
-    return str(kind)
+    if not isinstance(raw, Mapping):
+        return str(getattr(raw, "kind", "solid"))
+    return "pcm" if raw.get("product") is not None else str(raw.get("kind", "solid"))
 
 
 Material = Annotated[
@@ -180,5 +176,4 @@ Material = Annotated[
     | Annotated[Resistance, Tag("resistance")]
     | Annotated[PhaseChangeMaterial, Tag("pcm")],
     Discriminator(_kind),
-    FromLibrary(),
 ]

@@ -11,12 +11,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mascarin.building.material import PhaseChangeMaterial, Phases, Resistance, phase
+from mascarin.building.leaves import leaves
+from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.number import Interval
+from mascarin.building.parameters import resolve
 from mascarin.building.phase_change import ClosedLaw, Law, TanhLaw, TriangleLaw
+from mascarin.building.phases import Phases, phase
 
 if TYPE_CHECKING:
-    from mascarin.building.building import Building
+    from mascarin.building.description import Description
     from mascarin.building.surface import Layer
 
 #: A phase-change layer has at least so many volumes, or its melting front moves in jumps.
@@ -37,7 +40,7 @@ class Mesh:
     warnings: tuple[str, ...]
 
 
-def choose(building: Building, step_seconds: float, ranges: Mapping[str, Interval] | None = None) -> Mesh:
+def choose(building: Description, step_seconds: float, ranges: Mapping[str, Interval] | None = None) -> Mesh:
     """Choose the mesh of a building.
 
     Parameters
@@ -54,7 +57,7 @@ def choose(building: Building, step_seconds: float, ranges: Mapping[str, Interva
     Mesh
         Nodes of every layer, none for a bare resistance, and warnings where one got too few.
     """
-    worst = _Worst(building, {building.parameter(path).path: ends for path, ends in (ranges or {}).items()})
+    worst = _Worst(building, _by_path(building, ranges or {}))
     nodes, warnings = {}, []
     for name, construction in building.constructions.items():
         for layer in construction.layers:
@@ -64,11 +67,16 @@ def choose(building: Building, step_seconds: float, ranges: Mapping[str, Interva
     return Mesh(nodes, tuple(warnings))
 
 
+def _by_path(building: Description, ranges: Mapping[str, Interval]) -> dict[str, Interval]:
+    known = {path: number for path, number, _ in leaves(building)} if ranges else {}
+    return {resolve(building, path, known): ends for path, ends in ranges.items()}
+
+
 @dataclass(frozen=True)
 class _Worst:
     """Values of numbers at the ends of their ranges."""
 
-    building: Building
+    building: Description
     ranges: Mapping[str, Interval]
 
     def ends(self, path: str, value: float) -> Interval:

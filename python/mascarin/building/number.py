@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from pydantic_core import PydanticCustomError, core_schema
 
@@ -19,6 +19,7 @@ from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic.fields import FieldInfo
     from pydantic.json_schema import JsonSchemaValue
 
 Interval = tuple[float, float]
@@ -41,23 +42,23 @@ class Number(float):
     value : float
         The value, in the unit of its quantity.
     range : tuple of float, optional
-        Lowest and highest believable value; none: the default range of the quantity.
+        Lowest and highest plausible value; none: the default range of the quantity.
     source : str, optional
         Where the value comes from.
     assumed : bool
         Whether nobody measured or looked it up.
-    settled : bool
-        Whether Mascarin derived it from the rest of the description because the user left it open.
+    derived : bool
+        Whether Mascarin derived it from the rest of the description because the user did not give it.
     quantity : Quantity, optional
         What the number measures; filled in when the description is validated.
     """
 
-    __slots__ = ("assumed", "quantity", "range", "settled", "source")
+    __slots__ = ("assumed", "derived", "quantity", "range", "source")
 
     range: Interval | None
     source: str | None
     assumed: bool
-    settled: bool
+    derived: bool
     quantity: Quantity | None
 
     def __new__(
@@ -67,13 +68,13 @@ class Number(float):
         range: Interval | None = None,
         source: str | None = None,
         assumed: bool = False,
-        settled: bool = False,
+        derived: bool = False,
         quantity: Quantity | None = None,
     ) -> Number:
         """Attach the notes to the value."""
         self = super().__new__(cls, value)
         self.range, self.source, self.assumed = range, source, assumed
-        self.settled, self.quantity = settled, quantity
+        self.derived, self.quantity = derived, quantity
         return self
 
     def of(self, quantity: Quantity) -> Number:
@@ -83,7 +84,7 @@ class Number(float):
             range=self.range,
             source=self.source,
             assumed=self.assumed,
-            settled=self.settled,
+            derived=self.derived,
             quantity=quantity,
         )
 
@@ -93,13 +94,41 @@ class Number(float):
         return self.quantity is not None and isinstance(self.quantity.spread, Fixed)
 
     @property
-    def believable(self) -> Interval:
-        """Lowest and highest believable value: as written, else by the quantity's default."""
+    def plausible(self) -> Interval:
+        """Lowest and highest plausible value: as written, else by the quantity's default."""
         if self.range is not None:
             return self.range
         if self.quantity is None:
             return (float(self), float(self))
         return self.quantity.default_range(self)
+
+    def to_plain(self) -> Any:
+        """The number as a file would hold it: a word, a plain number, or a mapping with range and source."""
+        word = self._word()
+        notes: dict[str, Any] = {"value": word or _whole(self)}
+        if self.range is not None:
+            notes["range"] = [_whole(end) for end in self.range]
+        if self.source is not None and not isinstance(self.source, Remark):
+            notes["source"] = str(self.source)
+        if self.assumed:
+            notes["assumed"] = True
+        return notes if len(notes) > 1 else notes["value"]
+
+    def _word(self) -> str | None:
+        """The word that the number was given by, if it was."""
+        if self.quantity is None or not isinstance(self.source, Remark):
+            return None
+        return next((word for word, value in self.quantity.words.items() if value == self), None)
+
+    def with_unit(self) -> str:
+        """The number with its unit, in six digits."""
+        unit = "" if self.quantity is None or self.quantity.unit == "-" else f" {self.quantity.unit}"
+        return f"{float(self):g}{unit}"
+
+
+def _whole(value: float) -> float:
+    """The value as an integer where it is one."""
+    return int(value) if value.is_integer() and abs(value) < 1e15 else float(value)
 
 
 @dataclass(frozen=True)
@@ -275,14 +304,14 @@ class Quantity:
         if not isinstance(assumed, bool):
             raise problem(f"assumed: {shown(assumed)}", "true or false", "")
         value = self._bare(raw["value"])
-        believable = self._range(raw["range"], value) if raw.get("range") is not None else None
-        return Number(value, range=believable, source=source or value.source, assumed=assumed)
+        plausible = self._range(raw["range"], value) if raw.get("range") is not None else None
+        return Number(value, range=plausible, source=source or value.source, assumed=assumed)
 
     def _range(self, raw: object, value: float) -> Interval:
         expected = (
             f"range: [low, high] with low < high around {value:g}, each {str(self.limits) or 'a number'}"
         )
-        help_ = "Write the lowest and the highest value that can be believed."
+        help_ = "Write the lowest and the highest plausible value."
         if not isinstance(raw, list | tuple) or len(raw) != 2:
             raise problem(f"range: {shown(raw)}", expected, help_)
         low, high = (self._held(self._bare(end)) for end in raw)
@@ -356,6 +385,14 @@ def noted_form(plain: dict[str, Any], words: Sequence[dict[str, Any]] = ()) -> d
         "required": ["value"],
         "additionalProperties": False,
     }
+
+
+def quantity_of(field: FieldInfo) -> Quantity | None:
+    """Quantity in the annotation of a numeric field; None for any other field."""
+    annotations = [field, *get_args(field.annotation)]
+    metadata = [note for one in annotations for note in getattr(one, "metadata", ())]
+    metadata += [note for one in annotations for note in getattr(one, "__metadata__", ())]
+    return next((note for note in metadata if isinstance(note, Quantity)), None)
 
 
 def problem(found: str, expected: str, help_: str) -> PydanticCustomError:

@@ -11,7 +11,7 @@ from mascarin.building.material import PhaseChangeMaterial
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
-    from mascarin.building.building import Building
+    from mascarin.building.description import Description
 
 Kind = Literal[
     "air_temperature",
@@ -105,7 +105,7 @@ class Output:
         return {key: value for key in keys if (value := getattr(self, key)) is not None}
 
 
-def outputs(building: Building) -> list[Output]:
+def outputs(building: Description) -> list[Output]:
     """All results of a building: zones, surfaces, sensors, in the order of the description."""
     found = [
         Output(f"{name}.{kind}", "degC", kind, zone=index)
@@ -128,7 +128,7 @@ def outputs(building: Building) -> list[Output]:
     return found
 
 
-def _of_windows(building: Building) -> Iterator[Output]:
+def _of_windows(building: Description) -> Iterator[Output]:
     first = len(building.surfaces)
     for index, name in enumerate(building.windows, start=first):
         for side, word in enumerate(_SIDES):
@@ -142,10 +142,10 @@ def _of_windows(building: Building) -> Iterator[Output]:
             yield Output(f"{name}.lost_solar", "W", "zone_lost_solar", zone=index)
 
 
-def find(building: Building, name: str) -> Output:
-    """One result by its name or alias; see :meth:`Building.output`."""
+def find(building: Description, name: str) -> Output:
+    """One result by its name or another name of it; see `Building.output`."""
     known = {}
-    for output in reversed(building.outputs()):
+    for output in reversed(outputs(building)):
         known.update(dict.fromkeys((*output.aliases, output.name), output))
     if name not in known:
         raise InputError(
@@ -155,7 +155,7 @@ def find(building: Building, name: str) -> Output:
     return known[name]
 
 
-def _of_surface(building: Building, index: int, name: str) -> Iterator[Output]:
+def _of_surface(building: Description, index: int, name: str) -> Iterator[Output]:
     layers = building.constructions[building.surfaces[name].construction].layers
     for side, word in enumerate(_SIDES):
         yield Output(f"{name}.{word}_temperature", "degC", "face_temperature", surface=index, side=side)

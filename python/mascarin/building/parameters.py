@@ -15,7 +15,7 @@ from mascarin.building.number import Number
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
-    from mascarin.building.building import Building
+    from mascarin.building.description import Description
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Parameter:
         return self.reason is None and self.low < self.high
 
 
-def parameters(building: Building) -> list[Parameter]:
+def parameters(building: Description) -> list[Parameter]:
     """All numeric leaves of a building, in the order of the description."""
     idle = without_effect(building)
     return [_parameter(path, number, source, idle.get(path)) for path, number, source in leaves(building)]
@@ -78,7 +78,7 @@ def _parameter(path: str, number: Number, source: str, idle: str | None) -> Para
     quantity = number.quantity
     if quantity is None:
         raise TypeError(f"{path} measures no quantity")
-    low, high = number.believable
+    low, high = number.plausible
     if not low < high:
         idle = idle or "its default range has no width: write a range"
     return Parameter(
@@ -98,7 +98,7 @@ def _parameter(path: str, number: Number, source: str, idle: str | None) -> Para
     )
 
 
-def resolve(building: Building, path: str, known: Mapping[str, Any]) -> str:
+def resolve(building: Description, path: str, known: Mapping[str, Any]) -> str:
     """Find the path that a user means: itself, or one of the short ways to write it.
 
     Raises
@@ -115,12 +115,12 @@ def resolve(building: Building, path: str, known: Mapping[str, Any]) -> str:
     return found
 
 
-def lookup(building: Building, path: str, known: Mapping[str, Any]) -> str | None:
+def lookup(building: Description, path: str, known: Mapping[str, Any]) -> str | None:
     """Find the path that a user means, or nothing."""
     return next((one for one in (path, *_aliases(building, path)) if one in known), None)
 
 
-def _aliases(building: Building, path: str) -> Iterator[str]:
+def _aliases(building: Description, path: str) -> Iterator[str]:
     match path.split("."):
         case ["constructions", construction, "layers", layer, *rest] if (
             construction in building.constructions

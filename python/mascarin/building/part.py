@@ -1,34 +1,109 @@
-"""What the parts of a description have in common: frozen, no unknown keys, errors that help."""
+"""What the parts of a description have in common: immutable, no unknown keys, errors that say what to do."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NoReturn, Self, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 
-from mascarin.building.number import Number, Quantity, noted_form, problem, shown
+from mascarin._io import display
+from mascarin.building.documenting import documented, signature_of
+from mascarin.building.explaining import explained
+from mascarin.building.number import Number, noted_form, problem, quantity_of, shown
 from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ModelWrapValidatorHandler
-    from pydantic.fields import FieldInfo
     from pydantic.json_schema import JsonSchemaValue
 
 Location = tuple[int | str, ...]
 
 
+_INTERNALS = frozenset(dir(BaseModel))
+_ONE_LINE = 100  # characters
+
+
 class Part(BaseModel):
-    """A piece of a description: immutable, and deaf to keys it does not know."""
+    """A piece of a description: immutable, and without unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
+
+    #: Whether a file may leave out the kind, because no other kind is as usual.
+    has_usual_kind: ClassVar[bool] = False
+
+    def __init__(self, /, **fields: Any) -> None:
+        try:
+            super().__init__(**fields)
+        except ValidationError as error:
+            raise explained(error, fields, type(self).__name__) from None
+
+    # Without this mark pydantic would call __init__ for every part inside another one.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Give the class a signature and a docstring made from its fields."""
+        cls.__signature__ = signature_of(cls.model_fields)
+        cls.__doc__ = documented(cls.__doc__ or "", cls.model_fields)
+
+    def to_dict(self) -> dict[str, Any]:
+        """What a YAML file would hold: mappings, lists, texts and numbers.
+
+        Returns
+        -------
+        dict
+            Only what was given; defaults and what Mascarin derives are left out.
+        """
+        plain: dict[str, Any] = plain_value(self.written())
+        return plain
+
+    def written(self, *, keep_derived: bool = False) -> dict[str, Any]:
+        """What was given, as mappings and lists; numbers keep their ranges and sources.
+
+        Parameters
+        ----------
+        keep_derived : bool
+            Whether numbers that Mascarin derived are kept as well.
+        """
+        fields: dict[str, Any] = {}
+        keys = list(type(self).model_fields)
+        if "kind" in keys and not self.has_usual_kind:
+            fields["kind"] = getattr(self, "kind", None)
+        for key in keys:
+            if key in self.model_fields_set:
+                value = written_value(getattr(self, key), keep_derived=keep_derived)
+                if value is not None:
+                    fields[key] = value
+        return fields
+
+    def __dir__(self) -> list[str]:
+        """Fields and methods, without those of pydantic."""
+        own = {name for kind in type(self).__mro__ if issubclass(kind, Part) for name in vars(kind)}
+        names = {*own, *type(self).model_fields} - _INTERNALS
+        return sorted(name for name in names if not name.startswith("_"))
+
+    def __repr__(self) -> str:
+        fields = ", ".join(f"{key}={value}" for key, value in self._rows())
+        line = f"{type(self).__name__}({fields})"
+        return line if len(line) <= _ONE_LINE else f"{line[: _ONE_LINE - 4]}...)"
+
+    def __str__(self) -> str:
+        return display.text(type(self).__name__, self._rows())
+
+    def _repr_html_(self) -> str:
+        return display.page(type(self).__name__, self._rows())
+
+    def _rows(self) -> list[tuple[str, str]]:
+        fields = ((key, getattr(self, key)) for key in type(self).model_fields if key != "kind")
+        return [(key, _in_short(value)) for key, value in fields if value is not None]
 
     @model_validator(mode="wrap")
     @classmethod
     def _explain(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        """Put pydantic's complaints into words: found, expected, what to do."""
+        """Rewrite the errors of pydantic: found, expected, what to do."""
         try:
             return handler(data)
         except ValidationError as error:
@@ -80,8 +155,8 @@ class Part(BaseModel):
             return quantity.expectation
         return f"{key} ({field.description})" if field.description else key
 
-    def _settle(self, **values: Any) -> None:
-        """Fill in what the user left open; only while the part is being made."""
+    def _fill(self, **values: Any) -> None:
+        """Set what the user did not give; only while the part is being made."""
         self.__dict__.update(values)
 
 
@@ -108,16 +183,51 @@ class Pair(Part):
         return dict(zip(names, raw, strict=True))
 
 
-def quantity_of(field: FieldInfo) -> Quantity | None:
-    """Find the quantity in the annotation of a numeric field."""
-    annotations = [field, *get_args(field.annotation)]
-    notes = (
-        note for one in annotations for note in getattr(one, "metadata", getattr(one, "__metadata__", ()))
-    )
-    return next((note for note in notes if isinstance(note, Quantity)), None)
+def written_value(value: Any, *, keep_derived: bool = False) -> Any:
+    """A field as :meth:`Part.written` gives it; None for a number that was derived."""
+    if isinstance(value, Number):
+        return value if keep_derived or not value.derived else None
+    if isinstance(value, Part):
+        return value.written(keep_derived=keep_derived)
+    if isinstance(value, Mapping):
+        pieces = {key: written_value(piece, keep_derived=keep_derived) for key, piece in value.items()}
+        return {key: piece for key, piece in pieces.items() if piece is not None}
+    if isinstance(value, list | tuple):
+        return [written_value(piece, keep_derived=keep_derived) for piece in value]
+    return value
 
 
-def settled(part: type[Part], key: str, value: float, source: str, *, assumed: bool = False) -> Number:
+def plain_value(value: Any) -> Any:
+    """The same without :class:`Number`: plain numbers, or mappings where there is a range or a source."""
+    if isinstance(value, Number):
+        return value.to_plain()
+    if isinstance(value, Mapping):
+        pieces = {key: plain_value(piece) for key, piece in value.items()}
+        if list(pieces) == ["kind"]:
+            return pieces["kind"]
+        if "name" in pieces and pieces["name"] == pieces.get("material"):
+            del pieces["name"]  # a layer has the name of its material
+        return pieces["coefficient"] if list(pieces) == ["kind", "coefficient"] else pieces
+    if isinstance(value, list | tuple):
+        return [plain_value(piece) for piece in value]
+    return value
+
+
+def _in_short(value: Any) -> str:
+    """A field in a few words."""
+    if isinstance(value, Number):
+        return value.with_unit()
+    if isinstance(value, Part):
+        return getattr(value, "kind", None) or type(value).__name__
+    if isinstance(value, Mapping):
+        return ", ".join(map(str, value)) or "none"
+    if isinstance(value, tuple):
+        whole = ", ".join(_in_short(piece) for piece in value)
+        return f"[{whole}]" if len(whole) <= _ONE_LINE else f"{len(value)} values"
+    return str(value)
+
+
+def derived_number(part: type[Part], key: str, value: float, source: str, *, assumed: bool = False) -> Number:
     """Make the value of a field that the user left open.
 
     Parameters
@@ -134,7 +244,7 @@ def settled(part: type[Part], key: str, value: float, source: str, *, assumed: b
         Whether it is a guess and no consequence of the description.
     """
     return Number(
-        value, source=source, assumed=assumed, settled=True, quantity=quantity_of(part.model_fields[key])
+        value, source=source, assumed=assumed, derived=True, quantity=quantity_of(part.model_fields[key])
     )
 
 

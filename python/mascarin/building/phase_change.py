@@ -47,7 +47,7 @@ class TanhLaw(ClosedLaw):
     """
 
     tails: ClassVar[bool] = True
-    kind: Literal["tanh"]
+    kind: Literal["tanh"] = "tanh"
     width: q.MeltingWidth | None = None
     gamma: q.Gamma | None = None
     delta_t: q.DeltaT | None = None
@@ -84,7 +84,7 @@ class TanhLaw(ClosedLaw):
 class SmoothStepLaw(ClosedLaw):
     """A polynomial between ``Tm - w`` and ``Tm + w``, with one or two continuous derivatives."""
 
-    kind: Literal["smooth_step"]
+    kind: Literal["smooth_step"] = "smooth_step"
     width: q.EndToMiddle
     continuity: q.Continuity = Number(1.0, source=Remark("an enthalpy with a continuous capacity"))
 
@@ -112,7 +112,7 @@ class GaussianLaw(ClosedLaw):
     """The latent capacity is a normal distribution about Tm with the standard deviation ``width``."""
 
     tails: ClassVar[bool] = True
-    kind: Literal["gaussian"]
+    kind: Literal["gaussian"] = "gaussian"
     width: q.Deviation
 
     @property
@@ -140,7 +140,7 @@ class GumbelLaw(ClosedLaw):
     """
 
     tails: ClassVar[bool] = True
-    kind: Literal["gumbel"]
+    kind: Literal["gumbel"] = "gumbel"
     width: q.GumbelScale
     tail: Literal["low", "high"] = Field(
         "low", description="Where the long tail is: low (melting starts slowly) or high temperatures"
@@ -167,7 +167,7 @@ class GumbelLaw(ClosedLaw):
 class LinearLaw(ClosedLaw):
     """The liquid fraction rises straight from 0 at ``Tm - w`` to 1 at ``Tm + w``."""
 
-    kind: Literal["linear"]
+    kind: Literal["linear"] = "linear"
     width: q.EndToMiddle
 
     @property
@@ -188,7 +188,7 @@ class LinearLaw(ClosedLaw):
 class TriangleLaw(ClosedLaw):
     """The latent capacity is a triangle with its peak at Tm."""
 
-    kind: Literal["triangle"]
+    kind: Literal["triangle"] = "triangle"
     below: q.Flank
     above: q.Flank
 
@@ -217,7 +217,7 @@ class FractionsLaw(Part):
     """Measured liquid fraction over temperature, interpolated monotonically; needs a latent heat beside."""
 
     tails: ClassVar[bool] = False
-    kind: Literal["fractions"]
+    kind: Literal["fractions"] = "fractions"
     temperatures: tuple[q.CurveTemperature, ...]
     fractions: tuple[q.CurveFraction, ...]
     temperature_shift: q.TemperatureShift = Number(0.0, source=Remark("the curve as measured"))
@@ -296,8 +296,11 @@ class _Table(Part):
 class TableLaw(_Table):
     """Measured enthalpy over temperature, interpolated monotonically."""
 
-    kind: Literal["table"]
+    kind: Literal["table"] = "table"
     enthalpies: tuple[q.CurveEnthalpy, ...]
+    curve: Literal["heating", "cooling"] | None = Field(
+        None, description="Curve of the product that the table holds; only beside 'product:'"
+    )
 
     @model_validator(mode="after")
     def _monotone(self) -> TableLaw:
@@ -318,7 +321,7 @@ class TableLaw(_Table):
 class CapacityLaw(_Table):
     """Measured apparent specific heat over temperature, interpolated linearly and integrated."""
 
-    kind: Literal["capacity"]
+    kind: Literal["capacity"] = "capacity"
     capacities: tuple[q.CurveCapacity, ...]
 
     @model_validator(mode="after")

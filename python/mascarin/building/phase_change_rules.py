@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from pydantic_core import InitErrorDetails
 
+from mascarin.building.melting import Melting
 from mascarin.building.number import Number
 from mascarin.building.part import Location, fault
 from mascarin.building.phase_change import CUT, CapacityLaw, ClosedLaw, FractionLaw, FractionsLaw, TableLaw
-
-if TYPE_CHECKING:
-    from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.phases import phase
 
 #: How far a latent heat may be from what its table holds [-].
 AGREEMENT: Final = 0.10
@@ -29,7 +28,7 @@ _SLIPS: Final = {
 }
 
 
-def missing_or_idle(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+def missing_or_inactive(material: Melting) -> list[InitErrorDetails]:
     """Find what the law needs and is not there, and what could not act beside it."""
     law, kind = material.law, material.law.kind
     table = isinstance(law, TableLaw | CapacityLaw)
@@ -54,7 +53,7 @@ def _needed(key: str, kind: str, path: Location = ()) -> InitErrorDetails:
     return fault((*path, key), "nothing", f"{key}: needed by the {kind} law", f"Add '{key}:'.")
 
 
-def _hysteresis_fits(material: PhaseChangeMaterial) -> Iterator[InitErrorDetails]:
+def _hysteresis_fits(material: Melting) -> Iterator[InitErrorDetails]:
     hysteresis, law = material.hysteresis, material.law
     if hysteresis is None:
         return
@@ -89,7 +88,7 @@ def _hysteresis_fits(material: PhaseChangeMaterial) -> Iterator[InitErrorDetails
 # --- units --------------------------------------------------------------------------------------------------
 
 
-def unit_slips(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+def unit_slips(material: Melting) -> list[InitErrorDetails]:
     """Find numbers that no phase-change material has, but would have in another unit."""
     faults = []
     for key in _SLIPS:
@@ -127,7 +126,7 @@ def unit_slips(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
 _PHASES: Final = ("solid", "liquid")
 
 
-def _temperatures(material: PhaseChangeMaterial) -> Iterator[tuple[Location, float]]:
+def _temperatures(material: Melting) -> Iterator[tuple[Location, float]]:
     hysteresis = material.hysteresis
     if material.melting_temperature is not None:
         yield ("melting_temperature",), material.melting_temperature
@@ -157,7 +156,7 @@ def _slip(key: str, path: Location, value: float) -> InitErrorDetails:
 # --- enthalpy -----------------------------------------------------------------------------------------------
 
 
-def falling_enthalpy(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+def falling_enthalpy(material: Melting) -> list[InitErrorDetails]:
     """Find where ``dH/dT = C_s + D xi + xi' (L + D (T - Tr))`` is not positive."""
     curves = _curves(material)
     solid, liquid = material.heat_capacities
@@ -186,14 +185,12 @@ def falling_enthalpy(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
     return []
 
 
-def solid_density(material: PhaseChangeMaterial) -> float:
+def solid_density(material: Melting) -> float:
     """Density that the heat is counted by [kg/m3]."""
-    from mascarin.building.material import phase
-
     return phase(material.density, "solid")
 
 
-def contradicted_latent_heat(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+def contradicted_latent_heat(material: Melting) -> list[InitErrorDetails]:
     """Find a latent heat that the table beside it does not hold."""
     law = material.law
     if material.latent_heat is None or not isinstance(law, TableLaw | CapacityLaw):
@@ -218,7 +215,7 @@ def contradicted_latent_heat(material: PhaseChangeMaterial) -> list[InitErrorDet
 
 
 def _curves(
-    material: PhaseChangeMaterial,
+    material: Melting,
 ) -> dict[Location, tuple[Callable[[float], float], float, float]]:
     """Heating curve, and the cooling curve if there is one, with the range in which each rises [degC]."""
     if isinstance(material.law, TableLaw | CapacityLaw):
@@ -247,7 +244,7 @@ def _compact(law: FractionLaw, centre: float) -> tuple[Callable[[float], float],
     return curve, centre + low, centre + high
 
 
-def crossing_curves(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
+def crossing_curves(material: Melting) -> list[InitErrorDetails]:
     """Find where there is more liquid on heating than on cooling: cycles would make heat useful again."""
     if material.cooling is None:
         return []
@@ -266,7 +263,7 @@ def crossing_curves(material: PhaseChangeMaterial) -> list[InitErrorDetails]:
     ]
 
 
-def unordered_slopes(material: PhaseChangeMaterial) -> tuple[float, float] | None:
+def unordered_slopes(material: Melting) -> tuple[float, float] | None:
     """Where small cycles of curve_scale would make entropy vanish.
 
     A cycle between two temperatures melts in proportion to the slopes of the heating curve and freezes in
@@ -291,7 +288,7 @@ def unordered_slopes(material: PhaseChangeMaterial) -> tuple[float, float] | Non
     return (falling[0], falling[-1]) if falling else None
 
 
-def _grid(material: PhaseChangeMaterial) -> list[float]:
+def _grid(material: Melting) -> list[float]:
     ends = [end for _, *both in _curves(material).values() for end in both]
     low, high = min(ends), max(ends)
     return [low + (high - low) * i / _POINTS for i in range(_POINTS + 1)]

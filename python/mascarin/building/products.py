@@ -1,77 +1,76 @@
 """Materials taken from the library of products: ``ceiling_pcm: {product: RT25HC}``.
 
-The short form is written out before anything is checked, each number with the product's source beside it.
-What the user gives as well stands in place of the product's; what neither knows is refused.
+The short form is expanded before anything is checked, each number with the source of the product. What the
+user gives as well replaces what the product has; a property that neither gives is an error.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Final
 
-from pydantic_core import core_schema
-
-from mascarin.building.number import problem, shown
+from mascarin.building.number import Number, problem, shown
 from mascarin.errors import InputError
 from mascarin.materials.library import DIRECTIONS, PROPERTIES, Curve, Product, product, suggestion
 
-if TYPE_CHECKING:
-    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
-    from pydantic.json_schema import JsonSchemaValue
-
-
-class FromLibrary:
-    """Annotation: a material may name a product, and hold only what differs from it."""
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        """Write the product out first, then read the material."""
-        return core_schema.no_info_before_validator_function(expand, handler(source))
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        """Allow the short form beside the whole material."""
-        name = {"type": "string", "description": "Product of the library: 'mascarin materials' lists them"}
-        short = {"type": "object", "properties": {"product": name}, "required": ["product"]}
-        return {"anyOf": [handler(schema), short]}
+DEFAULT_CURVE: Final = "heating"
+"""Curve that a product melts by when the user names none."""
 
 
 def expand(raw: Any) -> Any:
-    """Write out a material that names a product; anything else stays as it is.
+    """Expand a material that names a product; anything else stays as it is.
+
+    Parameters
+    ----------
+    raw : mapping or other
+        The material as it was given.
+
+    Returns
+    -------
+    mapping or other
+        The same with all properties. Numbers of the product are marked as derived, so that they are derived
+        again when the product is replaced.
 
     Raises
     ------
     PydanticCustomError
-        If there is no such product, it is given another kind, or neither it nor the user knows a property.
+        There is no such product, another kind is given, or neither product nor user give a property.
     """
     if not isinstance(raw, Mapping) or raw.get("product") is None:
         return raw
     one = _named(raw["product"])
     if raw.get("kind", "pcm") != "pcm":
         raise problem(f"kind: {raw['kind']}", "kind: pcm, or none", f"{one.name} is a phase-change material.")
-    written: dict[str, Any] = {"kind": "pcm"}
-    written |= {key: _noted(one.raw[key], one) for key in PROPERTIES if key in one.raw}
-    written |= {key: value for key, value in raw.items() if value is not None}
-    written["product"] = one.name
-    _complete(written, one)
-    law = _law(raw.get("law"), one)
+    given = {key: value for key, value in raw.items() if value is not None}
+    expanded: dict[str, Any] = {"kind": "pcm"}
+    expanded |= {key: _noted(one.raw[key], one) for key in PROPERTIES if key in one.raw}
+    expanded |= {key: _over(expanded.get(key), value) for key, value in given.items()}
+    expanded["product"] = one.name
+    _complete(expanded, one)
+    law = _law(given.get("law"), one)
     if law is None:
         raise problem(
             f"no law; {one.name} has no curves",
             "law: how it melts",
             "Add 'law:', such as {kind: tanh, width: 1.0}.",
         )
-    written["law"] = law
-    return _melting(one) | written if _by_melting_temperature(law) else written
+    expanded["law"] = law
+    return _melting(one) | expanded if _by_melting_temperature(law) else expanded
 
 
-def _complete(written: Mapping[str, Any], one: Product) -> None:
-    gaps = [key for key in PROPERTIES if key not in written]
+def _over(own: Any, given: Any) -> Any:
+    """A property as given; a mapping of one phase takes the other phase from the product."""
+    if own is None or not isinstance(given, Mapping) or "value" in given:
+        return given
+    solid, liquid = own if isinstance(own, list) else (own, own)
+    return {"solid": solid, "liquid": liquid} | dict(given)
+
+
+def _complete(expanded: Mapping[str, Any], one: Product) -> None:
+    gaps = [key for key in PROPERTIES if key not in expanded]
     if gaps:
         raise problem(
-            f"no {' and no '.join(gaps)}; the source of {one.name} does not say",
+            f"no {' and no '.join(gaps)}; the source of {one.name} does not give it",
             ", ".join(f"{key}: a value from you" for key in gaps),
             f"Write {gaps[0]}: beside product:.",
         )
@@ -87,58 +86,81 @@ def _named(name: Any) -> Product:
         raise problem(f"product: {name}", "a product of the library", help_) from None
 
 
-def _noted(raw: Any, one: Product) -> Any:
-    """Give each number its source."""
+def _noted(raw: Any, one: Product, source: str | None = None) -> Any:
+    """Numbers of a product with their source, marked as derived."""
     if isinstance(raw, list):
-        return [_noted(item, one) for item in raw]
+        return [_noted(item, one, source) for item in raw]
     notes = dict(raw) if isinstance(raw, Mapping) else {"value": raw}
-    return {"source": one.source} | notes
+    span = notes.get("range")
+    return Number(
+        float(notes["value"]),
+        range=None if span is None else (float(span[0]), float(span[1])),
+        source=notes.get("source", source or one.source),
+        assumed=bool(notes.get("assumed", False)),
+        derived=True,
+    )
 
 
 def _law(given: Any, one: Product) -> Any:
-    """The law: as given, by the word for a curve, or the product's own; None where it has none."""
-    if given is None:
-        return _own_law(one)
-    if not isinstance(given, str):
-        return given
-    curve = getattr(one, given) if given in DIRECTIONS else None
-    if curve is None:
-        known = [name for name in DIRECTIONS if getattr(one, name) is not None]
+    """The law: as given, a curve of the product by its name, or the product's law; None where it has none."""
+    if isinstance(given, str):
+        return _table(one, _curve(given, one), given)
+    if isinstance(given, Mapping) and "kind" not in given:
+        curve = given.get("curve")
+        own = _own_law(one) if curve is None else _table(one, _curve(curve, one), curve)
+        return None if own is None else own | dict(given)
+    if isinstance(given, Mapping) and given.get("curve") is not None:
         raise problem(
-            f"law: {given}",
+            "curve beside kind",
+            "one of the two: the curve of the product, or a law",
+            "Remove 'kind:' or 'curve:'.",
+        )
+    return _own_law(one) if given is None else given
+
+
+def _curve(name: Any, one: Product) -> Curve:
+    curve = getattr(one, name) if name in DIRECTIONS else None
+    if curve is None:
+        known = [key for key in DIRECTIONS if getattr(one, key) is not None]
+        raise problem(
+            f"law: {name}",
             f"law: {' or '.join(known) or '{kind: ...}'}, the curves known of {one.name}, or {{kind: ...}}",
             "Choose a curve, or write a law.",
         )
-    return _table(one, curve)
+    found: Curve = curve
+    return found
 
 
-def _own_law(one: Product) -> Any:
+def _own_law(one: Product) -> dict[str, Any] | None:
     if one.heating is not None:
-        return _table(one, one.heating)
+        return _table(one, one.heating, DEFAULT_CURVE)
     if "law" not in one.raw:
         return None
     numbers = {key: _noted(value, one) for key, value in one.raw["law"].items() if key != "kind"}
     return {"kind": one.raw["law"]["kind"]} | numbers
 
 
-def _table(one: Product, curve: Curve) -> dict[str, Any]:
+def _table(one: Product, curve: Curve, name: str) -> dict[str, Any]:
     enthalpies = one.enthalpies(curve.temperatures, curve.liquid_fraction)
     return {
         "kind": "table",
+        "curve": name,
         "temperatures": _noted(list(curve.temperatures), one),
         "enthalpies": _noted(list(enthalpies), one),
     }
 
 
 def _by_melting_temperature(law: Any) -> bool:
-    """Whether latent heat and melting temperature stand beside the law, not in it."""
+    """Whether latent heat and melting temperature are given beside the law, not in it."""
     kind = law.get("kind") if isinstance(law, Mapping) else getattr(law, "kind", None)
     return kind != "table"
 
 
 def _melting(one: Product) -> dict[str, Any]:
     known = {"latent_heat": one.number("latent_heat"), "melting_temperature": one.melting_temperature}
-    written = {key: _noted(one.raw.get(key, value), one) for key, value in known.items() if value is not None}
-    if "melting_temperature" not in one.raw and "melting_temperature" in written:
-        written["melting_temperature"]["source"] = f"half of the heating curve; {one.source}"
-    return written
+    half = f"half of the heating curve; {one.source}"
+    return {
+        key: _noted(one.raw.get(key, value), one, half if key not in one.raw else None)
+        for key, value in known.items()
+        if value is not None
+    }

@@ -19,7 +19,7 @@ from mascarin.building.zone import ASHRAE_OPENING, TracedSun
 from mascarin.building.zone_surfaces import closed, zone_faces
 
 if TYPE_CHECKING:
-    from mascarin.building.building import Building
+    from mascarin.building.description import Description
 
 _TIME_STEPS = "Alexander 1977, doi:10.1137/0714068 (time steps: SDIRK2)"
 _SUN = "Reda & Andreas 2004, doi:10.1016/j.solener.2003.12.003 (sun position)"
@@ -58,7 +58,7 @@ _NAMES_A_WORK = re.compile(
 )
 
 
-def sources(building: Building) -> list[str]:
+def sources(building: Description) -> list[str]:
     """Where the numbers and methods of a building come from, without repetition.
 
     Only what acts in this building is listed: of its numbers, those on which a result depends; of the
@@ -79,7 +79,7 @@ def sources(building: Building) -> list[str]:
     return list(dict.fromkeys([*_of_numbers(building), *_of_methods(building)]))
 
 
-def _of_numbers(building: Building) -> Iterator[str]:
+def _of_numbers(building: Description) -> Iterator[str]:
     idle = without_effect(building)
     if not _sunlit(building):
         idle |= dict.fromkeys(("site.latitude", "site.longitude"), "no face takes the sun from the climate")
@@ -96,7 +96,7 @@ def _is_source(number: Number, source: str) -> bool:
     return not number.assumed or _NAMES_A_WORK.search(source) is not None
 
 
-def _of_methods(building: Building) -> Iterator[str]:
+def _of_methods(building: Description) -> Iterator[str]:
     yield from _of_sun(building)
     yield from _of_sky(building)
     yield from _of_zones(building)
@@ -117,11 +117,11 @@ def _of_methods(building: Building) -> Iterator[str]:
     yield _TIME_STEPS
 
 
-def _sunlit(building: Building) -> bool:
+def _sunlit(building: Description) -> bool:
     return any(face.sunlit for face in faces(building))
 
 
-def _of_sun(building: Building) -> Iterator[str]:
+def _of_sun(building: Description) -> Iterator[str]:
     if not _sunlit(building):
         return
     kind = building.site.diffuse
@@ -132,7 +132,7 @@ def _of_sun(building: Building) -> Iterator[str]:
         yield _AIR_MASS
 
 
-def _of_sky(building: Building) -> Iterator[str]:
+def _of_sky(building: Description) -> Iterator[str]:
     if not any(face.sees_sky for face in faces(building)):
         return
     kind = building.site.sky.kind
@@ -142,7 +142,7 @@ def _of_sky(building: Building) -> Iterator[str]:
     yield _SKY_SPLIT
 
 
-def _of_zones(building: Building) -> Iterator[str]:
+def _of_zones(building: Description) -> Iterator[str]:
     if building.zones and building.site.air_density is None:
         yield _ATMOSPHERE
     for name, zone in building.zones.items():
@@ -154,7 +154,7 @@ def _of_zones(building: Building) -> Iterator[str]:
             yield _EXACT_VIEW if closed(faces) else _AREA_VIEW
 
 
-def _of_glazings(building: Building) -> Iterator[str]:
+def _of_glazings(building: Description) -> Iterator[str]:
     for name in dict.fromkeys(window.glazing for window in building.windows.values()):
         glass = building.glazings[name]
         if isinstance(glass, SimpleGlazing):
@@ -168,7 +168,7 @@ def _of_glazings(building: Building) -> Iterator[str]:
             yield GLASS["filled"]
 
 
-def _tabulated(building: Building) -> bool:
+def _tabulated(building: Description) -> bool:
     built = {surface.construction for surface in building.surfaces.values()}
     used = {layer.material for name in built for layer in building.constructions[name].layers}
     materials = (building.materials[name] for name in used)

@@ -21,10 +21,10 @@ from mascarin.errors import did_you_mean
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
-    from mascarin.building.building import Building
+    from mascarin.building.description import Description
     from mascarin.building.geometry import Polygon
     from mascarin.building.window import Window
-    from mascarin.building.zone import Plant
+    from mascarin.building.zone import IdealLoads
 
 Faults = Iterator["InitErrorDetails"]
 
@@ -34,7 +34,7 @@ VIEW_CLOSURE = 0.05
 SHARE_CLOSURE = 0.02
 
 
-def faults(building: Building) -> Faults:
+def faults(building: Description) -> Faults:
     """All faults between the parts of a building."""
     yield from _something_to_simulate(building)
     yield from _one_namespace(building)
@@ -52,14 +52,14 @@ def faults(building: Building) -> Faults:
     yield from _shades_find_faces(building)
 
 
-def _something_to_simulate(building: Building) -> Faults:
+def _something_to_simulate(building: Description) -> Faults:
     if not building.surfaces:
         yield fault(
             ("surfaces",), "no surfaces", "at least one surface", "Describe the walls under 'surfaces:'."
         )
 
 
-def _one_namespace(building: Building) -> Faults:
+def _one_namespace(building: Description) -> Faults:
     sections: dict[str, Mapping[str, object]] = {
         "zones": building.zones,
         "surfaces": building.surfaces,
@@ -79,7 +79,7 @@ def _one_namespace(building: Building) -> Faults:
             owner.setdefault(name, section)
 
 
-def _layers_have_what_they_need(building: Building) -> Faults:
+def _layers_have_what_they_need(building: Description) -> Faults:
     for name, construction in building.constructions.items():
         for index, layer in enumerate(construction.layers):
             at = ("constructions", name, "layers", index)
@@ -98,7 +98,7 @@ def _layers_have_what_they_need(building: Building) -> Faults:
                     )
 
 
-def _zones_have_faces(building: Building) -> Faults:
+def _zones_have_faces(building: Description) -> Faults:
     for zone in building.zones:
         if not faces_of(zone, building.surfaces):
             yield fault(
@@ -109,13 +109,13 @@ def _zones_have_faces(building: Building) -> Faults:
             )
 
 
-def _sides(building: Building) -> Iterator[tuple[tuple[str, str, str], Side]]:
+def _sides(building: Description) -> Iterator[tuple[tuple[str, str, str], Side]]:
     for name, surface in building.surfaces.items():
         for which, side in (("outside", surface.outside), ("inside", surface.inside)):
             yield ("surfaces", name, which), side
 
 
-def _emissivities_where_exchange_is(building: Building) -> Faults:
+def _emissivities_where_exchange_is(building: Description) -> Faults:
     for at, side in _sides(building):
         if side.zone is None:
             continue
@@ -129,7 +129,7 @@ def _emissivities_where_exchange_is(building: Building) -> Faults:
             )
 
 
-def _films_suit_their_side(building: Building) -> Faults:
+def _films_suit_their_side(building: Description) -> Faults:
     for at, side in _sides(building):
         if isinstance(side.convection, Tarp | Mowitt) and (side.measured or side.ground):
             yield fault(
@@ -156,7 +156,7 @@ def _films_suit_their_side(building: Building) -> Faults:
                     )
 
 
-def _sensors_inside_walls(building: Building) -> Faults:
+def _sensors_inside_walls(building: Description) -> Faults:
     for name, sensor in building.sensors.items():
         layers = building.constructions[building.surfaces[sensor.surface].construction].layers
         thickness = sum(layer.thickness or 0.0 for layer in layers)
@@ -169,7 +169,7 @@ def _sensors_inside_walls(building: Building) -> Faults:
             )
 
 
-def _columns_have_one_meaning(building: Building) -> Faults:
+def _columns_have_one_meaning(building: Description) -> Faults:
     temperatures = {side.measured for _, side in _sides(building)} - {None}
     for at, side in _sides(building):
         if side.irradiance is not None and side.irradiance in temperatures:
@@ -181,7 +181,7 @@ def _columns_have_one_meaning(building: Building) -> Faults:
             )
 
 
-def _view_factors_close(building: Building) -> Faults:
+def _view_factors_close(building: Description) -> Faults:
     for zone in building.zones:
         given = building.zones[zone].view_factors
         if given is None:
@@ -226,7 +226,7 @@ def face_names(faces: list[ZoneFace]) -> list[str]:
     return names
 
 
-def _windows_lie_in_walls(building: Building) -> Faults:
+def _windows_lie_in_walls(building: Description) -> Faults:
     if not building.windows:
         return
     drawn = outlines(building.surfaces)
@@ -270,7 +270,9 @@ def _windows_lie_in_walls(building: Building) -> Faults:
             )
 
 
-def _beside_the_others(building: Building, name: str, polygon: Polygon, walls: dict[str, Polygon]) -> Faults:
+def _beside_the_others(
+    building: Description, name: str, polygon: Polygon, walls: dict[str, Polygon]
+) -> Faults:
     """A window overlaps no window before it, and no wall but its own and what that lies in."""
     own = walls[building.windows[name].surface]
     before = takewhile(lambda one: one != name, building.windows)
@@ -309,7 +311,7 @@ def _outside_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]:
     )
 
 
-def _sun_finds_faces(building: Building) -> Faults:
+def _sun_finds_faces(building: Description) -> Faults:
     for zone, definition in building.zones.items():
         faces = zone_faces(zone, building.surfaces, building.windows)
         lit = any(face.window is not None for face in faces)
@@ -348,7 +350,7 @@ def _rays_end_on_faces(zone: str, faces: list[ZoneFace]) -> Faults:
         )
 
 
-def shaded(building: Building) -> tuple[list[str], list[str]]:
+def shaded(building: Description) -> tuple[list[str], list[str]]:
     """Faces outdoors in the sun on which shades act, and those without vertices, on which they cannot."""
     found: tuple[list[str], list[str]] = ([], [])
     for name, surface in building.surfaces.items():
@@ -359,7 +361,7 @@ def shaded(building: Building) -> tuple[list[str], list[str]]:
     return found
 
 
-def _shades_find_faces(building: Building) -> Faults:
+def _shades_find_faces(building: Description) -> Faults:
     if not building.shades:
         return
     shade_outlines(building.shades)
@@ -386,7 +388,7 @@ def _shares_are_whole(zone: str, sun: GivenSun, names: list[str]) -> Faults:
         )
 
 
-def references(building: Building) -> Iterator[tuple[str, tuple[str, ...], str]]:
+def references(building: Description) -> Iterator[tuple[str, tuple[str, ...], str]]:
     """Whatever follows a schedule: its name, where it is named, and the kind that is needed there."""
     for name, zone in building.zones.items():
         at = ("zones", name)
@@ -405,7 +407,7 @@ def references(building: Building) -> Iterator[tuple[str, tuple[str, ...], str]]
                 yield part.schedule, (section, name, "schedule"), "fraction"
 
 
-def _schedules_suit_their_use(building: Building) -> Faults:
+def _schedules_suit_their_use(building: Description) -> Faults:
     for name, at, needed in references(building):
         kind = building.schedules[name].kind
         if kind != needed:
@@ -417,7 +419,7 @@ def _schedules_suit_their_use(building: Building) -> Faults:
             )
 
 
-def _set_points_apart(building: Building) -> Faults:
+def _set_points_apart(building: Description) -> Faults:
     """Heating above cooling, at some time of a week, would have both work against each other."""
     for name, zone in building.zones.items():
         if len(zone.plants) < 2:
@@ -438,7 +440,7 @@ def _set_points_apart(building: Building) -> Faults:
             break
 
 
-def _week(building: Building, plant: Plant) -> list[tuple[str, list[Piece]]]:
+def _week(building: Description, plant: IdealLoads) -> list[tuple[str, list[Piece]]]:
     """Pieces of the set point on each day of the week, and on holidays; empty for a measured column."""
     if plant.setpoint.schedule is None:
         value = float(plant.setpoint.temperature or 0.0)

@@ -210,7 +210,7 @@ class _Schedule(Part):
 class FractionSchedule(_Schedule):
     """A fraction from 0 to 1 over time: its mean over a step acts."""
 
-    kind: Literal["fraction"]
+    kind: Literal["fraction"] = "fraction"
     value: q.ScheduledFraction | None = None
     days: FractionDays | None = Field(None, description="Profiles by kind of day")
 
@@ -218,7 +218,7 @@ class FractionSchedule(_Schedule):
 class TemperatureSchedule(_Schedule):
     """A temperature over time: its value at the end of a step acts."""
 
-    kind: Literal["temperature"]
+    kind: Literal["temperature"] = "temperature"
     value: q.ScheduledTemperature | None = None
     days: TemperatureDays | None = Field(None, description="Profiles by kind of day")
 

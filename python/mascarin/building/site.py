@@ -40,7 +40,7 @@ class Wind(Part):
             return raw
         terrain = raw.get("terrain", "open")
         exponent, layer = (
-            Number(value, source=f"{ASHRAE_WIND}: {terrain}", settled=True) for value in TERRAINS[terrain]
+            Number(value, source=f"{ASHRAE_WIND}: {terrain}", derived=True) for value in TERRAINS[terrain]
         )
         return {"exponent": exponent, "layer": layer} | raw
 
@@ -48,14 +48,14 @@ class Wind(Part):
 class MeasuredSky(Part):
     """Horizontal infrared of the climate, times a scale."""
 
-    kind: Literal["measured"]
+    kind: Literal["measured"] = "measured"
     scale: q.SkyScale = Number(1.0, source=Remark("the measurement as it is"))
 
 
 class ClarkAllenSky(Part):
     """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K."""
 
-    kind: Literal["clark_allen"]
+    kind: Literal["clark_allen"] = "clark_allen"
     a: q.SkyCoefficient = Number(0.787, source=CLARK)
     b: q.SkyCoefficient = Number(0.764, source=CLARK)
 
@@ -63,7 +63,7 @@ class ClarkAllenSky(Part):
 class MartinBerdahlSky(Part):
     """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC."""
 
-    kind: Literal["martin_berdahl"]
+    kind: Literal["martin_berdahl"] = "martin_berdahl"
     a: q.SkyCoefficient = Number(0.711, source=MARTIN)
     b: q.SkyCoefficient = Number(0.56, source=MARTIN)
     c: q.SkyCoefficient = Number(0.73, source=MARTIN)
@@ -72,7 +72,7 @@ class MartinBerdahlSky(Part):
 class BruntSky(Part):
     """Emissivity ``a + b sqrt(pw)`` of the clear sky, vapour pressure in hPa."""
 
-    kind: Literal["brunt"]
+    kind: Literal["brunt"] = "brunt"
     a: q.SkyCoefficient = Number(0.618, source=_LI)
     b: q.SkyCoefficient = Number(0.056, source=_LI)
 
@@ -80,7 +80,7 @@ class BruntSky(Part):
 class OffsetSky(Part):
     """Sky temperature a constant depression below the air temperature."""
 
-    kind: Literal["offset"]
+    kind: Literal["offset"] = "offset"
     depression: q.SkyDepression = Number(
         11.0, source="ISO 13790:2008: between tropics and subpolar zones", assumed=True
     )

@@ -32,8 +32,12 @@ class Layer(Part):
         if self.name in ("outside", "inside"):
             raise problem(f"the name '{self.name}'", "a name that no face has", "Results are called by it.")
         if not self.name:
-            self._settle(name=self.material)
+            self._fill(name=self.material)
         return self
+
+    def written(self, *, keep_derived: bool = False) -> dict[str, Any]:
+        """What was given, and the name, so that results keep it when another material is put in."""
+        return {"name": self.name} | super().written(keep_derived=keep_derived)
 
 
 class Construction(Part):
@@ -63,20 +67,20 @@ class Construction(Part):
 class Exact(Part):
     """Exchange with the fourth power of temperature."""
 
-    kind: Literal["exact"]
+    kind: Literal["exact"] = "exact"
 
 
 class Linearised(Part):
     """Exchange linearised about a reference temperature."""
 
-    kind: Literal["linearised"]
+    kind: Literal["linearised"] = "linearised"
     reference: q.ReferenceTemperature = Number(20.0, source=Remark("usual room temperature"), assumed=True)
 
 
 class NoLongwave(Part):
     """No exchange of its own: the film is a combined coefficient."""
 
-    kind: Literal["none"]
+    kind: Literal["none"] = "none"
 
 
 OutdoorLongwave = Annotated[

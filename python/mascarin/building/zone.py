@@ -30,7 +30,7 @@ class Infiltration(Part):
 class Radiosity(Part):
     """Exact grey-diffuse exchange, with the fourth power of temperature."""
 
-    kind: Literal["radiosity"]
+    kind: Literal["radiosity"] = "radiosity"
 
 
 ZoneLongwave = Annotated[
@@ -83,7 +83,7 @@ class SetPoint(Part):
         return self
 
 
-class Plant(Part):
+class IdealLoads(Part):
     """Ideal heating or cooling: all of it to the air, which it senses, with no loss and no delay."""
 
     setpoint: Annotated[SetPoint, Shorthand(number="temperature")] = Field(
@@ -98,13 +98,13 @@ class Plant(Part):
 class EvenSun(Part):
     """Sun spread over all faces, each absorbing by its absorptance; glass lets part of it out again."""
 
-    kind: Literal["area"]
+    kind: Literal["area"] = "area"
 
 
 class GivenSun(Part):
     """Sun by given shares, scaled to a sum of one."""
 
-    kind: Literal["shares"]
+    kind: Literal["shares"] = "shares"
     shares: dict[Name, q.SunShare] = Field(
         default_factory=dict, description="Share of each surface of the zone, by its name"
     )
@@ -114,7 +114,7 @@ class GivenSun(Part):
 class TracedSun(Part):
     """Beam followed to where its rays end, all else by view factors; needs vertices all round the zone."""
 
-    kind: Literal["geometry"]
+    kind: Literal["geometry"] = "geometry"
 
 
 ZoneSun = Annotated[EvenSun | GivenSun | TracedSun, Field(discriminator="kind"), Shorthand(word="kind")]
@@ -147,11 +147,11 @@ class Zone(Part):
     ventilation: dict[Name, Ventilation] = Field(
         default_factory=dict, description="Outdoor air let in on purpose, by name"
     )
-    heating: Plant | None = Field(None, description="Ideal heating; none: none")
-    cooling: Plant | None = Field(None, description="Ideal cooling; none: none")
+    heating: IdealLoads | None = Field(None, description="Ideal heating; none: none")
+    cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: none")
 
     @property
-    def plants(self) -> dict[str, Plant]:
+    def plants(self) -> dict[str, IdealLoads]:
         """Heating and cooling, as far as there are any."""
         both = {"heating": self.heating, "cooling": self.cooling}
         return {name: plant for name, plant in both.items() if plant is not None}

@@ -17,7 +17,7 @@ from mascarin.calibration.search import solve
 from mascarin.errors import InputError
 from mascarin.simulation.simulation import Simulation
 from mascarin.validation.observation import Observation, observe
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

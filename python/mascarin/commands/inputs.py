@@ -76,6 +76,6 @@ def seconds(text: str) -> float:
     InputError
         The text is not a positive time.
     """
-    from mascarin.weather.table import seconds_of
+    from mascarin.weather.times import seconds_of
 
     return seconds_of(text, "--step")

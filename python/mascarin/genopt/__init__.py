@@ -1,8 +1,11 @@
-"""Runs GenOpt projects: the same files, the same listings, any simulation program."""
+"""Runs GenOpt projects: the same files and the same listings, with any simulation program.
+
+The names are imported when they are first used, because one evaluation of an exported study is a process of
+its own and must start quickly.
+"""
 
 from __future__ import annotations
 
-from mascarin.genopt.project import Project, load
-from mascarin.genopt.run import Options, Outcome, optimise
+import lazy_loader
 
-__all__ = ["Options", "Outcome", "Project", "load", "optimise"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,13 +1,27 @@
-"""Optimisers beyond GenOpt's, under names of their own."""
+"""Optimization algorithms that GenOpt does not have."""
 
 from __future__ import annotations
 
-from mascarin.genopt.algorithm import Algorithm, Context, Keys
+from mascarin.genopt.searches import Context
+from mascarin.genopt.settings import Keys
 from mascarin.optimization import CovarianceSearch, DifferentialEvolution, Optimiser
 
 
-def _differential(context: Context, keys: Keys) -> Optimiser:
-    """Differential evolution; MaxIte is the largest number of generations where none is given."""
+def differential(context: Context, keys: Keys) -> Optimiser:
+    """Make a differential evolution; MaxIte is the number of generations where none is given.
+
+    Parameters
+    ----------
+    context : Context
+        The project and its parameters.
+    keys : Keys
+        Settings of the section.
+
+    Returns
+    -------
+    Optimiser
+        The search.
+    """
     return DifferentialEvolution(
         context.space,
         population=keys.get("PopulationSize", 10 * len(context.space.names)),
@@ -21,8 +35,21 @@ def _differential(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def _covariance(context: Context, keys: Keys) -> Optimiser:
-    """CMA-ES; MaxIte is the largest number of evaluations."""
+def covariance(context: Context, keys: Keys) -> Optimiser:
+    """Make a CMA-ES search; MaxIte is the largest number of evaluations.
+
+    Parameters
+    ----------
+    context : Context
+        The project and its parameters.
+    keys : Keys
+        Settings of the section.
+
+    Returns
+    -------
+    Optimiser
+        The search.
+    """
     return CovarianceSearch(
         context.space,
         sigma=keys.get("Sigma", 0.25),
@@ -32,15 +59,3 @@ def _covariance(context: Context, keys: Keys) -> Optimiser:
         observer=context.observer,
         remember=False,
     )
-
-
-_DIFFERENTIAL = ("PopulationSize", "NumberOfGeneration", "Weight", "Crossover", "Tolerance")
-
-ALGORITHMS: dict[str, Algorithm] = {
-    "MascarinDE": Algorithm(
-        ("Seed", *_DIFFERENTIAL), _differential, _DIFFERENTIAL, discrete=True, bounds=True, own=True
-    ),
-    "MascarinCMAES": Algorithm(
-        ("Seed", "Sigma", "PopulationSize"), _covariance, ("Sigma", "PopulationSize"), own=True
-    ),
-}

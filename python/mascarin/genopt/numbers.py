@@ -62,6 +62,24 @@ def single(value: float) -> float:
     return float(_single_digits(_to_single(value)))
 
 
+def single_rounding(value: float, _index: int) -> float:
+    """Round a coordinate as GenOpt does, for the option `rounding` of searches on a mesh.
+
+    Parameters
+    ----------
+    value : float
+        A finite number.
+    _index : int
+        Number of the coordinate, not used.
+
+    Returns
+    -------
+    float
+        See `single`.
+    """
+    return single(value)
+
+
 def parse_double(text: str) -> float | None:
     """Number written in Java's form.
 

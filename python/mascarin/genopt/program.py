@@ -16,8 +16,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from mascarin.errors import InputError, MascarinError, did_you_mean
+from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import functions
+from mascarin.genopt.command_line import place_word, split_command, variables
+from mascarin.genopt.extraction import lines_of, word_behind
 from mascarin.genopt.numbers import double_text, parse_double
 from mascarin.genopt.project import FileEntry, Objective, Project
 from mascarin.optimization import Point
@@ -71,7 +73,7 @@ class Program:
         self._separators = separators
         self._templates = [_read_template(entry) for entry in project.template]
         self._text_names = self._check_names()
-        self._words = _split_command(project)
+        self._words = split_command(project)
         files = (*project.input, *project.log, *project.output)
         self._own_names = {Path(e.name).name for e in files}
         self._found: dict[str, int] = {}
@@ -278,13 +280,13 @@ class Program:
         for entry in self._project.log:
             path = self._inside(entry, folder)
             text = self._text(path, folder, "log")
-            for number, line in enumerate(_lines(text), start=1):
+            for number, line in enumerate(lines_of(text), start=1):
                 if any(e in line for e in self._project.errors):
                     raise self._failed(
                         folder, f"{path}: following error was found on line {number}:\n   {line.strip()}"
                     )
         outputs = [
-            _lines(self._text(self._inside(entry, folder), folder, "output"))
+            lines_of(self._text(self._inside(entry, folder), folder, "output"))
             for entry in self._project.output
         ]
         found = {
@@ -320,7 +322,7 @@ class Program:
         known = self._found.get(o.name)
         order = range(len(outputs)) if known is None else [known]
         for i in order:
-            word = _word_behind(outputs[i], delimiter, o.column, self._separators)
+            word = word_behind(outputs[i], delimiter, o.column, self._separators)
             if word is not None:
                 value = self._number(o, word, self._inside(self._project.output[i], folder), folder)
                 self._found[o.name] = i
@@ -362,137 +364,18 @@ class Program:
         list of str
             Program and arguments.
         """
-        variables, base = self._variables(folder), self._project.folder
-        return [_place_word(w, variables, base, self._own_names) for w in self._words]
-
-    def _variables(self, folder: Path) -> dict[str, str]:
-        """Values of the variables of the command line."""
-        return _variables(self._project, folder)
-
-
-@dataclass(frozen=True)
-class _Word:
-    """One word of the command; `text` still has the variables that differ between runs."""
-
-    text: str
-
-
-def _variables(project: Project, folder: Path) -> dict[str, str]:
-    """Variables of the command line for a run in `folder`."""
-    out: dict[str, str] = {}
-
-    def put(role: str, entries: Sequence[FileEntry], *, inside: bool) -> None:
-        for i, e in enumerate(entries, start=1):
-            name = e.name
-            if role == "Input" and not project.keep_extension:
-                name = name.rpartition(".")[0] or name
-            base = folder / e.folder.relative_to(project.folder) if inside else e.folder
-            out[f"Simulation.Files.{role}.File{i}"] = name
-            out[f"Simulation.Files.{role}.Path{i}"] = str(base)
-            if e.save is not None:
-                out[f"Simulation.Files.{role}.SavePath{i}"] = str(e.save)
-
-    put("Template", project.template, inside=False)
-    put("Input", project.input, inside=True)
-    put("Log", project.log, inside=True)
-    put("Output", project.output, inside=True)
-    out["Simulation.Files.Configuration.Name1"] = project.configuration.name
-    out["Simulation.Files.Configuration.Path1"] = str(project.configuration.parent)
-    out["Simulation.CallParameter.Prefix"] = project.prefix
-    out["Simulation.CallParameter.Suffix"] = project.suffix
-    out["Optimization.Files.Command.File1"] = project.command_file.name
-    out["Optimization.Files.Command.Path1"] = str(project.command_file.parent)
-    out["CLASSPATH"] = os.environ.get("CLASSPATH", "")
-    return out
-
-
-def _split_command(project: Project) -> list[_Word]:
-    """Words of the command; quotes keep blanks together, values of files stay one word."""
-    text = project.command
-    for key in ("Prefix", "Suffix"):
-        value = project.prefix if key == "Prefix" else project.suffix
-        text = text.replace(f"%Simulation.CallParameter.{key}%", value)
-    known = _variables(project, project.folder)
-    for name in re.findall(r"%((?:Simulation|Optimization)\.[\w.]+)%", text):
-        if name not in known:
-            project.report.error(
-                project.command_place,
-                f"'%{name}%' in the command is not known. {did_you_mean(name, known)}".rstrip(),
-            )
-    if text.count('"') % 2:
-        project.report.error(project.command_place, "the command has an odd number of double quotes")
-    project.report.raise_if_any()
-    words: list[str] = []
-    for piece in re.findall(r'(?:[^\s"]|"[^"]*")+', text):
-        word = piece.replace('"', "")
-        if re.match(r"\.\d+\Z", word):
-            project.report.beyond(
-                project.command_place,
-                f"the argument '{word}' begins with a point, so GenOpt takes it for a file and puts "
-                "a directory in front",
-                f"write 0{word}",
-            )
-        words.append(word)
-    project.report.raise_if_any()
-    return [_Word(w) for w in words]
-
-
-def _place_word(word: _Word, variables: dict[str, str], folder: Path, own: set[str]) -> str:
-    """A word with its variables replaced and its path made absolute where GenOpt does so."""
-    text = functions.substitute(word.text, variables)
-    if text.startswith(".") and not re.match(r"\.\d+\Z", text):
-        return os.path.normpath(folder / text)
-    # The name of one of the run's own files means that file, whatever lies in the directory from which the
-    # optimisation was started.
-    literal = text == word.text and text not in own
-    if literal and text and not Path(text).is_absolute() and Path(text).exists():
-        return str(Path(text).absolute())
-    return text
+        values, base = variables(self._project, folder), self._project.folder
+        return [place_word(w, values, base, self._own_names) for w in self._words]
 
 
 def _read_template(entry: FileEntry) -> str:
     """Text of a template with every line ended."""
     try:
-        lines = _lines(entry.path.read_text(**_ENCODING))
+        lines = lines_of(entry.path.read_text(**_ENCODING))
     except OSError as error:
         msg = f"{entry.place}: cannot read template '{entry.path}': {error.strerror}"
         raise InputError(msg) from error
     return "".join(line + "\n" for line in lines)
-
-
-def _lines(text: str) -> list[str]:
-    """Lines without their ends; only line feeds end one, reading has unified the rest."""
-    lines = text.split("\n")
-    return lines[:-1] if lines[-1] == "" else lines
-
-
-def _word_behind(lines: Sequence[str], delimiter: str, column: int, separators: str) -> str | None:
-    """Text of the number behind a delimiter, None when the delimiter is not there.
-
-    The last line with the delimiter counts and in it the last place, unless a column is given.
-    """
-    if delimiter == "":
-        for line in reversed(lines):
-            if line.strip(" \t"):
-                return _first_word(line, separators)
-        return None
-    for line in reversed(lines):
-        if column > 0:
-            if len(line) > column and line.startswith(delimiter, column - 1):
-                return _first_word(line[column - 1 + len(delimiter) :], separators)
-        elif delimiter in line:
-            text = line.rstrip(" \t")
-            end = delimiter.rstrip(" \t")
-            if end and text.endswith(end):
-                text = text[: -len(end)]
-            at = text.rfind(delimiter)
-            return _first_word(text[at + len(delimiter) :], separators) if at >= 0 else ""
-    return None
-
-
-def _first_word(text: str, separators: str) -> str:
-    """Text up to the first blank or separator."""
-    return re.split(rf"[ \t{re.escape(separators)}]", text.lstrip(" \t"), maxsplit=1)[0]
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

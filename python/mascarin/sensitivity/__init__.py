@@ -1,15 +1,29 @@
-"""Which parameters matter, for which output, when and with what certainty.
+"""Which parameters matter, for which output, when, and how certain that is.
 
-One call, `plan`, for all methods; each plan knows its runs and how to analyse them, and every analysis is a
-`Sensitivity`. `screen` does it for a building.
+`sensitivity_analysis` does it for a building, `plan` and `run` for any model. The methods are the spectral
+one (first-order indices over time) and, by SALib, RBD-FAST, Sobol' and Morris. Every analysis is a
+`Sensitivity`.
 """
 
 from __future__ import annotations
 
-from mascarin.sensitivity.building_analysis import factors_of, screen
+from mascarin.sensitivity.building_analysis import factors_of, sensitivity_analysis
 from mascarin.sensitivity.factors import Factor
-from mascarin.sensitivity.methods import METHODS, MethodName, plan
+from mascarin.sensitivity.methods import METHODS, MethodName, collector, plan, run
 from mascarin.sensitivity.result import Sensitivity
-from mascarin.sensitivity.runs import run
+from mascarin.sensitivity.salib import MorrisSensitivity
+from mascarin.sensitivity.spectral import SpectralSensitivity
 
-__all__ = ["METHODS", "Factor", "MethodName", "Sensitivity", "factors_of", "plan", "run", "screen"]
+__all__ = [
+    "METHODS",
+    "Factor",
+    "MethodName",
+    "MorrisSensitivity",
+    "Sensitivity",
+    "SpectralSensitivity",
+    "collector",
+    "factors_of",
+    "plan",
+    "run",
+    "sensitivity_analysis",
+]

@@ -1,27 +1,35 @@
-"""Sensitivity of a building: its parameters as factors, and the runs made."""
+"""Sensitivity analysis of a building: its parameters as factors, and the simulations."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, TypeVar
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from mascarin.errors import InputError, SolverError
+from mascarin.progress import ProgressOption, reporting
 from mascarin.sensitivity.factors import DistributionName, Factor
-from mascarin.sensitivity.methods import MethodName, plan
+from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.sensitivity.result import Sensitivity
+from mascarin.sensitivity.runs import batches
+from mascarin.simulation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.simulation.options import TimeLike
+    from mascarin.simulation.initial import Initial
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
+
+Vary = Sequence[str] | Mapping[str, tuple[float, float] | None]
+"""What varies: paths, or path -> (low, high); None for the range of the building."""
 
 _T = TypeVar("_T")
 _BATCH = 256
@@ -36,30 +44,35 @@ def factors_of(
     leave_out: Sequence[str] = (),
     only: Sequence[str] | None = None,
 ) -> list[Factor]:
-    """All parameters of a building that act and have a range, as factors.
+    """Make factors of all parameters of a building that are active and have a range.
 
-    A number that the description knows to be idle (a wind exponent where no film depends on wind) takes no
-    part: its share is zero, and an estimate could only add noise to that.
+    A parameter that is known to be inactive (a wind exponent where no surface heat transfer coefficient
+    depends on wind) is left out: its index is zero.
 
     Parameters
     ----------
     building : Building
         Gives paths, ranges and units.
     ranges : mapping of str to (float, float), optional
-        Ranges in the place of the building's. [unit of each]
+        Ranges that replace those of the building. [unit of each]
     distributions : mapping of str to str, optional
-        Distributions; uniform where absent.
+        Distributions; default ``uniform``.
     groups : mapping of str to sequence of str, optional
-        Name -> paths that are judged together.
+        Name -> paths that are analyzed together.
     leave_out : sequence of str
-        Paths that stay at their value.
+        Paths that keep their value.
     only : sequence of str, optional
-        Paths that take part; all when absent.
+        Paths that vary; default all.
+
+    Returns
+    -------
+    list of Factor
+        In the order of the building's parameters.
 
     Raises
     ------
     InputError
-        Unknown or structural path, a range beyond what the parameter can be, a path in two groups, or no
+        Unknown or structural path, a range beyond the limits of the parameter, a path in two groups, or no
         parameter left.
     """
     spans = {path: checked_range(building, path, span) for path, span in _resolved(building, ranges).items()}
@@ -82,89 +95,163 @@ def factors_of(
     return found
 
 
-def screen(
+def sensitivity_analysis(
     building: Building,
     climate: Climate,
     *,
-    outputs: Sequence[str],
+    vary: Vary | None = None,
     method: MethodName = "spectral",
-    parameters: Sequence[str] | None = None,
-    ranges: Mapping[str, tuple[float, float]] | None = None,
     distributions: Mapping[str, DistributionName] | None = None,
     groups: Mapping[str, Sequence[str]] | None = None,
     leave_out: Sequence[str] = (),
-    start: TimeLike | None = None,
-    end: TimeLike | None = None,
-    step: str | float = "15min",
-    interval: str | float = "1h",
-    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
-    measurements: Measurements | None = None,
     replicates: int = 8,
     samples: int | None = None,
     order: int | None = None,
     seed: int = 0,
-    progress: Callable[[int, int], object] | None = None,
+    confidence: float = 0.95,
+    interval: str | float = "1h",
+    parameters: Mapping[str, float] | None = None,
+    outputs: Sequence[str] | None = None,
+    start: TimeLike | None = None,
+    end: TimeLike | None = None,
+    step: str | float = "15min",
+    scheme: Scheme = "sdirk2",
+    initial: Initial = "repeat",
+    first_period: str | float = "1d",
+    measurements: Measurements | None = None,
+    progress: ProgressOption = None,
 ) -> Sensitivity:
-    """Find which parameters of a building matter for some of its outputs.
+    """Find which parameters of a building matter for its outputs.
 
     Parameters
     ----------
-    building, climate, outputs, start, end, step, scheme, measurements
+    building, climate
         As in `mascarin.simulate`.
-    method, replicates, samples, order, seed
+    vary : sequence of str, or mapping of str to (float, float) or None, optional
+        Paths that vary, or path -> (low, high); None for the range of the building. Default: every active
+        parameter with a range. [unit of each]
+    method : str
+        ``spectral`` (default), ``rbd-fast``, ``sobol`` or ``morris``; all but the first need SALib.
+    distributions : mapping of str to str, optional
+        Distributions by path: ``uniform`` (default), ``sine``, ``log-uniform``, ``triangular``, ``normal``.
+    groups : mapping of str to sequence of str, optional
+        Name -> paths that are analyzed together.
+    leave_out : sequence of str
+        Paths that keep their value.
+    replicates, samples, order, seed
         As in `mascarin.sensitivity.plan`.
-    parameters : sequence of str, optional
-        Paths that take part; every parameter with a range when absent.
-    ranges, distributions, groups, leave_out
-        As in `factors_of`.
+    confidence : float
+        Of the intervals. [-]
     interval : str or float
-        Spacing of the outputs that are analysed. [s]
-    progress : callable, optional
-        Called with the number of runs done and their total.
+        Spacing of the outputs that are analyzed. [s]
+    parameters : mapping of str to float, optional
+        Values by path that replace those of the building; these parameters do not vary. [unit of each]
+    outputs, start, end, step, scheme, initial, first_period, measurements
+        As in `mascarin.simulate`.
+    progress : bool or callable, optional
+        See `mascarin.progress.ProgressOption`.
 
     Returns
     -------
     Sensitivity
-        Shares with intervals and signed effects.
+        Indices with intervals, and signed effects.
 
     Raises
     ------
     InputError
-        Anything that cannot be used, before anything is run.
+        Anything that cannot be used, before the first run.
     SolverError
         A run failed; the text names its parameters.
+
+    Examples
+    --------
+    >>> import numpy as np, pandas as pd
+    >>> import mascarin as mc
+    >>> from mascarin.examples import FOLDER
+    >>> wall = mc.load(FOLDER / "wall_bench" / "building.yaml")
+    >>> wave = np.sin(np.arange(96) * np.pi / 24)
+    >>> logged = pd.DataFrame(
+    ...     {"T_ext": 18 + 6 * wave, "Pyr": 300 * np.maximum(wave, 0), "Tint_2": np.full(96, 22.0)},
+    ...     index=pd.date_range("2024-09-05", periods=96, freq="30min"),
+    ... )
+    >>> climate = mc.Climate.from_table(
+    ...     logged, timezone="UTC+2", columns={"air_temperature": "T_ext"},
+    ...     absent=["wind_speed", "wind_direction", "dew_point", "global_horizontal",
+    ...             "diffuse_horizontal", "direct_normal"],
+    ... )
+    >>> found = mc.sensitivity_analysis(
+    ...     wall, climate, outputs=["facade.interface_1_temperature"], method="morris", step="30min",
+    ...     vary={"materials.concrete.conductivity": (0.8, 1.4),
+    ...           "surfaces.facade.inside.convection.coefficient": None},
+    ...     measurements=mc.Measurements.from_table(logged, timezone="UTC+2"),
+    ... )
+    >>> found.ranking("facade.interface_1_temperature", 1)
+    ['surfaces.facade.inside.convection.coefficient']
     """
+    given = {building.parameter(path).path: value for path, value in (parameters or {}).items()}
+    only, ranges = _chosen(building, vary, given)
     chosen = factors_of(
-        building, ranges=ranges, distributions=distributions, groups=groups, leave_out=leave_out,
-        only=parameters,
+        building, ranges=ranges, distributions=distributions, groups=groups,
+        leave_out=[*leave_out, *given], only=only,
     )  # fmt: skip
     runs = plan(chosen, method, replicates=replicates, samples=samples, order=order, seed=seed)
     simulation = Simulation(
-        building,
-        climate,
-        step=step,
-        start=start,
-        end=end,
-        outputs=outputs,
-        scheme=scheme,
-        measurements=measurements,
+        building, climate, step=step, start=start, end=end, outputs=outputs, scheme=scheme, initial=initial,
+        first_period=first_period, measurements=measurements,
         ranges={factor.path: (factor.low, factor.high) for factor in chosen},
-    )
+    )  # fmt: skip
     every = max(1, round(seconds_of(interval, "interval") / simulation.step_seconds))
-    collector = runs.collector(
-        [output.name for output in simulation.outputs], [output.unit for output in simulation.outputs]
+    taken = collector(
+        runs, [output.name for output in simulation.outputs], [output.unit for output in simulation.outputs]
     )
-    for replicate in range(runs.replicates):
-        x = runs.samples(replicate)
-        for row in range(0, runs.runs, _BATCH):
-            first = replicate * runs.runs + row
-            collector.add(first, made(simulation, runs.paths, x[row : row + _BATCH], first, every=every))
-            if progress is not None:
-                progress(min(first + _BATCH, (replicate + 1) * runs.runs), len(runs))
-    return collector.result()
+    base = simulation.vector(given)
+    with reporting(progress, "sensitivity analysis") as report:
+        for first, x in batches(runs, _BATCH):
+            taken.add(first, run_samples(simulation, runs.paths, x, first, every=every, base=base))
+            report(first + len(x), len(runs))
+    return replace(taken.result(confidence=confidence), times=simulation.index[::every])
 
 
-def made(
+def screen(
+    building: Building,
+    climate: Climate,
+    *,
+    parameters: Sequence[str] | None = None,
+    ranges: Mapping[str, tuple[float, float]] | None = None,
+    **options: Any,
+) -> Sensitivity:
+    """Call `sensitivity_analysis` under its former name and with its former options.
+
+    Parameters
+    ----------
+    building, climate
+        As in `sensitivity_analysis`.
+    parameters : sequence of str, optional
+        Paths that vary; now `vary`.
+    ranges : mapping of str to (float, float), optional
+        Ranges; now values of `vary`. [unit of each]
+    **options
+        Other options of `sensitivity_analysis`.
+
+    Returns
+    -------
+    Sensitivity
+        Indices with intervals, and signed effects.
+    """
+    warnings.warn(
+        "screen() is now sensitivity_analysis(); its options parameters= and ranges= are now vary=",
+        DeprecationWarning,
+        stacklevel=2,
+    )
+    spans = {building.parameter(path).path: span for path, span in (ranges or {}).items()}
+    paths = [building.parameter(path).path for path in parameters] if parameters is not None else None
+    if paths is None and spans:
+        paths = [factor.path for factor in factors_of(building, ranges=spans)]
+    vary = None if paths is None else {path: spans.get(path) for path in paths}
+    return sensitivity_analysis(building, climate, vary=vary, **options)
+
+
+def run_samples(
     simulation: Simulation,
     paths: Sequence[str],
     samples: Array,
@@ -172,8 +259,9 @@ def made(
     *,
     start: int = 0,
     every: int = 1,
+    base: Array | None = None,
 ) -> Array:
-    """Outputs of consecutive runs.
+    """Run consecutive members of a plan.
 
     Parameters
     ----------
@@ -187,6 +275,8 @@ def made(
         Number of the first run, for messages.
     start, every : int
         First recorded row and spacing of the recorded rows, in steps.
+    base : ndarray, optional
+        Vector of all parameters, for those that do not vary; default that of the building. [unit of each]
 
     Returns
     -------
@@ -198,25 +288,39 @@ def made(
     SolverError
         A run failed; the text names its parameters.
     """
-    vectors = np.tile(simulation.vector({}), (len(samples), 1))
+    vectors = np.tile(simulation.vector({}) if base is None else base, (len(samples), 1))
     vectors[:, [simulation.position(path) for path in paths]] = samples
     records, _, failures = simulation.ensemble(vectors, record_from=start, record_every=every)
     if failures:
-        worst = failures[0]
+        failed = failures[0]
         raise SolverError(
-            f"sensitivity: run {first + worst.member} failed: {worst.reason} Its parameters: "
-            + ", ".join(f"{p}={v:g}" for p, v in zip(paths, samples[worst.member], strict=True))
+            f"sensitivity analysis: run {first + failed.member} failed: {failed.reason} Its parameters: "
+            + ", ".join(f"{p}={v:g}" for p, v in zip(paths, samples[failed.member], strict=True))
         )
     return records
 
 
 def checked_range(building: Building, path: str, span: tuple[float, float]) -> tuple[float, float]:
-    """A range, refused when the parameter cannot have it.
+    """Check a range against the limits of a parameter.
+
+    Parameters
+    ----------
+    building : Building
+        Knows the parameter.
+    path : str
+        Its path.
+    span : tuple of float
+        Low and high end. [unit of the parameter]
+
+    Returns
+    -------
+    tuple of float
+        The range.
 
     Raises
     ------
     InputError
-        Unknown or structural path, a range the wrong way round or beyond what the parameter can be.
+        Unknown or structural path, a low end that is not below the high end, or a range beyond the limits.
     """
     parameter, (low, high) = building.parameter(path), span
     if parameter.structural:
@@ -230,12 +334,12 @@ def checked_range(building: Building, path: str, span: tuple[float, float]) -> t
 
 
 def _resolved(building: Building, given: Mapping[str, _T] | None) -> dict[str, _T]:
-    """The same by the paths that the building itself uses."""
+    """The same mapping by the full paths of the building."""
     return {building.parameter(path).path: value for path, value in (given or {}).items()}
 
 
 def _members(building: Building, groups: Mapping[str, Sequence[str]]) -> dict[str, str]:
-    """Group of each path that is in one."""
+    """Group of each path that has one."""
     found: dict[str, str] = {}
     for name, paths in groups.items():
         for given in paths:
@@ -244,3 +348,23 @@ def _members(building: Building, groups: Mapping[str, Sequence[str]]) -> dict[st
                 raise InputError(f"{given}: is in the groups {found[path]} and {name}; expected one of them")
             found[path] = name
     return found
+
+
+def _chosen(
+    building: Building, vary: Vary | None, given: Mapping[str, float]
+) -> tuple[list[str] | None, dict[str, tuple[float, float]]]:
+    """Full paths that vary (None for all), and their ranges where given."""
+    if vary is None:
+        return None, {}
+    if isinstance(vary, str):
+        raise InputError(
+            f"vary: found the text '{vary}', expected a list of paths or a mapping to (low, high)"
+        )
+    paths = [building.parameter(path).path for path in vary]
+    both = [path for path in paths if path in given]
+    if both:
+        raise InputError(f"{both[0]}: is in vary and in parameters; a fixed value does not vary: remove one")
+    ranges = {}
+    if isinstance(vary, Mapping):
+        ranges = {path: span for path, span in zip(paths, vary.values(), strict=True) if span is not None}
+    return paths, ranges

@@ -1,4 +1,4 @@
-"""Uncertain parameters: range, distribution and the way they swing in a spectral design."""
+"""Uncertain parameters: their range, their distribution and their search curve in a spectral design."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ DistributionName = Literal["uniform", "sine", "log-uniform", "triangular", "norm
 DISTRIBUTIONS: Final = ("uniform", "sine", "log-uniform", "triangular", "normal")
 
 _NORMAL_CUT: Final = 3.0
-"""Normal distributions end at so many standard deviations, so that no run gets an absurd value. [-]"""
+"""Normal distributions are cut at this number of standard deviations, to avoid values that are not
+physical. [-]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +37,27 @@ class Factor:
     unit : str
         Unit of the parameter.
     distribution : str or callable
-        - ``uniform``: every value of the range alike.
-        - ``sine``: the parameter follows a sine, so that both ends are visited most (the arcsine
-          distribution); a linear model then answers at one frequency alone.
-        - ``log-uniform``: every ratio alike; for parameters that span decades.
+        - ``uniform``: all values of the range are equally likely.
+        - ``sine``: the parameter follows a sine, so that values near both ends are the most frequent ones
+          (arcsine distribution); the output of a linear model then has one frequency only.
+        - ``log-uniform``: the logarithm is uniform; for parameters that span decades.
         - ``triangular``: most likely in the middle, never at the ends.
         - ``normal``: cut at three standard deviations.
         - a callable: the inverse distribution function on [0, 1].
     group : str, optional
-        Parameters of one group share one frequency and are judged together.
+        Name of a group; the parameters of one group are analyzed together and have one index.
+
+    Raises
+    ------
+    InputError
+        A range without a finite low end and a larger finite high end, an unknown distribution, or a
+        log-uniform range that is not positive.
+
+    Examples
+    --------
+    >>> factor = Factor("materials.brick.conductivity", 0.4, 0.9, "W/m.K")
+    >>> factor.quantile(np.array([0.0, 0.5, 1.0])).tolist()
+    [0.4, 0.65, 0.9]
     """
 
     path: str
@@ -68,12 +81,12 @@ class Factor:
             msg = f"{self.path}: a log-uniform range must be positive, found a low end of {self.low:g}"
             raise InputError(msg)
 
-    def swing(self, angle: Floats) -> Floats:
+    def curve(self, angle: Floats) -> Floats:
         """Value of the parameter along its search curve.
 
-        Whatever the distribution, the curve is even about an angle of pi/2: its Fourier series, and that of
-        any function of this parameter alone, then holds cosines of (angle - pi/2) only. The analysis uses
-        this to tell a parameter from others that fall on its lines by coincidence.
+        For every distribution the curve is even about an angle of pi/2. Its Fourier series, and that of any
+        function of this parameter alone, then has cosines of (angle - pi/2) only. The analysis uses this to
+        separate a parameter from others that fall on its lines by chance.
 
         Parameters
         ----------
@@ -92,7 +105,7 @@ class Factor:
         return self.quantile(0.5 + np.arcsin(sine) / np.pi)
 
     def quantile(self, u: Floats) -> Floats:
-        """Inverse distribution function.
+        """Evaluate the inverse distribution function.
 
         Parameters
         ----------
@@ -128,17 +141,17 @@ class Factor:
 
 
 def unit_factors(count: int) -> tuple[Factor, ...]:
-    """Parameters ``x1 ... x<count>`` on [0, 1], for models that scale their inputs themselves."""
+    """Make parameters ``x1 ... x<count>`` on [0, 1], for models that scale their inputs themselves."""
     return tuple(Factor(f"x{k + 1}", 0.0, 1.0) for k in range(count))
 
 
 def check_factors(factors: Sequence[Factor]) -> tuple[Factor, ...]:
-    """The factors as a tuple, refused when there is none or when two have the same path.
+    """Check that there are factors and that no two have the same path; return them as a tuple.
 
     Raises
     ------
     InputError
-        With the path that stands twice.
+        No factor, or the path that occurs twice.
     """
     if not factors:
         msg = "a sensitivity analysis needs at least one parameter with a range"
@@ -153,12 +166,14 @@ def check_factors(factors: Sequence[Factor]) -> tuple[Factor, ...]:
 
 
 def grouped(factors: Sequence[Factor]) -> tuple[tuple[str, ...], NDArray[np.int64]]:
-    """Names of what is judged, in order of appearance, and which of them each factor belongs to.
+    """Return the names of groups in order of appearance, and the group of each factor.
+
+    A factor without a group is a group of its own, with its path as the name.
 
     Raises
     ------
     InputError
-        When a group bears the path of a parameter.
+        A group has the path of a parameter as its name.
     """
     names: dict[str, int] = {}
     for factor in factors:

@@ -1,17 +1,17 @@
-"""Shares with intervals from independent replicates, by leaving out one at a time.
+"""Indices with intervals from independent replicates, by leaving out one replicate at a time.
 
-What disturbs a share in one replicate are the interactions that happen to fall on somebody's lines there. In
-most replicates that is little and in some it is much, so the deviations of the replicates are independent
-and symmetric, but their tails are heavy (a kurtosis of 25 to 100 was measured). Student's interval then
-holds the truth too often, because the one replicate that is far off widens it as much as it moves the mean.
-Hartigan's interval asks for no shape: the means of all subsets of independent, symmetric values fall on
-either side of the truth as a fair coin would have it, so that its ends are two of these means, of known rank.
+The error of an index in one replicate comes from interactions that fall on the lines of another parameter.
+It is small in most replicates and large in a few: the errors of the replicates are independent and symmetric,
+but their distribution has heavy tails (a kurtosis of 25 to 100 was measured). Student's interval is then too
+wide, because one large error increases the spread as much as it moves the mean. Hartigan's interval needs
+symmetry only: the means of all subsets of the replicates lie below or above the true value with equal
+probability, so that two of these means, of known rank, are the ends of the interval.
 
 References
 ----------
 Hartigan J.A. (1969), J. Am. Stat. Assoc. 64, 1303 (using subsample values as typical values).
 https://doi.org/10.1080/01621459.1969.10501057
-Tukey's pseudo-values, and that the jackknife's variance errs on the safe side:
+Tukey's pseudo-values, and the jackknife's variance, which is on average too large rather than too small:
 Efron B., Stein C. (1981), Ann. Stat. 9, 586. https://doi.org/10.1214/aos/1176345462
 """
 
@@ -27,12 +27,12 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-_SUBSETS: Final = 1024  # at most so many are looked at, the empty one counted
+_SUBSETS: Final = 1024  # largest number of subsets, the empty one included
 
 
 @dataclass(frozen=True, eq=False)
 class Ratio:
-    """One half of a share: its value from all replicates, and with each one left out.
+    """Numerator or denominator of an index: from all replicates, and with each one left out.
 
     Attributes
     ----------
@@ -47,63 +47,84 @@ class Ratio:
 
     @staticmethod
     def mean(values: Floats) -> Ratio:
-        """Mean of what each replicate gives, shape (R, ...)."""
+        """Average the values of the replicates, shape (R, ...)."""
         r = values.shape[0]
         return Ratio(values.mean(axis=0), (values.sum(axis=0) - values) / (r - 1))
 
     def summed(self) -> Ratio:
-        """The same summed over time, the last axis."""
+        """Sum over time, the last axis."""
         return Ratio(self.value.sum(axis=-1), self.without.sum(axis=-1))
 
 
 def interval(above: Ratio, below: Ratio, confidence: float) -> tuple[Floats, Floats, Floats]:
-    """Share with its interval; all within [0, 1].
+    """Compute an index with its confidence interval; all within [0, 1].
 
-    Hartigan's where there are replicates enough for the confidence (6 for 95 %), else Student's.
+    Hartigan's interval where there are enough replicates for the confidence (6 for 95 %), else Student's.
 
     Parameters
     ----------
     above, below : Ratio
-        Numerator, with an axis of parameters more than the denominator. [same unit]
+        Numerator and denominator; the numerator has one axis more, that of the parameters. [same unit]
     confidence : float
         Of the interval. [-]
 
     Returns
     -------
     tuple of ndarray
-        Share, low and high end. [-]
+        Index, low and high end. [-]
     """
-    share, without = _divided(above, below)
+    index, without = _divided(above, below)
     r = without.shape[0]
     if 0.5 * (1.0 - confidence) * 2.0**r < 1.0:
         reach = _student(confidence, r) * _spread(without)
-        low, high = share - reach, share + reach
+        low, high = index - reach, index + reach
     else:
-        pseudo = r * share - (r - 1) * without
+        pseudo = r * index - (r - 1) * without
         low, high = _typical(pseudo, confidence)
-        # The mean of the pseudo-values is not quite the share.
-        low, high = np.minimum(low, share), np.maximum(high, share)
-    return np.clip(share, 0.0, 1.0), np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
+        # The mean of the pseudo-values differs slightly from the index.
+        low, high = np.minimum(low, index), np.maximum(high, index)
+    return np.clip(index, 0.0, 1.0), np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
 
 
 def above_zero(above: Ratio, below: Ratio, confidence: float) -> NDArray[np.bool_]:
-    """Whether shares are above zero: beyond Student's limit, which heavy tails only make safer.
+    """Test whether indices are above zero, by Student's one-sided limit.
+
+    Heavy tails make this test conservative: errors of the first kind become rarer.
 
     Parameters
     ----------
     above, below
         As for `interval`.
     confidence : float
-        That it is no chance, of one share. [-]
+        Of the test of one index. [-]
     """
-    share, without = _divided(above, below)
-    # One-sided: a share below zero is chance alone.
+    index, without = _divided(above, below)
+    # One-sided, because a true index is never negative.
     reach = _student(2.0 * confidence - 1.0, without.shape[0]) * _spread(without)
-    return np.asarray(share - reach > 0.0)
+    return np.asarray(index - reach > 0.0)
+
+
+def student_reach(values: Floats, confidence: float) -> Floats:
+    """Compute the half-width of Student's interval for the mean of independent replicates.
+
+    Parameters
+    ----------
+    values : ndarray, shape (R, ...)
+        One value of each replicate.
+    confidence : float
+        Of the interval. [-]
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Half-width. [unit of the values]
+    """
+    r = values.shape[0]
+    return np.asarray(_student(confidence, r) * values.std(axis=0, ddof=1) / math.sqrt(r))
 
 
 def _divided(above: Ratio, below: Ratio) -> tuple[Floats, Floats]:
-    """Shares, and those with each replicate left out."""
+    """Indices, and those with each replicate left out."""
     with np.errstate(invalid="ignore", divide="ignore"):
         # Two axes more in front: parameters for the denominators.
         under = below.without[:, None] if above.without.ndim > below.without.ndim else below.without
@@ -117,15 +138,15 @@ def _student(confidence: float, replicates: int) -> float:
 
 
 def _spread(without: Floats) -> Floats:
-    """Standard deviation of the share by the jackknife."""
+    """Standard deviation of the index by the jackknife."""
     r = without.shape[0]
     return np.asarray(np.sqrt((r - 1) / r * np.sum((without - without.mean(axis=0)) ** 2, axis=0)))
 
 
 def _typical(values: Floats, confidence: float) -> tuple[Floats, Floats]:
-    """Ends of Hartigan's interval for the centre of independent, symmetric values (R, ...).
+    """Ends of Hartigan's interval for the center of independent, symmetric values (R, ...).
 
-    The rank is a whole number for few confidences; between two ranks the ends are interpolated.
+    The rank is rarely a whole number; the ends are interpolated between two ranks.
     """
     weights = _subsets(values.shape[0])
     rank = 0.5 * (1.0 - confidence) * (len(weights) + 1)
@@ -133,7 +154,7 @@ def _typical(values: Floats, confidence: float) -> tuple[Floats, Floats]:
     ranks = [k - 1, k, len(weights) - 1 - k, len(weights) - k]
     flat = values.reshape(values.shape[0], -1)
     ends = np.empty((2, flat.shape[1]))
-    step = 4096  # columns at a time, to keep the means small
+    step = 4096  # columns at a time, to limit the memory of the means
     for first in range(0, flat.shape[1], step):
         means = np.partition(weights @ flat[:, first : first + step], ranks, axis=0)[ranks]
         ends[0, first : first + step] = (1.0 - part) * means[0] + part * means[1]
@@ -144,7 +165,7 @@ def _typical(values: Floats, confidence: float) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=8)
 def _subsets(count: int) -> Floats:
-    """Weights (B, count) that give the means of subsets: all that are not empty, or random ones of them."""
+    """Weights (B, count) of the means of all subsets that are not empty, or of a random choice of them."""
     if 2**count <= _SUBSETS:
         numbers = np.arange(1, 2**count, dtype=np.int64)
         member = (numbers[:, None] >> np.arange(count)) & 1

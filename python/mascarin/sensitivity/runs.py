@@ -1,9 +1,9 @@
-"""What all methods share: a plan of runs in replicates, and a collector of their outputs."""
+"""Common to all methods: the plan of runs in replicates, and the collection of their outputs."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -15,7 +15,7 @@ from mascarin.sensitivity.result import Sensitivity
 
 
 class Runs(Protocol):
-    """Which runs to make: some replicates of equal size."""
+    """A plan of runs: several replicates of equal size."""
 
     @property
     def method(self) -> str:
@@ -50,21 +50,11 @@ PlanT_co = TypeVar("PlanT_co", bound=Runs, covariant=True)
 ResultT_co = TypeVar("ResultT_co", bound=Sensitivity, covariant=True)
 
 
-class Plan(Runs, Protocol):
-    """Runs that bring their analysis."""
-
-    def collector(
-        self, outputs: Sequence[str], units: Sequence[str] | None = None
-    ) -> Collector[Runs, Sensitivity]:
-        """What takes the outputs of the runs and analyses them."""
-        ...
-
-
 class Collector(ABC, Generic[PlanT_co, ResultT_co]):
-    """Takes the outputs of a plan's runs as they come, in any order.
+    """Takes the outputs of the runs of a plan, in any order, and analyzes them.
 
-    A replicate's outputs are held until it is complete and those before it are; what the analysis keeps of
-    it is then small.
+    The outputs of a replicate are kept until it and those before it are complete; then they are reduced to
+    the sums that the analysis needs.
 
     Parameters
     ----------
@@ -89,20 +79,20 @@ class Collector(ABC, Generic[PlanT_co, ResultT_co]):
 
     @abstractmethod
     def _take(self, replicate: int, y: Floats) -> None:
-        """Keep what the analysis needs of a complete replicate (N, T, S); they come in their order."""
+        """Keep what the analysis needs of a complete replicate (N, T, S); replicates come in order."""
 
     @abstractmethod
     def _result(self, confidence: float) -> ResultT_co:
-        """The analysis of all replicates."""
+        """Analyze all replicates."""
 
     @property
     def missing(self) -> int:
-        """Number of runs whose outputs have not come yet. [-]"""
+        """Number of runs whose outputs have not been added yet. [-]"""
         held = sum(int(filled.sum()) for _, filled in self._filling.values())
         return len(self.plan) - self.plan.runs * self._next - held
 
     def add(self, first: int, values: ArrayLike) -> None:
-        """Outputs of consecutive runs.
+        """Add the outputs of consecutive runs.
 
         Parameters
         ----------
@@ -114,7 +104,7 @@ class Collector(ABC, Generic[PlanT_co, ResultT_co]):
         Raises
         ------
         InputError
-            When shapes do not fit, a run comes twice, or a value is not a finite number.
+            Shapes do not fit, a run is added twice, or a value is not a finite number.
         """
         y = self._checked(first, np.asarray(values, dtype=np.float64))
         n = self.plan.runs
@@ -126,17 +116,22 @@ class Collector(ABC, Generic[PlanT_co, ResultT_co]):
             done += take
 
     def result(self, *, confidence: float = 0.95) -> ResultT_co:
-        """The analysis of all runs.
+        """Analyze the runs when all have been added.
 
         Parameters
         ----------
         confidence : float
             Of the intervals. [-]
 
+        Returns
+        -------
+        Sensitivity
+            Indices with intervals and effects.
+
         Raises
         ------
         InputError
-            While runs are missing.
+            Runs are missing, or the confidence is not between 0 and 1.
         """
         if self.missing:
             msg = f"{self.missing} of {len(self.plan)} runs have not been added: the analysis needs them all"
@@ -150,25 +145,23 @@ class Collector(ABC, Generic[PlanT_co, ResultT_co]):
         if y.ndim == 2 and len(self.outputs) == 1:
             y = y[:, :, None]
         if y.ndim != 3 or y.shape[2] != len(self.outputs) or y.shape[1] == 0:
-            msg = f"outputs of shape {y.shape}: expected (runs, times, {len(self.outputs)} outputs)"
+            msg = f"found outputs of shape {y.shape}, expected (runs, times, {len(self.outputs)} outputs)"
             raise InputError(msg)
         if self._shape is None:
             self._shape = (y.shape[1], y.shape[2])
         if y.shape[1:] != self._shape:
-            msg = (
-                f"outputs at {y.shape[1]} times, before there were {self._shape[0]}: every run needs the same"
-            )
+            msg = f"found outputs at {y.shape[1]} times, expected {self._shape[0]} as in the runs before"
             raise InputError(msg)
         if first < 0 or first + y.shape[0] > len(self.plan):
-            msg = f"runs {first} to {first + y.shape[0] - 1}: the design has runs 0 to {len(self.plan) - 1}"
+            last = first + y.shape[0] - 1
+            msg = f"found runs {first} to {last}, expected runs 0 to {len(self.plan) - 1} of the design"
             raise InputError(msg)
         bad = ~np.isfinite(y)
         if bad.any():
             run, time, output = (int(k) for k in np.argwhere(bad)[0])
             msg = (
-                f"run {first + run}: '{self.outputs[output]}' is not a finite number at time {time}; a run "
-                f"that failed cannot be left out of a {self.plan.method} design: narrow the range that makes "
-                f"it fail"
+                f"run {first + run}: '{self.outputs[output]}' is not a finite number at time {time}; a "
+                f"{self.plan.method} design needs all its runs: narrow the range that makes this run fail"
             )
             raise InputError(msg)
         return y
@@ -187,50 +180,28 @@ class Collector(ABC, Generic[PlanT_co, ResultT_co]):
             raise InputError(msg)
         held[row : row + y.shape[0]] = y
         filled[row : row + y.shape[0]] = True
-        # In their order, so that the analysis does not depend on which came first.
+        # In order, so that the result does not depend on the order in which runs were added.
         while self._next in self._filling and self._filling[self._next][1].all():
             complete, _ = self._filling.pop(self._next)
             self._next += 1
             self._take(self._next - 1, complete)
 
 
-def run(
-    plan: Plan,
-    evaluate: Callable[[Floats], ArrayLike],
-    *,
-    outputs: Sequence[str],
-    units: Sequence[str] | None = None,
-    batch: int = 256,
-    confidence: float = 0.95,
-    progress: Callable[[int, int], object] | None = None,
-) -> Sensitivity:
-    """Make the runs of a plan in batches and analyse them.
+def batches(plan: Runs, size: int) -> Iterator[tuple[int, Floats]]:
+    """Divide the runs of a plan into batches, in order.
 
     Parameters
     ----------
-    plan : Plan
-        The runs, of any method.
-    evaluate : callable
-        ``(m, P) -> (m, T, S)``: outputs of a batch of runs.
-    outputs, units : sequence of str, length S
-        Names and units of the outputs.
-    batch : int
-        Largest number of runs handed over at once. [-]
-    confidence : float
-        Of the intervals. [-]
-    progress : callable, optional
-        Called with the number of runs done and their total.
+    plan : Runs
+        The runs.
+    size : int
+        Largest number of runs of a batch. [-]
+
+    Yields
+    ------
+    tuple of int and ndarray, shape (m, P)
+        Number of the first run of a batch, and its samples. [unit of each parameter]
     """
-    collector = plan.collector(outputs, units)
-    for first, x in batches(plan, batch):
-        collector.add(first, evaluate(x))
-        if progress is not None:
-            progress(first + x.shape[0], len(plan))
-    return collector.result(confidence=confidence)
-
-
-def batches(plan: Runs, size: int) -> Iterator[tuple[int, Floats]]:
-    """The runs of a plan in order, as pairs of the first run's number and the samples (m, P)."""
     for r in range(plan.replicates):
         x = plan.samples(r)
         for row in range(0, plan.runs, size):

@@ -14,7 +14,7 @@ from .options import RunOptions as RunOptions
 from .provenance import Provenance as Provenance
 from .readings import globe_temperature as globe_temperature
 from .results import Results as Results
+from .run import simulate as simulate
 from .simulation import Simulation as Simulation
-from .simulation import simulate as simulate
 
 __all__: list[str]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -97,6 +98,11 @@ class CompiledRun:
 
     def __getstate__(self) -> dict[str, Any]:
         return {key: value for key, value in self.__dict__.items() if key != "plan"}
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 of the description."""
+        return hashlib.sha256(self.description.encode()).hexdigest()
 
     def options(
         self, readings: Readings | None = None, record_from: int = 0, record_every: int = 1

@@ -10,8 +10,9 @@ import numpy as np
 from mascarin.building.initial_state import Ambient, GivenStart
 from mascarin.errors import InputError
 from mascarin.simulation.initial import MeasuredStart, resolved
+from mascarin.simulation.initial import read as read_initial
 from mascarin.weather import CHANNELS, IRRADIANCES, TEMPERATURES, parse_timezone, scheduled
-from mascarin.weather.table import stamps_of
+from mascarin.weather.times import stamps_of
 from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:
@@ -24,6 +25,17 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
+
+__all__ = [
+    "changed_parameters",
+    "chosen_outputs",
+    "forcing_of",
+    "period",
+    "read_initial",
+    "settings_of",
+    "start_of",
+    "with_parameters",
+]
 
 #: Largest change of any temperature between two repetitions of the first period. [K]
 REPEATED_WITHIN: Final = 0.01
@@ -52,6 +64,15 @@ def with_parameters(building: Building, parameters: Mapping[str, float] | None) 
             )
         values[known.path] = value.item() if isinstance(value, np.generic) else value
     return building.replace(values)
+
+
+def changed_parameters(
+    before: Building, after: Building, parameters: Mapping[str, float] | None
+) -> dict[str, float]:
+    """Parameters that `with_parameters` changed, by whole path. [unit of each]"""
+    old = {before.parameter(path).path: before.parameter(path).value for path in parameters or {}}
+    new = {path: after.parameter(path).value for path in old}
+    return {path: float(value) for path, value in new.items() if value != old[path]}
 
 
 def period(

@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from mascarin._io import atomic, display
-from mascarin.building.outputs import Output
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation.energy import EnergyLedger
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.spacing import means, state_means
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import parse_timezone
 
 if TYPE_CHECKING:
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from mascarin.building import Output
 
     Array = npt.NDArray[np.float64]
 
@@ -295,7 +296,7 @@ class Results(Mapping[str, "xr.DataArray"]):
         >>> mc.Results.open(file) == run
         True
         """
-        with atomic.drafting(Path(path)) as draft:
+        with atomic.drafted(Path(path)) as draft:
             self.to_xarray().to_netcdf(draft, engine="h5netcdf")
 
     @classmethod
@@ -429,4 +430,6 @@ class Results(Mapping[str, "xr.DataArray"]):
 
 
 def _output(fields: Mapping[str, Any]) -> Output:
+    from mascarin.building import Output  # pydantic, which an evaluation for GenOpt does without
+
     return Output(**{**fields, "aliases": tuple(fields["aliases"])})

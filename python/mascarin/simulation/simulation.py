@@ -9,29 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mascarin.building import unmelted
 from mascarin.errors import InputError
 from mascarin.progress import reporting
 from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
-from mascarin.simulation.compiling import (
-    REPEATED_WITHIN,
-    chosen_outputs,
-    forcing_of,
-    period,
-    settings_of,
-    start_of,
-    with_parameters,
-)
 from mascarin.simulation.energy import EnergyLedger
-from mascarin.simulation.initial import read as read_initial
+from mascarin.simulation.limits import Limits, require_set_points_apart
 from mascarin.simulation.options import RunOptions, described
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.readings import Readings
 from mascarin.simulation.results import Results
-from mascarin.simulation.set_points import require_apart
 from mascarin.simulation.slopes import gradient_of, labelled_slopes
 from mascarin.weather import CHANNELS, summary
-from mascarin.weather.table import epoch_seconds, seconds_of
+from mascarin.weather.times import epoch_seconds, seconds_of
 from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
@@ -115,33 +104,35 @@ class Simulation:
         measurements: Measurements | None = None,
         ranges: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
+        from mascarin.simulation import compiling  # pydantic, which an evaluation for GenOpt does without
+
         options = RunOptions(
             parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
             initial=initial, first_period=first_period, measurements=measurements,
         )  # fmt: skip
-        self.building = with_parameters(building, options.parameters)
+        self.building = compiling.with_parameters(building, options.parameters)
         self.climate = climate
         self.scheme: Scheme = scheme
         self.step_seconds = seconds_of(step)
-        self.start, self.end = period(climate, start, end)
-        self.outputs = chosen_outputs(self.building, outputs)
-        self._replaced = _changed(building, self.building, options.parameters or {})
-        wanted = read_initial(initial)
+        self.start, self.end = compiling.period(climate, start, end)
+        self.outputs = compiling.chosen_outputs(self.building, outputs)
+        self._replaced = compiling.changed_parameters(building, self.building, options.parameters)
+        wanted = compiling.read_initial(initial)
         self._first_period = seconds_of(first_period, "first_period")
         description = self.building.to_engine(self.step_seconds, dict(ranges or {}))
         self.notes = description.notes
-        forcing = forcing_of(
+        forcing = compiling.forcing_of(
             self.building, climate, description, start=self.start, end=self.end,
             step_seconds=self.step_seconds, scheme=scheme, measurements=measurements,
         )  # fmt: skip
         self._channels = tuple(description.channels)
-        self.initial = start_of(wanted, self.building, description, forcing, self.start)
+        self.initial = compiling.start_of(wanted, self.building, description, forcing, self.start)
         self.compiled = CompiledRun(
             description=description.json,
             forcing=forcing,
             paths=tuple(description.paths),
             values=description.values,
-            settings=settings_of(
+            settings=compiling.settings_of(
                 self.initial, forcing, step_seconds=self.step_seconds, scheme=scheme,
                 first_period=self._first_period,
             ),
@@ -150,7 +141,7 @@ class Simulation:
             timezone=zone_name(climate.grid.zone),
         )  # fmt: skip
         _ = self.compiled.plan  # the engine's own checks
-        self._require_set_points_apart(self.values[None, :])
+        self._require_possible(self.values[None, :])
 
     def __repr__(self) -> str:
         return (
@@ -336,6 +327,8 @@ class Simulation:
         vector : ndarray, shape (P,)
             Parameter vector. [unit of each]
         """
+        from mascarin.building import unmelted  # pydantic, as above
+
         vector = np.array(vector, dtype=np.float64)
         self._require_possible(vector[None, :])
         watched = unmelted.watched(self.building)
@@ -346,7 +339,19 @@ class Simulation:
             index=self.index,
             records=np.ascontiguousarray(records),
             energy=EnergyLedger.read(raw),
-            provenance=self._provenance(raw, vector),
+            provenance=Provenance(
+                building=self.building.name,
+                building_hash=self.compiled.hash,
+                climate=summary(self.climate),
+                step_seconds=self.step_seconds,
+                scheme=self.scheme,
+                start=self._start_note(raw),
+                changed={**self._replaced, **self._changed(vector)},
+                newton_iterations=int(raw["iterations"]),
+                nested_stages=int(raw["nested"]),
+                halved_steps=int(raw["halvings"]),
+                reversals=int(raw["reversals"]),
+            ),
             warnings=tuple(unmelted.warnings(self.building, seen)),
         )
 
@@ -507,12 +512,6 @@ class Simulation:
     def _positions(self) -> dict[str, int]:
         return {path: index for index, path in enumerate(self.compiled.paths)}
 
-    @cached_property
-    def _limits(self) -> tuple[Array, Array]:
-        """Limits of each parameter, shapes (P,). [unit of each]"""
-        parameters = [self.building.parameter(path) for path in self.paths]
-        return np.array([p.lower for p in parameters]), np.array([p.upper for p in parameters])
-
     def _checked(self, vector: Array | None) -> Array:
         found: Array = np.array(self.values if vector is None else vector, dtype=np.float64)
         self._require_possible(found[None, :])
@@ -520,119 +519,32 @@ class Simulation:
 
     def _require_possible(self, vectors: Array) -> None:
         """Refuse parameter vectors of the wrong length, or with a value that its parameter cannot have."""
-        if vectors.ndim != 2 or vectors.shape[1] != len(self.compiled.paths):
-            raise InputError(
-                f"samples: found an array of shape {vectors.shape}, expected (members, "
-                f"{len(self.compiled.paths)}): one value for each parameter"
-            )
-        lower, upper = self._limits
-        # A value that is no number makes only its own member fail.
-        bad = np.argwhere((vectors < lower) | (vectors > upper))
-        if bad.size:
-            member, k = (int(i) for i in bad[0])
-            parameter = self.building.parameter(self.compiled.paths[k])
-            raise InputError(
-                f"samples: {parameter.path} of member {member}: found {vectors[member, k]:g} "
-                f"{parameter.unit}; expected a value from {parameter.lower:g} to {parameter.upper:g}"
-            )
-        self._require_set_points_apart(vectors)
-
-    def _require_set_points_apart(self, vectors: Array) -> None:
-        require_apart(
+        self._limits.require(vectors)
+        require_set_points_apart(
             self.building, vectors, self.compiled.forcing, positions=self._positions,
             channels=self._channels, times=self.index,
         )  # fmt: skip
 
-    def _provenance(self, raw: Mapping[str, Any], vector: Array) -> Provenance:
-        changed = {
-            path: float(value)
-            for path, value, nominal in zip(self.paths, vector, self.values, strict=True)
-            if value != nominal
-        }
-        return Provenance(
-            building=self.building.name,
-            building_hash=hashlib.sha256(self.compiled.description.encode()).hexdigest(),
-            climate=summary(self.climate),
-            step_seconds=self.step_seconds,
-            scheme=self.scheme,
-            start=self._start_note(raw),
-            changed={**self._replaced, **changed},
-            newton_iterations=int(raw["iterations"]),
-            nested_stages=int(raw["nested"]),
-            halved_steps=int(raw["halvings"]),
-            reversals=int(raw["reversals"]),
-        )
+    @cached_property
+    def _limits(self) -> Limits:
+        return Limits([self.building.parameter(path) for path in self.compiled.paths])
+
+    def _changed(self, vector: Array) -> dict[str, float]:
+        """Parameters of a vector that differ from those of the building."""
+        where = np.flatnonzero(vector != self.values)
+        return {self.compiled.paths[k]: float(vector[k]) for k in where}
 
     def _start_note(self, raw: Mapping[str, Any]) -> str:
         if isinstance(self.initial, float):
             return f"{self.initial:g} degC everywhere"
         if self.initial is not None:
             return self.initial.words
-        hours = self.compiled.settings["warmup_steps"] * self.step_seconds / 3600.0
+        settings = self.compiled.settings
+        hours = settings["warmup_steps"] * self.step_seconds / 3600.0
         return (
             f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
-            f"by more than {REPEATED_WITHIN:g} K (last change {raw['settled']:.4f} K)"
+            f"by more than {settings['warmup_tolerance']:g} K (last change {raw['settled']:.4f} K)"
         )
 
 
-def _changed(before: Building, after: Building, parameters: Mapping[str, float]) -> dict[str, float]:
-    """Parameters that a replacement changed, by whole path."""
-    values = {before.parameter(path).path: before.parameter(path).value for path in parameters}
-    found = {path: after.parameter(path).value for path in values}
-    return {path: float(value) for path, value in found.items() if value != values[path]}
-
-
 described(Simulation)
-
-
-@described
-def simulate(
-    building: Building,
-    climate: Climate,
-    *,
-    parameters: Mapping[str, float] | None = None,
-    outputs: Sequence[str] | None = None,
-    start: TimeLike | None = None,
-    end: TimeLike | None = None,
-    step: str | float = "15min",
-    scheme: Scheme = "sdirk2",
-    initial: Initial = "repeat",
-    first_period: str | float = "1d",
-    measurements: Measurements | None = None,
-    progress: ProgressOption = None,
-) -> Results:
-    """Run a building in a climate.
-
-    Parameters
-    ----------
-    building : Building
-        The building.
-    climate : Climate
-        Its weather.
-    <run options>
-
-    Returns
-    -------
-    Results
-        Series by name and the energy balance.
-
-    Raises
-    ------
-    InputError
-        Something that cannot be used, before the run.
-    SolverError
-        A step or the repeated first period did not converge.
-
-    Examples
-    --------
-    >>> import mascarin as mc
-    >>> from mascarin.examples import box, box_climate
-    >>> run = mc.simulate(box(), box_climate(), step="1h", parameters={"zones.room.volume": 30.0})
-    >>> run["room.air_temperature"].attrs["units"]
-    'degC'
-    """
-    options = RunOptions(
-        parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
-        initial=initial, first_period=first_period, measurements=measurements,
-    )  # fmt: skip
-    return Simulation(building, climate, **options.keywords()).run(progress=progress)

@@ -11,7 +11,7 @@ import numpy as np
 
 from mascarin.calibration import CalibrationProblem, Fit, FitParameter, Rules, solve
 from mascarin.calibration.building_problem import fit_parameter, problem_of
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

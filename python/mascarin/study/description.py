@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 def _duration(text: str) -> str:
     """A length of time that can be read."""
-    from mascarin.weather.table import seconds_of
+    from mascarin.weather.times import seconds_of
 
     try:
         seconds_of(text)

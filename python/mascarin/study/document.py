@@ -546,7 +546,7 @@ def importance(study: Study, found: Sensitivity) -> dict[str, Any]:
     ]
     content: dict[str, Any] = {"sensitivity": found.to_dict()}
     if isinstance(found, SpectralSensitivity):
-        hours = _hours(study, found.share_t.shape[1])
+        hours = _hours(study, found.index_t.shape[1])
         rows += [
             ["replicates", str(found.design.replicates)],
             ["harmonics counted", str(found.design.order)],
@@ -601,7 +601,7 @@ def _day_shares(found: SpectralSensitivity, output: str, hours: npt.NDArray[np.f
     rows = [list(found.names).index(name) for name in names]
     unique = np.unique(hours)
     variance = np.nan_to_num(found.variance_t[:, s])
-    power = np.nan_to_num(found.share_t[rows, :, s]) * variance
+    power = np.nan_to_num(found.index_t[rows, :, s]) * variance
     share = [
         [float(p[hours == hour].sum() / max(variance[hours == hour].sum(), 1e-300)) for hour in unique]
         for p in power

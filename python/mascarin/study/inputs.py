@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -215,18 +214,6 @@ def filled(read: Measurements, building: Building, longest: str) -> Measurements
     longest : str
         Longest gap to fill, such as ``2h``.
     """
-    import numpy as np
-
     from mascarin.building.engine_input import measured_columns
-    from mascarin.weather.gaps import fill_linearly
-    from mascarin.weather.table import seconds_of
 
-    limit = seconds_of(longest, "fill_gaps") / read.step_seconds
-    data, notes = read.data.copy(), list(read.provenance)
-    for name in measured_columns(building):
-        values = data[name].to_numpy(dtype=np.float64).copy()
-        count = fill_linearly(values, limit)
-        if count:
-            data[name] = values
-            notes.append(f"{read.file}: {count} missing values of {name} filled linearly on request.")
-    return replace(read, data=data, provenance=tuple(notes))
+    return read.fill_gaps(longest, measured_columns(building))

@@ -93,7 +93,7 @@ def fit_figures(fit: Fit, profiles: Sequence[Profile], folder: Path) -> list[Pat
         Where to.
     """
     from mascarin.calibration import plots
-    from mascarin.sensitivity.plots import save
+    from mascarin.figures.files import save
 
     figures = {"identification-course": plots.course(fit)}
     if len(fit.minima) > 1:
@@ -189,7 +189,8 @@ def _series(study: Study, findings: Findings) -> Any:
 
 
 def _figures(study: Study, findings: Findings, folder: Path) -> list[Path]:
-    from mascarin.sensitivity.plots import save, save_all
+    from mascarin.figures.files import save
+    from mascarin.sensitivity.files import save_all
 
     observation = study.observation
     models = {

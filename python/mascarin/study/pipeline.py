@@ -37,8 +37,9 @@ from mascarin.validation.metrics import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
 from mascarin.validation.residuals import Examination, diagnose, examine
 from mascarin.weather import Climate, Measurements
+from mascarin.weather.files import file_hash
 from mascarin.weather.quality import mask
-from mascarin.weather.table import file_hash, seconds_of
+from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import moment
 
 if TYPE_CHECKING:

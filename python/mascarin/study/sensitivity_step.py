@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.sensitivity.building_analysis import checked_range, factors_of, made
+from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
+from mascarin.sensitivity.methods import collector
 from mascarin.sensitivity.methods import plan as design
-from mascarin.weather.table import seconds_of
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.progress import Progress
     from mascarin.sensitivity import Factor, Sensitivity
-    from mascarin.sensitivity.runs import Plan
+    from mascarin.sensitivity.methods import Plan
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.description import SensitivityPlan
     from mascarin.study.locations import Places
@@ -125,24 +126,24 @@ def screen(
         A run failed; the text names its parameters.
     """
     runs = runs_of(plan, chosen)
-    collector = runs.collector(names, [output.unit for output in simulation.outputs])
+    taken = collector(runs, names, [output.unit for output in simulation.outputs])
     done = np.zeros(len(runs), dtype=bool)
     name = f"sensitivity-{plan.method}"
     for first, values in workspace.kept(name):
-        collector.add(first, values)
+        taken.add(first, values)
         done[first : first + len(values)] = True
     skipped = round(lead_seconds / simulation.step_seconds)
     every = max(1, round(seconds_of(plan.interval) / simulation.step_seconds))
     pace = _Pace()
     for first, samples in _missing(runs, done, pace):
         began = time.monotonic()
-        records = made(simulation, runs.paths, samples, first, start=skipped, every=every)
+        records = run_samples(simulation, runs.paths, samples, first, start=skipped, every=every)
         workspace.keep(name, first, records)
-        collector.add(first, records)
+        taken.add(first, records)
         done[first : first + len(samples)] = True
         pace.learn(len(samples), time.monotonic() - began)
         progress.update(int(done.sum()), len(runs))
-    return collector.result()
+    return taken.result()
 
 
 class _Pace:

@@ -57,7 +57,7 @@ def sensitivity(
     InputError
         The method cannot do what the study asks for.
     """
-    from mascarin.sensitivity.plots import save_all
+    from mascarin.sensitivity.files import save_all
 
     with Workspace(out, study.inputs()) as workspace:
         # A default of pydantic's own, so that every other key is the usual one.

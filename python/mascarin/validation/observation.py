@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, Protocol
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.weather.table import epoch_seconds
+from mascarin.weather.times import epoch_seconds
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -1,19 +1,31 @@
-"""Climate: weather files and measured tables, the sun, time rules, and the forcing of the engine.
+"""Weather and measurements: files, tables, the sun, and the input of the engine.
 
-Stamps label the start of an interval. Instantaneous quantities are interpolated; means keep their integral,
-and radiation follows the sun inside the interval. What readers convert, derive and assume is said in
-`Climate.provenance`.
+Time, one rule
+--------------
+Times for people are local times of the climate with their offset: indices of pandas have a time zone, and
+plots name the zone on their axis. Stamps without an offset that a user gives are local times of the climate.
+xarray and NetCDF hold the coordinate ``time`` (UTC, without zone), the coordinate ``local_time`` (the local
+clock, without zone) and the attribute ``timezone``.
+
+A row is labeled by the start of its interval. An `instant` column holds the value at that time, and values
+between two stamps are linear. A `mean` column holds the mean over the interval; inside the interval, means
+are reconstructed such that their integral is kept, and radiation follows the sun.
+
+Notes
+-----
+`Climate.provenance` and `Measurements.provenance` say what was read, converted, derived and assumed.
 """
 
 from __future__ import annotations
 
 from mascarin.weather.channels import CHANNELS, IRRADIANCES, RADIATION, TEMPERATURES, UNITS
-from mascarin.weather.climate import Climate, Place, SiteLike, summary
-from mascarin.weather.forcing import STAGES, forcing
+from mascarin.weather.climate import Climate
+from mascarin.weather.columns import Column
 from mascarin.weather.measurements import Measurements
-from mascarin.weather.place import require_place
 from mascarin.weather.schedules import scheduled
-from mascarin.weather.table import Column
+from mascarin.weather.site import Place, SiteLike
+from mascarin.weather.steps import STAGES
+from mascarin.weather.summary import summary
 from mascarin.weather.timezones import parse_timezone
 
 __all__ = [
@@ -28,9 +40,7 @@ __all__ = [
     "Measurements",
     "Place",
     "SiteLike",
-    "forcing",
     "parse_timezone",
-    "require_place",
     "scheduled",
     "summary",
 ]

@@ -8,6 +8,9 @@ from typing import Final, Literal
 Kind = Literal["instant", "mean"]
 """`instant`: the value at the stamp; `mean`: the mean over the interval that the stamp starts."""
 
+Basis = Literal["direct+diffuse", "global+diffuse", "all"]
+"""Irradiances whose means are kept. With `all`, the global one is kept as far as the beam allows."""
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -20,9 +23,9 @@ class Channel:
     unit : str
         Unit in which the engine takes it.
     kind : str
-        How weather files give it unless told otherwise.
+        How weather files give it, unless the user states otherwise.
     low, high : float
-        Values outside of these cannot be right anywhere outdoors [unit].
+        Values outside of these are wrong anywhere outdoors. [unit]
     description : str
         What it is.
     """
@@ -71,7 +74,7 @@ RADIATION: Final[tuple[str, ...]] = ("direct_normal", "diffuse_horizontal", "glo
 """The three short-wave channels."""
 
 TEMPERATURES: Final = (-90.0, 150.0)
-"""Limits of a measured temperature that drives a boundary [degC]."""
+"""Limits of a measured temperature of a boundary. [degC]"""
 
 IRRADIANCES: Final = (-50.0, 2000.0)
-"""Limits of a measured irradiance on a plane [W/m2]."""
+"""Limits of a measured irradiance on a plane. [W/m2]"""

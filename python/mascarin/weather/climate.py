@@ -1,134 +1,59 @@
-"""The climate of a site: weather on a regular grid, and the forcing that the engine takes from it."""
+"""The climate of a site: weather on a regular grid of times."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Protocol, cast
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from mascarin.errors import InputError
-from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, Kind
-from mascarin.weather.grid import Grid
-from mascarin.weather.radiation import Basis
-from mascarin.weather.table import Column, Stamps, read_table
-from mascarin.weather.timezones import zone_name
+from mascarin.weather.arrays import Array
+from mascarin.weather.channels import BY_NAME
+from mascarin.weather.completion import complete
+from mascarin.weather.forcing import forcing, require_period
+from mascarin.weather.gaps import filled
+from mascarin.weather.measured import Columns, record_of_table
+from mascarin.weather.measurements import Measurements
+from mascarin.weather.place_check import require_place
+from mascarin.weather.pvlib_frames import PvlibStamps, record_of_pvlib
+from mascarin.weather.quality import Stretch, find
+from mascarin.weather.readers import read_epw, read_tmy3
+from mascarin.weather.record import WeatherRecord
+from mascarin.weather.site import Place, SiteLike
+from mascarin.weather.steps import Steps
+from mascarin.weather.sun_check import check_clock
+from mascarin.weather.table import Stamps, read_table
+from mascarin.weather.view import RecordView
+from mascarin.weather.yearly import record_of_year
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from mascarin.weather.measurements import Measurements
-    from mascarin.weather.quality import Stretch
 
+class Climate(RecordView[WeatherRecord]):
+    """Weather on a regular grid of times.
 
-NEUTRAL: Final[Mapping[str, float]] = {
-    "dew_point": np.nan,
-    "relative_humidity": 70.0,
-    "wind_speed": 0.0,
-    "wind_direction": 0.0,
-    "direct_normal": 0.0,
-    "diffuse_horizontal": 0.0,
-    "global_horizontal": 0.0,
-    "cloud_cover": 0.0,
-    "infrared": np.nan,
-    "pressure": np.nan,
-}
-"""Values taken for channels that a table does not hold, once the user has stated that they are absent."""
+    Made by `from_epw`, `from_tmy`, `from_table` or `from_pvlib`; never changed afterwards. Times follow the
+    rule in `mascarin.weather`. Columns are the channels of `mascarin.weather.CHANNELS` that were found, then
+    measured columns by their own names.
 
-_NAMES: Final = (*SOURCE_CHANNELS, "relative_humidity")
-_FREE: Final = ("infrared", "pressure", "cloud_cover")
-
-
-class SiteLike(Protocol):
-    """Anything with a place on the earth; a building's site is one."""
-
-    @property
-    def latitude(self) -> float:
-        """Positive north [deg]."""
-        ...
-
-    @property
-    def longitude(self) -> float:
-        """Positive east [deg]."""
-        ...
-
-
-@dataclass(frozen=True)
-class Place:
-    """A place on the earth.
-
-    Attributes
-    ----------
-    latitude, longitude : float
-        Positive north and east [deg].
-    altitude : float
-        Height above the sea [m].
-    name : str
-        Name of the station.
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> index = pd.date_range("2024-06-01", periods=4, freq="1h", tz="UTC")
+    >>> climate = Climate.from_table(
+    ...     pd.DataFrame({"T": [12.0, 13.0, 15.0, 16.0]}, index=index),
+    ...     columns={"air_temperature": "T"},
+    ...     absent=["radiation", "dew_point", "wind_speed", "wind_direction"],
+    ... )
+    >>> climate.to_dataframe()["air_temperature"].tolist()
+    [12.0, 13.0, 15.0, 16.0]
     """
 
-    latitude: float
-    longitude: float
-    altitude: float = 0.0
-    name: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class Climate:
-    """Weather on a regular grid of intervals.
-
-    Made by `from_epw`, `from_tmy` or `from_table`; never changed afterwards.
-
-    Attributes
-    ----------
-    data : pandas.DataFrame
-        One row for each interval, labelled by its start in the climate's time zone. An `instant` column holds
-        the value at the label, a `mean` column the mean over the interval that starts there. Columns are
-        climate channels, then measured columns by their own names.
-    kinds : mapping of str to str
-        `instant` or `mean` for each column.
-    grid : Grid
-        The intervals.
-    closing : mapping of str to float
-        Values of the instant columns at the end of the record.
-    site : Place or None
-        Where the weather was measured, if known.
-    file : str
-        File name, or `table`.
-    sha256 : str or None
-        Hash of the file.
-    provenance : tuple of str
-        What was read, converted, derived and assumed, as sentences.
-    lines : ndarray
-        Line of each row in the file; 0 where the row was missing.
-    check_sun : bool
-        Refuse radiation that does not follow the sun.
-    knots : ndarray, optional
-        Line of the instants at the start of each interval and at the end of the last; without it that of
-        the row, shape (n + 1,).
-    of_year : bool
-        Read from a weather file of a year, whose clock is that of its place.
-    elsewhere : bool
-        May be used for a building at another place than where it was measured.
-    """
-
-    data: pd.DataFrame
-    kinds: Mapping[str, Kind]
-    grid: Grid
-    closing: Mapping[str, float]
-    site: Place | None
-    file: str
-    sha256: str | None
-    provenance: tuple[str, ...]
-    lines: Lines
-    check_sun: bool = True
-    knots: Lines | None = None
-    of_year: bool = False
-    elsewhere: bool = False
-    _ready: dict[tuple[float, float], Climate] = field(default_factory=dict, repr=False)
+    def __init__(self, record: WeatherRecord) -> None:
+        super().__init__(record)
+        self._completed: dict[tuple[float, float], Climate] = {}
 
     # ------------------------------------------------------------------ readers
 
@@ -141,19 +66,19 @@ class Climate:
         year: int | None = None,
         elsewhere: bool = False,
     ) -> Climate:
-        """Read an EnergyPlus weather file.
+        r"""Read an EnergyPlus weather file (EPW).
 
         Parameters
         ----------
-        path : path
+        path : str or Path
             The file; hourly, one year.
         typical : bool, optional
-            True: the year stands for any year and wraps at its end. False: it is the calendar year that it
-            says. Default: True where the file's months come from different years.
+            True: the year stands for any year and is repeated at its end. False: it is the calendar year
+            written in the file. Default: True where the months of the file come from different years.
         year : int, optional
-            Year to label a typical file with; default 2001.
+            Year by which a typical file is labeled; default 2001.
         elsewhere : bool
-            The weather may be used for a building at another place, which is otherwise refused.
+            Allow a building at another place, which is otherwise refused.
 
         Returns
         -------
@@ -163,12 +88,29 @@ class Climate:
         Raises
         ------
         InputError
-            The file is damaged; the line is named.
-        """
-        from mascarin.weather.readers import read_epw
-        from mascarin.weather.yearly import climate_of
+            The file is damaged; the text names the line.
 
-        return replace(climate_of(read_epw(Path(path)), typical, year), elsewhere=elsewhere, _ready={})
+        Notes
+        -----
+        Stamps of EPW files mark the end of an hour: radiation is the mean of the hour before, all other
+        quantities are values at the stamp ("EnergyPlus Auxiliary Programs", Data Dictionary).
+
+        Examples
+        --------
+        A file with the same weather in every hour, to have one to read:
+
+        >>> import pandas as pd, tempfile
+        >>> hour = "20.0,10.0,52,101325,0,0,300,0,0,0,0,0,0,0,180,2.0,5,5" + 11 * ",0"
+        >>> lines = ["LOCATION,Lyon,-,FRA,-,-,45.8,4.8,1.0,170.0", *6 * ["-"], "DATA PERIODS,1,1"]
+        >>> for t in pd.date_range("2023-01-01", periods=8760, freq="1h"):
+        ...     lines.append(f"{t.year},{t.month},{t.day},{t.hour + 1},0,-,{hour}")
+        >>> path = Path(tempfile.mkdtemp()) / "lyon.epw"
+        >>> size = path.write_text("\n".join(lines))
+        >>> climate = Climate.from_epw(path)
+        >>> climate.site.altitude, climate.timezone, len(climate.to_dataframe())
+        (170.0, 'UTC+1', 8760)
+        """
+        return cls(record_of_year(read_epw(Path(path)), typical, year, elsewhere))
 
     @classmethod
     def from_tmy(
@@ -181,12 +123,31 @@ class Climate:
     ) -> Climate:
         """Read a TMY3 CSV file.
 
-        Parameters, result and errors are those of `from_epw`. TMY3 gives no infrared: that channel is NaN.
-        """
-        from mascarin.weather.readers import read_tmy3
-        from mascarin.weather.yearly import climate_of
+        Parameters
+        ----------
+        path : str or Path
+            The file; hourly, one year.
+        typical, year, elsewhere
+            As in `from_epw`.
 
-        return replace(climate_of(read_tmy3(Path(path)), typical, year), elsewhere=elsewhere, _ready={})
+        Returns
+        -------
+        Climate
+            The weather, with its site. TMY3 has no infrared radiation; the engine estimates it.
+
+        Raises
+        ------
+        InputError
+            The file is damaged; the text names the line.
+
+        Examples
+        --------
+        >>> import pvlib
+        >>> climate = Climate.from_tmy(Path(pvlib.__file__).parent / "data" / "723170TYA.CSV")
+        >>> climate.site.latitude, climate.timezone
+        (36.1, 'UTC-5')
+        """
+        return cls(record_of_year(read_tmy3(Path(path)), typical, year, elsewhere))
 
     @classmethod
     def from_table(
@@ -194,8 +155,8 @@ class Climate:
         source: str | Path | pd.DataFrame,
         *,
         timezone: str | None = None,
-        columns: Mapping[str, str | Column | Mapping[str, object]],
-        extra: Iterable[str] | Mapping[str, str | Column | Mapping[str, object]] = (),
+        columns: Columns,
+        extra: Iterable[str] | Columns = (),
         absent: Iterable[str] | Mapping[str, float] = (),
         stamps: Stamps = "start",
         instant: Iterable[str] = (),
@@ -212,85 +173,192 @@ class Climate:
         altitude: float = 0.0,
         check_sun: bool = True,
     ) -> Climate:
-        """Read a measured table: CSV, Parquet or a pandas frame with any regular step.
+        """Read a measured table with any regular step: a CSV or Parquet file, or a pandas frame.
 
         Parameters
         ----------
-        source : path or pandas.DataFrame
+        source : str, Path or pandas.DataFrame
             The table.
-        timezone : str
-            IANA name or fixed offset (`UTC+4`) of the stamps. Required.
+        timezone : str, optional
+            IANA name (`Europe/Paris`) or fixed offset (`UTC+4`) of the stamps. Required, except for a
+            frame whose stamps have a time zone.
         columns : mapping
-            Climate channel -> column name, or `{column, unit, scale, offset, kind}`. Beside the channels,
-            `relative_humidity` [%] is understood; the dew point follows from it.
+            Channel -> name of its column, or `{column, unit, scale, offset, kind}`, or a `Column`. Beside
+            the channels, `relative_humidity` [%] is understood; the dew point is computed from it.
         extra : iterable or mapping
-            Further measured columns to carry along for boundaries and irradiances on planes, by their names.
+            Further measured columns, by their names: temperatures of boundaries, irradiances on planes.
         absent : iterable or mapping
-            Channels that the table does not hold; a neutral value (`NEUTRAL`) is taken, or the one given
-            here. Infrared, pressure and cloud cover need not be stated.
+            Channels that the table does not hold; a neutral value is assumed, or the one given here.
+            Infrared, pressure and cloud cover need not be stated.
         stamps : str
-            `start` or `end`: which end of its interval a stamp marks. Means are moved to the start; spot
-            values stay at their stamp.
+            `start` or `end`: which end of its interval a stamp marks. Means are moved to the start; values
+            at the stamp stay there.
         instant, mean : iterable of str
-            Channels or extra columns that differ from the usual kind (radiation and infrared are means, the
-            rest instants).
+            Columns whose kind differs from the usual one (radiation and infrared are means, the rest
+            instants).
         step : str or float, optional
-            Expected step; default: found.
-        time, time_format, separator, decimal, skip_lines, missing
-            As in `read_table`.
+            Expected step; default: derived from the stamps.
+        time : str or list of str, optional
+            Column with the stamps; several are joined by a space. Default: the first column, or the index.
+        time_format : str, optional
+            strptime format of the stamps; default ISO 8601.
+        separator : str, optional
+            Between the entries of a CSV file; default: derived from the header.
+        decimal : str
+            Decimal mark.
+        skip_lines : int
+            Lines before the header.
+        missing : sequence
+            Entries that mean that there is no value, beside the empty one.
         latitude, longitude : float, optional
-            Place of the measurement, positive north and east [deg].
+            Place of the measurement, positive north and east. [deg]
         altitude : float
-            Height above the sea [m].
+            Height above sea level. [m]
         check_sun : bool
             Refuse radiation that does not follow the sun at the place where it is used.
 
         Returns
         -------
         Climate
-            The weather. What has to be derived with the sun is derived when the place is known.
+            The weather. Missing irradiances are derived as soon as the place is known.
 
         Raises
         ------
         InputError
-            A column or the time zone is missing, a unit or a time cannot be used.
-        """
-        from mascarin.weather.measured import climate_of
+            A column or the time zone is missing, or a unit or a time cannot be used.
 
+        Examples
+        --------
+        >>> import pandas as pd
+        >>> logger = pd.DataFrame(
+        ...     {
+        ...         "time": ["2024-06-01 00:00", "2024-06-01 01:00", "2024-06-01 02:00"],
+        ...         "T": [285.15, 286.15, 287.15],
+        ...         "RH": [80.0, 75.0, 70.0],
+        ...     }
+        ... )
+        >>> climate = Climate.from_table(
+        ...     logger,
+        ...     timezone="Europe/Paris",
+        ...     columns={"air_temperature": {"column": "T", "unit": "K"}, "relative_humidity": "RH"},
+        ...     absent={"radiation": 0.0, "wind_speed": 1.0, "wind_direction": 0.0},
+        ... )
+        >>> climate.to_dataframe()["air_temperature"].round(2).tolist()
+        [12.0, 13.0, 14.0]
+        """
         table = read_table(
             source, timezone=timezone, time=time, time_format=time_format, separator=separator,
             decimal=decimal, skip_lines=skip_lines, step=step, missing=missing,
         )  # fmt: skip
-        climate = climate_of(table, columns, extra, absent, stamps, instant, mean)
-        climate = replace(climate, check_sun=check_sun, _ready={})
-        if latitude is None or longitude is None:
-            return climate
-        return replace(climate, site=Place(latitude, longitude, altitude), _ready={}).completed()
+        record = record_of_table(table, columns, extra, absent, stamps, instant, mean)
+        return cls(replace(record, check_sun=check_sun))._at(latitude, longitude, altitude)
 
-    # ------------------------------------------------------------------ what it says of itself
+    @classmethod
+    def from_pvlib(
+        cls,
+        data: pd.DataFrame | tuple[pd.DataFrame, Mapping[str, Any]],
+        *,
+        latitude: float | None = None,
+        longitude: float | None = None,
+        altitude: float | None = None,
+        stamps: PvlibStamps | None = None,
+        typical: bool | None = None,
+        timezone: str | None = None,
+        absent: Iterable[str] | Mapping[str, float] = (),
+        check_sun: bool = True,
+    ) -> Climate:
+        """Take weather that a function of `pvlib.iotools` has read.
+
+        Parameters
+        ----------
+        data : pandas.DataFrame or (pandas.DataFrame, dict)
+            Frame with the names of pvlib (``map_variables=True``): `ghi`, `dni`, `dhi`, `temp_air`,
+            `relative_humidity` or `temp_dew`, `wind_speed`, `wind_direction`, `pressure`, `longwave_down`
+            and the like; or the pair of frame and metadata that the function returns.
+        latitude, longitude : float, optional
+            Place, positive north and east; default from the metadata. [deg]
+        altitude : float, optional
+            Height above sea level; default from the metadata, else 0. [m]
+        stamps : str, optional
+            What a stamp marks: the `start`, `middle` or `end` of the interval over which irradiances are
+            means, or `instant` where all values are those at the stamp. It may be left out for frames of
+            `read_epw`, `read_tmy3` and `get_era5`, whose stamps are known.
+        typical : bool, optional
+            True: a year that stands for any year. Default: True where months come from different years.
+        timezone : str, optional
+            IANA name or fixed offset of the local time; default that of the stamps.
+        absent : iterable or mapping
+            Channels that the frame does not hold, as in `from_table`.
+        check_sun : bool
+            Refuse radiation that does not follow the sun.
+
+        Returns
+        -------
+        Climate
+            The weather, with its site.
+
+        Raises
+        ------
+        InputError
+            A quantity is missing, or it is not known what the stamps mark.
+
+        Notes
+        -----
+        ======================================  ===========
+        Source                                  `stamps`
+        ======================================  ===========
+        PVGIS, SARAH satellite data             `instant`
+        PVGIS, ERA5 data                        `middle`
+        NSRDB PSM                               `middle`
+        ERA5 (`get_era5`)                       `end`
+        TMY3 (`read_tmy3`)                      `end`
+        ======================================  ===========
+
+        In frames of `read_epw` a stamp marks the start of the hour, and temperatures, humidity and wind are
+        those at the end of the hour; `from_epw` reads the file itself. With `middle`, all values are taken
+        as means of the interval around the stamp.
+
+        References
+        ----------
+        Anderson et al. 2023, pvlib python: 2023 project update, doi:10.21105/joss.05994.
+
+        Examples
+        --------
+        >>> import pandas as pd
+        >>> index = pd.date_range("2024-06-01", periods=48, freq="1h", tz="UTC")
+        >>> frame = pd.DataFrame({"temp_air": 15.0, "relative_humidity": 60.0, "ghi": 0.0}, index=index)
+        >>> climate = Climate.from_pvlib(
+        ...     frame,
+        ...     latitude=45.8,
+        ...     longitude=4.8,
+        ...     stamps="end",
+        ...     absent=["wind_speed", "wind_direction"],
+        ... )
+        >>> climate.index[0].isoformat()
+        '2024-05-31T23:00:00+00:00'
+        """
+        record = record_of_pvlib(
+            data, latitude=latitude, longitude=longitude, altitude=altitude, stamps=stamps, typical=typical,
+            timezone=timezone, absent=absent,
+        )  # fmt: skip
+        return cls(replace(record, check_sun=check_sun)).completed()
+
+    # ------------------------------------------------------------------ what it holds
 
     @property
-    def index(self) -> pd.DatetimeIndex:
-        """Starts of the intervals, with the time zone."""
-        return cast("pd.DatetimeIndex", self.data.index)
-
-    @property
-    def timezone(self) -> str:
-        """Time zone of the labels."""
-        return zone_name(self.grid.zone)
-
-    @property
-    def step_seconds(self) -> float:
-        """Length of a source interval [s]."""
-        return self.grid.interval
+    def site(self) -> Place | None:
+        """Where the weather was measured, if known."""
+        return self.record.site
 
     def quality(self) -> list[Stretch]:
-        """Suspicious stretches of every column that was measured; see `quality.find`."""
-        from mascarin.weather.quality import find
+        """Suspicious parts of every column that was measured: missing, stuck, out of range, spikes.
 
-        return find(
-            self.data, self.kinds, limits={name: (BY_NAME[name].low, BY_NAME[name].high) for name in BY_NAME}
-        )
+        Returns
+        -------
+        list of Stretch
+            In order of column, then start; see `mascarin.weather.quality.find`.
+        """
+        return find(self.data, limits={name: (BY_NAME[name].low, BY_NAME[name].high) for name in BY_NAME})
 
     def fill_gaps(self, longest: str | float, columns: Iterable[str] | None = None) -> Climate:
         """Fill short gaps linearly.
@@ -298,7 +366,7 @@ class Climate:
         Parameters
         ----------
         longest : str or float
-            Longest gap to fill, such as `2h` or seconds [s].
+            Longest gap to fill, such as `2h`, or seconds. [s]
         columns : iterable of str, optional
             Default: all.
 
@@ -306,10 +374,25 @@ class Climate:
         -------
         Climate
             A new climate, whose provenance lists what was filled.
-        """
-        from mascarin.weather.gaps import filled
 
-        return filled(self, longest, columns)
+        Raises
+        ------
+        InputError
+            There is no such column, or no length can be read.
+
+        Examples
+        --------
+        >>> import pandas as pd
+        >>> index = pd.date_range("2024-06-01", periods=4, freq="1h", tz="UTC")
+        >>> climate = Climate.from_table(
+        ...     pd.DataFrame({"T": [12.0, None, 14.0, 16.0]}, index=index),
+        ...     columns={"air_temperature": "T"},
+        ...     absent=["radiation", "dew_point", "wind_speed", "wind_direction"],
+        ... )
+        >>> climate.fill_gaps("1h").to_dataframe()["air_temperature"].tolist()
+        [12.0, 13.0, 14.0, 16.0]
+        """
+        return Climate(filled(self.record, longest, columns, hold_end=True))
 
     # ------------------------------------------------------------------ what needs the sun
 
@@ -331,26 +414,24 @@ class Climate:
         InputError
             There is no site, or the radiation does not follow the sun there.
         """
-        from mascarin.weather.completion import complete
-        from mascarin.weather.sun_check import check_clock
-
         place = site if site is not None else self.site
         if place is None:
             raise InputError(
                 f"{self.file}: latitude and longitude are needed to derive radiation from what was measured."
             )
         key = (float(place.latitude), float(place.longitude))
-        if key not in self._ready:
-            if self.check_sun:
-                check_clock(self, *key)
-            self._ready[key] = complete(self, *key)
-        return self._ready[key]
+        if key not in self._completed:
+            if self.record.check_sun:
+                check_clock(self.record, *key)
+            made = Climate(complete(self.record, *key))
+            made._completed[key] = made
+            self._completed[key] = made
+        return self._completed[key]
 
-    def radiation_basis(self) -> Basis:
-        """The irradiances whose means are kept; a third that is not given follows from two and the sun."""
-        if all(name in self.data.columns for name in RADIATION):
-            return "all"
-        return "direct+diffuse" if "direct_normal" in self.data.columns else "global+diffuse"
+    @property
+    def used(self) -> Climate:
+        """The climate as completed for the place where it was last used; itself before that."""
+        return list(self._completed.values())[-1] if self._completed else self
 
     def forcing(
         self,
@@ -363,26 +444,53 @@ class Climate:
         measurements: Measurements | None = None,
         limits: Mapping[str, tuple[float, float]] | None = None,
     ) -> Array:
-        """The engine's forcing; see `forcing.forcing`."""
-        from mascarin.weather.forcing import forcing
+        """What the engine takes as input: channels at the stages of every step of a period.
 
-        return forcing(self, site, start, end, step_seconds, scheme, channels, measurements, limits)
+        Parameters
+        ----------
+        site : object with latitude and longitude
+            Place of the building.
+        start, end : str, datetime or pandas.Timestamp
+            Period; without an offset, local time of the climate. A whole number of steps.
+        step_seconds : float
+            Step. [s]
+        scheme : str
+            A key of `mascarin.weather.STAGES`.
+        channels : sequence of str
+            Measured columns to append, from the climate's extra columns or from the measurements.
+        measurements : Measurements, optional
+            Where to look for columns that the climate does not hold.
+        limits : mapping of str to (float, float), optional
+            Lowest and highest possible value of measured columns, by their use: `TEMPERATURES` or
+            `IRRADIANCES`. [unit of the column]
 
+        Returns
+        -------
+        ndarray, shape (steps, stages, len(CHANNELS) + len(channels))
+            In the units of `CHANNELS`; measured columns in their own. See `mascarin.weather.forcing`.
 
-def summary(climate: Climate) -> dict[str, Any]:
-    """What a report prints of a climate: file, hash, range, step, site and provenance.
+        Raises
+        ------
+        InputError
+            The climate is of another place, the period is outside the data, a value in it is missing or
+            impossible, or a column is unknown.
+        """
+        require_place(self.record, site)
+        steps = Steps.over(self.grid.zone, start, end, step_seconds, scheme)
+        require_period(self.record, steps)
+        measured = None if measurements is None else measurements.record
+        return forcing(self.record, self.completed(site).record, site, steps, channels, measured, limits)
 
-    The provenance includes what was derived for the place where the climate was last used.
-    """
-    place = climate.site
-    used = list(climate._ready.values())[-1:] or [climate]
-    return {
-        "file": climate.file,
-        "sha256": climate.sha256,
-        "range": climate.grid.span(),
-        "step_seconds": climate.grid.interval,
-        "timezone": climate.timezone,
-        "site": None if place is None else {"latitude": place.latitude, "longitude": place.longitude,
-                                           "altitude": place.altitude, "name": place.name},
-        "provenance": list(used[0].provenance),
-    }  # fmt: skip
+    def _at(self, latitude: float | None, longitude: float | None, altitude: float) -> Climate:
+        """The climate at a place, with what can be derived there; as it is where the place is not known."""
+        if latitude is None or longitude is None:
+            return self
+        return Climate(replace(self.record, site=Place(latitude, longitude, altitude))).completed()
+
+    def _rows(self) -> list[tuple[str, str]]:
+        place = self.site
+        known = "not known" if place is None else (
+            f"{place.name + ': ' if place.name else ''}{place.latitude:g} deg north, "
+            f"{place.longitude:g} deg east, {place.altitude:g} m"
+        )  # fmt: skip
+        return [("site", known), *super()._rows()]

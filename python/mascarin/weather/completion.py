@@ -1,73 +1,68 @@
-"""A climate with all its channels: what follows from the measured ones and the sun."""
+"""Derive the irradiances and the cloud cover that were not measured, from those that were and the sun."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from mascarin.weather import derive
 from mascarin.weather.arrays import Array
-from mascarin.weather.channels import RADIATION, Kind
-from mascarin.weather.climate import Climate
+from mascarin.weather.channels import RADIATION, Basis, Kind
 from mascarin.weather.grid import Grid, frame_of
 from mascarin.weather.profile import node_times, pieces_for, trapezoid_weights
-from mascarin.weather.radiation import Basis, clear_beam, direct_by_closure
+from mascarin.weather.radiation import clear_beam, direct_by_closure
+from mascarin.weather.record import WeatherRecord
 from mascarin.weather.sun import SunPath
 
 
-def complete(climate: Climate, latitude: float, longitude: float) -> Climate:
+def complete(record: WeatherRecord, latitude: float, longitude: float) -> WeatherRecord:
     """Derive the missing irradiances and the cloud cover; see `Climate.completed`.
 
     Parameters
     ----------
-    climate : Climate
+    record : WeatherRecord
         As read.
     latitude, longitude : float
-        Positive north and east [deg].
+        Positive north and east. [deg]
+
+    Returns
+    -------
+    WeatherRecord
+        With all irradiances and cloud cover; the provenance says how they were derived.
     """
-    missing = [name for name in (*RADIATION, "cloud_cover") if name not in climate.data.columns]
+    missing = [name for name in (*RADIATION, "cloud_cover") if name not in record.data.columns]
     if not missing:
-        return climate
-    grid = climate.grid
-    kind: Kind = next((climate.kinds[name] for name in RADIATION if name in climate.kinds), "mean")
+        return record
+    grid = record.grid
+    kind: Kind = next((record.kinds[name] for name in RADIATION if name in record.kinds), "mean")
     sun = SunPath.over(latitude, longitude, grid.start, grid.end)
     up, extra, clear = _sun_means(sun, grid, kind)
-    columns = {str(name): climate.data[name].to_numpy(dtype=np.float64) for name in climate.data.columns}
+    columns = {str(name): record.data[name].to_numpy(dtype=np.float64) for name in record.data.columns}
     notes: list[str] = []
-    basis = _fill_radiation(columns, up, extra, clear, climate.file, notes)
+    basis = _fill_radiation(columns, up, extra, clear, record.file, notes)
     if "cloud_cover" not in columns:
         total = columns["global_horizontal"]
         columns["cloud_cover"] = (
             derive.cloud_cover(total, up, grid.interval) if total.any() else np.zeros(grid.count)
         )
         notes.append(
-            f"{climate.file}: cloud cover estimated from global irradiance (Kasten & Czeplak 1980 "
+            f"{record.file}: cloud cover estimated from global irradiance (Kasten & Czeplak 1980 "
             "with Haurwitz's clear sky, G/G_clear = 1 - 0.75 (N/8)^3.4), interpolated through the night."
             if total.any()
-            else f"{climate.file}: cloud cover neither measured nor to be estimated; clear sky assumed."
+            else f"{record.file}: cloud cover was not measured and cannot be estimated; clear sky assumed."
         )
-    kinds: dict[str, Kind] = dict(climate.kinds)
+    kinds: dict[str, Kind] = dict(record.kinds)
     kinds.update(dict.fromkeys(RADIATION, kind))
     kinds.setdefault("cloud_cover", "instant")
-    closing = dict(climate.closing)
+    closing = dict(record.closing)
     for name in missing:
         if kinds[name] == "instant":
             closing.setdefault(name, float(columns[name][-1]))
-    derived = replace(climate, data=frame_of(columns, grid), kinds=kinds, closing=closing, _ready={})
-    made = _Derived(**{**vars(derived), "provenance": (*climate.provenance, *notes), "basis": basis})
-    made._ready[(latitude, longitude)] = made
-    return made
-
-
-@dataclass(frozen=True, eq=False)
-class _Derived(Climate):
-    """A climate whose third irradiance was derived: remembers from which two."""
-
-    basis: Basis = "direct+diffuse"
-
-    def radiation_basis(self) -> Basis:
-        return self.basis
+    return replace(
+        record, data=frame_of(columns, grid), kinds=kinds, closing=closing,
+        provenance=(*record.provenance, *notes), basis=basis,
+    )  # fmt: skip
 
 
 def _sun_means(sun: SunPath, grid: Grid, kind: str) -> tuple[Array, Array, Array]:

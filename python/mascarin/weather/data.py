@@ -1,19 +1,21 @@
-"""Known data files: in a folder of the user's, in the cache, or from their public source.
+"""Known data files: in a folder of the user, in the cache, or from their public source.
 
-A file is looked for in the folder that `MASCARIN_DATA` names, where it is taken as it is, then in
-the user's cache, then downloaded there. What is in the cache has the SHA-256 that is pinned here.
+A file is looked for in the folder that `MASCARIN_DATA` names, where it is taken as it is, then in the cache
+folder of the user, then it is downloaded to the cache. Files in the cache have the SHA-256 that is written
+here; pooch checks it.
 """
 
 from __future__ import annotations
 
-import hashlib
 import os
-import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from mascarin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    import pooch
 
 FOLDER: Final = "MASCARIN_DATA"
 """Environment variable with the folder to look in first."""
@@ -30,7 +32,7 @@ class DataFile:
     sha256 : str
         Hash of its bytes.
     origin : str
-        Who made it, and under which licence.
+        Who made it, and under which license.
     url : str or None
         Where it can be downloaded; None for tables that were derived from several sources.
     """
@@ -52,7 +54,7 @@ FILES: Final = (
     DataFile(
         "wall_bench/wall_bench_2024.csv",
         "9c70f6f21b1b7b56656df60946e837c9fc956e9f00b6a88aef3935fef4f63e93",
-        "Wall bench at Anglet (France), September 2024, 1 min; corrai, BSD-3-Clause type licence",
+        "Wall test setup at Anglet (France), September 2024, 1 min; corrai, BSD-3-Clause type licence",
         f"{_RAW}/BuildingEnergySimulationTools/corrai/741ac972c8e3a1d62b3c713389f5c530486dd42e"
         "/tutorials/resources/tuto_data_SA.csv",
     ),
@@ -109,7 +111,7 @@ def data_file(name: str) -> Path:
     Raises
     ------
     InputError
-        The name is not known, or the file is nowhere and cannot be downloaded.
+        The name is not known, or the file was not found and cannot be downloaded.
     """
     known = _known(name)
     folder = os.environ.get(FOLDER)
@@ -117,21 +119,41 @@ def data_file(name: str) -> Path:
         for candidate in (Path(folder) / known.path, Path(folder) / known.name):
             if candidate.is_file():
                 return candidate
-    cached = cache_folder() / known.path
-    if cached.is_file() and _hash(cached) == known.sha256:
-        return cached
-    return _download(known, folder)
+    cache, looked = registry(), f"{FOLDER}={folder}" if folder else f"{FOLDER} is not set"
+    remedy = f"set {FOLDER} to a folder that holds {known.path}"
+    if known.url is None:
+        cached = cache_folder() / known.path
+        if cached.is_file() and _hash(cached) == known.sha256:
+            return cached
+        raise InputError(
+            f"data:{known.name}: not found ({looked}; cache {cache_folder()}), and it cannot be downloaded "
+            f"({known.origin}); {remedy}."
+        )
+    try:
+        return Path(cache.fetch(known.path))
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"data:{known.name}: cannot be downloaded from {known.url} ({error}); {remedy}."
+        ) from error
+
+
+def registry() -> pooch.Pooch:
+    """The known files as a registry of pooch, in the cache folder of the user."""
+    import pooch
+
+    return pooch.create(
+        path=cache_folder(),
+        base_url="",
+        registry={known.path: f"sha256:{known.sha256}" for known in FILES},
+        urls={known.path: known.url for known in FILES if known.url is not None},
+    )
 
 
 def cache_folder() -> Path:
-    """The user's cache: the platform's own place for files that can be had again."""
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "mascarin"
+    """Cache folder of the user: where the platform puts files that can be downloaded again."""
+    import pooch
+
+    return Path(pooch.os_cache("mascarin"))
 
 
 def _known(name: str) -> DataFile:
@@ -143,30 +165,7 @@ def _known(name: str) -> DataFile:
     raise InputError(f"data:{name}: no such data set. {hint}".rstrip())
 
 
-def _download(known: DataFile, folder: str | None) -> Path:
-    looked = f"{FOLDER}={folder}" if folder else f"{FOLDER} is not set"
-    remedy = f"set {FOLDER} to a folder that holds {known.path}"
-    if known.url is None:
-        raise InputError(
-            f"data:{known.name}: not found ({looked}; cache {cache_folder()}), and it cannot be downloaded "
-            f"({known.origin}); {remedy}."
-        )
-    try:
-        import pooch
-    except ImportError as error:
-        raise InputError(
-            f"data:{known.name}: not found ({looked}), and downloading needs the package pooch: "
-            f"install mascarin[data], or {remedy}."
-        ) from error
-    target = cache_folder() / known.path
-    try:
-        pooch.retrieve(known.url, f"sha256:{known.sha256}", fname=target.name, path=target.parent)
-    except (OSError, ValueError) as error:
-        raise InputError(
-            f"data:{known.name}: cannot be downloaded from {known.url} ({error}); {remedy}."
-        ) from error
-    return target
-
-
 def _hash(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    import pooch
+
+    return str(pooch.file_hash(str(path)))

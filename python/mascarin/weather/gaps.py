@@ -4,42 +4,64 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
 import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array
 from mascarin.weather.quality import runs
-from mascarin.weather.table import seconds_of
+from mascarin.weather.record import Record
+from mascarin.weather.times import seconds_of
 
-if TYPE_CHECKING:
-    from mascarin.weather.climate import Climate
+R = TypeVar("R", bound=Record)
 
 
-def filled(climate: Climate, longest: str | float, columns: Iterable[str] | None = None) -> Climate:
-    """A climate with its short gaps filled linearly; see `Climate.fill_gaps`."""
-    limit = seconds_of(longest, "fill_gaps") / climate.grid.interval
-    known = [str(name) for name in climate.data.columns]
+def filled(record: R, longest: str | float, columns: Iterable[str] | None, *, hold_end: bool) -> R:
+    """A record with its short gaps filled linearly.
+
+    Parameters
+    ----------
+    record : Record
+        With gaps.
+    longest : str or float
+        Longest gap to fill, such as `2h`, or seconds. [s]
+    columns : iterable of str or None
+        None: all.
+    hold_end : bool
+        Whether a missing instant at the end of the record takes the last value.
+
+    Returns
+    -------
+    Record
+        Another record, whose provenance lists what was filled.
+
+    Raises
+    ------
+    InputError
+        There is no such column, or no length can be read.
+    """
+    limit = seconds_of(longest, "fill_gaps") / record.grid.interval
+    known = [str(name) for name in record.data.columns]
     names = known if columns is None else list(columns)
-    data, closing, notes = climate.data.copy(), dict(climate.closing), list(climate.provenance)
+    data, closing, notes = record.data.copy(), dict(record.closing), list(record.provenance)
     for name in names:
         if name not in known:
             raise InputError(
-                f"{climate.file}: no column {name!r} to fill. {did_you_mean(name, known)}".rstrip()
+                f"{record.file}: no column {name!r} to fill. {did_you_mean(name, known)}".rstrip()
             )
         values = data[name].to_numpy(dtype=np.float64).copy()
         count = fill_linearly(values, limit, circular=name == "wind_direction")
         if count:
             data[name] = values
-            notes.append(f"{climate.file}: {count} missing values of {name} filled linearly on request.")
-        if name in closing and np.isnan(closing[name]):
+            notes.append(f"{record.file}: {count} missing values of {name} filled linearly on request.")
+        if hold_end and name in closing and np.isnan(closing[name]):
             closing[name] = float(values[-1])
-    return replace(climate, data=data, closing=closing, provenance=tuple(notes), _ready={})
+    return replace(record, data=data, closing=closing, provenance=tuple(notes))
 
 
 def fill_linearly(values: Array, limit: float, *, circular: bool = False) -> int:
-    """Fill gaps in place by straight lines; those at either end stay.
+    """Fill gaps in place by straight lines; those at either end of the record stay.
 
     Parameters
     ----------

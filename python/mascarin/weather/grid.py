@@ -1,4 +1,4 @@
-"""A regular grid of intervals: which rows cover a span of time, and how they carry on past the ends."""
+"""A regular grid of intervals: which rows cover a span of time, and what follows after the ends."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.table import stamps_of
+from mascarin.weather.times import stamps_of
 from mascarin.weather.timezones import zone_name
 
 Rows = Lines
@@ -97,7 +97,7 @@ class Grid:
         return self.start + low * self.interval, self._in_any_year(self.start + steps * self.interval)
 
     def _in_any_year(self, seconds: Array) -> Rows:
-        """Row of the same local time in the stored year; 29 February is 28 February once more."""
+        """Row of the same local time in the stored year; 29 February takes the values of 28 February."""
         offset = self.zone.utcoffset(datetime(2001, 1, 1))
         local = seconds + (offset.total_seconds() if offset is not None else 0.0)
         days = np.floor(local / _DAY + 1e-9)
@@ -110,7 +110,7 @@ class Grid:
         return np.asarray(number * per_day + np.round((local - days * _DAY) / self.interval).astype(np.int64))
 
 
-def course(values: Array, closing: float, rows: Rows, kind: str) -> Array:
+def values_in(values: Array, closing: float, rows: Rows, kind: str) -> Array:
     """Values of a window of rows.
 
     Parameters

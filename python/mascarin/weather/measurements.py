@@ -1,69 +1,54 @@
-"""Measured series: what a model is compared with, and what drives its measured boundaries."""
+"""Measured time series: compared with a simulation, or used as its boundary conditions."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
-from mascarin.weather.arrays import Array, Lines
+from mascarin.weather.arrays import Array
 from mascarin.weather.channels import Kind
+from mascarin.weather.columns import Column
+from mascarin.weather.gaps import filled
 from mascarin.weather.grid import Grid, frame_of
-from mascarin.weather.table import Column, Stamps, epoch_seconds, read_table
-from mascarin.weather.timezones import zone_name
+from mascarin.weather.quality import Stretch, find
+from mascarin.weather.record import Record
+from mascarin.weather.starts import knot_lines, to_starts
+from mascarin.weather.table import Stamps, Table, read_table
+from mascarin.weather.times import epoch_seconds
+from mascarin.weather.view import RecordView
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from mascarin.weather.quality import Stretch
+Columns = Mapping[str, str | Column | Mapping[str, object]]
 
 
-@dataclass(frozen=True, eq=False)
-class Measurements:
-    """Measured columns on a regular grid.
+class Measurements(RecordView[Record]):
+    """Measured columns on a regular grid of times.
 
-    Attributes
-    ----------
-    data : pandas.DataFrame
-        One row for each interval, labelled by its start in the table's time zone; NaN where missing. An
-        `instant` column holds the value at the label, a `mean` column the mean over the interval.
-    kinds : mapping of str to str
-        `instant` or `mean` for each column.
-    grid : Grid
-        The intervals.
-    closing : mapping of str to float
-        Values of the instant columns at the end of the record.
-    file : str
-        File name, or `table`.
-    sha256 : str or None
-        Hash of the file.
-    provenance : tuple of str
-        What was read and converted, as sentences.
-    lines : ndarray
-        Line of each row in the file; 0 where the row was missing.
-    knots : ndarray, optional
-        Line of the instants at the start of each interval and at the end of the last; without it that of
-        the row, shape (n + 1,).
+    Made by `from_table`; never changed afterwards. Times follow the rule in `mascarin.weather`.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> index = pd.date_range("2024-06-01", periods=4, freq="1h", tz="Europe/Paris")
+    >>> table = pd.DataFrame({"T_wall": [20.0, 20.5, 21.0, 20.8]}, index=index)
+    >>> measured = Measurements.from_table(table)
+    >>> float(measured.series("T_wall").max())
+    21.0
+    >>> print(measured)
+    Measurements of 'table'
+      period          2024-06-01 00:00 .. 2024-06-01 04:00 (Europe/Paris)
+      step            3600 s, 4 rows
+      time zone       Europe/Paris
+      T_wall          20 .. 21, instant
+      missing values  0
     """
-
-    data: pd.DataFrame
-    kinds: Mapping[str, Kind]
-    grid: Grid
-    closing: Mapping[str, float]
-    file: str
-    sha256: str | None
-    provenance: tuple[str, ...]
-    lines: Lines
-    knots: Lines | None = None
-
-    @property
-    def of_year(self) -> bool:
-        """Never a weather file of a year; a climate may be one."""
-        return False
 
     @classmethod
     def from_table(
@@ -71,7 +56,7 @@ class Measurements:
         source: str | Path | pd.DataFrame,
         *,
         timezone: str | None = None,
-        columns: Iterable[str] | Mapping[str, str | Column | Mapping[str, object]] | None = None,
+        columns: Iterable[str] | Columns | None = None,
         mean: Iterable[str] = (),
         stamps: Stamps = "start",
         step: str | float | None = None,
@@ -88,8 +73,9 @@ class Measurements:
         ----------
         source : path or pandas.DataFrame
             CSV or Parquet file, or a frame with a time index or column.
-        timezone : str
-            IANA name or fixed offset (`UTC+4`) of the stamps. Required.
+        timezone : str, optional
+            IANA name (`Europe/Paris`) or fixed offset (`UTC+4`) of the stamps. Required, except for a
+            frame whose stamps have a time zone.
         columns : iterable or mapping, optional
             Columns to read, or name -> column or `{column, unit, scale, offset, kind}`. Default: all.
         mean : iterable of str
@@ -108,59 +94,59 @@ class Measurements:
         ------
         InputError
             A column or the time zone is missing, an entry or a time cannot be used.
-        """
-        from mascarin.weather.measured import knot_lines, to_starts
 
+        Examples
+        --------
+        >>> import pandas as pd
+        >>> table = pd.DataFrame(
+        ...     {"time": ["2024-06-01 00:15", "2024-06-01 00:30"], "irradiance": [0.0, 12.0]}
+        ... )
+        >>> Measurements.from_table(
+        ...     table, timezone="UTC+4", mean=["irradiance"], stamps="end"
+        ... ).index[0].isoformat()
+        '2024-06-01T00:00:00+04:00'
+        """
         table = read_table(
             source, timezone=timezone, time=time, time_format=time_format, separator=separator,
             decimal=decimal, skip_lines=skip_lines, step=step, missing=missing,
         )  # fmt: skip
-        wanted: Iterable[str] | Mapping[str, str | Column | Mapping[str, object]]
-        wanted = [str(name) for name in table.frame.columns] if columns is None else columns
-        pairs = wanted.items() if isinstance(wanted, Mapping) else [(name, name) for name in wanted]
-        chosen = {name: Column.of(given, f"{table.where}: columns.{name}") for name, given in pairs}
-        kinds: dict[str, Kind] = {name: column.kind or "instant" for name, column in chosen.items()}
-        for name in mean:
-            if name not in kinds:
-                raise InputError(
-                    f"{table.where}: mean: {name!r} is not read. {did_you_mean(name, kinds)}".rstrip()
-                )
-            kinds[name] = "mean"
-        values, notes = {}, []
-        for name, column in chosen.items():
-            raw = table.numbers(column.column, name)
-            values[name] = column.convert(raw, "", table.interval, f"{table.where}: {name}")
-            notes.append(column.sentence(name, ""))
-        data, closing, grid, note = to_starts(table, values, kinds, stamps)
-        said = (*table.notes, note, *(f"{table.where}: {text}" for text in notes if text))
-        return cls(
-            frame_of(data, grid), kinds, grid, closing, table.where, table.sha256, said, table.lines,
-            knot_lines(table.lines, stamps),
-        )  # fmt: skip
-
-    @property
-    def index(self) -> pd.DatetimeIndex:
-        """Starts of the intervals, with the time zone."""
-        return cast("pd.DatetimeIndex", self.data.index)
-
-    @property
-    def timezone(self) -> str:
-        """Time zone of the labels."""
-        return zone_name(self.grid.zone)
-
-    @property
-    def step_seconds(self) -> float:
-        """Length of an interval [s]."""
-        return self.grid.interval
+        return cls(_record_of(table, columns, mean, stamps))
 
     def quality(self, limits: Mapping[str, tuple[float, float]] | None = None) -> list[Stretch]:
-        """Suspicious stretches of every column; see `quality.find`."""
-        from mascarin.weather.quality import find
+        """Suspicious parts of every column: missing, stuck, out of range, spikes.
 
-        return find(self.data, self.kinds, limits=limits)
+        Parameters
+        ----------
+        limits : mapping of str to (float, float), optional
+            Lowest and highest possible value of a column. [unit of the column]
+
+        Returns
+        -------
+        list of Stretch
+            In order of column, then start; see `mascarin.weather.quality.find`.
+
+        Examples
+        --------
+        >>> import pandas as pd
+        >>> index = pd.date_range("2024-06-01", periods=4, freq="1h", tz="UTC")
+        >>> table = pd.DataFrame({"T": [20.0, None, 21.0, 20.8]}, index=index)
+        >>> [(part.kind, part.count) for part in Measurements.from_table(table).quality()]
+        [('missing', 1)]
+        """
+        return find(self.data, limits=limits)
 
     def series(self, name: str) -> pd.Series[float]:
         """One column.
+
+        Parameters
+        ----------
+        name : str
+            Column.
+
+        Returns
+        -------
+        pandas.Series
+            Its values; the index is in local time with its offset.
 
         Raises
         ------
@@ -195,30 +181,94 @@ class Measurements:
         ------
         InputError
             There is no such column.
+
+        Examples
+        --------
+        >>> import pandas as pd
+        >>> index = pd.date_range("2024-06-01", periods=3, freq="1h", tz="UTC")
+        >>> measured = Measurements.from_table(pd.DataFrame({"T": [20.0, 21.0, 23.0]}, index=index))
+        >>> measured.at("T", index[:2] + pd.Timedelta("30min")).tolist()
+        [20.5, 22.0]
         """
         values = self.series(name).to_numpy(dtype=np.float64)
         seconds = epoch_seconds(times)
         if self.kinds[name] == "instant":
-            return _instants(self.grid, values, self.closing[name], seconds)
+            return _instants(self.grid, values, self.record.closing[name], seconds)
         return _means(self.grid, values, seconds, step_seconds or self.grid.interval)
 
+    def fill_gaps(self, longest: str | float, columns: Iterable[str] | None = None) -> Measurements:
+        """Fill short gaps linearly.
+
+        Parameters
+        ----------
+        longest : str or float
+            Longest gap to fill, such as `2h`, or seconds. [s]
+        columns : iterable of str, optional
+            Default: all.
+
+        Returns
+        -------
+        Measurements
+            New series, whose provenance lists what was filled.
+
+        Raises
+        ------
+        InputError
+            There is no such column, or no length can be read.
+        """
+        return Measurements(filled(self.record, longest, columns, hold_end=False))
+
     def masked(self, mask: pd.DataFrame) -> Measurements:
-        """The same series with NaN where the mask is True; the provenance says how many values were masked.
+        """The same series with NaN where a mask is True.
 
         Parameters
         ----------
         mask : pandas.DataFrame
-            From `quality.mask`.
-        """
-        from dataclasses import replace
+            True for values to leave out, such as from `mascarin.weather.quality.mask`; rows and columns that
+            it does not have are kept.
 
+        Returns
+        -------
+        Measurements
+            New series, whose provenance says how many values were masked.
+        """
         aligned = mask.reindex(index=self.data.index, columns=self.data.columns, fill_value=False).astype(
             bool
         )
         counts = aligned.sum()
         parts = [f"{name} {int(count)}" for name, count in counts.items() if count]
         note = f"{self.file}: values masked on request: {', '.join(parts) if parts else 'none'}."
-        return replace(self, data=self.data.mask(aligned), provenance=(*self.provenance, note))
+        return Measurements(
+            replace(self.record, data=self.data.mask(aligned), provenance=(*self.provenance, note))
+        )
+
+
+def _record_of(
+    table: Table, columns: Iterable[str] | Columns | None, mean: Iterable[str], stamps: Stamps
+) -> Record:
+    """Record of a table; parameters are those of `Measurements.from_table`."""
+    wanted: Iterable[str] | Columns
+    wanted = [str(name) for name in table.frame.columns] if columns is None else columns
+    pairs = wanted.items() if isinstance(wanted, Mapping) else [(name, name) for name in wanted]
+    chosen = {name: Column.of(given, f"{table.where}: columns.{name}") for name, given in pairs}
+    kinds: dict[str, Kind] = {name: column.kind or "instant" for name, column in chosen.items()}
+    for name in mean:
+        if name not in kinds:
+            raise InputError(
+                f"{table.where}: mean: {name!r} is not read. {did_you_mean(name, kinds)}".rstrip()
+            )
+        kinds[name] = "mean"
+    values, notes = {}, []
+    for name, column in chosen.items():
+        raw = table.numbers(column.column, name)
+        values[name] = column.convert(raw, "", table.interval, f"{table.where}: {name}")
+        notes.append(column.sentence(name, ""))
+    data, closing, grid, note = to_starts(table, values, kinds, stamps)
+    said = (*table.notes, note, *(f"{table.where}: {text}" for text in notes if text))
+    return Record(
+        frame_of(data, grid), kinds, grid, closing, table.where, table.sha256, said, table.lines,
+        knot_lines(table.lines, stamps),
+    )  # fmt: skip
 
 
 def _instants(grid: Grid, values: Array, closing: float, seconds: Array) -> Array:
@@ -230,7 +280,7 @@ def _instants(grid: Grid, values: Array, closing: float, seconds: Array) -> Arra
     left = np.clip(np.floor(place).astype(np.int64), 0, grid.count)
     right = np.minimum(left + 1, grid.count)
     weight = place - left
-    # At a stamp the neighbour does not count, not even where it is missing.
+    # At a stamp the next value has no weight; it may be missing.
     mixed = (1.0 - weight) * knots[left] + np.where(weight > 0.0, weight * knots[right], 0.0)
     return np.asarray(np.where(inside, mixed, np.nan))
 
@@ -244,5 +294,5 @@ def _means(grid: Grid, values: Array, seconds: Array, length: float) -> Array:
     low, high = ((seconds + shift - grid.start) / grid.interval for shift in (0.0, length))
     inside = (low >= -1e-6) & (high <= grid.count + 1e-6)
     total = np.interp(high, place, integral) - np.interp(low, place, integral)
-    lost = np.interp(high, place, absent) - np.interp(low, place, absent)
-    return np.asarray(np.where(inside & (lost < 1e-6), total * grid.interval / length, np.nan))
+    gone = np.interp(high, place, absent) - np.interp(low, place, absent)
+    return np.asarray(np.where(inside & (gone < 1e-6), total * grid.interval / length, np.nan))

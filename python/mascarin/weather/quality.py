@@ -73,7 +73,7 @@ class Stretch:
 
 def find(
     data: pd.DataFrame,
-    kinds: Mapping[str, str] | None = None,
+    *,
     limits: Mapping[str, tuple[float, float]] | None = None,
 ) -> list[Stretch]:
     """Find the suspicious stretches of every column.
@@ -82,8 +82,6 @@ def find(
     ----------
     data : pandas.DataFrame
         Numbers on a regular time index, NaN where missing.
-    kinds : mapping, optional
-        Not needed to judge; accepted so that a climate and measurements are judged alike.
     limits : mapping of str to (float, float), optional
         Lowest and highest possible value of a column. Without limits only values that are far outside
         of what the column does are reported.
@@ -93,7 +91,6 @@ def find(
     list of Stretch
         In order of channel, then start.
     """
-    del kinds
     if len(data) < 2:
         return []
     interval = float((data.index[1] - data.index[0]).total_seconds())

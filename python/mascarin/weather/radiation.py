@@ -11,39 +11,37 @@ Kasten & Young 1989, Applied Optics 28(22), 4735-4738, doi:10.1364/AO.28.004735 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from mascarin.weather.arrays import Array
+from mascarin.weather.channels import Basis
 from mascarin.weather.profile import Profile, index_nodes, node_times, pieces_for, trapezoid_weights
 from mascarin.weather.sun import SunPath
 
-Basis = Literal["direct+diffuse", "global+diffuse", "all"]
-"""Irradiances whose means are kept; of all three, the global one as far as the beam's course allows."""
-
 BEAM_CEILING: Final = 2.0
-"""A beam above this multiple of the clear one is not believed to be a beam (low sun, noise) [-]."""
+"""A beam above this multiple of the clear-sky beam is not plausible (low sun, noise). [-]"""
 BEAM_CLEAR: Final = 1.2
-"""Multiple of the clear beam that a reconstruction does not exceed of itself [-]."""
-COURSE_MATTERS: Final = 0.002
-"""Share of the horizontal beam's mean that its course must make for the mean to tell the course [-]."""
+"""Multiple of the clear-sky beam that a reconstruction does not exceed, unless the mean needs more. [-]"""
+SHAPE_MATTERS: Final = 0.002
+"""The shape of the beam is derived where it changes the mean of the horizontal beam by this part. [-]"""
 DIFFUSE_CEILING: Final = 2.0
-"""Diffuse as a multiple of the extraterrestrial horizontal irradiance: what is above is spread evenly [-]."""
+"""Diffuse as a multiple of the extraterrestrial horizontal irradiance; what is above is spread evenly. [-]"""
 DIFFUSE_USUAL: Final = 0.6
-"""The same ratio that a reconstruction does not exceed of itself [-]."""
+"""The same ratio that a reconstruction does not exceed, unless the mean needs more. [-]"""
 
 
 @dataclass(frozen=True)
 class SkyProfiles:
-    """The three irradiances inside their intervals [W/m2].
+    """The three irradiances inside their intervals. [W/m2]
 
     Attributes
     ----------
     direct_normal, diffuse_horizontal, global_horizontal : Profile
-        Courses of the irradiances [W/m2].
+        The irradiances over time. [W/m2]
     moved : ndarray, shape (n,)
-        Beam on the horizontal that was booked as diffuse, mean of each interval [W/m2].
+        Beam on the horizontal that was added to the diffuse part, mean of each interval. [W/m2]
     """
 
     direct_normal: Profile
@@ -63,7 +61,7 @@ def clear_beam(sun_up: Array) -> Array:
     Returns
     -------
     ndarray, shape (...,)
-        Share of the extraterrestrial beam; zero with the sun below the horizon [-].
+        Part of the extraterrestrial beam; zero with the sun below the horizon. [-]
     """
     up = np.maximum(sun_up, 0.0)
     elevation = np.degrees(np.arcsin(np.minimum(up, 1.0)))
@@ -86,9 +84,14 @@ def from_means(
         Means of direct normal, diffuse horizontal and global horizontal irradiance; the one that the basis
         does not name is not read [W/m2].
     basis : str
-        The two whose means are kept; the third follows. With `all` the direct and the diffuse mean are kept,
-        and inside the interval the beam takes the course, between an even one and that of a clear sky, with
-        which the mean of the global irradiance comes nearest to the given one.
+        The two whose means are kept; the third follows. With `all` the direct and the diffuse mean are kept.
+        Inside the interval, the beam then lies between a constant beam and the beam of a clear sky, such
+        that the mean of the global irradiance comes nearest to the given one.
+
+    Returns
+    -------
+    SkyProfiles
+        The irradiances inside the intervals.
     """
     pieces = pieces_for(interval)
     times = node_times(start, interval, len(diffuse), pieces)
@@ -103,7 +106,7 @@ def from_means(
             beam = _towards(total - diffuse, beam, _even(direct, up, weights), up, weights)
     else:
         horizontal = np.maximum(total - diffuse, 0.0)
-        # The ceiling also holds where the beam's horizontal part is negligible: such a beam is sky.
+        # The limit also holds where the horizontal part of the beam is negligible: such a beam is diffuse.
         kept = np.minimum(horizontal, BEAM_CEILING * ((clear * up) @ weights))
         beam = clear * index_nodes(kept, clear * up, BEAM_CLEAR)
         moved = total - diffuse - kept
@@ -148,7 +151,7 @@ def direct_by_closure(total: Array, diffuse: Array, up: Array, clear: Array) -> 
 
 
 def _normal_beam(means: Array, clear: Array, up: Array, weights: Array) -> Array:
-    """Beam at the nodes: a clear beam times an index; what is above belief evenly while the sun is up."""
+    """Beam at the nodes: a clear beam times an index; what is not plausible, evenly while the sun is up."""
     if np.any(means < 0.0):
         # Night offsets of a sensor: kept as they are, evenly.
         return _normal_beam(np.maximum(means, 0.0), clear, up, weights) + np.minimum(means, 0.0)[:, None]
@@ -165,11 +168,11 @@ def _even(means: Array, up: Array, weights: Array) -> Array:
 
 
 def _towards(horizontal: Array, clear: Array, even: Array, up: Array, weights: Array) -> Array:
-    """The course between two beams of the same means whose mean on the horizontal is nearest to the given."""
+    """The beam, between two of the same means, whose mean on the horizontal is nearest to the given one."""
     high, low = (clear * up) @ weights, (even * up) @ weights
     apart = high - low
-    # High in the sky both are nearly the same, and a mean says nothing about the course.
-    usable = np.abs(apart) > COURSE_MATTERS * np.maximum(high, 1e-6)
+    # With a high sun both are nearly the same, and the mean does not say which one is right.
+    usable = np.abs(apart) > SHAPE_MATTERS * np.maximum(high, 1e-6)
     share = np.where(usable, (horizontal - low) / np.where(usable, apart, 1.0), 1.0)
     share = np.clip(share, 0.0, 1.0)[:, None]
     return np.asarray(share * clear + (1.0 - share) * even)

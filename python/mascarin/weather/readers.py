@@ -1,4 +1,4 @@
-"""Weather files of a year: EPW and TMY3."""
+"""Read weather files of a year: EPW and TMY3."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.table import file_hash
+from mascarin.weather.files import file_hash
 from mascarin.weather.timezones import fixed_zone, zone_name
 
 _HEADER = 8
@@ -55,9 +55,8 @@ _WHOLE: Final = (
 _NO_VALUE_TMY: Final = -9900.0
 
 _STAMPS_NOTE: Final = (
-    "{where}: stamps are hour-ending. Radiation stamped h is the mean of the hour before and was put at "
-    "its start; "
-    "temperature, humidity, wind, pressure, cloud cover and infrared are spot values at the stamp and "
+    "{where}: stamps are hour-ending. Radiation stamped h is the mean of the hour before and was moved to "
+    "its start; temperature, humidity, wind, pressure, cloud cover and infrared are values at the stamp and "
     "stay there."
 )
 
@@ -187,8 +186,7 @@ def _check_tmy(lines: list[str], where: str) -> None:
     if head != _TMY_HEAD or len(lines) < 3:
         raise InputError(
             f"{where}:1: expected the seven fields of a TMY3 table (station, name, state, time zone, "
-            "latitude, "
-            f"longitude, altitude), found {head}; read other tables with from_table."
+            f"latitude, longitude, altitude), found {head}; read other tables with from_table."
         )
     names = [name.strip() for name in lines[1].split(",")]
     missing = [name for _, _, name, _ in _TMY if name not in names]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import tzinfo
 from typing import TYPE_CHECKING, Final
@@ -13,23 +13,23 @@ from mascarin.errors import InputError
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import TEMPERATURES
 from mascarin.weather.checks import require_range
-from mascarin.weather.forcing import STAGES, column_means, column_values, holder_of
-from mascarin.weather.timezones import moment
+from mascarin.weather.climate import Climate
+from mascarin.weather.forcing import column_means, column_values, record_of
+from mascarin.weather.measurements import Measurements
+from mascarin.weather.steps import Steps
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building.schedule import Schedule
-    from mascarin.weather.climate import Climate
-    from mascarin.weather.measurements import Measurements
 
 #: A step that ends at a switch ends before it. [s]
 _BEFORE: Final = 1e-3
 
 
 @dataclass(frozen=True)
-class Course:
-    """A profile in straight pieces over time.
+class StraightPieces:
+    """A function of time made of straight pieces.
 
     Attributes
     ----------
@@ -103,24 +103,20 @@ def scheduled(
     InputError
         A measured column is unknown, lacks a value or holds one that cannot be.
     """
-    first = moment(start, climate.grid.zone, "start").timestamp()
-    last = moment(end, climate.grid.zone, "end").timestamp()
-    edges = step_seconds * np.arange(round((last - first) / step_seconds) + 1)
-    nodes, weights = STAGES[scheme]
-    stage = edges[:-1, None] + step_seconds * np.array(nodes)
-    out = np.empty((*stage.shape, len(schedules)))
+    steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme)
+    out = np.empty((*steps.stage.shape, len(schedules)))
     for place, (name, schedule) in enumerate(schedules.items()):
         if schedule.column is None:
-            course = course_of(schedule, timezone, first, last)
+            pieces = pieces_of(schedule, timezone, steps.first, steps.last)
             means = schedule.kind == "fraction"
-            values = course.means(edges)[:, None] if means else course.before(stage)
+            values = pieces.means(steps.edges)[:, None] if means else pieces.before(steps.stage)
         else:
-            values = _measured(climate, measurements, name, schedule, first, edges, stage, weights)
+            values = _measured(climate, measurements, name, schedule, steps)
         out[..., place] = values
     return out
 
 
-def course_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -> Course:
+def pieces_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -> StraightPieces:
     """The profile of a schedule over a span, on the clocks of a time zone.
 
     Parameters
@@ -134,7 +130,7 @@ def course_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -
 
     Returns
     -------
-    Course
+    StraightPieces
         Times from the start of the span [s].
     """
     import pandas as pd
@@ -156,7 +152,7 @@ def course_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -
     pairs = np.array(values)
     # Where clocks go forward, the pieces that they leap over have no length.
     real = np.diff(knots) > 0.0
-    return Course(np.concatenate([knots[:-1][real], knots[-1:]]), pairs[real, 0], pairs[real, 1])
+    return StraightPieces(np.concatenate([knots[:-1][real], knots[-1:]]), pairs[real, 0], pairs[real, 1])
 
 
 def _instants(stamps: pd.DatetimeIndex, timezone: tzinfo) -> Array:
@@ -168,25 +164,17 @@ def _instants(stamps: pd.DatetimeIndex, timezone: tzinfo) -> Array:
 
 
 def _measured(
-    climate: Climate,
-    measurements: Measurements | None,
-    name: str,
-    schedule: Schedule,
-    first: float,
-    edges: Array,
-    stage: Array,
-    weights: Sequence[float],
+    climate: Climate, measurements: Measurements | None, name: str, schedule: Schedule, steps: Steps
 ) -> Array:
     """A schedule from a measured column."""
     column = str(schedule.column)
     try:
-        holder = holder_of(climate, measurements, column)
+        record = record_of(climate.record, None if measurements is None else measurements.record, column)
     except InputError as error:
         raise InputError(f"schedules.{name}.column: {error}") from None
-    span = (first, first + float(edges[-1]))
-    holder.grid.require(*span, f"{holder.file}: {column}")
+    record.grid.require(steps.first, steps.last, f"{record.file}: {column}")
     fraction = schedule.kind == "fraction"
-    require_range(holder, column, (0.0, 1.0) if fraction else TEMPERATURES, *span)
+    require_range(record, column, (0.0, 1.0) if fraction else TEMPERATURES, steps.first, steps.last)
     if fraction:
-        return column_means(holder, column, first, edges)[:, None]
-    return column_values(holder, column, first, edges, stage, tuple(weights))
+        return column_means(record, column, steps)[:, None]
+    return column_values(record, column, steps)

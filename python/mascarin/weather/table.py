@@ -1,164 +1,31 @@
-"""Tables with a time column: reading, time zone, regular steps. Every complaint names the line."""
+"""Tables with a time column: time zone, regular steps. Every error names the line of the file."""
 
 from __future__ import annotations
 
-import hashlib
 import re
-import warnings
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from datetime import tzinfo
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.timezones import localise, parse_timezone, zone_name
+from mascarin.weather.files import file_hash, read_frame, with_time_column
+from mascarin.weather.times import epoch_seconds, seconds_of, stamps_of
+from mascarin.weather.timezones import localize, parse_timezone, zone_name, zone_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Stamps = Literal["start", "end"]
+"""Which end of its interval a stamp marks."""
 
 _HAS_OFFSET = re.compile(r"\d{1,2}:\d{2}(?::\d{2}(?:\.\d+)?)?\s*(?:Z|[+-]\d{2}:?\d{2})$")
 _MIDNIGHT = re.compile(r"[T ]24:00(?::00)?$")
 _EMPTY = frozenset({"", "na", "nan", "n/a", "null", "none", "-", "--"})
-
-FACTORS: Mapping[str, tuple[str, float, float]] = {
-    # unit as written: (unit taken, factor, offset)
-    "degC": ("degC", 1.0, 0.0),
-    "K": ("degC", 1.0, -273.15),
-    "degF": ("degC", 5.0 / 9.0, -160.0 / 9.0),
-    "W/m2": ("W/m2", 1.0, 0.0),
-    "kW/m2": ("W/m2", 1000.0, 0.0),
-    "m/s": ("m/s", 1.0, 0.0),
-    "km/h": ("m/s", 1.0 / 3.6, 0.0),
-    "knot": ("m/s", 1852.0 / 3600.0, 0.0),
-    "Pa": ("Pa", 1.0, 0.0),
-    "hPa": ("Pa", 100.0, 0.0),
-    "mbar": ("Pa", 100.0, 0.0),
-    "kPa": ("Pa", 1000.0, 0.0),
-    "%": ("%", 1.0, 0.0),
-    "1": ("%", 100.0, 0.0),
-    "tenths": ("tenths", 1.0, 0.0),
-    "oktas": ("tenths", 1.25, 0.0),
-    "deg": ("deg", 1.0, 0.0),
-}
-"""Units that a column may be in, with what they are turned into."""
-
-ENERGIES: Mapping[str, float] = {
-    "J/cm2": 1e4,
-    "J/m2": 1.0,
-    "kJ/m2": 1e3,
-    "MJ/m2": 1e6,
-    "Wh/m2": 3600.0,
-    "kWh/m2": 3.6e6,
-}
-"""Energies per interval, in J/m2: divided by the interval they become W/m2."""
-
-
-_SECONDS: Final = {
-    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
-    **dict.fromkeys(("min", "minute", "minutes"), 60.0),
-    **dict.fromkeys(("h", "hour", "hours"), 3600.0),
-    **dict.fromkeys(("d", "day", "days"), 86400.0),
-}
-"""Units of a length of time."""
-
-_TIMES: Final = "a positive time such as 900, 15min or 1h"
-
-_LENGTH_OF_TIME: Final = re.compile(rf"(\d+\.?\d*(?:e[+-]?\d+)?)\s*({'|'.join(_SECONDS)})?", re.IGNORECASE)
-
-
-@dataclass(frozen=True)
-class Column:
-    """Where a quantity stands in a table.
-
-    Attributes
-    ----------
-    column : str
-        Name of the column.
-    unit : str, optional
-        Unit in the file (a key of `FACTORS` or `ENERGIES`); without one the quantity's own unit.
-    scale, offset : float
-        Applied after the unit: value = scale x + offset.
-    kind : str, optional
-        `instant` or `mean`; without one the quantity's usual kind.
-    """
-
-    column: str
-    unit: str | None = None
-    scale: float = 1.0
-    offset: float = 0.0
-    kind: Literal["instant", "mean"] | None = None
-
-    @classmethod
-    def of(cls, given: object, where: str) -> Column:
-        """Column from its short form (a name) or a mapping with the attributes as keys."""
-        if isinstance(given, Column):
-            return given
-        if isinstance(given, str):
-            return cls(given)
-        if isinstance(given, Mapping):
-            unknown = set(given) - {"column", "unit", "scale", "offset", "kind"}
-            if unknown or "column" not in given:
-                raise InputError(
-                    f"{where}: found {dict(given)!r}, expected a column's name or a mapping with "
-                    "'column' and "
-                    "optionally 'unit', 'scale', 'offset', 'kind'."
-                )
-            kind = given.get("kind")
-            if kind not in (None, "instant", "mean"):
-                raise InputError(f"{where}: kind is {kind!r}, expected 'instant' or 'mean'.")
-            scale, offset = float(given.get("scale", 1.0)), float(given.get("offset", 0.0))
-            return cls(str(given["column"]), given.get("unit"), scale, offset, kind)
-        raise InputError(f"{where}: found {given!r}, expected a column's name or a mapping with 'column'.")
-
-    def convert(self, values: Array, unit: str, interval: float, where: str) -> Array:
-        """Values in the wanted unit.
-
-        Parameters
-        ----------
-        values : ndarray, shape (n,)
-            As read.
-        unit : str
-            Wanted unit.
-        interval : float
-            Length of an interval, for energies [s].
-        where : str
-            For the error.
-
-        Raises
-        ------
-        InputError
-            The column's unit cannot be turned into the wanted one.
-        """
-        if self.unit is not None:
-            if self.unit in ENERGIES and unit == "W/m2":
-                values = values * (ENERGIES[self.unit] / interval)
-            elif self.unit in FACTORS and (not unit or FACTORS[self.unit][0] == unit):
-                _, factor, offset = FACTORS[self.unit]
-                values = values * factor + offset
-            elif self.unit != unit:
-                known = [name for name, entry in FACTORS.items() if entry[0] == unit]
-                known += list(ENERGIES) if unit == "W/m2" else []
-                raise InputError(
-                    f"{where}: unit {self.unit!r} of column {self.column!r} cannot be turned into "
-                    f"{unit}; expected "
-                    f"one of {', '.join(known)}, or give scale and offset instead."
-                )
-        return values * self.scale + self.offset
-
-    def sentence(self, name: str, unit: str) -> str:
-        """What was done, for the provenance; empty where nothing was."""
-        parts = []
-        if self.unit is not None and self.unit != unit:
-            parts.append(f"{self.unit} to {unit}")
-        if self.scale != 1.0 or self.offset != 0.0:
-            parts.append(f"times {self.scale:g} plus {self.offset:g}")
-        return f"{name}: column {self.column!r} converted, {', '.join(parts)}." if parts else ""
 
 
 @dataclass(frozen=True)
@@ -224,8 +91,9 @@ def read_table(
     ----------
     source : path or pandas.DataFrame
         CSV or Parquet file, or a frame with a time index or column.
-    timezone : str
-        Zone of the stamps; required, also where the stamps carry offsets (it is then the zone to show).
+    timezone : str or None
+        Zone of the stamps. Required, except for a frame whose stamps have a time zone; where stamps have
+        offsets, it is the zone of the result.
     time : str or list of str, optional
         Column with the stamps; several are joined by a space. Default: the first column, or the index.
     time_format : str, optional
@@ -253,15 +121,15 @@ def read_table(
     """
     import pandas as pd
 
-    zone = parse_timezone(timezone, _name(source) + ": timezone")
+    zone = _zone(source, timezone, time)
     digest: str | None = None
     if isinstance(source, pd.DataFrame):
-        frame, where, first_line = _indexed(source.copy()), "table", 1
+        frame, where, first_line = with_time_column(source.copy()), "table", 1
     else:
         path = Path(source)
         where = path.name
         digest = file_hash(path)
-        frame, first_line = _read(path, separator, decimal, skip_lines)
+        frame, first_line = read_frame(path, separator, decimal, skip_lines)
     lines = first_line + np.arange(len(frame), dtype=np.int64)
     empty = frame.isna().all(axis=1).to_numpy()
     frame, lines = frame.loc[~empty], lines[~empty]
@@ -276,148 +144,25 @@ def read_table(
     return _regular(frame, zone, where, digest, lines, seconds_of(step, where) if step is not None else None)
 
 
-def file_hash(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal.
-
-    Raises
-    ------
-    InputError
-        There is no such file.
-    """
-    try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except FileNotFoundError as error:
-        raise InputError(f"{path}: no such file; give the path from the folder you work in.") from error
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}).") from error
-
-
-def seconds_of(step: str | float, where: str = "step") -> float:
-    """Length of a step.
-
-    Parameters
-    ----------
-    step : str or float
-        Text such as `15min`, `1h`, `90s`, `3d`, or a number of seconds [s].
-    where : str
-        What the length belongs to, for the error.
-
-    Returns
-    -------
-    float
-        Length [s].
-
-    Raises
-    ------
-    InputError
-        No positive length can be read.
-    """
-    match = _LENGTH_OF_TIME.fullmatch(str(step).strip())
-    if match is None or isinstance(step, bool):
-        raise InputError(f"{where}: found {step!r}; expected {_TIMES}")
-    seconds = float(match[1]) * _SECONDS[(match[2] or "s").lower()]
-    if not 0.0 < seconds < float("inf"):
-        raise InputError(f"{where}: found {step!r}; expected {_TIMES}")
-    return seconds
+def _zone(
+    source: str | Path | pd.DataFrame, timezone: str | None, time: str | Sequence[str] | None
+) -> tzinfo:
+    """Zone that the user states, or that the stamps of a frame have."""
+    where = Path(source).name if isinstance(source, str | Path) else "table"
+    if timezone is None and not isinstance(source, str | Path):
+        stamps = source.index if time is None and _is_time(source.index) else None
+        name = time if isinstance(time, str) else source.columns[0] if len(source.columns) else None
+        dtype = source.index.dtype if stamps is not None else source[name].dtype if name in source else None
+        found = getattr(dtype, "tz", None)
+        if found is not None:
+            return zone_of(found)
+    return parse_timezone(timezone, f"{where}: timezone")
 
 
-def epoch_seconds(index: pd.DatetimeIndex) -> Array:
-    """Seconds since 1970-01-01 UTC of stamps with a zone, shape (n,) [s]."""
-    moments = index.tz_convert("UTC").tz_localize(None).to_numpy()
-    return np.asarray((moments - np.datetime64(0, "s")) / np.timedelta64(1, "us") * 1e-6, dtype=np.float64)
-
-
-def stamps_of(seconds: Array, zone: tzinfo) -> pd.DatetimeIndex:
-    """Stamps in a zone from seconds since 1970-01-01 UTC [s]."""
+def _is_time(index: pd.Index[Any]) -> bool:
     import pandas as pd
 
-    moments = np.round(np.asarray(seconds) * 1e6).astype(np.int64).astype("datetime64[us]")
-    return pd.DatetimeIndex(moments).tz_localize("UTC").tz_convert(zone)
-
-
-def _name(source: object) -> str:
-    return Path(source).name if isinstance(source, str | Path) else "table"
-
-
-def _indexed(frame: pd.DataFrame) -> pd.DataFrame:
-    """A time index becomes the first column."""
-    import pandas as pd
-
-    if isinstance(frame.index, pd.DatetimeIndex):
-        name = "time" if frame.index.name is None else str(frame.index.name)
-        frame.insert(0, name, frame.index, allow_duplicates=True)
-    return frame.reset_index(drop=True)
-
-
-def _read(path: Path, separator: str | None, decimal: str, skip_lines: int) -> tuple[pd.DataFrame, int]:
-    import pandas as pd
-
-    if path.suffix.lower() in {".parquet", ".pq"}:
-        try:
-            return _indexed(pd.read_parquet(path)), 1
-        except ImportError as error:
-            raise InputError(
-                f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet]."
-            ) from error
-        except (ValueError, OSError) as error:
-            raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
-    found = separator or _separator(path, skip_lines)
-    try:
-        with warnings.catch_warnings():
-            # Rows with more entries than the header has names: which name they belong to is not known.
-            warnings.simplefilter("error", pd.errors.ParserWarning)
-            frame = pd.read_csv(
-                path,
-                sep=found,
-                decimal=decimal,
-                skiprows=skip_lines,
-                skip_blank_lines=False,
-                skipinitialspace=True,
-                encoding="utf-8-sig",
-                low_memory=False,
-                index_col=False,
-            )
-    except pd.errors.ParserWarning as error:
-        raise InputError(
-            f"{path.name}:{skip_lines + 2}: the row has more entries than the header has names; name "
-            "every column."
-        ) from error
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError, ValueError) as error:
-        raise InputError(
-            f"{path.name}: cannot be read as a table separated by {found!r}: {error}".strip()
-        ) from error
-    frame.columns = pd.Index([str(name).strip() for name in frame.columns])
-    _refuse_cut(path, found, len(frame.columns), skip_lines + 1 + len(frame))
-    return frame, skip_lines + 2
-
-
-def _refuse_cut(path: Path, separator: str, fields: int, line: int) -> None:
-    """A last line without end and with fewer entries than the header is what is left of a longer file."""
-    with path.open("rb") as file:
-        file.seek(max(0, path.stat().st_size - 65536))
-        last = file.read().decode("utf-8", errors="replace").rsplit("\n", 1)[-1]
-    count = last.count(separator) + 1
-    if last.strip() and count < fields:
-        raise InputError(
-            f"{path.name}:{line}: the last line has {count} of {fields} entries and no end: the file is "
-            "cut; get it "
-            "whole, or remove that line."
-        )
-
-
-def _separator(path: Path, skip_lines: int) -> str:
-    with path.open(encoding="utf-8-sig", errors="replace") as file:
-        for _ in range(skip_lines):
-            file.readline()
-        header = file.readline()
-    counts = {mark: header.count(mark) for mark in (";", "\t", ",", "|")}
-    best = max(counts, key=lambda mark: counts[mark])
-    if counts[best] == 0:
-        raise InputError(
-            f"{path.name}: no separator found in the header {header.strip()[:40]!r}, expected the names of "
-            "columns; state separator, or skip_lines if the header stands further down."
-        )
-    return best
+    return isinstance(index, pd.DatetimeIndex)
 
 
 def _time_text(
@@ -456,7 +201,7 @@ def _stamps(
     if isinstance(text.dtype, pd.DatetimeTZDtype):
         return pd.DatetimeIndex(text).tz_convert(zone)
     if pd.api.types.is_datetime64_any_dtype(text.dtype):
-        return localise(pd.DatetimeIndex(text), zone, where)
+        return localize(pd.DatetimeIndex(text), zone, where)
     written = text.astype(str).str.strip()
     offset = bool(written.str.contains(_HAS_OFFSET).any())
     late = written.str.contains(_MIDNIGHT)
@@ -472,7 +217,7 @@ def _stamps(
             "state time_format (for example '%d/%m/%Y %H:%M'), or repair the row."
         )
     index = pd.DatetimeIndex(parsed) + pd.to_timedelta(late.to_numpy().astype(np.int64), unit="D")
-    return index.tz_convert(zone) if offset else localise(index, zone, where)
+    return index.tz_convert(zone) if offset else localize(index, zone, where)
 
 
 def _regular(

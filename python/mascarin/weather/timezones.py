@@ -74,6 +74,30 @@ def fixed_zone(hours: float) -> tzinfo:
     return timezone(offset, _offset_name(offset))
 
 
+def zone_of(zone: tzinfo) -> tzinfo:
+    """The same zone as an IANA zone or a fixed offset of the standard library.
+
+    Parameters
+    ----------
+    zone : datetime.tzinfo
+        Of any library, such as pytz or dateutil.
+    """
+    if isinstance(zone, ZoneInfo):
+        return zone
+    name = getattr(zone, "zone", None)  # pytz
+    if isinstance(name, str):
+        return parse_timezone(name)
+    offset = zone.utcoffset(None)
+    if offset is None:
+        raise InputError(f"timezone: found {zone!r}; {_WANTED}.")
+    return fixed_zone(offset.total_seconds() / 3600.0)
+
+
+def fixed_offset(zone: tzinfo) -> bool:
+    """Whether clocks never change in a zone today (no summer time)."""
+    return len({datetime(2024, month, 1, tzinfo=zone).utcoffset() for month in range(1, 13)}) == 1
+
+
 def zone_name(zone: tzinfo) -> str:
     """Text from which `parse_timezone` makes the zone again."""
     if isinstance(zone, ZoneInfo):
@@ -90,7 +114,7 @@ def _offset_name(offset: timedelta) -> str:
     return f"UTC{sign}{hours}" + (f":{rest:02d}" if rest else "")
 
 
-def localise(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeIndex:
+def localize(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeIndex:
     """Give local stamps their zone.
 
     Parameters
@@ -190,7 +214,7 @@ def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:
     if stamp.tzinfo is not None:
         return stamp.tz_convert(zone)
     try:
-        return localise(pd.DatetimeIndex([stamp]), zone, what)[0]
+        return localize(pd.DatetimeIndex([stamp]), zone, what)[0]
     except InputError as error:
         raise InputError(
             f"{what}: {stamp:%Y-%m-%d %H:%M} does not exist or exists twice in {zone_name(zone)}, where "

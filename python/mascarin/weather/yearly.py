@@ -1,4 +1,4 @@
-"""A year of weather as read becomes a climate: typical or of one calendar year."""
+"""A weather file of a year as a record: a typical year, or one calendar year."""
 
 from __future__ import annotations
 
@@ -11,26 +11,27 @@ import numpy as np
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.channels import Kind
-from mascarin.weather.climate import Climate, Place
 from mascarin.weather.grid import Grid, frame_of
 from mascarin.weather.readers import Year, kind_of
+from mascarin.weather.record import WeatherRecord
+from mascarin.weather.site import Place
 
 _FREE = ("infrared", "pressure", "cloud_cover")
 
 
-def climate_of(read: Year, typical: bool | None, year: int | None) -> Climate:
-    """Climate of a yearly file.
+def record_of_year(read: Year, typical: bool | None, year: int | None, elsewhere: bool) -> WeatherRecord:
+    """Record of a weather file of a year.
 
     Parameters
     ----------
     read : Year
         As read, hour-ending.
-    typical, year
+    typical, year, elsewhere
         As in `Climate.from_epw`.
 
     Returns
     -------
-    Climate
+    WeatherRecord
         Spot values at their stamps, means at the start of their hour.
 
     Raises
@@ -49,9 +50,8 @@ def climate_of(read: Year, typical: bool | None, year: int | None) -> Climate:
             values, lines, count = {k: v[keep] for k, v in values.items()}, lines[keep], 8760
             notes.append(f"{read.where}: 29 February left out of the typical year.")
         notes.append(
-            f"{read.where}: one typical year of 365 days, labelled {label}; it stands for any year, "
-            "wraps at its "
-            "end, and 29 February is 28 February once more."
+            f"{read.where}: one typical year of 365 days, labeled {label}; it stands for any year, is "
+            "repeated at its end, and 29 February takes the values of 28 February."
         )
     else:
         _check_length(count, label, read.where)
@@ -61,7 +61,7 @@ def climate_of(read: Year, typical: bool | None, year: int | None) -> Climate:
     start = (date(label, 1, 1) - date(1970, 1, 1)).total_seconds()
     offset = read.zone.utcoffset(None)
     grid = Grid(start - (offset.total_seconds() if offset else 0.0), 3600.0, count, read.zone, periodic)
-    return _of_year(read, grid, values, lines, notes)
+    return _of_year(read, grid, values, lines, notes, elsewhere)
 
 
 def _check_length(count: int, year: int, where: str) -> None:
@@ -82,7 +82,8 @@ def _of_year(
     values: Mapping[str, Array],
     lines: Lines,
     notes: list[str],
-) -> Climate:
+    elsewhere: bool,
+) -> WeatherRecord:
     columns, kinds, closing = {}, {}, {}
     for name, column in values.items():
         if np.isnan(column).all() and name in _FREE:
@@ -91,12 +92,13 @@ def _of_year(
         if kinds[name] == "mean":
             columns[name] = column
             continue
-        # The spot value of the hour that ends at 24:00 on 31 December opens a typical year.
+        # The spot value of the hour that ends at 24:00 on 31 December is the first of a typical year.
         opening = column[-1] if grid.periodic else column[0]
         columns[name] = np.concatenate([[opening], column[:-1]])
         closing[name] = float(column[-1])
-    return Climate(
+    return WeatherRecord(
         data=frame_of(columns, grid), kinds=kinds, grid=grid, closing=closing, site=Place(*read.place),
         file=read.where, sha256=read.sha256, provenance=tuple(notes), lines=lines,
         knots=np.concatenate([lines[-1:] if grid.periodic else lines[:1], lines]), of_year=True,
+        elsewhere=elsewhere,
     )  # fmt: skip

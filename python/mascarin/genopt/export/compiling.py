@@ -10,7 +10,7 @@ import numpy as np
 from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
 from mascarin.study import Study
 from mascarin.study.inputs import find
-from mascarin.weather.table import epoch_seconds
+from mascarin.weather.times import epoch_seconds
 
 if TYPE_CHECKING:
     from mascarin.study.description import StudyFile

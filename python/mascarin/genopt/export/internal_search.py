@@ -10,8 +10,8 @@ from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import Options, Outcome, optimise
 from mascarin.genopt.export.compiling import compiled
 from mascarin.genopt.export.exchange import COMPILED, read_settings
+from mascarin.genopt.loading import load
 from mascarin.genopt.program import Result, RunFailed
-from mascarin.genopt.project import load
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -125,7 +125,7 @@ def _march(
     """Hourly means over the year by output, and the closure of the ledger."""
     from datetime import datetime, timedelta
 
-    from mascarin.simulation.simulation import simulate
+    from mascarin.simulation.run import simulate
 
     new_year = datetime(YEAR, 1, 1)
     results = simulate(

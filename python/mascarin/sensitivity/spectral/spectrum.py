@@ -1,8 +1,8 @@
 """The spectrum of one replicate: threshold, peaks and what they are.
 
-If a spectrum of m lines were noise, the share of M lines taken together would follow a Beta(M, m - M)
-distribution; averaged over R replicates, Beta(R M, R (m - M)). Thresholds are the values that this exceeds
-with probability 5 % for any of the lines, or any of the parameters (Bonferroni).
+In a spectrum of m lines of pure noise, the part of the power on M lines has a Beta(M, m - M) distribution;
+averaged over R replicates, Beta(R M, R (m - M)). Thresholds are the values that are exceeded with probability
+5 % by any of the lines, or by any of the parameters (Bonferroni).
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 CHANCE: Final = 0.05
-"""Probability that anything at all exceeds a threshold in a spectrum of noise. [-]"""
+"""Probability that any line exceeds the threshold in a spectrum of noise. [-]"""
 
-_HARMONICS: Final = 6  # looked for when peaks are named, beyond those that count as the parameter's own
-_SURVIVES: Final = 0.75  # share of the replicates in which a line must stand out
-_ALL_PAIRS_UP_TO: Final = 40  # parameters; above, one of a pair must stand out by itself
-_LOUDEST: Final = 10
+_HARMONICS: Final = 6  # highest harmonic that can name a peak
+_SEEN_IN: Final = 0.75  # fraction of the replicates in which a line must be above the threshold
+_ALL_PAIRS_UP_TO: Final = 40  # parameters; above, one of a pair must have a strong line of its own
+_STRONGEST: Final = 10
 
 PeakKind = Literal["fundamental", "harmonic", "interaction", "unnamed"]
 
@@ -39,12 +39,12 @@ class Peak:
     line : int
         Its number. [1/circle]
     power : float
-        Its share of the variance in this replicate. [-]
+        Its part of the variance in this replicate. [-]
     kind : str
-        ``fundamental``, ``harmonic``, ``interaction``, or ``unnamed`` when nothing that would explain it
-        stands out in the other replicates.
+        ``fundamental``, ``harmonic``, ``interaction``, or ``unnamed`` when nothing that would explain it is
+        above the threshold in the other replicates.
     label : str
-        What it is, for a figure: ``a``, ``2 × a``, ``a + b``; empty when unnamed.
+        Its name for a figure: ``a``, ``2 × a``, ``a + b``; empty when unnamed.
     parameters : tuple of str
         The parameters in it.
     others : tuple of str
@@ -61,7 +61,7 @@ class Peak:
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """Power over frequency in one replicate.
+    """Power over frequency of one replicate.
 
     Attributes
     ----------
@@ -70,15 +70,15 @@ class Spectrum:
     replicate : int
         Which replicate.
     power : ndarray, shape (K,)
-        Share of the variance on the lines 1 ... K. [-]
+        Part of the variance on the lines 1 ... K. [-]
     threshold : float
-        What no line of noise exceeds, with probability 95 %. [-]
+        Value that no line of noise exceeds, with probability 95 %. [-]
     frequencies : ndarray of int, shape (G,)
-        Where each parameter's fundamental is. [1/circle]
+        Frequency of each parameter. [1/circle]
     names : tuple of str, length G
         The parameters.
     peaks : tuple of Peak
-        Lines above the threshold by rising frequency.
+        Lines above the threshold, by rising frequency.
     """
 
     output: str
@@ -99,14 +99,14 @@ class Spectrum:
         output: str,
         replicate: int,
     ) -> Spectrum:
-        """Name the peaks of one replicate by what stands out in all of them.
+        """Name the peaks of one replicate by what is above the threshold in most of them.
 
         Parameters
         ----------
         spectra : ndarray, shape (R, K)
-            Share of the variance by replicate and line. [-]
+            Part of the variance by replicate and line. [-]
         frequencies : ndarray of int, shape (R, G)
-            Where each parameter's fundamental is. [1/circle]
+            Frequency of each parameter. [1/circle]
         runs : int
             Runs per replicate. [-]
         names : sequence of str, length G
@@ -115,35 +115,40 @@ class Spectrum:
             Name of the output.
         replicate : int
             Which replicate to show.
+
+        Returns
+        -------
+        Spectrum
+            With its named peaks.
         """
         threshold = line_threshold(spectra.shape[1])
-        explained: dict[int, list[_Sound]] = {}
-        for sound in _heard(spectra, frequencies, runs, names, threshold):
-            explained.setdefault(int(sound.lines[replicate]), []).append(sound)
+        found: dict[int, list[_Component]] = {}
+        for component in _components(spectra, frequencies, runs, names, threshold):
+            found.setdefault(int(component.lines[replicate]), []).append(component)
         power = spectra[replicate]
         peaks = []
         for line in np.flatnonzero(power > threshold) + 1:
-            sounds = sorted(explained.get(int(line), []), key=lambda sound: -sound.power)
-            peaks.append(_peak(int(line), float(power[line - 1]), sounds))
+            components = sorted(found.get(int(line), []), key=lambda component: -component.power)
+            peaks.append(_peak(int(line), float(power[line - 1]), components))
         return Spectrum(
             output, replicate, power, threshold, frequencies[replicate], tuple(names), tuple(peaks)
         )
 
 
 def line_threshold(lines: int, chance: float = CHANCE) -> float:
-    """What the largest of many lines of noise exceeds with probability `chance`.
+    """Return the value that the largest of many lines of noise exceeds with probability `chance`.
 
     Parameters
     ----------
     lines : int
         Number m of lines. [-]
     chance : float
-        [-]
+        Probability. [-]
 
     Returns
     -------
     float
-        Share of the whole power; the quantile of Beta(1, m - 1) at ``1 - chance / m``. [-]
+        Part of the whole power; the quantile of Beta(1, m - 1) at ``1 - chance / m``. [-]
     """
     if lines < 2:
         return 1.0
@@ -153,7 +158,7 @@ def line_threshold(lines: int, chance: float = CHANCE) -> float:
 def power_threshold(
     order: int, runs: int, replicates: int = 1, parameters: int = 1, chance: float = CHANCE
 ) -> float:
-    """What the power on the own lines of any parameter exceeds by chance with probability `chance`.
+    """Return the value that the power on the lines of any parameter exceeds by chance.
 
     Parameters
     ----------
@@ -164,14 +169,14 @@ def power_threshold(
     replicates : int
         Number of replicates R averaged. [-]
     parameters : int
-        Number of parameters looked at. [-]
+        Number of parameters tested. [-]
     chance : float
-        [-]
+        Probability. [-]
 
     Returns
     -------
     float
-        Share of the variance. [-]
+        Part of the variance. [-]
     """
     from scipy import stats
 
@@ -183,8 +188,11 @@ def power_threshold(
 
 
 @dataclass(frozen=True, eq=False)
-class _Sound:
-    """Something that stands out in most replicates: its line in each and its mean power."""
+class _Component:
+    """A fundamental, harmonic or interaction above the threshold in most replicates.
+
+    `lines` (R,) is its line in each replicate, `power` its mean power.
+    """
 
     kind: PeakKind
     label: str
@@ -193,54 +201,54 @@ class _Sound:
     power: float
 
 
-def _heard(
+def _components(
     spectra: Floats, frequencies: Integers, runs: int, names: Sequence[str], threshold: float
-) -> Iterator[_Sound]:
-    """Fundamentals, harmonics and interactions that stand out in most replicates."""
+) -> Iterator[_Component]:
+    """Fundamentals, harmonics and interactions that are above the threshold in most replicates."""
     # Line 0 and, with an even number of runs, the last one are not in the spectrum.
     padded = np.pad(spectra, ((0, 0), (1, runs // 2 - spectra.shape[1])))
     rows = np.arange(spectra.shape[0])[:, None]
-    needed = math.ceil(_SURVIVES * spectra.shape[0])
+    needed = math.ceil(_SEEN_IN * spectra.shape[0])
 
-    def standing(lines: Integers) -> tuple[Integers, Integers, Floats]:
+    def significant(lines: Integers) -> tuple[Integers, Integers, Floats]:
         folded = _folded(lines, runs)
         found = padded[rows, folded]
-        survivors = np.flatnonzero((found > threshold).sum(axis=0) >= needed)
-        return survivors, folded, found.mean(axis=0)
+        seen = np.flatnonzero((found > threshold).sum(axis=0) >= needed)
+        return seen, folded, found.mean(axis=0)
 
-    loudness = np.zeros(len(names))
+    strength = np.zeros(len(names))
     for harmonic in range(1, _HARMONICS + 1):
-        survivors, lines, power = standing(harmonic * frequencies)
-        for i in survivors:
-            loudness[i] += power[i]
+        seen, lines, power = significant(harmonic * frequencies)
+        for i in seen:
+            strength[i] += power[i]
             kind: PeakKind = "fundamental" if harmonic == 1 else "harmonic"
             label = _times(harmonic, names[i])
-            yield _Sound(kind, label, (names[i],), lines[:, i], float(power[i]))
-    first, second = _pairs(loudness)
+            yield _Component(kind, label, (names[i],), lines[:, i], float(power[i]))
+    first, second = _pairs(strength)
     if not first.size:
         return
     for a, b, sign in itertools.product((1, 2), (1, 2), (1, -1)):
-        survivors, lines, power = standing(a * frequencies[:, first] + sign * b * frequencies[:, second])
-        for p in survivors:
+        seen, lines, power = significant(a * frequencies[:, first] + sign * b * frequencies[:, second])
+        for p in seen:
             i, j = names[first[p]], names[second[p]]
             label = f"{_times(a, i)} {'+' if sign > 0 else '−'} {_times(b, j)}"
-            yield _Sound("interaction", label, (i, j), lines[:, p], float(power[p]))
+            yield _Component("interaction", label, (i, j), lines[:, p], float(power[p]))
 
 
-def _pairs(loudness: Floats) -> tuple[Integers, Integers]:
-    """Pairs of parameters whose interaction is looked for."""
-    first, second = np.triu_indices(loudness.size, 1)
-    if loudness.size > _ALL_PAIRS_UP_TO:
-        loud = np.zeros(loudness.size, dtype=np.bool_)
-        loud[np.argsort(-loudness)[:_LOUDEST]] = True
-        loud &= loudness > 0.0
-        keep = loud[first] | loud[second]
+def _pairs(strength: Floats) -> tuple[Integers, Integers]:
+    """Pairs of parameters whose interactions are considered."""
+    first, second = np.triu_indices(strength.size, 1)
+    if strength.size > _ALL_PAIRS_UP_TO:
+        strong = np.zeros(strength.size, dtype=np.bool_)
+        strong[np.argsort(-strength)[:_STRONGEST]] = True
+        strong &= strength > 0.0
+        keep = strong[first] | strong[second]
         first, second = first[keep], second[keep]
     return first.astype(np.int64), second.astype(np.int64)
 
 
 def _folded(lines: Integers, runs: int) -> Integers:
-    """Where a frequency shows among the lines 0 ... N // 2 when only N runs see it."""
+    """Line among 0 ... N // 2 on which a frequency appears with N runs (aliasing)."""
     rest = np.mod(np.abs(lines), runs)
     folded: Integers = np.minimum(rest, runs - rest)
     return folded
@@ -250,8 +258,8 @@ def _times(factor: int, name: str) -> str:
     return name if factor == 1 else f"{factor} × {name}"
 
 
-def _peak(line: int, power: float, sounds: Sequence[_Sound]) -> Peak:
-    if not sounds:
+def _peak(line: int, power: float, components: Sequence[_Component]) -> Peak:
+    if not components:
         return Peak(line, power, "unnamed", "", ())
-    best = sounds[0]
-    return Peak(line, power, best.kind, best.label, best.parameters, tuple(s.label for s in sounds[1:]))
+    best = components[0]
+    return Peak(line, power, best.kind, best.label, best.parameters, tuple(c.label for c in components[1:]))

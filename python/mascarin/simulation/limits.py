@@ -1,4 +1,4 @@
-"""Heating set points at or below cooling set points, in every member and at all times."""
+"""Checks of parameter vectors: limits of each parameter, and heating set points below cooling ones."""
 
 from __future__ import annotations
 
@@ -14,12 +14,55 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    from mascarin.building import Building
+    from mascarin.building import Building, Parameter
 
     Array = npt.NDArray[np.float64]
 
 
-def require_apart(
+class Limits:
+    """Limits of parameters, in the order of a parameter vector.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter, length P
+        The parameters.
+    """
+
+    def __init__(self, parameters: Sequence[Parameter]) -> None:
+        self._parameters = list(parameters)
+        self._lower = np.array([p.lower for p in parameters])
+        self._upper = np.array([p.upper for p in parameters])
+
+    def require(self, vectors: Array) -> None:
+        """Refuse vectors of the wrong length, or with a value outside its limits.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (M, P)
+            Parameter vectors. [unit of each]
+
+        Raises
+        ------
+        InputError
+            Naming the parameter, the member, the value and the limits.
+        """
+        if vectors.ndim != 2 or vectors.shape[1] != len(self._parameters):
+            raise InputError(
+                f"samples: found an array of shape {vectors.shape}, expected (members, "
+                f"{len(self._parameters)}): one value for each parameter"
+            )
+        # A value that is no number makes only its own member fail.
+        bad = np.argwhere((vectors < self._lower) | (vectors > self._upper))
+        if bad.size:
+            member, k = (int(i) for i in bad[0])
+            parameter = self._parameters[k]
+            raise InputError(
+                f"samples: {parameter.path} of member {member}: found {vectors[member, k]:g} "
+                f"{parameter.unit}; expected a value from {parameter.lower:g} to {parameter.upper:g}"
+            )
+
+
+def require_set_points_apart(
     building: Building,
     vectors: Array,
     forcing: Array,

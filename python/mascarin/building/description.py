@@ -1,0 +1,43 @@
+"""The sections of a building, without its checks and methods, for the modules that these are made of."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from mascarin.building.glazing import Glazing
+from mascarin.building.material import Material
+from mascarin.building.names import Name
+from mascarin.building.part import Part
+from mascarin.building.schedule import Schedule
+from mascarin.building.site import Site
+from mascarin.building.surface import Construction, Sensor, Surface
+from mascarin.building.window import Shade, Window
+from mascarin.building.zone import AirPath, Opening, Zone
+
+
+class Description(Part):
+    """The sections of a building."""
+
+    name: str = Field("building", description="Name of the building, the title of its results")
+    site: Site = Field(description="Site of the building")
+    materials: dict[Name, Material] = Field(default_factory=dict, description="Materials by name")
+    constructions: dict[Name, Construction] = Field(
+        default_factory=dict, description="Layered constructions by name"
+    )
+    schedules: dict[Name, Schedule] = Field(default_factory=dict, description="Schedules by name")
+    zones: dict[Name, Zone] = Field(default_factory=dict, description="Air zones by name")
+    air_paths: dict[Name, AirPath] = Field(
+        default_factory=dict, description="Air exchanged between zones, by name"
+    )
+    openings: dict[Name, Opening] = Field(
+        default_factory=dict, description="Openings between zones and outdoors, by name"
+    )
+    surfaces: dict[Name, Surface] = Field(
+        default_factory=dict, description="Walls, roofs, floors, doors by name"
+    )
+    glazings: dict[Name, Glazing] = Field(default_factory=dict, description="Glazings by name")
+    windows: dict[Name, Window] = Field(default_factory=dict, description="Windows in the surfaces by name")
+    shades: dict[Name, Shade] = Field(
+        default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
+    )
+    sensors: dict[Name, Sensor] = Field(default_factory=dict, description="Thermometers inside walls by name")

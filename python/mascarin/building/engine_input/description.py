@@ -1,0 +1,130 @@
+"""The whole building as the engine reads it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from mascarin.building.description import Description
+from mascarin.building.engine_input.channels import channels, used_schedules
+from mascarin.building.engine_input.ids import Ids, Json, below, corners, each, fields_of
+from mascarin.building.engine_input.materials import describe_construction, describe_material
+from mascarin.building.engine_input.surfaces import describe_sensor, describe_surface
+from mascarin.building.engine_input.windows import (
+    describe_frame,
+    describe_frame_construction,
+    describe_glazing,
+    describe_window,
+    framed,
+)
+from mascarin.building.engine_input.zones import describe_air_path, describe_opening, describe_zone
+from mascarin.building.mesh import choose
+from mascarin.building.number import Interval
+from mascarin.building.parameters import Parameter
+from mascarin.building.site import Site
+
+
+@dataclass(frozen=True)
+class EngineDescription:
+    """What the engine needs to know.
+
+    Attributes
+    ----------
+    json : str
+        The description.
+    paths : list of str
+        Path of each parameter, by id.
+    values : ndarray, shape (P,)
+        Nominal value of each parameter. [unit of each]
+    channels : list of str
+        What the forcing holds after the climate's channels: measured columns, then schedules.
+    schedules : tuple of str
+        Names of the schedules, which are the last of the channels.
+    notes : tuple of str
+        Warnings about the mesh.
+    nodes : mapping of (str, str) to int
+        Finite volumes by construction and layer.
+    """
+
+    json: str
+    paths: list[str]
+    values: npt.NDArray[np.float64]
+    channels: list[str]
+    schedules: tuple[str, ...]
+    notes: tuple[str, ...]
+    nodes: Mapping[tuple[str, str], int]
+
+
+def describe(
+    building: Description,
+    parameters: Sequence[Parameter],
+    step_seconds: float,
+    ranges: Mapping[str, Interval],
+) -> EngineDescription:
+    """Describe a building to the engine; see `Building.to_engine`."""
+    mesh = choose(building, step_seconds, ranges)
+    leaves = [parameter for parameter in parameters if not parameter.structural]
+    ids = {leaf.path: index for index, leaf in enumerate(leaves)}
+    columns = channels(building)
+    schedules = used_schedules(building)
+    places = {name: len(columns) + k for k, name in enumerate(schedules)}
+    columns = [*columns, *(f"schedule {name}" for name in schedules)]
+    description = {
+        "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
+        "site": _site(building.site, below(ids, "site")),
+        "materials": [
+            *each(building.materials, "materials", ids, describe_material),
+            *(
+                {"kind": "rated", "u_value": ids[f"windows.{name}.frame.u_value"]}
+                for name in framed(building)
+            ),
+        ],
+        "constructions": [
+            *each(
+                building.constructions,
+                "constructions",
+                ids,
+                partial(describe_construction, building, mesh.nodes),
+            ),
+            *each(building.glazings, "glazings", ids, describe_glazing),
+            *(
+                describe_frame_construction(name, len(building.materials) + index)
+                for index, name in enumerate(framed(building))
+            ),
+        ],
+        "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
+        "air_paths": each(building.air_paths, "air_paths", ids, partial(describe_air_path, building, places)),
+        "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
+        "surfaces": [
+            *each(building.surfaces, "surfaces", ids, partial(describe_surface, building, columns, ids)),
+            *each(building.windows, "windows", ids, partial(describe_window, building, ids)),
+            *(describe_frame(building, name, ids) for name in framed(building)),
+        ],
+        "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
+        "shades": [corners(shade.vertices) for shade in building.shades.values()],
+        "channels": columns,
+    }
+    return EngineDescription(
+        json=json.dumps(description, allow_nan=False),
+        paths=[leaf.path for leaf in leaves],
+        values=np.array([leaf.value for leaf in leaves], dtype=np.float64),
+        channels=columns,
+        schedules=tuple(schedules),
+        notes=mesh.warnings,
+        nodes=mesh.nodes,
+    )
+
+
+def _site(site: Site, ids: Ids) -> Json:
+    return {
+        **fields_of(site, ids),
+        "wind": fields_of(site.wind, ids, "wind."),
+        "sky": fields_of(site.sky, ids, "sky."),
+        "cloud": [ids("cloud.c1"), ids("cloud.c2"), ids("cloud.c3")],
+        "diffuse": site.diffuse,
+    }

@@ -1,0 +1,69 @@
+"""Surfaces, their two sides and the sensors in them as the engine reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from mascarin.building.convection import Convection, Power
+from mascarin.building.description import Description
+from mascarin.building.engine_input.ids import Ids, Json, corners, deeper, fields_of
+from mascarin.building.surface import Side, Surface
+from mascarin.building.window import windows_of
+
+
+def describe_surface(
+    building: Description, columns: list[str], every: Mapping[str, int], name: str, surface: Surface, ids: Ids
+) -> Json:
+    """Describe a surface with its two sides."""
+    zones = list(building.zones)
+    return {
+        "name": name,
+        "construction": list(building.constructions).index(surface.construction),
+        "area": ids("area"),
+        "openings": [every[f"windows.{window}.area"] for window, _ in windows_of(name, building.windows)],
+        "vertices": corners(surface.vertices),
+        "tilt": ids("tilt"),
+        "azimuth": ids("azimuth"),
+        "outside": _side(surface.outside, zones, columns, deeper(ids, "outside")),
+        "inside": _side(surface.inside, zones, columns, deeper(ids, "inside")),
+    }
+
+
+def _side(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
+    written = fields_of(side, ids) | {"facing": _facing(side, zones, columns, ids)}
+    if side.convection is not None:
+        written["convection"] = describe_convection(side.convection, ids)
+    if side.longwave is not None:
+        written["longwave"] = fields_of(side.longwave, ids, "longwave.")
+    if side.irradiance is not None:
+        written["irradiance"] = columns.index(side.irradiance)
+    if side.exposure is not None:
+        written["exposure"] = side.exposure.model_dump()
+    return written
+
+
+def _facing(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
+    if side.zone is not None:
+        return {"kind": "zone", "zone": zones.index(side.zone)}
+    if side.measured is not None:
+        return {"kind": "measured", "channel": columns.index(side.measured)}
+    if side.ground is not None:
+        return {"kind": "ground"} | fields_of(side.ground, ids, "ground.")
+    return {"kind": side.faces}
+
+
+def describe_convection(convection: Convection, ids: Ids) -> Json:
+    """Describe a surface heat transfer coefficient."""
+    if isinstance(convection, Power):
+        return {
+            "kind": "power",
+            "upward": fields_of(convection.upward, ids, "convection.upward."),
+            "downward": fields_of(convection.downward, ids, "convection.downward."),
+        }
+    return fields_of(convection, ids, "convection.")
+
+
+def describe_sensor(building: Description, name: str, sensor: Any, ids: Ids) -> Json:
+    """Describe a sensor inside a surface."""
+    return {"name": name, "surface": list(building.surfaces).index(sensor.surface), "depth": ids("depth")}

@@ -1,0 +1,149 @@
+"""Glazings, windows and frames as the engine reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from mascarin.building.description import Description
+from mascarin.building.engine_input.ids import Ids, Json, below, corners, deeper, fields_of
+from mascarin.building.engine_input.surfaces import describe_convection
+from mascarin.building.glazing import Angular, FilledGap, GivenGap, Glazing, Pane, SimpleGlazing, TwoFaces
+from mascarin.building.window import Window
+
+
+def framed(building: Description) -> list[str]:
+    """Names of the windows with a frame, in the order of the description."""
+    return [name for name, window in building.windows.items() if window.frame is not None]
+
+
+def describe_glazing(name: str, glazing: Glazing, ids: Ids) -> Json:
+    """Describe a glazing as a construction."""
+    if isinstance(glazing, SimpleGlazing):
+        keys = ("u_value", "solar_heat_gain", "panes", "category")
+        films = [ids("outside_film"), ids("inside_film")]
+        return {
+            "name": name,
+            "glazing": {"kind": "simple", **{key: ids(key) for key in keys}, "films": films},
+        }
+    panes = [_pane(pane, deeper(ids, f"panes.{k}")) for k, pane in enumerate(glazing.panes)]
+    gaps = [_gap(gap, deeper(ids, f"gaps.{k}")) for k, gap in enumerate(glazing.gaps)]
+    written: Json = {"kind": "panes", "panes": panes, "gaps": gaps}
+    if glazing.angular is not None:
+        written["angular"] = _angular(glazing.angular, ids)
+    return {"name": name, "glazing": written}
+
+
+def both_sides(value: Any, ids: Ids, key: str) -> list[int]:
+    """Ids of a property of the outside and of the inside of a pane."""
+    if isinstance(value, TwoFaces):
+        return [ids(f"{key}.outside"), ids(f"{key}.inside")]
+    return [ids(key)] * 2
+
+
+def _pane(pane: Pane, ids: Ids) -> Json:
+    written: Json = {
+        "thickness": ids("thickness"),
+        "conductivity": ids("conductivity"),
+        "emissivity": both_sides(pane.emissivity, ids, "emissivity"),
+    }
+    if pane.density is not None:
+        written["storage"] = [ids("density"), ids("specific_heat")]
+    if pane.transmittance is not None:
+        written["optics"] = {
+            "transmittance": ids("transmittance"),
+            "reflectance": both_sides(pane.reflectance, ids, "reflectance"),
+            "coated": isinstance(pane.reflectance, TwoFaces),
+        }
+    return written
+
+
+def _gap(gap: FilledGap | GivenGap, ids: Ids) -> Json:
+    if isinstance(gap, GivenGap):
+        return {"kind": "given", "conductance": ids("conductance")}
+    return {
+        "kind": "filled",
+        "thickness": ids("thickness"),
+        "pressure": ids("pressure"),
+        "gas": gap.gas,
+    }
+
+
+def _angular(table: Angular, ids: Ids) -> Json:
+    written: Json = {
+        "angles": list(map(float, table.angles)),
+        "transmittance": list(map(float, table.transmittance)),
+        "absorptance": [list(map(float, pane)) for pane in table.absorptance],
+        "transmittance_scale": ids("angular.transmittance_scale"),
+        "absorptance_scale": ids("angular.absorptance_scale"),
+    }
+    if table.diffuse is not None:
+        written["diffuse_transmittance"] = float(table.diffuse.transmittance)
+        written["diffuse_absorptance"] = list(map(float, table.diffuse.absorptance))
+    return written
+
+
+def describe_window(
+    building: Description, every: Mapping[str, int], name: str, window: Window, ids: Ids
+) -> Json:
+    """Describe the glass of a window as a surface."""
+    glass = building.glazings[window.glazing]
+    path = f"glazings.{window.glazing}."
+    if isinstance(glass, SimpleGlazing):
+        emissivity = [every[f"{path}emissivity"]] * 2
+    else:
+        last = len(glass.panes) - 1
+        outer = both_sides(glass.panes[0].emissivity, lambda key: every[f"{path}panes.0.{key}"], "emissivity")
+        inner = both_sides(
+            glass.panes[last].emissivity, lambda key: every[f"{path}panes.{last}.{key}"], "emissivity"
+        )
+        emissivity = [outer[0], inner[1]]
+    written = _glazed(building, every, window, ids, emissivity) | {
+        "name": name,
+        "construction": len(building.constructions) + list(building.glazings).index(window.glazing),
+        "cavity_height": ids("cavity_height"),
+    }
+    if window.frame is not None:
+        written["frame"] = {"fraction": ids("frame.fraction"), "is_frame": False}
+    return written
+
+
+def describe_frame(building: Description, name: str, every: Mapping[str, int]) -> Json:
+    """Describe the frame of a window as a surface."""
+    ids = below(every, f"windows.{name}")
+    window = building.windows[name]
+    written = _glazed(building, every, window, ids, [ids("frame.emissivity")] * 2)
+    written["outside"]["absorptance"] = written["inside"]["absorptance"] = ids("frame.absorptance")
+    return written | {
+        "name": f"{name}.frame",
+        "construction": len(building.constructions) + len(building.glazings) + framed(building).index(name),
+        "frame": {"fraction": ids("frame.fraction"), "is_frame": True},
+    }
+
+
+def describe_frame_construction(name: str, material: int) -> Json:
+    """Describe the construction of a frame: one layer without heat capacity."""
+    layer = {"name": "frame", "material": material, "thickness": None, "nodes": 0}
+    return {"name": f"{name}.frame", "layers": [layer]}
+
+
+def _glazed(
+    building: Description, every: Mapping[str, int], window: Window, ids: Ids, emissivity: list[int]
+) -> Json:
+    """Describe what glass and frame of a window have in common."""
+    wall = building.surfaces[window.surface]
+    direction = {key: every[f"surfaces.{window.surface}.{key}"] for key in ("tilt", "azimuth")}
+    outside = fields_of(window.outside, deeper(ids, "outside")) | {
+        "facing": {"kind": "outdoors"},
+        "emissivity": emissivity[0],
+        "convection": describe_convection(window.outside.convection, deeper(ids, "outside")),
+    }
+    if window.outside.longwave is not None:
+        outside["longwave"] = fields_of(window.outside.longwave, deeper(ids, "outside"), "longwave.")
+    inside = {
+        "facing": {"kind": "zone", "zone": list(building.zones).index(str(wall.inside.zone))},
+        "emissivity": emissivity[1],
+        "convection": describe_convection(window.inside.convection, deeper(ids, "inside")),
+    }
+    shape = {"area": ids("area"), "vertices": corners(window.vertices), **direction}
+    return shape | {"outside": outside, "inside": inside}

@@ -1,0 +1,105 @@
+"""Errors that pydantic finds in a description, as one text with file, line and path."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from mascarin.errors import InputError
+
+Place = tuple[str | int, ...]
+
+
+def explained(
+    error: ValidationError, plain: Any, name: str, lines: Mapping[Place, int] | None = None
+) -> InputError:
+    """Turn the errors that pydantic found into one error that names each by file, line and path.
+
+    Parameters
+    ----------
+    error : ValidationError
+        What pydantic found.
+    plain : mapping or list
+        The description as it was given.
+    name : str
+        Name of the file, or of the part, for the text.
+    lines : mapping of place to int, optional
+        Line of each key and value in the file.
+
+    Returns
+    -------
+    InputError
+        To be raised by the caller.
+    """
+    found = sorted(
+        (_line(place, lines or {}), _dotted(place, plain), _sentences(dict(fault)))
+        for fault in error.errors(include_url=False)
+        for place in [_place(fault["loc"], plain)]
+    )
+    blocks = []
+    for line, dotted, sentences in dict.fromkeys(found):
+        where = f"{name}:{line}" if line else name
+        blocks.append(f"{where}: {dotted or 'the whole description'}\n{sentences}")
+    if len(blocks) > 1:
+        blocks.insert(0, f"{name}: {len(blocks)} faults")
+    return InputError("\n".join(blocks))
+
+
+def _sentences(fault: dict[str, Any]) -> str:
+    context = fault.get("ctx", {})
+    parts = [f"  found: {context.get('found', fault['msg'])}", f"  expected: {context.get('expected', '')}"]
+    if context.get("help"):
+        parts.append(f"  {context['help']}")
+    return "\n".join(parts)
+
+
+def _place(location: Place, plain: Any) -> Place:
+    """Drop from pydantic's location what is not in the file, such as the kinds of a union."""
+    place: list[str | int] = []
+    # An error in the whole description has an empty location.
+    for step, following in zip(location, (*location, None)[1:], strict=True):
+        # The kind of a union may have the name of one of its lists (panes).
+        kind = isinstance(plain, Mapping) and plain.get("kind") == step and isinstance(following, str)
+        if not kind and holds(plain, step):
+            place.append(step)
+            plain = plain[step]
+    last = location[-1] if location else None
+    if isinstance(last, str) and "]" not in last and _lacks(plain, last, place):
+        place.append(last)
+    return tuple(place)
+
+
+def _lacks(plain: Any, key: str, place: list[str | int]) -> bool:
+    """Whether a location ends in a key that should be here, not in the kind of what is here."""
+    return isinstance(plain, Mapping) and place[-1:] != [key] and key not in _kinds(plain)
+
+
+def _kinds(plain: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Kinds that pydantic may take a mapping for: a material without a kind is a solid or a product."""
+    return (plain.get("kind", "solid"), *(["pcm"] if "product" in plain else []))
+
+
+def holds(plain: Any, step: str | int) -> bool:
+    """Whether a mapping or a list has something at a step of a path."""
+    if isinstance(plain, list):
+        return isinstance(step, int) and step < len(plain)
+    return isinstance(plain, Mapping) and step in plain
+
+
+def _line(place: Place, lines: Mapping[Place, int]) -> int:
+    for length in range(len(place), -1, -1):
+        if place[:length] in lines:
+            return lines[place[:length]]
+    return 0
+
+
+def _dotted(place: Place, plain: Any) -> str:
+    """Write a place as the path of a parameter, with the names of layers."""
+    steps = []
+    for step in place:
+        plain = plain[step] if holds(plain, step) else None
+        named = isinstance(step, int) and isinstance(plain, Mapping)
+        steps.append(str((plain.get("name") or plain.get("material") or step) if named else step))
+    return ".".join(steps)

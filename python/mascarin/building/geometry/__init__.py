@@ -1,0 +1,34 @@
+"""Geometry of a zone: plane polygons, the volume that they enclose, view factors between them."""
+
+from __future__ import annotations
+
+from mascarin.building.geometry.enclosure import (
+    OpenEdge,
+    check_convex,
+    net_areas,
+    open_edges,
+    parents,
+    volume,
+)
+from mascarin.building.geometry.exchange import (
+    CLOSURE_LIMIT,
+    exchange_areas,
+    log_integral,
+    view_factors,
+)
+from mascarin.building.geometry.polygon import TOLERANCE, Polygon
+
+__all__ = [
+    "CLOSURE_LIMIT",
+    "TOLERANCE",
+    "OpenEdge",
+    "Polygon",
+    "check_convex",
+    "exchange_areas",
+    "log_integral",
+    "net_areas",
+    "open_edges",
+    "parents",
+    "view_factors",
+    "volume",
+]

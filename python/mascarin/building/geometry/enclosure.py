@@ -1,0 +1,225 @@
+"""Enclosures of polygons: what lies in what, net areas, gaps between edges, the enclosed volume."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from mascarin.building.geometry.polygon import TOLERANCE, Polygon
+from mascarin.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class OpenEdge:
+    """A piece of edge that no second face closes."""
+
+    face: str
+    start: tuple[float, float, float]
+    end: tuple[float, float, float]
+
+    @property
+    def length(self) -> float:
+        """Length of the piece. [m]"""
+        return math.dist(self.start, self.end)
+
+    def __str__(self) -> str:
+        a = ", ".join(f"{c:.3f}" for c in self.start)
+        b = ", ".join(f"{c:.3f}" for c in self.end)
+        return f"{self.face}: from ({a}) to ({b}), {self.length:.3f} m"
+
+
+def parents(polygons: Sequence[Polygon]) -> list[int | None]:
+    """For every polygon the smallest other one that contains it (a wall for its door), or None.
+
+    Parameters
+    ----------
+    polygons : sequence of Polygon
+        Any surfaces.
+
+    Returns
+    -------
+    list of int or None
+        Index of the direct parent.
+
+    Raises
+    ------
+    InputError
+        Two polygons cover the same area.
+    """
+    found: list[int | None] = []
+    for i, child in enumerate(polygons):
+        best: int | None = None
+        for j, candidate in enumerate(polygons):
+            if i == j or not candidate.contains(child):
+                continue
+            if child.contains(candidate):
+                raise InputError(
+                    f"surfaces '{child.name}' and '{candidate.name}' cover the same area; keep one of them"
+                )
+            if best is None or candidate.area < polygons[best].area:
+                best = j
+        found.append(best)
+    return found
+
+
+def net_areas(polygons: Sequence[Polygon]) -> Array:
+    """Areas without what lies in the polygons as surfaces of their own.
+
+    Parameters
+    ----------
+    polygons : sequence of Polygon
+        Any surfaces.
+
+    Returns
+    -------
+    array, shape (n,)
+        Areas. [m2]
+
+    Raises
+    ------
+    InputError
+        The surfaces in a surface leave nothing of it.
+    """
+    areas = np.array([p.area for p in polygons])
+    net = areas.copy()
+    for i, parent in enumerate(parents(polygons)):
+        if parent is not None:
+            net[parent] -= areas[i]
+    for polygon, left in zip(polygons, net, strict=True):
+        if left <= 0.0:
+            raise InputError(
+                f"surface '{polygon.name}': the surfaces in it leave {left:.3f} m2 of {polygon.area:.3f} m2; "
+                "expected a rest; give the surfaces side by side instead"
+            )
+    return net
+
+
+def open_edges(faces: Sequence[Polygon]) -> list[OpenEdge]:
+    """Pieces of edges where a shell of faces is not closed.
+
+    In a closed shell of faces that all look inward every piece of an edge is walked once in either direction.
+    Faces that lie in another face are left out: their parent covers them.
+
+    Parameters
+    ----------
+    faces : sequence of Polygon
+        Faces of a zone, all normals into the zone (or all out of it).
+
+    Returns
+    -------
+    list of OpenEdge
+        Empty if the shell is closed within :data:`TOLERANCE`.
+    """
+    shell = [f for f, parent in zip(faces, parents(faces), strict=True) if parent is None]
+    edges = [
+        (face.name, face.points[i], face.points[(i + 1) % len(face.points)])
+        for face in shell
+        for i in range(len(face.points))
+    ]
+    gaps = []
+    for name, start, end in edges:
+        gaps += [OpenEdge(name, _triple(a), _triple(b)) for a, b in _uncovered(start, end, edges)]
+    return gaps
+
+
+def _uncovered(
+    start: Array, end: Array, edges: Sequence[tuple[str, Array, Array]]
+) -> list[tuple[Array, Array]]:
+    """Pieces of one edge whose directed cover by all edges on its line does not cancel."""
+    length = float(np.linalg.norm(end - start))
+    along = (end - start) / length
+    pieces: list[tuple[float, float, int]] = []
+    for _, a, b in edges:
+        if _off_line(a, start, along) > TOLERANCE or _off_line(b, start, along) > TOLERANCE:
+            continue
+        s, t = float((a - start) @ along), float((b - start) @ along)
+        pieces.append((min(s, t), max(s, t), 1 if t > s else -1))
+    cuts = sorted({0.0, length, *(c for piece in pieces for c in piece[:2] if 0.0 < c < length)})
+    open_pieces = []
+    for low, high in pairwise(cuts):
+        if high - low <= 2.0 * TOLERANCE:
+            continue
+        middle = 0.5 * (low + high)
+        if sum(sign for a, b, sign in pieces if a < middle < b) > 0:
+            open_pieces.append((start + low * along, start + high * along))
+    return open_pieces
+
+
+def volume(faces: Sequence[Polygon]) -> float:
+    """Volume enclosed by the faces of a zone (divergence theorem).
+
+    Parameters
+    ----------
+    faces : sequence of Polygon
+        All faces of the zone, normals into the zone. Faces within a face (a door in a wall) may be listed.
+
+    Returns
+    -------
+    float
+        Volume. [m3]
+
+    Raises
+    ------
+    InputError
+        The faces leave gaps, or look out of the zone.
+    """
+    gaps = open_edges(faces)
+    if gaps:
+        shown = "; ".join(str(gap) for gap in gaps[:6])
+        more = f"; and {len(gaps) - 6} more" if len(gaps) > 6 else ""
+        raise InputError(
+            f"the faces do not close the zone: {len(gaps)} open edges ({shown}{more}); "
+            "expected every edge to be shared by two faces; complete the vertices or give the volume"
+        )
+    origin = faces[0].points[0]
+    total = 0.0
+    for face, parent in zip(faces, parents(faces), strict=True):
+        if parent is None:
+            total -= face.area * float((face.points[0] - origin) @ face.normal) / 3.0
+    if total <= 0.0:
+        raise InputError(
+            f"the faces enclose {total:.3f} m3: their normals point out of the zone; "
+            "expected the vertices of every surface counter-clockwise seen from outside"
+        )
+    return total
+
+
+def check_convex(faces: Sequence[Polygon]) -> None:
+    """Check that every face sees every other one completely.
+
+    Parameters
+    ----------
+    faces : sequence of Polygon
+        Faces of a zone, normals into the zone.
+
+    Raises
+    ------
+    InputError
+        A corner lies behind a face.
+    """
+    for face in faces:
+        for other in faces:
+            heights = face.height_of(other.points)
+            worst = int(np.argmin(heights))
+            if heights[worst] < -TOLERANCE:
+                raise InputError(
+                    f"the zone is not convex: vertex {worst + 1} of '{other.name}' lies "
+                    f"{-heights[worst]:.3f} m behind '{face.name}'; exact view factors need a convex zone; "
+                    "split the zone or give its view_factors"
+                )
+
+
+def _off_line(point: Array, start: Array, along: Array) -> float:
+    between = point - start
+    return float(np.linalg.norm(between - (between @ along) * along))
+
+
+def _triple(point: Array) -> tuple[float, float, float]:
+    return (float(point[0]), float(point[1]), float(point[2]))

@@ -1,0 +1,207 @@
+"""Exact view factors between the polygons of a convex zone.
+
+The exchange area of two polygons that see each other completely is
+
+    A_i F_ij = 1/(2 pi) sum_p sum_q (e_p . e_q) J_pq,   J_pq = int int ln r ds dt
+
+over their edges p and q with unit directions e (Stokes' theorem applied twice; Sparrow 1963). J_pq has an
+analytical solution for parallel, collinear and equal edges. For others the integral along one edge is
+analytical, and the one along the second is computed to round-off by a double-exponential rule, split where
+the integrand is not smooth. An edge or a corner that two polygons have in common, where ln r is singular,
+needs no special treatment.
+
+References
+----------
+E. M. Sparrow, "A new and simpler formulation for radiative angle factors", J. Heat Transfer 85(2), 1963,
+doi:10.1115/1.3686058.
+J. R. Howell, M. P. Menguc, R. Siegel, "Thermal Radiation Heat Transfer", 6th ed., CRC Press, 2015,
+doi:10.1201/b18835 (view-factor algebra).
+H. Takahasi, M. Mori, "Double exponential formulas for numerical integration", Publ. RIMS 9(3), 1974,
+doi:10.2977/prims/1195192451.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from mascarin.building.geometry.enclosure import check_convex, net_areas, open_edges, parents
+from mascarin.building.geometry.polygon import Polygon, coplanar
+from mascarin.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+#: Largest deviation of the row sums of exact view factors of a closed convex zone from one [-].
+CLOSURE_LIMIT = 1e-6
+
+
+def exchange_areas(faces: Sequence[Polygon]) -> Array:
+    """Exchange areas A_i F_ij between the faces of a convex zone.
+
+    A face that lies in another one takes its part from the parent: the row of a wall is that of the whole
+    outline less those of its door and windows.
+
+    Parameters
+    ----------
+    faces : sequence of Polygon
+        Faces of a convex zone, normals into the zone.
+
+    Returns
+    -------
+    array, shape (n, n)
+        Symmetric, zero between faces of one plane. [m2]
+
+    Raises
+    ------
+    InputError
+        The zone is not convex.
+    """
+    check_convex(faces)
+    n = len(faces)
+    gross = np.zeros((n, n))
+    for i in range(n):
+        for j in range(i + 1, n):
+            gross[i, j] = gross[j, i] = _exchange_area(faces[i], faces[j])
+    algebra = np.eye(n)
+    for child, parent in enumerate(parents(faces)):
+        if parent is not None:
+            algebra[parent, child] = -1.0
+    net = algebra @ gross @ algebra.T
+    symmetric: Array = np.maximum(0.5 * (net + net.T), 0.0)
+    return symmetric
+
+
+def view_factors(faces: Sequence[Polygon]) -> Array:
+    """View factors F_ij (from i to j) between the faces of a closed convex zone.
+
+    Parameters
+    ----------
+    faces : sequence of Polygon
+        All faces of the zone, normals into the zone. Faces within a face may be listed.
+
+    Returns
+    -------
+    array, shape (n, n)
+        Rows sum to one within :data:`CLOSURE_LIMIT`; A_i F_ij is symmetric. [-]
+
+    Raises
+    ------
+    InputError
+        The zone is not convex or not closed.
+    """
+    factors: Array = exchange_areas(faces) / net_areas(faces)[:, None]
+    sums = factors.sum(axis=1)
+    worst = int(np.argmax(np.abs(sums - 1.0)))
+    if abs(sums[worst] - 1.0) > CLOSURE_LIMIT:
+        gaps = "; ".join(str(gap) for gap in open_edges(faces)[:4])
+        reason = f"open edges: {gaps}" if gaps else "coordinates agree only roughly"
+        raise InputError(
+            f"the view factors from '{faces[worst].name}' sum to {sums[worst]:.7f}; expected 1 within "
+            f"{CLOSURE_LIMIT:g} in a closed zone ({reason}); correct the vertices or give its view_factors"
+        )
+    return factors
+
+
+# --- the contour integral --------------------------------------------------------------------------------
+
+
+def _exchange_area(a: Polygon, b: Polygon) -> float:
+    """A F between two polygons that see each other completely. [m2]"""
+    if coplanar(a, b):
+        return 0.0
+    total = 0.0
+    for p0, p1 in _edges(a):
+        for q0, q1 in _edges(b):
+            cosine = float((p1 - p0) @ (q1 - q0))
+            if abs(cosine) > 1e-14 * float(np.linalg.norm(p1 - p0) * np.linalg.norm(q1 - q0)):
+                total += cosine * log_integral(p0, p1, q0, q1)
+    return max(total / (2.0 * math.pi), 0.0)
+
+
+def log_integral(p0: Array, p1: Array, q0: Array, q1: Array) -> float:
+    """Mean of ln r over two straight edges: the double integral over both, divided by both lengths.
+
+    Parameters
+    ----------
+    p0, p1, q0, q1 : array, shape (3,)
+        Ends of the two edges. [m]
+
+    Returns
+    -------
+    float
+        Mean logarithm of the distance in metres. [-]
+    """
+    length_p, length_q = float(np.linalg.norm(p1 - p0)), float(np.linalg.norm(q1 - q0))
+    e, f = (p1 - p0) / length_p, (q1 - q0) / length_q
+    if float(np.linalg.norm(np.cross(e, f))) < 1e-10:
+        total = _parallel(q0 - p0, e, math.copysign(1.0, float(e @ f)), length_p, length_q)
+    else:
+        total = _skew(p0, p1, q0, length_q, e, f)
+    return total / (length_p * length_q)
+
+
+def _parallel(between: Array, e: Array, sign: float, length_p: float, length_q: float) -> float:
+    """Double integral of ln r over two parallel edges, from its second antiderivative in u = s - t."""
+    offset = float(between @ e)
+    d = float(np.linalg.norm(between - offset * e))
+    if d < 1e-9 * (length_p + length_q):
+        d = 0.0
+
+    def second(u: float) -> float:
+        r2 = u * u + d * d
+        log = math.log(r2) if r2 > 0.0 else 0.0
+        turn = 2.0 * d * u * math.atan2(u, d) if d > 0.0 else 0.0
+        return 0.5 * (0.5 * (u * u - d * d) * log - 1.5 * u * u + turn)
+
+    low, high = (offset, offset + length_q) if sign > 0 else (offset - length_q, offset)
+    return second(length_p - low) + second(-high) - second(-low) - second(length_p - high)
+
+
+def _skew(p0: Array, p1: Array, q0: Array, length_q: float, e: Array, f: Array) -> float:
+    """Double integral of ln r over two edges that are not parallel.
+
+    Along the first edge the antiderivative of ln sqrt(x^2 + d^2) is elementary; d is the distance of a point
+    of the second edge from the line of the first. Along the second edge the result is smooth but for weak
+    (x ln x) singularities near the points closest to the ends of the first edge and to its line: it is split
+    there.
+    """
+    normal = np.cross(e, f)
+    foot = -float(np.cross(q0 - p0, e) @ normal) / float(normal @ normal)
+    inner = (float((p0 - q0) @ f), float((p1 - q0) @ f), foot)
+    cuts = np.array(sorted({0.0, length_q, *(t for t in inner if 0.0 < t < length_q)}))
+    nodes, weights = _tanh_sinh()
+    widths = np.diff(cuts)
+    t = (cuts[:-1, None] + widths[:, None] * nodes).ravel()
+    from_p0 = (q0 - p0) + t[:, None] * f
+    x = from_p0 @ e
+    d = np.linalg.norm(from_p0 - x[:, None] * e, axis=1)
+    length_p = float((p1 - p0) @ e)
+    values = _log_antiderivative(length_p - x, d) + _log_antiderivative(x, d)
+    return float(values @ (widths[:, None] * weights).ravel())
+
+
+def _log_antiderivative(x: Array, d: Array) -> Array:
+    """Integral of ln sqrt(x^2 + d^2) over x from 0."""
+    r2 = np.maximum(x * x + d * d, 1e-300)
+    result: Array = 0.5 * x * np.log(r2) - x + d * np.arctan2(x, d)
+    return result
+
+
+@lru_cache(maxsize=1)
+def _tanh_sinh() -> tuple[Array, Array]:
+    """Nodes and weights on [0, 1] of the double-exponential rule (Takahasi & Mori 1974)."""
+    step = 0.08
+    u = step * np.arange(-42, 43)
+    inner = 0.5 * math.pi * np.sinh(u)
+    nodes = 1.0 / (1.0 + np.exp(-2.0 * inner))
+    weights = 0.25 * math.pi * step * np.cosh(u) / np.cosh(inner) ** 2
+    return nodes, weights
+
+
+def _edges(polygon: Polygon) -> list[tuple[Array, Array]]:
+    p = polygon.points
+    return [(p[i], p[(i + 1) % len(p)]) for i in range(len(p))]

@@ -1,0 +1,142 @@
+"""Warnings about what is probably wrong in a building: units, areas, volumes, mesh and time step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from mascarin.building.derived import drawn_areas, enclosure, faces_of
+from mascarin.building.description import Description
+from mascarin.building.geometry import volume as enclosed_volume
+from mascarin.building.material import PhaseChangeMaterial, Resistance
+from mascarin.building.mesh import Mesh
+from mascarin.building.phase_change_rules import unordered_slopes
+from mascarin.building.phases import phase
+from mascarin.building.rules import shaded
+from mascarin.building.u_values import time_constant
+from mascarin.errors import InputError
+
+#: SDIRK2 keeps the maximum principle only for steps below so many times the smallest time constant.
+SDIRK2_BOUND = 2.4
+#: Diffusivities of what walls are made of, from dense polymers to copper and silver [m2/s].
+_DIFFUSIVITIES = (1e-8, 2e-4)
+
+
+def warnings(building: Description, mesh: Mesh, step_seconds: float) -> Iterator[str]:
+    """What deserves a second look: the mesh, the step, areas and volumes that do not fit together."""
+    yield from mesh.warnings
+    quick = [
+        name
+        for name in building.constructions
+        if step_seconds > SDIRK2_BOUND * time_constant(building, name, mesh)
+    ]
+    if quick:
+        yield (
+            f"a step of {step_seconds:g} s is above {SDIRK2_BOUND} times the smallest time constant of "
+            f"{', '.join(quick)}: SDIRK2 may overshoot there after a jump (backward-euler never does)"
+        )
+    yield from _odd_materials(building)
+    yield from _odd_melting(building)
+    yield from _odd_volumes(building)
+    yield from _odd_faces(building)
+    yield from _odd_areas(building)
+    yield from _unshaded(building)
+
+
+def _odd_materials(building: Description) -> Iterator[str]:
+    """Find properties that do not go together, as when one of them is in another unit."""
+    low, high = _DIFFUSIVITIES
+    for name, material in building.materials.items():
+        if isinstance(material, Resistance):
+            continue
+        for state in ("solid", "liquid") if isinstance(material, PhaseChangeMaterial) else ("solid",):
+            conductivity, weight, heat = (
+                phase(value, state)
+                for value in (material.conductivity, material.density, material.specific_heat)
+            )
+            diffusivity = conductivity / (weight * heat)
+            where = f"materials.{name}" + (f" ({state})" if isinstance(material, PhaseChangeMaterial) else "")
+            if conductivity > 1.0 and weight < 100.0:
+                yield (
+                    f"{where}: nothing of {weight:g} kg/m3 conducts {conductivity:g} W/(m K): "
+                    "write the conductivity in W/(m K), not mW/(m K), and the density in kg/m3"
+                )
+            elif not low <= diffusivity <= high:
+                yield (
+                    f"{where}: a diffusivity of {diffusivity:.2g} m2/s lies outside {low:g} to {high:g}: "
+                    "check the units of conductivity [W/(m K)], density [kg/m3] and specific_heat [J/(kg K)]"
+                )
+
+
+def _odd_melting(building: Description) -> Iterator[str]:
+    """Find small cycles that would make entropy vanish, and densities that make the liquid much thicker."""
+    for name, material in building.materials.items():
+        if not isinstance(material, PhaseChangeMaterial):
+            continue
+        odd = unordered_slopes(material)
+        if odd is not None:
+            yield (
+                f"materials.{name}.hysteresis: between {odd[0]:.2f} and {odd[1]:.2f} degC the heating curve "
+                "flattens faster than the cooling curve: with curve_scale a small cycle there would melt "
+                "colder than it freezes. Take curves of one shape and width, or curve_switch"
+            )
+        solid, liquid = (phase(material.density, state) for state in ("solid", "liquid"))
+        if abs(solid / liquid - 1.0) > 0.25:
+            yield (
+                f"materials.{name}.density: {solid:g} kg/m3 solid, {liquid:g} kg/m3 liquid: the layer keeps "
+                f"its mass and would be {100 * (solid / liquid - 1.0):+.0f} % thicker when molten"
+            )
+
+
+def _odd_faces(building: Description) -> Iterator[str]:
+    """Find zones one face of which is larger than all others together: no closed shape has such a face."""
+    for name in building.zones:
+        areas = {
+            surface: float(building.surfaces[surface].area or 0.0)
+            for surface, _ in faces_of(name, building.surfaces)
+            if not building.surfaces[surface].internal_mass
+        }
+        if not areas:
+            continue
+        largest = max(areas, key=lambda surface: areas[surface])
+        others = sum(areas.values()) - areas[largest]
+        if areas[largest] > others * (1.0 + 1e-6):
+            yield (
+                f"zones.{name}: the faces cannot enclose it, {largest} has {areas[largest]:.2f} m2 and the "
+                f"others together {others:.2f} m2: add the missing faces, correct the area, or split "
+                f"{largest} if it stands for several walls"
+            )
+
+
+def _odd_volumes(building: Description) -> Iterator[str]:
+    for name, zone in building.zones.items():
+        volume = float(zone.volume or 0.0)
+        area = sum(building.surfaces[surface].area or 0.0 for surface, _ in faces_of(name, building.surfaces))
+        least = (36.0 * math.pi * volume**2) ** (1.0 / 3.0)
+        if area < least:
+            yield (
+                f"zones.{name}: {area:.2f} m2 of faces cannot enclose {volume:g} m3 "
+                f"(a sphere needs {least:.2f} m2): faces are missing, or the volume is too large"
+            )
+        faces = enclosure(name, building.surfaces)
+        if faces is not None:
+            try:
+                drawn = enclosed_volume(faces)
+            except InputError as error:
+                yield f"zones.{name}: {error}"
+                continue
+            if abs(drawn - volume) > 0.02 * volume:
+                yield f"zones.{name}: {volume:g} m3 are given, the vertices enclose {drawn:.2f} m3"
+
+
+def _unshaded(building: Description) -> Iterator[str]:
+    bare = shaded(building)[1] if building.shades else []
+    if bare:
+        yield f"shades: without vertices, {', '.join(bare)} lie in full sun"
+
+
+def _odd_areas(building: Description) -> Iterator[str]:
+    for name, drawn in drawn_areas(building.surfaces).items():
+        area = float(building.surfaces[name].area or 0.0)
+        if abs(area - drawn) > 0.01 * drawn:
+            yield f"surfaces.{name}: {area:.2f} m2 are given, the vertices enclose {drawn:.2f} m2"

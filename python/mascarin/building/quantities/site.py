@@ -1,0 +1,102 @@
+"""Quantities of the site, its wind and its sky."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from mascarin.building.number import Fixed, Limits, Number, Percent, Quantity, Span, Within
+from mascarin.building.quantities.common import FIT, FRACTION, POSITIVE
+
+Latitude = Annotated[
+    Number,
+    Quantity(
+        "deg",
+        "Latitude, north positive",
+        Fixed("acts through the sun's path in the forcing"),
+        Limits(at_least=-90, at_most=90),
+    ),
+]
+Longitude = Annotated[
+    Number,
+    Quantity(
+        "deg",
+        "Longitude, east positive",
+        Fixed("acts through the sun's path in the forcing"),
+        Limits(at_least=-180, at_most=180),
+    ),
+]
+Altitude = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Altitude above sea level; gives the density of the air where none is written",
+        Within(50, "height of the plot against the station's; 50 m are 0.6 % of pressure"),
+        Limits(at_least=-500, at_most=9000),
+    ),
+]
+AirDensity = Annotated[
+    Number,
+    Quantity(
+        "kg/m3",
+        "Density of the air in the zones and of the air that enters them",
+        Percent(3, "10 K of temperature or 30 hPa of weather"),
+        Limits(above=0, at_most=3),
+    ),
+]
+GroundReflectance = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Solar reflectance of the ground",
+        Span(0.1, 0.35, "wet asphalt to dry concrete; snow lies outside and has to be written"),
+        FRACTION,
+    ),
+]
+MastHeight = Annotated[
+    Number,
+    Quantity(
+        "m", "Height of the anemometer", Percent(20, "masts of 8 to 12 m are all called 10 m"), POSITIVE
+    ),
+]
+WindExponent = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Exponent of the wind profile",
+        Within(0.05, "one class of terrain up or down"),
+        Limits(at_least=0, at_most=1),
+    ),
+]
+BoundaryLayer = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Thickness of the atmospheric boundary layer",
+        Percent(25, "one class of terrain up or down"),
+        POSITIVE,
+    ),
+]
+SkyCoefficient = Annotated[
+    Number, Quantity("-", "Coefficient of the emissivity of the clear sky", Percent(10, FIT))
+]
+SkyScale = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Factor on the measured infrared of the sky",
+        Within(0.05, "calibration of a pyrgeometer, and its own body's radiation"),
+        POSITIVE,
+    ),
+]
+SkyDepression = Annotated[
+    Number,
+    Quantity(
+        "K",
+        "Outdoor air temperature less sky temperature",
+        Span(3, 20, "overcast to clear and dry; the annual means of ISO 13790 run from 9 to 13 K"),
+        Limits(at_least=-10, at_most=60),
+    ),
+]
+CloudCoefficient = Annotated[
+    Number, Quantity("-", "Coefficient of the cubic cloud factor on the sky's emissivity", Percent(10, FIT))
+]

@@ -1,0 +1,62 @@
+"""Quantities of the two sides of a surface."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from mascarin.building.number import Limits, Number, Percent, Quantity, Span, Within
+from mascarin.building.quantities.common import ABOVE_0_TO_1, FRACTION, TEMPERATURE
+
+Emissivity = Annotated[
+    Number,
+    Quantity("-", "Long-wave emissivity", Within(0.05, "oxidation, dust and paint"), ABOVE_0_TO_1),
+]
+Absorptance = Annotated[
+    Number,
+    Quantity(
+        "-", "Solar absorptance", Within(0.1, "soiling and fading; colours are judged by eye"), FRACTION
+    ),
+]
+AreaFactor = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Area in contact with the air over plane area (corrugated sheets)",
+        Percent(10, "shape of the profile"),
+        Limits(at_least=0.1, at_most=20),
+    ),
+]
+SkyView = Annotated[
+    Number, Quantity("-", "Fraction of the sky seen", Within(0.1, "trees and neighbours"), FRACTION)
+]
+ReferenceTemperature = Annotated[
+    Number,
+    Quantity(
+        "degC",
+        "Temperature about which long-wave exchange is linearised",
+        Within(5, "the mean of the period is not known beforehand; 1 K is 1 % of the coefficient"),
+        TEMPERATURE,
+    ),
+]
+GroundTemperature = Annotated[
+    Number,
+    Quantity("degC", "Annual mean temperature of the ground", Within(2, "depth and cover"), TEMPERATURE),
+]
+GroundAmplitude = Annotated[
+    Number,
+    Quantity(
+        "K",
+        "Annual amplitude of the ground's temperature",
+        Span(0, 5, "metres deep to just below the floor"),
+        Limits(at_least=0, at_most=60),
+    ),
+]
+ColdestDay = Annotated[
+    Number,
+    Quantity(
+        "d",
+        "Day of the year on which the ground is coldest",
+        Within(20, "the lag grows with depth"),
+        Limits(at_least=-366, at_most=366),
+    ),
+]

@@ -1,0 +1,154 @@
+"""Quantities of panes, gaps, glazings and frames."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from mascarin.building.number import Fixed, Limits, Number, Percent, Quantity, Within
+from mascarin.building.quantities.common import FRACTION, POSITIVE, TAPE
+
+PaneThickness = Annotated[
+    Number,
+    Quantity(
+        "m", "Thickness of the pane", Within(2e-4, "tolerance of float glass"), Limits(above=0, at_most=0.2)
+    ),
+]
+GapThickness = Annotated[
+    Number,
+    Quantity(
+        "m", "Width of the gap", Within(1e-3, "spacers, and panes that bend"), Limits(above=0, at_most=0.5)
+    ),
+]
+GapPressure = Annotated[
+    Number,
+    Quantity(
+        "Pa",
+        "Pressure in the gap",
+        Percent(20, "sealed at one altitude and temperature, used at another"),
+        Limits(above=0, at_most=2e5),
+    ),
+]
+GapConductance = Annotated[
+    Number,
+    Quantity(
+        "W/(m2 K)",
+        "Conductance of the gap, convection and radiation together",
+        Percent(10, "it changes with the temperatures of the panes"),
+        Limits(above=0, at_most=1000),
+    ),
+]
+Transmittance = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Solar transmittance of the pane at normal incidence",
+        Percent(3, "batch, and dirt"),
+        Limits(at_least=1e-3, at_most=1),
+    ),
+]
+Reflectance = Annotated[
+    Number,
+    Quantity(
+        "-", "Solar reflectance of the pane at normal incidence", Percent(10, "batch, and dirt"), FRACTION
+    ),
+]
+CurveAngle = Annotated[
+    Number,
+    Quantity(
+        "deg",
+        "Angle of incidence of a table of optics",
+        Fixed("a point of a measured curve; vary transmittance_scale and absorptance_scale instead"),
+        Limits(at_least=0, at_most=90),
+    ),
+]
+CurveOptic = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Share of the sun at a point of a table of optics",
+        Fixed("a point of a measured curve; vary transmittance_scale and absorptance_scale instead"),
+        FRACTION,
+    ),
+]
+OpticScale = Annotated[
+    Number,
+    Quantity(
+        "-", "Factor on a table of optics", Within(0.03, "batch, and dirt"), Limits(above=0, at_most=1.5)
+    ),
+]
+GlazingU = Annotated[
+    Number,
+    Quantity(
+        "W/(m2 K)", "Rated U value of the glazing, air to air", Percent(5, "rounding, ageing"), POSITIVE
+    ),
+]
+SolarHeatGain = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Total solar heat gain of the glazing at normal incidence",
+        Within(0.03, "rounding, and dirt"),
+        Limits(above=0, at_most=0.95),
+    ),
+]
+PaneCount = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Number of panes, for the change with the angle",
+        Within(0.5, "not always told"),
+        Limits(at_least=1, at_most=6),
+    ),
+]
+GlassCategory = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Category of glass, for the change with the angle: 4 clear, below coated, above tinted",
+        Within(1.0, "not always told"),
+        Limits(at_least=1, at_most=10),
+    ),
+]
+FilmResistance = Annotated[
+    Number,
+    Quantity(
+        "m2 K/W",
+        "Film resistance that a rated U value contains",
+        Percent(10, "standards differ"),
+        Limits(above=0, at_most=1),
+    ),
+]
+WindowArea = Annotated[
+    Number, Quantity("m2", "Area of the window, frame included", Percent(5, TAPE), POSITIVE)
+]
+CavityHeight = Annotated[
+    Number,
+    Quantity("m", "Height of the gaps of a window", Percent(5, TAPE), POSITIVE),
+]
+FrameFraction = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Share of the frame in the window's area",
+        Within(0.05, "profiles of one name differ"),
+        Limits(above=0, at_most=0.9),
+    ),
+]
+FrameU = Annotated[
+    Number,
+    Quantity(
+        "W/(m2 K)",
+        "U value of the frame, air to air, with films of 0.17 m2 K/W in all",
+        Percent(10, "profiles of one name differ"),
+        Limits(above=0, at_most=5.8),
+    ),
+]
+SunShare = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Share of the sun let into the zone",
+        Percent(20, "it changes with the height of the sun"),
+        FRACTION,
+    ),
+]

@@ -1,0 +1,171 @@
+"""U values and time constants of what is described, with the surface resistances of ISO 6946."""
+
+from __future__ import annotations
+
+import math
+
+from mascarin.building.convection import Constant
+from mascarin.building.description import Description
+from mascarin.building.glazing import face_resistance
+from mascarin.building.material import Material, Resistance
+from mascarin.building.mesh import Mesh
+from mascarin.building.phases import phase
+from mascarin.building.surface import Side, Surface
+from mascarin.building.window import Window
+
+#: Surface resistances of ISO 6946:2017, table 7 [m2 K/W]: heat upwards, horizontal, downwards; and outdoors.
+_ISO_UP, _ISO_LEVEL, _ISO_DOWN, _ISO_OUTDOORS = 0.10, 0.13, 0.17, 0.04
+_ISO, _DESCRIBED, _NONE, _CLOSED = "ISO 6946", "described", "no", "adiabatic"
+
+
+def window_u_value(building: Description, window: Window) -> float:
+    """Thermal transmittance of a window with its frame, with the films of ISO 6946.
+
+    Gaps that are no given conductances are taken at 0 degC outside and 20 degC inside: conduction of the gas
+    and radiation, without convection.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    window : Window
+        One of its windows.
+
+    Returns
+    -------
+    float
+        U value. [W/(m2 K)]
+    """
+    resistance = face_resistance(building.glazings[window.glazing])
+    glass = 1.0 / (_ISO_OUTDOORS + resistance + _ISO_LEVEL)
+    if window.frame is None:
+        return glass
+    share = float(window.frame.fraction)
+    return (1.0 - share) * glass + share * float(window.frame.u_value)
+
+
+def u_value(building: Description, surface: Surface) -> float:
+    """Thermal transmittance between the two sides.
+
+    A film is taken as described where it is a constant that stands for all heat exchanged on its side;
+    else, also where it varies or radiation is exchanged apart from it, the film of ISO 6946 is taken.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    surface : Surface
+        One of its surfaces.
+
+    Returns
+    -------
+    float
+        U value; infinite where nothing resists, 0 where a side is adiabatic. [W/(m2 K)]
+    """
+    layers = building.constructions[surface.construction].layers
+    resistance = sum(_resistance(building.materials[layer.material], layer.thickness) for layer in layers)
+    resistance += sum(_film(building, side, surface)[0] for side in surface.sides)
+    return 1.0 / resistance if resistance > 0.0 else math.inf
+
+
+def _resistance(material: Material, thickness: float | None) -> float:
+    if isinstance(material, Resistance):
+        return float(material.resistance)
+    return (thickness or 0.0) / phase(material.conductivity, "solid")
+
+
+def _film(building: Description, side: Side, surface: Surface) -> tuple[float, str]:
+    """Resistance of a film [m2 K/W], and where it was taken from."""
+    if side.adiabatic:
+        return math.inf, _CLOSED
+    if side.convection is None:
+        return 0.0, _NONE
+    if isinstance(side.convection, Constant) and _stands_alone(building, side):
+        conductance = side.convection.coefficient * (side.area_factor or 1.0)
+        return (1.0 / conductance if conductance > 0.0 else math.inf), _DESCRIBED
+    return _iso_film(side, surface), _ISO
+
+
+def _stands_alone(building: Description, side: Side) -> bool:
+    """Tell whether no radiation is exchanged beside the film."""
+    if side.zone is not None:
+        return building.zones[side.zone].longwave.kind == "none"
+    return not side.outdoors or (side.longwave is not None and side.longwave.kind == "none")
+
+
+def film_words(building: Description, surface: Surface) -> str:
+    """Where the surface resistances in a U value come from, in words."""
+    outside, inside = (_film(building, side, surface)[1] for side in surface.sides)
+    if _CLOSED in (outside, inside):
+        return "adiabatic"
+    if outside == inside:
+        return f"{outside} films"
+    return f"{outside} film outside, {inside} film inside"
+
+
+def _iso_film(side: Side, surface: Surface) -> float:
+    if side.convection is None:
+        return 0.0
+    if side.outdoors:
+        return _ISO_OUTDOORS
+    tilt = float(surface.tilt or 0.0)
+    # Heat is taken to flow outwards, as in the heating season.
+    return _ISO_UP if tilt < 30.0 else _ISO_DOWN if tilt > 150.0 else _ISO_LEVEL
+
+
+def time_constant(building: Description, construction: str, mesh: Mesh) -> float:
+    """Smallest time constant of a construction's nodes: heat capacity over the conductances to both sides.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    construction : str
+        Name of the construction.
+    mesh : Mesh
+        Its nodes.
+
+    Returns
+    -------
+    float
+        Infinite where nothing stores heat. [s]
+    """
+    links: list[float] = [0.0]  # resistance between neighbouring nodes, first and last to the faces
+    capacities: list[float] = []
+    for layer in building.constructions[construction].layers:
+        material, nodes = building.materials[layer.material], mesh.nodes[construction, layer.name]
+        if isinstance(material, Resistance):
+            links[-1] += float(material.resistance)
+            continue
+        thickness = (layer.thickness or 0.0) / nodes
+        half = 0.5 * thickness / phase(material.conductivity, "solid")
+        capacity = phase(material.density, "solid") * phase(material.specific_heat, "solid") * thickness
+        for _ in range(nodes):
+            links[-1] += half
+            capacities.append(capacity)
+            links.append(half)
+    films = _strongest_films(building, construction)
+    links[0], links[-1] = links[0] + films[0], links[-1] + films[1]
+    return min(
+        (
+            capacity / (1.0 / before + 1.0 / after)
+            for capacity, before, after in zip(capacities, links, links[1:], strict=False)
+        ),
+        default=math.inf,
+    )
+
+
+def _strongest_films(building: Description, construction: str) -> tuple[float, float]:
+    """Least film resistance outside and inside over the surfaces of a construction [m2 K/W]."""
+    built = [surface for surface in building.surfaces.values() if surface.construction == construction]
+    outside = [_nominal_film(surface.outside, surface) for surface in built]
+    inside = [_nominal_film(surface.inside, surface) for surface in built]
+    return (min(outside, default=_ISO_OUTDOORS), min(inside, default=_ISO_LEVEL))
+
+
+def _nominal_film(side: Side, surface: Surface) -> float:
+    if side.adiabatic:
+        return math.inf
+    if isinstance(side.convection, Constant) and side.convection.coefficient > 0.0:
+        return 1.0 / side.convection.coefficient
+    return _iso_film(side, surface)

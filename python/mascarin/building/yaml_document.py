@@ -1,0 +1,192 @@
+"""Read YAML 1.2: plain values with the line of each, and errors that name the line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pydantic import ValidationError
+
+from mascarin.building.explaining import Place, explained
+from mascarin.building.part import Part
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from ruamel.yaml.nodes import Node
+
+AnyPart = TypeVar("AnyPart", bound=Part)
+
+#: Aliases can make a small file expand to any size; no building has more values than this.
+MOST_VALUES = 100_000
+
+
+def read(path: str | Path, kind: type[AnyPart], what: str, *, blanks: bool = True) -> AnyPart:
+    """Read a description of any kind from a YAML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    kind : type of Part
+        What it describes.
+    what : str
+        The same in words, for messages.
+    blanks : bool
+        Whether a key may stand without a value.
+
+    Returns
+    -------
+    Part
+        Checked, frozen.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or its description has errors. The text names each error by file, line and
+        path, with what was found, what was expected and what to do.
+    """
+    file = Path(path)
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of {what}") from error
+    return parse_as(kind, text, str(file), blanks=blanks)
+
+
+def parse_as(kind: type[AnyPart], text: str, name: str, *, blanks: bool = True) -> AnyPart:
+    """Read a description of any kind from YAML text; ``name`` stands for the file in messages."""
+    document = _Document(name, blanks=blanks)
+    plain = document.read(text)
+    try:
+        return kind.model_validate(plain)
+    except ValidationError as error:
+        raise explained(error, plain, name, document.lines) from None
+
+
+def plain(text: str, name: str) -> Any:
+    """Read YAML text as mappings, lists, texts and numbers; ``name`` stands for the file in messages."""
+    return _Document(name).read(text)
+
+
+def lines(text: str, name: str) -> Mapping[Place, int]:
+    """Line of each key and value of YAML text, by place; ``name`` stands for the file in messages."""
+    document = _Document(name, blanks=True)
+    document.read(text)
+    return document.lines
+
+
+@dataclass
+class _Document:
+    """One YAML document being turned into plain values; ``blanks``: keys may stand without a value."""
+
+    name: str
+    blanks: bool = False
+    lines: dict[Place, int] = field(default_factory=dict)
+    faults: list[tuple[int, str]] = field(default_factory=list)
+    values: int = 0
+    scalars: Any = None
+
+    def read(self, text: str) -> Any:
+        from ruamel.yaml import YAML
+        from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+        yaml = YAML(typ="safe", pure=True)
+        self.scalars = yaml.constructor
+        try:
+            root = yaml.compose(text)
+            plain = self._value(root, (), frozenset()) if root is not None else None
+        except MarkedYAMLError as error:
+            mark = error.problem_mark or error.context_mark
+            self._refuse(
+                mark.line if mark else 0,
+                "",
+                f"text that is no YAML: {error.problem}",
+                "valid YAML 1.2",
+                "Indent with spaces: YAML knows no tabs there."
+                if "\\t" in str(error.problem)
+                else "Check indentation, colons and quotes near this line.",
+            )
+        except YAMLError as error:
+            self._refuse(0, "", f"text that is no YAML: {error}", "valid YAML 1.2", "Save it as UTF-8 text.")
+        if not self.faults and not isinstance(plain, Mapping):
+            self._refuse(0, "", "no keys", "a mapping with site:, surfaces: and so on", "See the examples.")
+        if self.faults:
+            raise InputError("\n".join(text for _, text in sorted(self.faults)))
+        return plain
+
+    def _refuse(self, line: int, place: str, found: str, expected: str, help_: str) -> None:
+        where = f"{self.name}:{line + 1}: {place or 'the whole description'}"
+        self.faults.append((line, f"{where}\n  found: {found}\n  expected: {expected}\n  {help_}"))
+
+    def _value(self, node: Node, place: Place, above: frozenset[int]) -> Any:
+        from ruamel.yaml.nodes import MappingNode, SequenceNode
+
+        self.values += 1
+        if self.values > MOST_VALUES:
+            raise InputError(f"{self.name}: found more than {MOST_VALUES} values; expected a building")
+        if id(node) in above:
+            self._refuse(
+                node.start_mark.line,
+                _text(place),
+                "an alias without end",
+                "a tree of values",
+                "Write it out.",
+            )
+            return None
+        self.lines.setdefault(place, node.start_mark.line + 1)
+        inside = above | {id(node)}
+        if isinstance(node, MappingNode) and node.tag == "tag:yaml.org,2002:map":
+            return dict(self._items(node, place, inside))
+        if isinstance(node, SequenceNode) and node.tag == "tag:yaml.org,2002:seq":
+            return [self._value(item, (*place, index), inside) for index, item in enumerate(node.value)]
+        return self._scalar(node, place)
+
+    def _items(self, node: Any, place: Place, inside: frozenset[int]) -> Iterator[tuple[str, Any]]:
+        seen: dict[str, int] = {}
+        for key_node, value_node in node.value:
+            line, key = key_node.start_mark.line, key_node.value
+            if not isinstance(key, str):
+                self._refuse(
+                    line, _text(place), "a key that is no text", "a plain key", "Quote or simplify it."
+                )
+                continue
+            if key in seen:
+                self._refuse(
+                    line,
+                    _text((*place, key)),
+                    f"the key '{key}' again (first on line {seen[key]})",
+                    "each key once",
+                    "Remove or rename one of the two.",
+                )
+            seen.setdefault(key, line + 1)
+            self.lines[(*place, key)] = line + 1
+            yield key, self._value(value_node, (*place, key), inside)
+
+    def _scalar(self, node: Any, place: Place) -> Any:
+        kind = node.tag.removeprefix("tag:yaml.org,2002:")
+        match kind:
+            case "null" if self.blanks:
+                return None
+            case "null":
+                line = self.lines[place] - 1  # the key's: the value that is missing has no line
+                # In braces the comma of 0,4 ends a value, and what follows is a key without one.
+                comma = isinstance(place[-1], str) and place[-1].isdigit()
+                help_ = "Write decimals with a point, as in 0.4." if comma else "Write one or remove the key."
+                self._refuse(line, _text(place), "nothing", "a value", help_)
+                return None
+            case "bool" | "int" | "float":
+                return getattr(self.scalars, f"construct_yaml_{kind}")(node)
+            case "str" | "timestamp":
+                return node.value
+            case _:
+                self._refuse(
+                    node.start_mark.line, _text(place), f"the tag '{kind}'", "plain values", "Remove the tag."
+                )
+                return None
+
+
+def _text(place: Place) -> str:
+    return ".".join(map(str, place))

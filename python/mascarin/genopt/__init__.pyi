@@ -1,0 +1,7 @@
+from .loading import load as load
+from .project import Project as Project
+from .run import Options as Options
+from .run import Outcome as Outcome
+from .run import optimise as optimise
+
+__all__: list[str]

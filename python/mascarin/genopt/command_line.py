@@ -1,0 +1,131 @@
+"""The command line of the simulation program."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from mascarin.errors import did_you_mean
+from mascarin.genopt import functions
+from mascarin.genopt.project import FileEntry, Project
+
+
+def variables(project: Project, folder: Path) -> dict[str, str]:
+    """Return the variables of the command line.
+
+    Parameters
+    ----------
+    project : Project
+        The project.
+    folder : Path
+        Directory of the run.
+
+    Returns
+    -------
+    dict of str to str
+        Values by name.
+    """
+    out: dict[str, str] = {}
+
+    def put(role: str, entries: Sequence[FileEntry], *, inside: bool) -> None:
+        for i, e in enumerate(entries, start=1):
+            name = e.name
+            if role == "Input" and not project.keep_extension:
+                name = name.rpartition(".")[0] or name
+            base = folder / e.folder.relative_to(project.folder) if inside else e.folder
+            out[f"Simulation.Files.{role}.File{i}"] = name
+            out[f"Simulation.Files.{role}.Path{i}"] = str(base)
+            if e.save is not None:
+                out[f"Simulation.Files.{role}.SavePath{i}"] = str(e.save)
+
+    put("Template", project.template, inside=False)
+    put("Input", project.input, inside=True)
+    put("Log", project.log, inside=True)
+    put("Output", project.output, inside=True)
+    out["Simulation.Files.Configuration.Name1"] = project.configuration.name
+    out["Simulation.Files.Configuration.Path1"] = str(project.configuration.parent)
+    out["Simulation.CallParameter.Prefix"] = project.prefix
+    out["Simulation.CallParameter.Suffix"] = project.suffix
+    out["Optimization.Files.Command.File1"] = project.command_file.name
+    out["Optimization.Files.Command.Path1"] = str(project.command_file.parent)
+    out["CLASSPATH"] = os.environ.get("CLASSPATH", "")
+    return out
+
+
+def split_command(project: Project) -> list[str]:
+    """Split the command into words; quotes keep blanks together, and the name of a file stays one word.
+
+    Parameters
+    ----------
+    project : Project
+        The project.
+
+    Returns
+    -------
+    list of str
+        Words that still contain the variables.
+
+    Raises
+    ------
+    InputError
+        Unknown variables, or an odd number of quotes.
+    """
+    text = project.command
+    for key in ("Prefix", "Suffix"):
+        value = project.prefix if key == "Prefix" else project.suffix
+        text = text.replace(f"%Simulation.CallParameter.{key}%", value)
+    known = variables(project, project.folder)
+    for name in re.findall(r"%((?:Simulation|Optimization)\.[\w.]+)%", text):
+        if name not in known:
+            project.report.error(
+                project.command_place,
+                f"'%{name}%' in the command is not known. {did_you_mean(name, known)}".rstrip(),
+            )
+    if text.count('"') % 2:
+        project.report.error(project.command_place, "the command has an odd number of double quotes")
+    project.report.raise_if_any()
+    words: list[str] = []
+    for piece in re.findall(r'(?:[^\s"]|"[^"]*")+', text):
+        word = piece.replace('"', "")
+        if re.match(r"\.\d+\Z", word):
+            project.report.beyond(
+                project.command_place,
+                f"the argument '{word}' begins with a point, so GenOpt takes it for a file and puts "
+                "a directory in front",
+                f"write 0{word}",
+            )
+        words.append(word)
+    project.report.raise_if_any()
+    return words
+
+
+def place_word(word: str, values: dict[str, str], folder: Path, own: set[str]) -> str:
+    """Replace the variables of a word and make its path absolute where GenOpt does so.
+
+    Parameters
+    ----------
+    word : str
+        From `split_command`.
+    values : dict of str to str
+        From `variables`.
+    folder : Path
+        Directory of the initialization file.
+    own : set of str
+        Names of the files of a run.
+
+    Returns
+    -------
+    str
+        The word as it is given to the program.
+    """
+    text = functions.substitute(word, values)
+    if text.startswith(".") and not re.match(r"\.\d+\Z", text):
+        return os.path.normpath(folder / text)
+    # The name of one of the run's own files means that file, whatever lies in the directory from which the
+    # optimisation was started.
+    literal = text == word and text not in own
+    if literal and text and not Path(text).is_absolute() and Path(text).exists():
+        return str(Path(text).absolute())
+    return text

@@ -1,0 +1,68 @@
+"""Finds numbers in output files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+
+def lines_of(text: str) -> list[str]:
+    """Split a text into lines without their ends.
+
+    Parameters
+    ----------
+    text : str
+        A text whose lines end with a line feed.
+
+    Returns
+    -------
+    list of str
+        The lines.
+    """
+    lines = text.split("\n")
+    return lines[:-1] if lines[-1] == "" else lines
+
+
+def word_behind(lines: Sequence[str], delimiter: str, column: int, separators: str) -> str | None:
+    """Return the text of the number behind a delimiter.
+
+    The last line with the delimiter counts, and in it the last occurrence, unless a column is given.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Lines of an output file.
+    delimiter : str
+        Text in front of the number; empty for the first word of the last line with text.
+    column : int
+        Column in which the delimiter starts, counted from 1; 0 for any.
+    separators : str
+        Characters that end a number, besides blanks and tabs.
+
+    Returns
+    -------
+    str or None
+        The text, None when the delimiter is missing.
+    """
+    if delimiter == "":
+        for line in reversed(lines):
+            if line.strip(" \t"):
+                return _first_word(line, separators)
+        return None
+    for line in reversed(lines):
+        if column > 0:
+            if len(line) > column and line.startswith(delimiter, column - 1):
+                return _first_word(line[column - 1 + len(delimiter) :], separators)
+        elif delimiter in line:
+            text = line.rstrip(" \t")
+            end = delimiter.rstrip(" \t")
+            if end and text.endswith(end):
+                text = text[: -len(end)]
+            at = text.rfind(delimiter)
+            return _first_word(text[at + len(delimiter) :], separators) if at >= 0 else ""
+    return None
+
+
+def _first_word(text: str, separators: str) -> str:
+    """Text up to the first blank or separator."""
+    return re.split(rf"[ \t{re.escape(separators)}]", text.lstrip(" \t"), maxsplit=1)[0]

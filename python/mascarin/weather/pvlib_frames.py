@@ -1,0 +1,300 @@
+"""Frames of `pvlib.iotools` as records of the weather."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from datetime import tzinfo
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, cast
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.weather.arrays import Array
+from mascarin.weather.channels import RADIATION
+from mascarin.weather.columns import Column
+from mascarin.weather.measured import record_of_table
+from mascarin.weather.record import WeatherRecord
+from mascarin.weather.site import Place
+from mascarin.weather.table import Table, read_table
+from mascarin.weather.timezones import fixed_offset, parse_timezone, zone_name, zone_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PvlibStamps: TypeAlias = Literal["start", "middle", "end", "instant"]
+"""What a stamp marks: a part of the interval of a mean, or the time of every value."""
+
+_WHERE: Final = "pvlib"
+_DAY: Final = 86400.0
+
+# Channel or relative humidity -> names in frames of pvlib, the first that is found is taken.
+_NAMES: Final[Mapping[str, tuple[str, ...]]] = {
+    "air_temperature": ("temp_air",),
+    "relative_humidity": ("relative_humidity",),
+    "dew_point": ("temp_dew",),
+    "wind_speed": ("wind_speed",),
+    "wind_direction": ("wind_direction",),
+    "pressure": ("pressure", "atmospheric_pressure"),
+    "global_horizontal": ("ghi",),
+    "direct_normal": ("dni",),
+    "diffuse_horizontal": ("dhi",),
+    "infrared": ("longwave_down", "lw", "lwd", "ghi_infrared", "IR(h)"),
+    "cloud_cover": ("opaque_sky_cover", "OpqCld (tenths)", "total_sky_cover", "TotCld (tenths)"),
+}
+# Numbers that stand for "no value" in frames of EPW and TMY3 files, by name.
+_CODES: Final[Mapping[str, float]] = {
+    "temp_air": 99.9,
+    "temp_dew": 99.9,
+    "relative_humidity": 999.0,
+    "atmospheric_pressure": 999999.0,
+    "ghi": 9999.0,
+    "dni": 9999.0,
+    "dhi": 9999.0,
+    "ghi_infrared": 9999.0,
+    "wind_direction": 999.0,
+    "wind_speed": 999.0,
+    "opaque_sky_cover": 99.0,
+    "total_sky_cover": 99.0,
+}
+
+
+def record_of_pvlib(
+    data: pd.DataFrame | tuple[pd.DataFrame, Mapping[str, Any]],
+    *,
+    latitude: float | None,
+    longitude: float | None,
+    altitude: float | None,
+    stamps: PvlibStamps | None,
+    typical: bool | None,
+    timezone: str | None,
+    absent: Iterable[str] | Mapping[str, float],
+) -> WeatherRecord:
+    """Record of a frame; parameters are those of `Climate.from_pvlib`."""
+    frame, metadata = (data[0], data[1]) if isinstance(data, tuple) else (data, {})
+    place = _place(metadata, latitude, longitude, altitude)
+    zone = _zone(frame, timezone)
+    marked, epw = _stamps(frame, metadata, stamps)
+    columns, notes = _columns(frame)
+    if epw:
+        # Spot values are those at the end of the hour, so that the end is the stamp of the whole row.
+        columns.index = columns.index + _seconds(3600.0)
+        marked = "end"
+    if typical is None:
+        typical = "months_selected" in metadata or not columns.index.is_monotonic_increasing
+    if typical:
+        columns = _ordered(columns, marked, zone)
+    table = read_table(columns, timezone=timezone or zone_name(zone))
+    said = (note.replace("table:", f"{_WHERE}:") for note in table.notes)
+    table = replace(table, where=_WHERE, notes=(*notes, *said))
+    if marked == "middle":
+        table = _started(table)
+    record = record_of_table(
+        table,
+        {str(name): Column(str(name)) for name in columns.columns},
+        extra=(),
+        absent=absent,
+        stamps="end" if marked == "end" else "start",
+        instant=[name for name in (*RADIATION, "infrared") if name in columns and marked == "instant"],
+        mean=[str(name) for name in columns if marked == "middle"],
+    )
+    record = replace(record, site=place)
+    return _periodic(record, late=marked == "end") if typical else record
+
+
+def _place(
+    metadata: Mapping[str, Any], latitude: float | None, longitude: float | None, altitude: float | None
+) -> Place:
+    """The place, from the arguments or from the metadata of pvlib."""
+    inner = metadata.get("inputs", {}) if isinstance(metadata.get("inputs", {}), Mapping) else {}
+    location = inner.get("location", {}) if isinstance(inner, Mapping) else {}
+
+    def found(given: float | None, *keys: str) -> float | None:
+        if given is not None:
+            return float(given)
+        for source in (metadata, location):
+            for key in keys:
+                if key in source:
+                    return float(source[key])
+        return None
+
+    north, east = found(latitude, "latitude", "Latitude"), found(longitude, "longitude", "Longitude")
+    if north is None or east is None:
+        raise InputError(
+            f"{_WHERE}: latitude and longitude are not known; give latitude=..., longitude=... [deg], or the "
+            "pair (data, metadata) that the function of pvlib returns."
+        )
+    name = str(metadata.get("Name", metadata.get("city", ""))).strip("\"' ")
+    return Place(north, east, found(altitude, "altitude", "elevation", "Elevation") or 0.0, name)
+
+
+def _zone(frame: pd.DataFrame, timezone: str | None) -> tzinfo:
+    import pandas as pd
+
+    if not isinstance(frame.index, pd.DatetimeIndex):
+        raise InputError(
+            f"{_WHERE}: the index of the frame is {type(frame.index).__name__}, expected the stamps "
+            "(DatetimeIndex), as pvlib.iotools returns it; other tables are read by Climate.from_table."
+        )
+    if timezone is not None:
+        return parse_timezone(timezone, f"{_WHERE}: timezone")
+    if frame.index.tz is None:
+        raise InputError(
+            f"{_WHERE}: the stamps have no time zone; state timezone='UTC' or the zone that they are in."
+        )
+    return zone_of(frame.index.tz)
+
+
+def _stamps(
+    frame: pd.DataFrame, metadata: Mapping[str, Any], stamps: PvlibStamps | None
+) -> tuple[PvlibStamps, bool]:
+    """What the stamps mark, and whether the frame is one of `read_epw` whose stamps were not stated."""
+    if stamps is not None:
+        if stamps not in ("start", "middle", "end", "instant"):
+            raise InputError(
+                f"{_WHERE}: stamps is {stamps!r}, expected 'start', 'middle', 'end' or 'instant'."
+            )
+        return stamps, False
+    if "data_source_unct" in frame.columns:
+        return "start", True
+    if "OpqCld (tenths)" in frame.columns or "bhi" in frame.columns or "jobID" in metadata:
+        return "end", False
+    raise InputError(
+        f"{_WHERE}: it is not known what the stamps mark; state stamps='start', 'middle' or 'end' (of the "
+        "interval over which irradiances are means) or 'instant' (values at the stamp). PVGIS: 'instant' for "
+        "satellite data (SARAH), 'middle' for ERA5; NSRDB PSM: 'middle'; ERA5 and TMY3: 'end'; EPW as pvlib "
+        "reads it: 'start'."
+    )
+
+
+def _columns(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
+    """The channels of a frame in their units, and what was computed."""
+    import pandas as pd
+
+    out: dict[str, Array] = {}
+    notes: list[str] = []
+    coded = "data_source_unct" in frame.columns
+    for channel, names in _NAMES.items():
+        name = next((name for name in names if name in frame.columns), None)
+        if name is None:
+            continue
+        values = pd.to_numeric(frame[name]).to_numpy(dtype=np.float64)
+        if coded and name in _CODES:
+            values = np.where(values >= _CODES[name], np.nan, values)
+        values = np.where(values <= -9000.0, np.nan, values)
+        if name == "ghi_infrared":
+            values = np.where(values <= 0.0, np.nan, values)
+        out[channel] = values
+    _derive(frame, out, notes)
+    if "dew_point" in out:
+        # The dew point is what the engine takes; the other would be converted to it.
+        out.pop("relative_humidity", None)
+    if "pressure" in out and np.nanmedian(out["pressure"]) < 2000.0:
+        out["pressure"] = 100.0 * out["pressure"]
+        notes.append(f"{_WHERE}: pressure converted from hPa to Pa.")
+    for name in ("infrared", "cloud_cover", "pressure"):
+        if name in out and np.isnan(out[name]).all():
+            del out[name]
+    if "global_horizontal" not in out and "poa_global" in frame.columns:
+        raise InputError(
+            f"{_WHERE}: the frame holds irradiance on an inclined plane (poa_global), expected irradiance on "
+            "the horizontal; call pvlib.iotools.get_pvgis_hourly(..., surface_tilt=0, components=True)."
+        )
+    return pd.DataFrame(out, index=frame.index), notes
+
+
+def _derive(frame: pd.DataFrame, out: dict[str, Array], notes: list[str]) -> None:
+    """Irradiances and wind that a source gives as components."""
+
+    def numbers(name: str) -> Array:
+        return np.asarray(frame[name].to_numpy(dtype=np.float64))
+
+    parts = ("poa_direct", "poa_sky_diffuse", "poa_ground_diffuse")
+    # A horizontal plane, and only that one, receives nothing from the ground.
+    if "global_horizontal" not in out and all(name in frame.columns for name in parts):
+        beam, sky, ground = (numbers(name) for name in parts)
+        if not ground.any():
+            out["global_horizontal"], out["diffuse_horizontal"] = beam + sky, sky
+            notes.append(f"{_WHERE}: global and diffuse irradiance from the components on the horizontal.")
+    if "bhi" in frame.columns and "diffuse_horizontal" not in out and "global_horizontal" in out:
+        out["diffuse_horizontal"] = np.maximum(out["global_horizontal"] - numbers("bhi"), 0.0)
+        notes.append(f"{_WHERE}: diffuse irradiance from global and direct on the horizontal (bhi).")
+    if "wind_speed" not in out and {"u10", "v10"} <= set(frame.columns):
+        east, north = numbers("u10"), numbers("v10")
+        out["wind_speed"] = np.hypot(east, north)
+        out["wind_direction"] = np.degrees(np.arctan2(-east, -north)) % 360.0
+        notes.append(f"{_WHERE}: wind from its components to the east and to the north (u10, v10).")
+
+
+def _started(table: Table) -> Table:
+    """Stamps in the middle of an interval, moved to its start."""
+    frame = table.frame.set_axis(
+        cast("pd.DatetimeIndex", table.frame.index) - _seconds(0.5 * table.interval), axis=0
+    )
+    note = f"{_WHERE}: a stamp marks the middle of its interval; all values are taken as its means."
+    return replace(table, frame=frame, notes=(*table.notes, note))
+
+
+# ---------------------------------------------------------------------- typical years
+
+
+def _ordered(columns: pd.DataFrame, marked: PvlibStamps, zone: tzinfo) -> pd.DataFrame:
+    """The rows of a typical year, labeled by one year of 365 days and in its order."""
+    import pandas as pd
+
+    if not fixed_offset(zone):
+        raise InputError(
+            f"{_WHERE}: timezone {zone_name(zone)} has summer time, expected a fixed offset such as UTC+1 "
+            "for a typical year."
+        )
+    index = cast("pd.DatetimeIndex", columns.index)
+    local = index.tz_localize(zone) if index.tz is None else index.tz_convert(zone)
+    naive = local.tz_localize(None)
+    per_day = len(columns) / 365.0
+    if per_day != round(per_day) and len(columns) % 366 == 0:
+        per_day = len(columns) / 366.0
+    interval = _DAY / per_day
+    if per_day != round(per_day):
+        raise InputError(
+            f"{_WHERE}: found {len(columns)} rows for a typical year, expected 365 whole days; a record of "
+            "several years has typical=False."
+        )
+    shift = {"start": 0.0, "instant": 0.0, "middle": 0.5 * interval, "end": interval}[marked]
+    starts = naive - _seconds(shift)
+    keep = ~((starts.month == 2) & (starts.day == 29))
+    starts = starts[keep]
+    labels = pd.DatetimeIndex([stamp.replace(year=2001) for stamp in starts])
+    frame = columns.loc[keep].set_axis(labels + _seconds(shift), axis=0).sort_index()
+    first = labels.min()
+    if first != pd.Timestamp(2001, 1, 1) or labels.has_duplicates or len(frame) != 365 * per_day:
+        raise InputError(
+            f"{_WHERE}: the rows are not those of one year of 365 days in {zone_name(zone)}: the first "
+            f"interval starts at {first:%m-%d %H:%M}, expected 01-01 00:00, every time once. Check stamps, "
+            "and timezone, which must be that of the stamps."
+        )
+    frame.index = pd.DatetimeIndex(frame.index).tz_localize(zone)
+    return frame
+
+
+def _periodic(record: WeatherRecord, *, late: bool) -> WeatherRecord:
+    """The record as a year that is repeated at its end."""
+    data, closing = record.data.copy(), dict(record.closing)
+    for name in closing:
+        values = data[name].to_numpy(dtype=np.float64).copy()
+        if late:
+            # The value at the end of the year is the one at its start.
+            values[0] = closing[name]
+        closing[name] = float(values[0])
+        data[name] = values
+    note = (
+        f"{_WHERE}: one typical year of 365 days; it stands for any year, is repeated at its end, and 29 "
+        "February takes the values of 28 February."
+    )
+    grid = replace(record.grid, periodic=True)
+    return replace(record, data=data, closing=closing, grid=grid, provenance=(*record.provenance, note))
+
+
+def _seconds(count: float) -> pd.Timedelta:
+    import pandas as pd
+
+    return pd.Timedelta(seconds=count)

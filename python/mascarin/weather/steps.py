@@ -1,0 +1,88 @@
+"""Steps of a period, and the times inside each step at which the engine takes its values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import tzinfo
+from typing import Final
+
+import numpy as np
+
+from mascarin.errors import InputError, did_you_mean
+from mascarin.weather.arrays import Array
+from mascarin.weather.timezones import moment
+
+_GAMMA: Final = 1.0 - 0.5 * float(np.sqrt(2.0))
+
+STAGES: Final[dict[str, tuple[tuple[float, ...], tuple[float, ...]]]] = {
+    "sdirk2": ((_GAMMA, 1.0), (1.0 - _GAMMA, _GAMMA)),
+    "backward-euler": ((1.0,), (1.0,)),
+    "apparent-capacity": ((1.0,), (1.0,)),
+}
+"""Stage times as parts of a step, and stage weights, of each scheme."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Steps of equal length over a period.
+
+    Times count from the start of the period, so that sums over a year keep their precision.
+
+    Attributes
+    ----------
+    first, last : float
+        Start and end of the period, seconds since 1970-01-01 UTC. [s]
+    edges : ndarray, shape (steps + 1,)
+        Ends of the steps, from the start of the period. [s]
+    stage : ndarray, shape (steps, stages)
+        Times of the stages, from the start of the period. [s]
+    weights : tuple of float
+        Weights of the stages in the mean over a step. [-]
+    """
+
+    first: float
+    last: float
+    edges: Array
+    stage: Array
+    weights: tuple[float, ...]
+
+    @classmethod
+    def over(cls, zone: tzinfo, start: object, end: object, step_seconds: float, scheme: str) -> Steps:
+        """Steps from start to end.
+
+        Parameters
+        ----------
+        zone : datetime.tzinfo
+            Zone of stamps without an offset.
+        start, end : str, datetime or pandas.Timestamp
+            Period; a whole number of steps.
+        step_seconds : float
+            Step. [s]
+        scheme : str
+            A key of `STAGES`.
+
+        Raises
+        ------
+        InputError
+            The scheme is unknown, or the period is not a whole number of steps.
+        """
+        if scheme not in STAGES:
+            raise InputError(f"scheme: no scheme {scheme!r}. {did_you_mean(scheme, STAGES)}")
+        nodes, weights = STAGES[scheme]
+        first = moment(start, zone, "start").timestamp()
+        last = moment(end, zone, "end").timestamp()
+        count = _count(first, last, step_seconds)
+        edges = step_seconds * np.arange(count + 1)
+        return cls(first, last, edges, edges[:-1, None] + step_seconds * np.array(nodes), weights)
+
+
+def _count(first: float, last: float, step: float) -> int:
+    if not step > 0.0:
+        raise InputError(f"step: found {step!r} s, expected a positive length.")
+    count = round((last - first) / step)
+    if count < 1 or abs(count * step - (last - first)) > 1e-6:
+        raise InputError(
+            f"period: {last - first:g} s from start to end is not a whole number of steps of {step:g} s, at "
+            "least one; move the end or change the step."
+        )
+    return count

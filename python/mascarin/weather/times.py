@@ -1,0 +1,70 @@
+"""Lengths of time, and stamps as seconds since 1970-01-01 UTC."""
+
+from __future__ import annotations
+
+import re
+from datetime import tzinfo
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.weather.arrays import Array
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_SECONDS: Final = {
+    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
+    **dict.fromkeys(("min", "minute", "minutes"), 60.0),
+    **dict.fromkeys(("h", "hour", "hours"), 3600.0),
+    **dict.fromkeys(("d", "day", "days"), 86400.0),
+}
+"""Units of a length of time."""
+
+_TIMES: Final = "a positive time such as 900, 15min or 1h"
+
+_LENGTH_OF_TIME: Final = re.compile(rf"(\d+\.?\d*(?:e[+-]?\d+)?)\s*({'|'.join(_SECONDS)})?", re.IGNORECASE)
+
+
+def seconds_of(step: str | float, where: str = "step") -> float:
+    """Length of a step.
+
+    Parameters
+    ----------
+    step : str or float
+        Text such as `15min`, `1h`, `90s`, `3d`, or a number of seconds [s].
+    where : str
+        What the length belongs to, for the error.
+
+    Returns
+    -------
+    float
+        Length [s].
+
+    Raises
+    ------
+    InputError
+        No positive length can be read.
+    """
+    match = _LENGTH_OF_TIME.fullmatch(str(step).strip())
+    if match is None or isinstance(step, bool):
+        raise InputError(f"{where}: found {step!r}; expected {_TIMES}")
+    seconds = float(match[1]) * _SECONDS[(match[2] or "s").lower()]
+    if not 0.0 < seconds < float("inf"):
+        raise InputError(f"{where}: found {step!r}; expected {_TIMES}")
+    return seconds
+
+
+def epoch_seconds(index: pd.DatetimeIndex) -> Array:
+    """Seconds since 1970-01-01 UTC of stamps with a zone, shape (n,) [s]."""
+    moments = index.tz_convert("UTC").tz_localize(None).to_numpy()
+    return np.asarray((moments - np.datetime64(0, "s")) / np.timedelta64(1, "us") * 1e-6, dtype=np.float64)
+
+
+def stamps_of(seconds: Array, zone: tzinfo) -> pd.DatetimeIndex:
+    """Stamps in a zone from seconds since 1970-01-01 UTC [s]."""
+    import pandas as pd
+
+    moments = np.round(np.asarray(seconds) * 1e6).astype(np.int64).astype("datetime64[us]")
+    return pd.DatetimeIndex(moments).tz_localize("UTC").tz_convert(zone)
