@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mascarin.calibration import CalibrationProblem
 from mascarin.examples import FOLDER
-from mascarin.study.pipeline import Study
+from mascarin.study import Study
 
 Floats = NDArray[np.float64]
 

@@ -27,7 +27,7 @@ from mascarin.calibration import CalibrationProblem, Fit, Rules, plots, solve
 from mascarin.examples import FOLDER
 from mascarin.figures.files import save
 from mascarin.progress import Progress
-from mascarin.study.pipeline import Study
+from mascarin.study import Study
 
 TOGETHER = 64
 #: The mesh ends at 0.1 / 2^6 of each range, 0.16 %.

@@ -24,9 +24,9 @@ ORDER = [
     {"calibration"},
     {"verification"},
     {"examples"},
+    {"report"},
     {"study"},
     {"genopt"},
-    {"report"},
     {"commands", "cli"},
 ]
 LEVEL = {name: level for level, names in enumerate(ORDER) for name in names}

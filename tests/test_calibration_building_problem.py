@@ -17,7 +17,7 @@ from mascarin.calibration.least_squares import derivative
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
 from mascarin.simulation.simulation import Simulation
-from mascarin.study.pipeline import Study
+from mascarin.study import Study
 from mascarin.validation.observation import observe
 from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, FINE, NOISE, TRUTH, logger_table, open_climate

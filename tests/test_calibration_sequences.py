@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mascarin.calibration import METHODS, CalibrationProblem, FitParameter, FitSensor, Rules, solve
 from mascarin.errors import InputError, SolverError
-from mascarin.optimization import Evaluation, Optimiser, Point, Space
+from mascarin.optimization import Evaluation, Optimizer, Point, Space
 from mascarin.optimization.base import Steps
 
 Floats = NDArray[np.float64]
@@ -88,7 +88,7 @@ def test_sequences_differ_by_their_seed_and_agree_in_the_end() -> None:
         assert method == "particle-swarm" or len(fit.distinct_minima()) == 1
 
 
-class Bisecting(Optimiser):
+class Bisecting(Optimizer):
     """A user's own: halves a box about the better of random points."""
 
     def _search(self) -> Steps:
@@ -110,7 +110,7 @@ def test_a_user_brings_an_optimiser() -> None:
 
 
 def test_an_optimiser_that_never_asks_is_stopped() -> None:
-    class Silent(Optimiser):
+    class Silent(Optimizer):
         def _search(self) -> Steps:
             while True:
                 yield []
@@ -118,7 +118,7 @@ def test_an_optimiser_that_never_asks_is_stopped() -> None:
         def tell(self, results: Sequence[Evaluation]) -> None:
             assert not results
 
-    def make(space: Space) -> Optimiser:
+    def make(space: Space) -> Optimizer:
         return Silent(space, remember=False)
 
     with pytest.raises(SolverError, match="Silent of sequence 0 asks for no point and is not done"):

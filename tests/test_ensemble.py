@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import warnings
 from pathlib import Path
 from typing import Any
@@ -12,10 +13,13 @@ import pytest
 import xarray as xr
 
 from ensemble_support import Forgetful, always_deadly, coldest, deadly, warmest
+from mascarin import cli
+from mascarin._io import locks
 from mascarin.building import Building, load
 from mascarin.ensemble import Statistic, Store, latin_hypercube, sweep, sweep_into
 from mascarin.ensemble import workers as sweep_workers
 from mascarin.errors import InputError, SolverError
+from mascarin.examples.small import BOX
 from mascarin.simulation.compiled import Failure
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
@@ -24,7 +28,7 @@ from study_support import BUILDING, drivers, open_climate
 
 JOINT = "wall.interface_1_temperature"
 K = "materials.insulation.conductivity"
-FILM = "surfaces.wall.inside.convection.coefficient"
+COEFFICIENT = "surfaces.wall.inside.convection.coefficient"
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +51,7 @@ def measured() -> Measurements:
 def test_members_come_in_order_with_their_samples(
     building: Building, climate: Climate, measured: Measurements
 ) -> None:
-    samples = {K: [0.02, 0.04, 0.06], FILM: [4.0, 8.0, 12.0]}
+    samples = {K: [0.02, 0.04, 0.06], COEFFICIENT: [4.0, 8.0, 12.0]}
     found = sweep(
         building, climate, samples, outputs=[JOINT], step="1h", start="2023-03-01", end="2023-03-04",
         measurements=measured,
@@ -55,14 +59,14 @@ def test_members_come_in_order_with_their_samples(
     assert found[JOINT].dims == ("member", "time")
     assert found[JOINT].shape == (3, 73)
     assert found[JOINT].attrs["units"] == "degC"
-    np.testing.assert_array_equal(found["samples"], np.column_stack([samples[K], samples[FILM]]))
-    assert found["parameter"].to_numpy().tolist() == [K, FILM]
+    np.testing.assert_array_equal(found["samples"], np.column_stack([samples[K], samples[COEFFICIENT]]))
+    assert found["parameter"].to_numpy().tolist() == [K, COEFFICIENT]
     assert (found["closure"] < 1e-10).all()
     assert found.attrs["failures"] == []
     assert found.attrs["timezone"] == "UTC+1"
     # Times are UTC without a zone: local midnight is 23:00 of the day before.
     assert pd.Timestamp(found["time"].to_numpy()[0]) == pd.Timestamp("2023-02-28 23:00")
-    # The better it insulates, the nearer the joint is to the room.
+    # A lower conductivity brings the joint closer to the temperature of the room.
     mean = found[JOINT].mean("time").to_numpy()
     assert mean[0] > mean[1] > mean[2]
 
@@ -78,7 +82,9 @@ def test_a_member_does_not_depend_on_the_others(
     np.testing.assert_array_equal(part[JOINT].to_numpy(), whole[JOINT].to_numpy()[[0, 1, 7]])
 
 
-def test_a_sweep_of_one_is_a_run(building: Building, climate: Climate, measured: Measurements) -> None:
+def test_a_sweep_of_one_member_equals_a_run(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
     nominal = float(building.parameter(K).value)
     span = {"step": "1h", "start": "2023-03-01", "end": "2023-03-03", "measurements": measured}
     one = sweep(building, climate, {K: [nominal]}, outputs=[JOINT], **span)  # type: ignore[arg-type]
@@ -86,9 +92,7 @@ def test_a_sweep_of_one_is_a_run(building: Building, climate: Climate, measured:
     np.testing.assert_allclose(one[JOINT].to_numpy()[0], run.records[:, 0], atol=1e-9)
 
 
-def test_a_frame_of_samples_is_taken_too(
-    building: Building, climate: Climate, measured: Measurements
-) -> None:
+def test_samples_may_be_a_data_frame(building: Building, climate: Climate, measured: Measurements) -> None:
     frame = pd.DataFrame({K: [0.03, 0.05]})
     found = sweep(
         building, climate, frame, outputs=[JOINT], step="1h", end="2023-03-02", measurements=measured
@@ -100,7 +104,7 @@ def test_a_frame_of_samples_is_taken_too(
     ("samples", "says"),
     [
         ({}, "samples: no columns; give values by parameter path"),
-        ({K: [0.03, 0.04], FILM: [8.0]}, "expected the same number for every path"),
+        ({K: [0.03, 0.04], COEFFICIENT: [8.0]}, "expected the same number for every path"),
         ({K: []}, "expected one value for each member"),
         ({K: [0.03, -1.0]}, r"of member 1 is -1 W/\(m K\); expected a value from 0 to"),
         ({K: [0.03, float("nan")]}, "of member 1 is nan"),
@@ -109,7 +113,7 @@ def test_a_frame_of_samples_is_taken_too(
         ({"surfaces.wall.inside.convection": [8.0, "tarpp"]}, "(?s)member 1.*tarpp"),
     ],
 )
-def test_samples_that_cannot_be_are_refused(
+def test_impossible_samples_are_refused(
     samples: dict[str, list[float]], says: str, building: Building, climate: Climate, measured: Measurements
 ) -> None:
     with pytest.raises(InputError, match=says):
@@ -123,11 +127,11 @@ def test_an_unknown_output_is_refused(
         sweep(building, climate, {K: [0.03]}, outputs=["wall.interface_1_temprature"], measurements=measured)
 
 
-SOME = {K: np.linspace(0.02, 0.06, 40), FILM: np.linspace(4.0, 12.0, 40)}
+SOME = {K: np.linspace(0.02, 0.06, 40), COEFFICIENT: np.linspace(4.0, 12.0, 40)}
 
 
 class Setting:
-    """What all sweeps below share."""
+    """Building, climate and options of all sweeps below."""
 
     def __init__(self, building: Building, climate: Climate, measured: Measurements) -> None:
         self.place = (building, climate)
@@ -168,7 +172,7 @@ def test_structural_parameters_and_whole_parts_are_grouped(setting: Setting) -> 
     assert len({float(mean) for mean in found[JOINT].mean("time")}) == 4
 
 
-def test_objectives_are_what_the_series_give(setting: Setting) -> None:
+def test_objectives_equal_statistics_of_the_series(setting: Setting) -> None:
     series = setting.sweep(SOME)[JOINT]
     found = setting.sweep(SOME, objectives={"warmest": warmest, "coldest": coldest})
     np.testing.assert_array_equal(found["warmest"], series.max("time"))
@@ -176,7 +180,7 @@ def test_objectives_are_what_the_series_give(setting: Setting) -> None:
     assert JOINT not in found
 
 
-def test_objectives_that_cannot_be_are_named(setting: Setting) -> None:
+def test_impossible_objectives_are_named(setting: Setting) -> None:
     with pytest.raises(InputError, match=r"objective 'none': found a result of shape \(16, 49\)"):
         setting.sweep(SOME, objectives={"none": lambda run: run[JOINT]})
     with pytest.raises(InputError, match="objective 'lost' failed: KeyError"):
@@ -185,16 +189,16 @@ def test_objectives_that_cannot_be_are_named(setting: Setting) -> None:
         setting.sweep(SOME, objectives={"closure": warmest})
 
 
-def test_workers_give_the_bits_of_threads(setting: Setting) -> None:
-    told: list[tuple[int, int]] = []
-    found = setting.sweep(SOME, workers=2, progress=lambda *done: told.append(done))
+def test_workers_and_threads_give_the_same_bits(setting: Setting) -> None:
+    calls: list[tuple[int, int]] = []
+    found = setting.sweep(SOME, workers=2, progress=lambda *done: calls.append(done))
     np.testing.assert_array_equal(found[JOINT], setting.sweep(SOME)[JOINT])
-    assert told[-1] == (40, 40)
+    assert calls[-1] == (40, 40)
     with pytest.raises(InputError, match="workers: found 0"):
         setting.sweep(SOME, workers=0)
 
 
-def test_a_worker_that_dies_loses_nothing(
+def test_nothing_is_lost_when_a_worker_dies(
     setting: Setting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("MASCARIN_TEST_MARK", str(tmp_path / "died"))
@@ -203,12 +207,12 @@ def test_a_worker_that_dies_loses_nothing(
     np.testing.assert_array_equal(found["warmest"], setting.sweep(SOME)[JOINT].max("time"))
 
 
-def test_a_stretch_that_kills_every_worker_is_named(setting: Setting) -> None:
+def test_a_chunk_whose_workers_always_die_is_named(setting: Setting) -> None:
     with pytest.raises(SolverError, match=r"members \d+ to \d+: their worker died 3 times"):
         setting.sweep(SOME, objectives={"warmest": always_deadly}, workers=1)
 
 
-def test_any_executor_does_and_may_lose_work(setting: Setting) -> None:
+def test_any_executor_can_be_used_and_may_lose_work(setting: Setting) -> None:
     executor = Forgetful()
     found = setting.sweep(SOME, workers=executor)
     assert executor.given > 3
@@ -228,16 +232,16 @@ def test_a_cluster_of_processes(setting: Setting) -> None:
 
 
 @pytest.mark.parametrize("objectives", [None, {"warmest": warmest}])
-def test_a_store_goes_on_where_it_was_cut_off(
+def test_a_store_continues_after_an_interruption(
     setting: Setting, tmp_path: Path, objectives: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = setting.into(tmp_path / "whole", SOME, objectives=objectives, seed=7)
-    # Other stretches, cut off in the second of them.
+    # Chunks of another size, interrupted in the second of them.
     monkeypatch.setattr(sweep_workers, "FIRST", 8)
-    told: list[int] = []
+    calls: list[int] = []
 
     def impatient(done: int, _: int) -> None:
-        told.append(done)
+        calls.append(done)
         if done > 8:
             raise KeyboardInterrupt
 
@@ -246,23 +250,24 @@ def test_a_store_goes_on_where_it_was_cut_off(
     half = Store(tmp_path / "cut")
     assert (half.complete, half.done) == (False, 8)
     assert half.gaps() == [(8, 40)]
-    assert len(half.table()) == 8
+    assert len(half.to_dataframe()) == 8
     with pytest.raises(InputError, match="members 0 to 39 are not all there; 8 of 40"):
-        half.dataset()
+        half.to_xarray()
     (tmp_path / "cut" / "pieces" / "000000000008-000000000016.part").write_bytes(b"half written")
-    told.clear()
+    calls.clear()
     setting.into(
-        tmp_path / "cut", SOME, objectives=objectives, seed=7, progress=lambda done, _: told.append(done)
+        tmp_path / "cut", SOME, objectives=objectives, seed=7, progress=lambda done, _: calls.append(done)
     )
-    assert told[0] > 8
+    assert calls[0] > 8
     for name in ("manifest.json", "members.parquet"):
         assert (tmp_path / "cut" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
-    assert sorted(file.name for file in (tmp_path / "cut").iterdir()) == ["manifest.json", "members.parquet"]
+    shown = sorted(file.name for file in (tmp_path / "cut").iterdir() if file.name != locks.NAME)
+    assert shown == ["manifest.json", "members.parquet"]
     name = "warmest" if objectives else JOINT
     straight = setting.sweep(SOME, objectives=objectives)
-    np.testing.assert_array_equal(whole.dataset()[name], straight[name])
-    np.testing.assert_array_equal(whole.dataset(3, 11)[name], straight[name][3:11])
-    np.testing.assert_array_equal(whole.dataset()[f"sample: {K}"], SOME[K])
+    np.testing.assert_array_equal(whole.to_xarray()[name], straight[name])
+    np.testing.assert_array_equal(whole.to_xarray(3, 11)[name], straight[name][3:11])
+    np.testing.assert_array_equal(whole.to_xarray()[f"sample: {K}"], SOME[K])
     assert whole.manifest["seed"] == 7
     assert whole.manifest["mascarin_version"]
 
@@ -279,6 +284,58 @@ def test_a_folder_with_something_else_is_refused(setting: Setting, tmp_path: Pat
         Store(tmp_path / "nowhere")
 
 
+def test_a_folder_in_use_is_refused(
+    setting: Setting, tmp_path: Path, data_dir: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "used"
+    folder.mkdir()
+    with locks.FolderLock(folder):
+        with pytest.raises(InputError, match="another process is writing to this folder"):
+            setting.into(folder, SOME, objectives={"warmest": warmest})
+        arguments = ["sweep", str(BOX), "--weather", str(data_dir / "bestest" / "725650TYCST.epw")]
+        arguments += ["--start", "2001-01-02", "--end", "2001-01-03", "--draw", "2", "-o", str(folder)]
+        assert cli.main([*arguments, "--objective", "max:room.air_temperature"]) == 2
+        assert "another process is writing" in capsys.readouterr().err
+    assert [file.name for file in folder.iterdir()] == [locks.NAME]
+
+
+def test_values_common_to_all_members(setting: Setting) -> None:
+    building, climate = setting.place
+    found = setting.sweep({K: [0.02, 0.06]}, parameters={COEFFICIENT: 12.0})
+    changed = building.replace({COEFFICIENT: 12.0})
+    expected = sweep(changed, climate, {K: [0.02, 0.06]}, **setting.options)
+    np.testing.assert_array_equal(found[JOINT], expected[JOINT])
+    assert float(np.abs(found[JOINT] - setting.sweep({K: [0.02, 0.06]})[JOINT]).max()) > 0.1
+
+
+def test_data_sets_have_units_and_both_times_and_can_be_written(setting: Setting, tmp_path: Path) -> None:
+    found = setting.sweep({K: [0.02, 0.06]})
+    kept = setting.into(tmp_path / "kept", {K: [0.02, 0.06]}).to_xarray()
+    local = pd.DatetimeIndex(found["local_time"].to_numpy()) - pd.DatetimeIndex(found["time"].to_numpy())
+    assert set(local) == {pd.Timedelta("1h")}
+    assert found["parameter_unit"].to_numpy().tolist() == ["W/(m K)"]
+    assert kept[f"sample: {K}"].attrs["units"] == "W/(m K)"
+    for data in (found, kept):
+        assert data[JOINT].attrs["units"] == "degC"
+        assert data["closure"].attrs["long_name"] == "relative energy-balance residual"
+        data.to_netcdf(tmp_path / "members.nc", engine="h5netcdf")
+        with xr.open_dataset(tmp_path / "members.nc", engine="h5netcdf") as back:
+            np.testing.assert_array_equal(back[JOINT], data[JOINT])
+            np.testing.assert_array_equal(back["local_time"], found["local_time"])
+            assert back.attrs["timezone"] == "UTC+1"
+
+
+def test_a_store_is_described_in_a_few_lines(setting: Setting, tmp_path: Path) -> None:
+    store = setting.into(tmp_path / "kept", {K: [0.02, 0.06]}, objectives={"warmest": warmest})
+    assert "members     2 of 2 run" in repr(store)
+    assert len(repr(store).splitlines()) <= 15
+    assert "<table" in store._repr_html_()
+    assert "table" not in dir(store)
+    assert store.table().equals(store.to_dataframe())
+    copied = pickle.loads(pickle.dumps(store))  # noqa: S301 (own data)
+    assert copied.to_dataframe().equals(store.to_dataframe())
+
+
 def test_failing_members_are_kept_with_their_reason(setting: Setting, tmp_path: Path) -> None:
     ensemble = Simulation.ensemble
 
@@ -293,11 +350,11 @@ def test_failing_members_are_kept_with_their_reason(setting: Setting, tmp_path: 
     assert found.attrs["failures"] == ["member 2: step 4: the wall did not converge"]
     assert np.isnan(found[JOINT][2]).all()
     assert not np.isnan(found[JOINT][3]).any()
-    assert kept.table()["failure"][2] == "step 4: the wall did not converge"
-    assert kept.dataset().attrs["failures"] == found.attrs["failures"]
+    assert kept.to_dataframe()["failure"][2] == "step 4: the wall did not converge"
+    assert kept.to_xarray().attrs["failures"] == found.attrs["failures"]
 
 
-def test_statistics_in_words(setting: Setting) -> None:
+def test_statistics_from_text(setting: Setting) -> None:
     series = setting.sweep(SOME)[JOINT]
     words = [f"{kind}:{JOINT}" for kind in ("min", "mean", "max", "sd")]
     words += [f"above:12:{JOINT}", f"below:12:{JOINT}"]
@@ -311,13 +368,13 @@ def test_statistics_in_words(setting: Setting) -> None:
             Statistic.read(text)
 
 
-def test_members_are_drawn_evenly_and_again_the_same(building: Building) -> None:
-    drawn = latin_hypercube(building, 50, seed=3, paths=[K, FILM])
+def test_members_are_drawn_evenly_and_reproducibly(building: Building) -> None:
+    drawn = latin_hypercube(building, 50, seed=3, vary=[K, COEFFICIENT])
     parameter = building.parameter(K)
     strata = (drawn[K].to_numpy() - parameter.low) / (parameter.high - parameter.low) * 50
     assert sorted(strata.astype(int).tolist()) == list(range(50))
-    assert drawn.equals(latin_hypercube(building, 50, seed=3, paths=[K, FILM]))
-    assert not drawn.equals(latin_hypercube(building, 50, seed=4, paths=[K, FILM]))
+    assert drawn.equals(latin_hypercube(building, 50, seed=3, vary=[K, COEFFICIENT]))
+    assert not drawn.equals(latin_hypercube(building, 50, seed=4, vary=[K, COEFFICIENT]))
     assert "site.latitude" not in latin_hypercube(building, 2, seed=3)
     with pytest.raises(InputError, match="structural"):
-        latin_hypercube(building, 2, seed=3, paths=["site.latitude"])
+        latin_hypercube(building, 2, seed=3, vary=["site.latitude"])

@@ -12,6 +12,10 @@ import pytest
 from mascarin.building import Building, load
 from mascarin.building.geometry import Polygon, view_factors, volume
 from mascarin.examples import STUDIES
+from mascarin.study import Study
+from mascarin.study.description import read_study
+from mascarin.study.model_runs import ModelRuns, judged
+from mascarin.study.storage import Workspace
 
 FOLDER = STUDIES["lgi"].parent
 SHA256 = "f148c2fc65ce14ee8cadda7b3ce04cdce9d4fc38abcd97bdc1402ee9edd31f96"
@@ -122,8 +126,6 @@ def test_the_sensors_are_there(cell: Building) -> None:
 
 def test_the_papers_constants_fit_the_description(cell: Building) -> None:
     """Both choices of table 4 as the study's variants write them."""
-    from mascarin.study.description import read_study
-
     variants = read_study(STUDIES["lgi"]).variants
     before = cell.replace(variants["paper, before"].changes)
     after = cell.replace(variants["paper, after"].changes)
@@ -143,12 +145,9 @@ BIAS = 0.3  # K, what the sensors allow
 
 def test_the_identified_cell_holds_on_days_it_has_not_seen(tmp_path: Path) -> None:
     """The identification as the study does it, on five days; its numbers frozen on all the others."""
-    from mascarin.study.pipeline import Study, Teller
-    from mascarin.study.storage import Workspace
-
-    study = Study(STUDIES["lgi"])
+    study = Study.from_yaml(STUDIES["lgi"])
     with Workspace(tmp_path, study.inputs()) as workspace:
-        run, fit = study.candidate(None, workspace, Teller(True))
+        run, fit = ModelRuns(study, workspace, False).candidate(None)
     assert run.results.energy.closure < 1e-10
     assert not fit.on_bound
     for periods, held, blind in zip(run.scores.values(), CORROBORATION, BLIND, strict=True):
@@ -157,13 +156,11 @@ def test_the_identified_cell_holds_on_days_it_has_not_seen(tmp_path: Path) -> No
         for metrics in periods.values():
             assert abs(metrics.bias) < BIAS
             assert metrics.mean_error_percent < 5.0
-    assert all(verdict.passed for verdict in study.judged(run)[run.label])
+    assert all(verdict.passed for verdict in judged(study, run)[run.label])
 
 
 def test_the_study_chooses_its_film_outside_on_the_identification_period() -> None:
-    from mascarin.study.pipeline import Study
-
-    study = Study(STUDIES["lgi"])
+    study = Study.from_yaml(STUDIES["lgi"])
     assert study.candidates == [None, "TARP outside", "linear in the wind"]
     paths = set(study.plan_of("linear in the wind").parameters)
     shared = set(study.sought.parameters)
@@ -175,8 +172,6 @@ def test_the_study_chooses_its_film_outside_on_the_identification_period() -> No
 
 
 def test_tables_5_and_6_of_the_paper_stand_beside_ours_as_a_scale() -> None:
-    from mascarin.study.description import read_study
-
     file = read_study(STUDIES["lgi"])
     assert file.reference is not None
     published = file.reference.sensors

@@ -263,7 +263,6 @@ def mixed(p: Point) -> float:
     [
         (HOOKE_JEEVES, True),
         (HOOKE_JEEVES.replace("GPSHooke", "MascarinHooke"), False),
-        ("Main = MascarinDE; NumberOfGeneration = 60; Seed = 1; PopulationSize = 12;", False),
     ],
 )
 def test_discrete_parameters_where_genopt_refuses_them(tmp_path: Path, algorithm: str, lenient: bool) -> None:
@@ -273,6 +272,12 @@ def test_discrete_parameters_where_genopt_refuses_them(tmp_path: Path, algorithm
     assert outcome.lowest.evaluation.point.choices == (4,)
     assert outcome.lowest.evaluation.point.x[0] == pytest.approx(0.5, abs=1e-2)
     assert any("accepted beyond GenOpt" in n for n in outcome.notes)
+
+
+def test_a_removed_algorithm_names_its_replacement(tmp_path: Path) -> None:
+    ini = write_project(tmp_path, algorithm="Main = MascarinDE; Seed = 1;")
+    with pytest.raises(InputError, match=r"'MascarinDE' was removed; choose MascarinCMAES .* or PSOCC"):
+        optimise(ini, run=runner(bowl))
 
 
 def test_covariance_search(tmp_path: Path) -> None:

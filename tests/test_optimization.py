@@ -5,7 +5,7 @@ import math
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.optimization import Evaluation, HookeJeeves, Point, box, minimise, uniform_starts
+from mascarin.optimization import Evaluation, HookeJeeves, Point, box, minimize, uniform_starts
 
 
 def quadratic(points: list[Point]) -> list[float]:
@@ -25,7 +25,7 @@ def plane(start: float = 0.9) -> HookeJeeves:
 
 def test_hooke_jeeves_finds_the_minimum_on_its_mesh() -> None:
     search = plane()
-    best = minimise(search, quadratic)
+    best = minimize(search, quadratic)
     assert best.point.x == (0.3, -0.4)
     assert best.cost == pytest.approx(0.5, abs=1e-15)
     assert search.reason == "required accuracy is reached"
@@ -39,8 +39,8 @@ def test_guesses_change_neither_the_course_nor_the_count() -> None:
         calls[which] += 1
         return quadratic(points)
 
-    first = minimise(alone, lambda p: count(0, p))
-    second = minimise(helped, lambda p: count(1, p), ahead=5)
+    first = minimize(alone, lambda p: count(0, p))
+    second = minimize(helped, lambda p: count(1, p), ahead=5)
     assert first == second
     assert alone.count == helped.count
     assert calls[1] < calls[0] / 2
@@ -88,13 +88,13 @@ def test_a_cost_that_is_no_number_is_never_chosen() -> None:
     def hole(points: list[Point]) -> list[float]:
         return [math.nan if p.x[0] < 0.5 else c for p, c in zip(points, quadratic(points), strict=True)]
 
-    assert minimise(plane(), hole).point.x == (0.5, -0.4)
+    assert minimize(plane(), hole).point.x == (0.5, -0.4)
 
 
 def test_results_of_other_points_are_refused() -> None:
     search = plane()
     search.ask()
-    with pytest.raises(ValueError, match="expected the evaluations of the 1 points asked"):
+    with pytest.raises(ValueError, match="expected the evaluations of the 1 points of the last ask"):
         search.tell([Evaluation(Point((0.0, 0.0)), 1.0)])
 
 

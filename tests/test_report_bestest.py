@@ -51,7 +51,7 @@ def test_drawings_say_what_they_show(html: str) -> None:
 
 
 def test_what_lies_outside_has_the_digits_of_its_range(html: str) -> None:
-    lines = re.findall(r"<li>(\w+: [^<]* where the programs have [^<]*)</li>", html)
+    lines = re.findall(r"<li>(\w+: [^<]* outside of the range [^<]*)</li>", html)
     assert lines
     for line in lines:
         numbers = re.findall(r"-?\d+\.?\d*", line.replace("−", "-"))[-3:]

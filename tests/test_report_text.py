@@ -53,7 +53,7 @@ def test_paths_become_words() -> None:
     assert (
         text.plain_path("constructions.ceiling.layers.energain.thickness") == "ceiling · energain · thickness"
     )
-    assert text.plain_path("surfaces.roof.inside.convection.factor") == "roof · inside · film factor"
+    assert text.plain_path("surfaces.roof.inside.convection.factor") == "roof · inside · convection factor"
     assert text.plain_path("surfaces.wall_north.outside.absorptance") == "wall north · outside · absorptance"
 
 

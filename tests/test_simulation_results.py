@@ -1,12 +1,16 @@
 from __future__ import annotations
 
 import json
+import pickle
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 
 from mascarin import __version__
 from mascarin.errors import InputError
@@ -55,8 +59,17 @@ def test_a_series_is_labelled_in_utc_with_unit_and_zone(run: Results) -> None:
     assert run["north.outside_flux"].attrs["units"] == "W/m2"
 
 
+def test_a_series_has_the_local_clock_beside_utc(run: Results) -> None:
+    local = pd.DatetimeIndex(run["deep.temperature"]["local_time"].to_numpy())
+    assert (local == run.index.tz_localize(None)).all()
+    assert local[0] == pd.Timestamp("2001-10-27 00:00")
+    # 02:00 to 03:00 stands twice on the night when daylight saving time ends.
+    assert (local == pd.Timestamp("2001-10-28 02:30")).sum() == 2
+    assert (run.to_xarray()["local_time"].to_numpy() == local).all()
+
+
 def test_the_table_is_in_local_time(run: Results) -> None:
-    table = run.frame()
+    table = run.to_dataframe()
     assert list(table.columns) == list(run)
     assert str(table.index[0]) == "2001-10-27 00:00:00+02:00"
     assert str(table.index[-1]) == "2001-10-28 12:00:00+01:00"
@@ -67,6 +80,20 @@ def test_names_and_aliases(run: Results) -> None:
     assert len(run) == 4
     assert list(run)[3] == "north.interface_3_temperature"
     assert np.array_equal(run["north.gap_lining_temperature"], run["north.interface_3_temperature"])
+
+
+def test_results_are_a_mapping(run: Results) -> None:
+    assert isinstance(run, Mapping)
+    assert list(run.keys()) == list(run)
+    assert [series.name for series in run.values()] == list(run)
+    assert [name for name, _ in run.items()] == list(run)
+    assert "north.gap_lining_temperature" in run  # an alias
+    assert "sunny.air_temprature" not in run
+    assert run.get("sunny.air_temprature") is None
+    assert run.get("sunny.air_temprature", 0.0) == 0.0
+    series = run.get("deep.temperature")
+    assert series is not None
+    assert np.array_equal(series, run["deep.temperature"])
 
 
 def test_a_name_that_was_not_recorded(run: Results) -> None:
@@ -91,14 +118,92 @@ def test_netcdf_and_back(run: Results, tmp_path: Path) -> None:
         assert json.loads(back.attrs["provenance"]) == run.provenance.to_dict()
 
 
-def test_plot_has_an_axis_for_each_unit(run: Results) -> None:
+def test_results_read_back_are_equal(run: Results, tmp_path: Path) -> None:
+    file = tmp_path / "run.nc"
+    full = replace(run, warnings=("surfaces.north, layer pcm: stayed solid",))
+    full.to_netcdf(file)
+    back = Results.open(file)
+    assert back == full
+    assert back != run
+    assert back != replace(full, records=full.records + 1e-12)
+    assert back.provenance.to_dict() == full.provenance.to_dict()
+    assert back.energy == full.energy
+    assert back.warnings == full.warnings
+    assert back.to_dataframe().equals(full.to_dataframe())
+    assert back.index.tz is not None
+    assert str(back.index[-1]) == "2001-10-28 12:00:00+01:00"
+    assert back["north.gap_lining_temperature"].attrs == run["north.gap_lining_temperature"].attrs
+    assert [file.name for file in tmp_path.iterdir()] == ["run.nc"]
+    again = tmp_path / "again.nc"
+    back.to_netcdf(again)
+    assert Results.open(str(again)) == full
+
+
+@pytest.mark.parametrize("content", [None, b"no NetCDF"])
+def test_files_of_something_else_are_refused(tmp_path: Path, content: bytes | None) -> None:
+    file = tmp_path / "other.nc"
+    if content is not None:
+        file.write_bytes(content)
+    with pytest.raises(InputError, match=r"other\.nc: found no results of a run"):
+        Results.open(file)
+
+
+def test_a_data_set_of_something_else_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "other.nc"
+    xr.Dataset({"a": ("x", [1.0])}).to_netcdf(file, engine="h5netcdf")
+    with pytest.raises(InputError, match="found no results of a run"):
+        Results.open(file)
+
+
+def test_results_can_be_pickled(run: Results) -> None:
+    assert pickle.loads(pickle.dumps(run)) == run  # noqa: S301 (own data)
+
+
+def test_results_are_described_in_a_few_lines(run: Results) -> None:
+    text = repr(replace(run, warnings=tuple(f"warning {k}" for k in range(30))))
+    assert len(text.splitlines()) == 15
+    assert max(len(line) for line in text.splitlines()) <= 100
+    assert "Results of 'linear'" in text
+    assert "2001-10-27 00:00 to 2001-10-28 12:00 Europe/Paris" in text
+    assert "relative residual" in text
+    page = run._repr_html_()
+    assert page.count("<details>") == 2
+    assert "<svg" in page
+    assert "deep.temperature" in page
+
+
+def test_old_names_work_and_are_not_listed(run: Results) -> None:
+    assert run.frame().equals(run.to_dataframe())
+    assert run.dataset().identical(run.to_xarray())
+    assert not {"frame", "dataset"} & set(dir(run))
+    assert {"to_dataframe", "to_xarray", "plot", "keys"} <= set(dir(run))
+
+
+def test_plot_has_axes_for_each_unit(run: Results) -> None:
     figure = run.plot()
     assert [axis.get_ylabel() for axis in figure.axes] == ["degC", "W/m2"]
     assert [len(axis.get_lines()) for axis in figure.axes] == [3, 1]
     drawn = figure.axes[1].get_lines()[0].get_ydata()
     assert np.array_equal(np.asarray(drawn), run["north.outside_flux"].to_numpy())
-    assert "Europe/Paris" in figure.axes[1].get_xlabel()
+    assert "local time (Europe/Paris)" in figure.axes[1].get_xlabel()
     assert [len(axis.get_lines()) for axis in run.plot(["deep.temperature"]).axes] == [1]
+    assert len(run.plot("deep.temperature").axes) == 1
+
+
+def test_plot_uses_the_axes_of_the_reader(run: Results) -> None:
+    figure = Figure()
+    above, below = figure.subplots(2, 1)
+    assert run.plot(["deep.temperature"], ax=below) is figure
+    assert (len(above.get_lines()), len(below.get_lines())) == (0, 1)
+    assert below.get_ylabel() == "degC"
+    run.plot(ax=[above, below])
+    assert (len(above.get_lines()), len(below.get_lines())) == (3, 2)
+    one = Figure().subplots()
+    run.plot(ax=one)
+    assert len(one.get_lines()) == 4
+    assert one.get_ylabel() == "degC, W/m2"
+    with pytest.raises(InputError, match="found 3 axes, expected one, or one for each unit"):
+        run.plot(ax=[above, below, one])
 
 
 def test_the_ledger_adds_up(run: Results) -> None:
@@ -106,10 +211,11 @@ def test_the_ledger_adds_up(run: Results) -> None:
     assert set(ledger.into) == set(FLOWS)
     assert ledger.stored == pytest.approx(sum(ledger.into.values()), rel=1e-9)
     assert ledger.turnover >= sum(abs(value) for value in ledger.into.values())
-    assert 0.0 <= ledger.closure <= 1e-10
+    assert 0.0 <= ledger.relative_residual <= 1e-10
+    assert ledger.closure == ledger.relative_residual
 
 
-def test_the_ledger_counts_what_the_faces_pass(run: Results) -> None:
+def test_the_ledger_counts_the_heat_absorbed_at_surfaces(run: Results) -> None:
     # The sun reaches this building through one pyranometer: absorptance 0.5, 12 m2, means of straight pieces.
     t = 900.0 * np.arange(37 * 4 + 1)
     sun = np.interp(t, hours(2), measured(2)["pyranometer"])
@@ -118,11 +224,12 @@ def test_the_ledger_counts_what_the_faces_pass(run: Results) -> None:
     assert run.energy.into["solar"] == pytest.approx(absorbed, rel=1e-9)
 
 
-def test_the_ledger_in_words_and_for_json() -> None:
+def test_the_ledger_as_text_and_for_json() -> None:
     raw = {flow: 3.6e6 * (k + 1) for k, flow in enumerate(FLOWS)} | {
         "stored": 54e6, "turnover": 60e6, "closure": 2e-13,
     }  # fmt: skip
     ledger = EnergyLedger.read(raw)
+    assert EnergyLedger.from_dict(ledger.to_dict()) == ledger
     assert ledger.to_dict()["solar_joule"] == 3.6e6
     assert ledger.to_dict()["closure"] == 2e-13
     lines = str(ledger).splitlines()
@@ -135,12 +242,14 @@ def test_another_spacing_keeps_states_and_heat(run: Results) -> None:
     hourly = run.every("1h")
     assert len(hourly.index) == 38
     assert hourly.index[1] - hourly.index[0] == pd.Timedelta("1h")
-    flux = run.frame()["north.outside_flux"].to_numpy()
+    flux = run.to_dataframe()["north.outside_flux"].to_numpy()
     means = flux[1:].reshape(-1, 4).mean(axis=1)
-    np.testing.assert_allclose(hourly.frame()["north.outside_flux"].to_numpy()[1:], means, rtol=1e-12)
-    air = run.frame()["sunny.air_temperature"].to_numpy()
-    np.testing.assert_allclose(hourly.frame()["sunny.air_temperature"].to_numpy(), air[::4], rtol=1e-12)
-    between = run.every("10min").frame()["sunny.air_temperature"].to_numpy()
+    np.testing.assert_allclose(hourly.to_dataframe()["north.outside_flux"].to_numpy()[1:], means, rtol=1e-12)
+    air = run.to_dataframe()["sunny.air_temperature"].to_numpy()
+    np.testing.assert_allclose(
+        hourly.to_dataframe()["sunny.air_temperature"].to_numpy(), air[::4], rtol=1e-12
+    )
+    between = run.every("10min").to_dataframe()["sunny.air_temperature"].to_numpy()
     assert between[1] == pytest.approx(air[0] + (air[1] - air[0]) * 10 / 15)
     with pytest.raises(InputError, match="shorter than the run"):
         run.every("3d")

@@ -149,7 +149,7 @@ def test_the_band_holds_on_days_it_has_not_seen(done: Done) -> None:
     )
     (table,) = done.content["tables"]
     assert table["columns"][-1] == "blind"
-    assert "What the model foresaw" in (done.out / "report.html").read_text(encoding="utf-8")
+    assert "Prediction intervals" in (done.out / "report.html").read_text(encoding="utf-8")
     trace = done.table("evaluations")
     best = trace.sort_values("cost").to_dict("records")[0]
     for path, entry in done.content["parameters"].items():
@@ -285,7 +285,7 @@ def test_what_keeps_from_an_aim_is_the_parameter_left_out(
     blind = done.content["sensors"]["core"]["blind"]["fitted"]["sd"]
     assert found["sd"]["core"] == pytest.approx(blind, rel=1e-4)
     assert found["every"]["sd"]["core"] < 0.5 * blind
-    assert any(n["title"] == "Where an aim is missed" and "the equations can do it" in n["text"]
+    assert any(n["title"] == "Aims that are not met" and "the equations can do it" in n["text"]
                for n in done.content["notes"])  # fmt: skip
     reached = sum(a["passed"] for a in done.content["aims"])
     assert f"aims reached: {reached} of {len(done.content['aims'])}" in done.said
@@ -294,9 +294,9 @@ def test_what_keeps_from_an_aim_is_the_parameter_left_out(
 def _left(done: Done) -> str:
     """What the report says in its section on the rest; nothing where there is none."""
     page = (done.out / "report.html").read_text(encoding="utf-8")
-    if 'id="shortfall"' not in page:
+    if 'id="error-sources"' not in page:
         return ""
-    section = page[page.index('id="shortfall"') :]
+    section = page[page.index('id="error-sources"') :]
     return re.sub(r"<[^>]+>|\s+", " ", section[: section.index("</section")])
 
 
@@ -322,7 +322,7 @@ def test_the_rest_is_asked_for_without_aims_or_criteria_and_of_one_sensor(
     assert list(shortfall["sd"]) == ["core"]
     assert shortfall["steps"]
     assert shortfall["every"]["sd"]["core"] < 0.5 * shortfall["sd"]["core"]
-    assert "The table adds them one by one" in _left(found)
+    assert "The table adds the parameters one by one" in _left(found)
 
 
 def test_where_only_noise_is_left_no_parameter_is_blamed(
@@ -334,7 +334,7 @@ def test_where_only_noise_is_left_no_parameter_is_blamed(
     shortfall = found.content["shortfall"]
     assert shortfall["steps"] == []
     assert shortfall["sd"]["joint"] == pytest.approx(NOISE, rel=0.15)
-    assert "No parameter takes a noticeable part of it away" in _left(found)
+    assert "No parameter reduces the error significantly" in _left(found)
 
 
 def test_a_sensor_without_blind_values_is_left_out_and_named(
@@ -346,8 +346,8 @@ def test_a_sensor_without_blind_values_is_left_out_and_named(
     found = carried_out(quick.study, quick.folder / "out", capsys)
     assert list(found.content["shortfall"]["sd"]) == ["joint"]
     assert list(found.content["residuals"]) == ["joint"]
-    said = [note["text"] for note in found.content["notes"] if note["title"] == "What is left"]
-    assert said[0].startswith("core: 5 values on the blind days are too few to say what is left")
+    said = [note["text"] for note in found.content["notes"] if note["title"] == "Residuals"]
+    assert said[0].startswith("core: 5 values on the blind days are too few for an analysis of the residuals")
 
 
 def test_too_short_a_rest_is_not_asked_about_and_said(
@@ -358,7 +358,7 @@ def test_too_short_a_rest_is_not_asked_about_and_said(
     found = carried_out(quick.study, quick.folder / "out", capsys)
     assert "shortfall" not in found.content
     assert _left(found) == ""
-    said = [note["text"] for note in found.content["notes"] if note["title"] == "What is left"]
+    said = [note["text"] for note in found.content["notes"] if note["title"] == "Residuals"]
     assert [text[: text.index(" values")] for text in said] == ["joint: 11", "core: 11"]
 
 
@@ -369,14 +369,14 @@ def test_work_on_other_inputs_is_not_continued(quick: Bench, capsys: pytest.Capt
     # A comment in the building: another file, whatever it means.
     quick.building.write_text(quick.building.read_text(encoding="utf-8") + "# looked at again\n", "utf-8")
     again = carried_out(quick.study, out, capsys)
-    assert "holds work on other inputs (different: building)" in again.said
+    assert "found results of other inputs (different: building)" in again.said
     assert again.content["parameters"] == first.content["parameters"]
     # And another range, which changes the start of the searches but no plan of the engine.
     quick.edit("range: [4, 12]", "range: [4, 11]", "building.yaml")
     other = carried_out(quick.study, out, capsys)
-    assert "everything is done anew" in other.said
+    assert "everything is computed again" in other.said
     fresh = carried_out(quick.study, quick.folder / "fresh", capsys)
-    assert "anew" not in fresh.said
+    assert "again" not in fresh.said
     assert (out / "study.json").read_bytes() == (quick.folder / "fresh" / "study.json").read_bytes()
 
 
@@ -413,7 +413,7 @@ def test_two_studies_do_not_share_a_folder(quick: Bench, capsys: pytest.CaptureF
     with Workspace(out, study.inputs()):
         for command in ("study", "sensitivity", "calibrate", "validate"):
             assert cli.main([command, str(quick.study), "-o", str(out)]) == 2
-            assert "another study is at work in this folder" in capsys.readouterr().err
+            assert "another process is writing to this folder" in capsys.readouterr().err
     Workspace(out, study.inputs()).__exit__()
 
 
@@ -422,7 +422,7 @@ def test_when_it_was_run_is_told_beside_the_results(done: Done) -> None:
     run = json.loads((done.out / "run.json").read_text(encoding="utf-8"))
     assert run["run_time"] > 0.0
     assert run["created"].endswith("+00:00")
-    assert "Time of the run" in (done.out / "report.html").read_text(encoding="utf-8")
+    assert "Run time" in (done.out / "report.html").read_text(encoding="utf-8")
     assert done.content["command"] == ["mascarin study study.yaml -o out/"]
 
 
@@ -460,21 +460,22 @@ KILLED = """
 import os, signal, sys
 from mascarin import cli
 from mascarin.calibration.evaluations import Evaluator
-from mascarin.study import sensitivity_step as screening, storage as keeping
+from mascarin._io import atomic
+from mascarin.study import sensitivity_step as screening
 
 # Background jobs of a shell inherit that the signal is ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 where, count = sys.argv[1], int(sys.argv[2])
 screening.CHUNK_SECONDS = 0.02  # many pieces, also on a fast machine
-pieces, write, run = 0, keeping.write_whole, Evaluator._run
+pieces, write, run = 0, atomic.write, Evaluator._run
 
 def torn(path, content):
     global pieces
     pieces += path.suffix == ".npy"
     if where == "sensitivity" and pieces == count:
-        path.with_name(path.name + ".part").write_bytes(content[: len(content) // 2])
+        path.with_name("." + path.name + ".x.part").write_bytes(content[: len(content) // 2])
         os.kill(os.getpid(), signal.SIGKILL)
-    write(path, content)
+    return write(path, content)
 
 def cut(self, x, keep):
     run(self, x, keep)
@@ -483,7 +484,7 @@ def cut(self, x, keep):
         self._file.flush()
         os.kill(os.getpid(), signal.SIGKILL)
 
-keeping.write_whole, Evaluator._run = torn, cut
+atomic.write, Evaluator._run = torn, cut
 sys.exit(cli.main(["study", sys.argv[3], "-o", sys.argv[4]]))
 """
 
@@ -563,13 +564,13 @@ def test_chunks_of_work_last_about_a_second() -> None:
     assert CHUNK_SECONDS <= 1.0
     pace = _Pace()
     assert pace.size == 8
-    pace.learn(8, 0.1)
+    pace.update(8, 0.1)
     assert pace.size == 80
-    pace.learn(80, 8.0)  # a busy machine
+    pace.update(80, 8.0)  # a busy machine
     assert pace.size == 8  # whole packs of lanes: 10 would fill no more of them
-    pace.learn(1, 5.0)  # one run takes longer: nothing smaller can be kept
+    pace.update(1, 5.0)  # one run takes longer: nothing smaller can be kept
     assert pace.size == 1
-    pace.learn(8, 0.0)
+    pace.update(8, 0.0)
     assert pace.size == 2048
 
 

@@ -19,7 +19,7 @@ TABLE = STUDIES["lgi"].with_name("lgi_virtual.csv")
 def test_the_curve_holds_the_latent_heat_and_the_peak_of_the_law() -> None:
     (layer,) = melting_layers(CELL)
     assert (layer.surface, layer.layer, layer.material) == ("ceiling", "energain", "energain")
-    assert layer.faces == ("ceiling.outside_temperature", "ceiling.interface_1_temperature")
+    assert layer.surfaces == ("ceiling.outside_temperature", "ceiling.interface_1_temperature")
     curve = law_curve(layer.of(CELL), 23.4 - 8.0, 23.4 + 8.0)
     assert curve is not None
     temperature, enthalpy = curve

@@ -19,7 +19,7 @@ from mascarin.calibration.rules import METHODS, WITH_SQUARES, MethodName, Rules
 from mascarin.calibration.sequences import Make, maker, multi_start
 from mascarin.calibration.uncertainty import estimate, on_bounds, warnings
 from mascarin.errors import InputError, SolverError, did_you_mean
-from mascarin.optimization import Optimiser, Space
+from mascarin.optimization import Optimizer, Space
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ def solve(
     cost: CostName = "nll",
     seed: int = 0,
     rules: Rules | None = None,
-    optimiser: Callable[[Space], Optimiser] | None = None,
+    optimiser: Callable[[Space], Optimizer] | None = None,
     record: Path | None = None,
     batch: int = 64,
     confidence: float = 0.95,
@@ -121,7 +121,7 @@ def _require(method: str, cost: str, confidence: float, own: bool) -> None:
         raise InputError(msg)
 
 
-def _own(optimiser: Callable[[Space], Optimiser]) -> Make:
+def _own(optimiser: Callable[[Space], Optimizer]) -> Make:
     return lambda space, _: optimiser(space)
 
 

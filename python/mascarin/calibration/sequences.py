@@ -20,7 +20,7 @@ from mascarin.optimization import (
     CovarianceSearch,
     Evaluation,
     HookeJeeves,
-    Optimiser,
+    Optimizer,
     ParticleSwarm,
     Point,
     Space,
@@ -31,7 +31,7 @@ from mascarin.optimization import (
 
 Floats = NDArray[np.float64]
 
-Make = Callable[[Space, int], Optimiser]
+Make = Callable[[Space, int], Optimizer]
 """Makes the optimiser of one sequence from its space and a seed of its own."""
 
 _GRID: Final = 2.0**26
@@ -76,7 +76,7 @@ class _Sequence:
 
     number: int
     start: Floats
-    optimiser: Optimiser
+    optimiser: Optimizer
     asked: int = 0
 
     def minimum(self, problem: CalibrationProblem) -> Minimum:

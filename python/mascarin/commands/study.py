@@ -13,7 +13,7 @@ from mascarin.commands.inputs import AsJson
 from mascarin.commands.output import print_json, print_table
 
 if TYPE_CHECKING:
-    from mascarin.study import Findings, Study
+    from mascarin.study import Study, StudyResults
 
 
 _SHOWN: Final = 10
@@ -42,12 +42,11 @@ def study(
         Folder for study.json, tables, figures, the report and intermediate results.
     """
     opened = _open(file)
-    findings = opened.run(out)
-    _write_report(out)
+    results = opened.run(out, progress=True)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
-    _print_summary(opened, findings, out)
-    return _exit_code([verdict.to_dict() for verdict in findings.verdicts["fitted"]])
+    _print_summary(opened, results, out)
+    return _exit_code([verdict.to_dict() for verdict in results.criteria["fitted"]])
 
 
 def sensitivity(
@@ -159,7 +158,7 @@ def _open(file: str) -> Study:
     from mascarin.examples import locate
     from mascarin.study import Study
 
-    return Study(locate(file))
+    return Study.from_yaml(locate(file))
 
 
 def _print_scores(content: Mapping[str, Any]) -> None:
@@ -193,15 +192,7 @@ def _exit_code(verdicts: Sequence[Mapping[str, Any]]) -> int:
     return 1 if missed else 0
 
 
-def _write_report(out: Path) -> None:
-    """Write the report from the results in the folder."""
-    from mascarin.report import write
-    from mascarin.report.folder import read_folder
-
-    write(out / "report.html", *read_folder(out))
-
-
-def _print_summary(opened: Study, findings: Findings, out: Path) -> None:
+def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
     """Print a summary on standard error."""
     count = len(opened.file.sensors)
     lines = [f"{opened.file.name}: {opened.file.observed}, {count} sensor{'s' * (count != 1)}"]
@@ -211,16 +202,16 @@ def _print_summary(opened: Study, findings: Findings, out: Path) -> None:
             f"  {s.channel}: {s.kind} from {s.start:%Y-%m-%d %H:%M}, {s.detail}" for s in opened.quality
         ]
     lines.append(f"{'sensor':<16}{'period':<16}{'model':<10}{'rmse':>8}{'sd':>8}{'bias':>8}{'max':>8}")
-    for run in (findings.nominal, findings.fitted):
+    for run in (results.nominal, results.fitted):
         for sensor, periods in run.scores.items():
             lines += [
                 f"{sensor:<16}{period:<16}{run.label:<10}{m.rmse:8.3f}{m.sd:8.3f}{m.bias:8.3f}{m.max_error:8.3f}"
                 for period, m in periods.items()
             ]
-    if findings.aims:
-        reached = sum(aim.passed for aim in findings.aims)
-        lines.append(f"aims reached: {reached} of {len(findings.aims)}; the report shows the others")
-    residual = findings.fitted.results.energy.closure
-    lines.append(f"relative energy-balance residual {residual:.1e}; {findings.seconds:.0f} s")
+    if results.aims:
+        reached = sum(aim.passed for aim in results.aims)
+        lines.append(f"aims reached: {reached} of {len(results.aims)}; the report shows the others")
+    residual = results.fitted.results.energy.closure
+    lines.append(f"relative energy-balance residual {residual:.1e}; {results.seconds:.0f} s")
     lines.append(f"report: {out / 'report.html'}")
     print("\n".join(lines), file=sys.stderr)

@@ -110,7 +110,7 @@ def _samples(
         return _read(file)
     from mascarin.ensemble import latin_hypercube
 
-    return latin_hypercube(building, draw or 0, seed=seed, paths=vary)
+    return latin_hypercube(building, draw or 0, seed=seed, vary=vary)
 
 
 def _read(file: Path) -> pd.DataFrame:

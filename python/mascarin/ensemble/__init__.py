@@ -1,8 +1,10 @@
-"""Ensembles: many members of one building in one climate, on threads, processes or a cluster."""
+"""Ensembles: many members of one building in one climate, on threads, processes or a cluster.
 
-from mascarin.ensemble.draw import latin_hypercube
-from mascarin.ensemble.objectives import Statistic
-from mascarin.ensemble.run import sweep, sweep_into
-from mascarin.ensemble.store import Store
+The public names are listed in ``__init__.pyi`` and imported when they are first used.
+"""
 
-__all__ = ["Statistic", "Store", "latin_hypercube", "sweep", "sweep_into"]
+from __future__ import annotations
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -14,20 +14,20 @@ if TYPE_CHECKING:
 
 
 def latin_hypercube(
-    building: Building, members: int, *, seed: int, paths: Sequence[str] | None = None
+    building: Building, members: int, *, seed: int, vary: Sequence[str] | None = None
 ) -> pd.DataFrame:
-    """Draw members evenly over the believable ranges of parameters.
+    """Draw members evenly over the ranges of parameters (Latin hypercube).
 
     Parameters
     ----------
     building : Building
-        Whose parameters they are.
+        The building.
     members : int
-        How many.
+        Number of members.
     seed : int
         Seed: the same one gives the same members.
-    paths : sequence of str, optional
-        Parameters to draw; default all that are not structural and whose range is not empty.
+    vary : sequence of str, optional
+        Paths of the parameters to draw; default all that are not structural and whose range is not empty.
 
     Returns
     -------
@@ -42,14 +42,20 @@ def latin_hypercube(
     References
     ----------
     McKay, Beckman & Conover (1979), Technometrics 21(2), doi:10.1080/00401706.1979.10489755.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> latin_hypercube(box(), 4, seed=1, vary=["zones.room.volume"]).shape
+    (4, 1)
     """
     import pandas as pd
     from scipy.stats import qmc
 
     if members < 1:
         raise InputError(f"members: found {members}; expected 1 or more")
-    chosen = [building.parameter(path) for path in paths] if paths else building.parameters()
-    for parameter in chosen if paths else ():
+    chosen = [building.parameter(path) for path in vary] if vary else building.parameters()
+    for parameter in chosen if vary else ():
         if parameter.structural:
             raise InputError(f"{parameter.path}: is structural and not drawn; give it in a table of samples")
     free = [p for p in chosen if not p.structural and p.low < p.high]

@@ -28,44 +28,44 @@ class Members:
     Attributes
     ----------
     numbers : mapping of str to ndarray, each of shape (M,)
-        Parameters that only change numbers: these travel together in lanes. [unit of each]
-    shapes : mapping of str to list, each of length M
-        What makes another plan: structural parameters, and parts of the description that are replaced whole.
-        Members of the same shape are run together.
+        Parameters that change only numbers: these members are run together in lanes. [unit of each]
+    structures : mapping of str to list, each of length M
+        What needs another compiled building: structural parameters, and whole parts of the description.
+        Members of the same structure are run together.
     """
 
     numbers: Mapping[str, Array]
-    shapes: Mapping[str, list[Any]]
+    structures: Mapping[str, list[Any]]
 
     @property
     def count(self) -> int:
         """Number of members."""
-        columns: list[Any] = [*self.numbers.values(), *self.shapes.values()]
+        columns: list[Any] = [*self.numbers.values(), *self.structures.values()]
         return len(columns[0])
 
     @property
     def paths(self) -> list[str]:
         """Paths of all columns."""
-        return [*self.numbers, *self.shapes]
+        return [*self.numbers, *self.structures]
 
     @property
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """Smallest and largest value of each numeric column: the mesh is chosen for the worst end."""
+        """Smallest and largest value of each numeric column: the mesh is fine enough for both."""
         return {path: (float(v.min()), float(v.max())) for path, v in self.numbers.items()}
 
     def part(self, first: int, last: int) -> Members:
         """Members from `first` to before `last`."""
         return Members(
             {path: values[first:last] for path, values in self.numbers.items()},
-            {path: values[first:last] for path, values in self.shapes.items()},
+            {path: values[first:last] for path, values in self.structures.items()},
         )
 
     def groups(self) -> list[tuple[dict[str, Any], list[int]]]:
-        """Members by shape: what is replaced, and the places of those that share it."""
+        """Members by structure: what is replaced, and the rows of the members that have it in common."""
         found: dict[str, tuple[dict[str, Any], list[int]]] = {}
         for member in range(self.count):
-            shape = {path: values[member] for path, values in self.shapes.items()}
-            found.setdefault(json.dumps(shape, sort_keys=True), (shape, []))[1].append(member)
+            structure = {path: values[member] for path, values in self.structures.items()}
+            found.setdefault(json.dumps(structure, sort_keys=True), (structure, []))[1].append(member)
         return list(found.values())
 
     def digest(self) -> str:
@@ -74,7 +74,7 @@ class Members:
         for path, values in self.numbers.items():
             whole.update(path.encode())
             whole.update(np.ascontiguousarray(values).tobytes())
-        whole.update(json.dumps(dict(self.shapes), sort_keys=True).encode())
+        whole.update(json.dumps(dict(self.structures), sort_keys=True).encode())
         return whole.hexdigest()
 
 
@@ -84,10 +84,10 @@ def members(building: Building, samples: Mapping[str, Any] | pd.DataFrame) -> Me
     Parameters
     ----------
     building : Building
-        Whose members they are.
+        The building that varies.
     samples : Mapping or pandas.DataFrame
-        Path -> values, one for each member. Values of a structural parameter may be numbers or whatever the
-        description takes there; a path of a whole part takes what the YAML file would hold.
+        Values by path, one for each member. Values of a structural parameter may be numbers or whatever the
+        description takes there; the path of a whole part takes what the YAML file would hold.
         [unit of each]
 
     Raises
@@ -96,29 +96,29 @@ def members(building: Building, samples: Mapping[str, Any] | pd.DataFrame) -> Me
         No column, columns of different lengths, an unknown path, a value that the parameter cannot have.
     """
     numbers: dict[str, Array] = {}
-    shapes: dict[str, list[Any]] = {}
+    structures: dict[str, list[Any]] = {}
     for key, given in samples.items():
         path, values = str(key), np.asarray(given)
         if values.ndim != 1 or not len(values):
             raise InputError(f"samples: {path} has shape {values.shape}; expected one value for each member")
-        if _is_plain(building, path, values):
+        if _is_number(building, path, values):
             numbers[building.parameter(path).path] = _numbers(building, path, values)
         else:
-            # As given: an array of mixed values would make text of the numbers.
+            # As given: an array of mixed values would turn the numbers into text.
             whole = values.tolist() if values.dtype.kind in "fiub" else list(given)
-            shapes[path] = [_native(building, path, value) for value in whole]
-    _same_length({**numbers, **shapes})
-    found = Members(numbers, shapes)
-    for shape, places in found.groups() if shapes else []:
+            structures[path] = [_native(building, path, value) for value in whole]
+    _same_length({**numbers, **structures})
+    found = Members(numbers, structures)
+    for structure, rows in found.groups() if structures else []:
         try:
-            building.replace(shape)
+            building.replace(structure)
         except InputError as error:
-            raise InputError(f"samples: member {places[0]}: {error}") from None
+            raise InputError(f"samples: member {rows[0]}: {error}") from None
     return found
 
 
-def _is_plain(building: Building, path: str, values: npt.NDArray[Any]) -> bool:
-    """Whether a column only changes a number that is no part of the plan."""
+def _is_number(building: Building, path: str, values: npt.NDArray[Any]) -> bool:
+    """Whether a column changes only numbers and needs no other compiled building."""
     if values.dtype.kind not in "fiu":
         return False
     return not building.parameter(path).structural

@@ -1,4 +1,4 @@
-"""Numbers that are kept of a member instead of its series, named in words that travel to any worker."""
+"""Numbers that are kept of a member instead of its series, given as text that any worker can read."""
 
 from __future__ import annotations
 
@@ -26,14 +26,19 @@ _STATISTICS: Final[dict[str, Callable[[xr.DataArray, float], xr.DataArray]]] = {
 class Statistic:
     """A statistic of one output over time.
 
-    Attributes
+    Parameters
     ----------
     kind : str
         ``min``, ``mean``, ``max``, ``sd`` [unit of the output]; ``above``, ``below`` [h].
     output : str
         Name of the output.
     limit : float
-        What the hours of ``above`` and ``below`` are counted against. [unit of the output]
+        Limit of ``above`` and ``below``. [unit of the output]
+
+    Examples
+    --------
+    >>> Statistic.read("above:26:room.operative_temperature")
+    Statistic(kind='above', output='room.operative_temperature', limit=26.0)
     """
 
     kind: str
@@ -46,12 +51,17 @@ class Statistic:
 
     @classmethod
     def read(cls, text: str) -> Statistic:
-        """Understand ``max:room.air_temperature`` or ``above:26:room.operative_temperature``.
+        """Read ``max:room.air_temperature`` or ``above:26:room.operative_temperature``.
+
+        Parameters
+        ----------
+        text : str
+            Kind, limit where there is one, and output, joined by colons.
 
         Raises
         ------
         InputError
-            It is nothing of the kind.
+            Another text.
         """
         kind, *rest = text.split(":")
         limited = kind in ("above", "below")
@@ -67,8 +77,9 @@ class Statistic:
             raise InputError(f"objective: found '{text}', whose limit '{rest[0]}' is no number") from None
 
 
-def _hours(series: xr.DataArray, here: xr.DataArray) -> xr.DataArray:
+def _hours(series: xr.DataArray, counted: xr.DataArray) -> xr.DataArray:
     import numpy as np
 
     times = series["time"].to_numpy()
-    return here.isel(time=slice(1, None)).sum("time") * float((times[1] - times[0]) / np.timedelta64(1, "h"))
+    interval = float((times[1] - times[0]) / np.timedelta64(1, "h"))
+    return counted.isel(time=slice(1, None)).sum("time") * interval

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin import __version__
+from mascarin._io.locks import FolderLock
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.members import members as read_members
 from mascarin.ensemble.store import Store
-from mascarin.ensemble.work import CLOSURE, Objective, Piece, Recipe, dataset
+from mascarin.ensemble.work import CLOSURE, Chunk, EnsembleInputs, Objective, attributes, dataset
 from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
@@ -55,7 +56,7 @@ def sweep(
     objectives: Mapping[str, Objective] | None = None,
     workers: int | Executor | None = None,
 ) -> xr.Dataset:
-    """Run a building once for every row of samples; a member's bits do not depend on the others.
+    """Run a building once for every row of samples; the results of a member do not depend on the others.
 
     Parameters
     ----------
@@ -66,12 +67,12 @@ def sweep(
     samples : mapping or pandas.DataFrame
         Values by path, one for each member, shape (M,). A structural parameter may vary too, and so may a
         whole part of the description (``surfaces.roof.outside.convection: [tarp, mowitt]``): members of
-        the same shape are run together. [unit of each]
+        the same structure are run together. [unit of each]
     <run options>
     objectives : mapping of str to callable, optional
         What to keep of each member instead of its series: functions of a Dataset of the outputs over (member,
         time) that give one number a member, such as ``lambda run: run["room.air_temperature"].max("time")``.
-        With workers they must be functions of a module, which can travel.
+        With workers they must be functions of a module, which can be sent to other processes.
     workers : int or concurrent.futures.Executor, optional
         Processes of this machine, or an executor: of dask.distributed (``client.get_executor()``), of
         mpi4py.futures, or any other. Default: the threads of this process.
@@ -81,14 +82,24 @@ def sweep(
     xarray.Dataset
         Each output over (member, time), or each objective over (member); the samples as ``samples`` over
         (member, parameter), or as ``sample: <path>`` over (member) where they are not all plain numbers;
-        `closure` [-]. NaN for a member that failed, with its reason in the attribute `failures`.
+        ``closure``, the relative energy-balance residual [-]. NaN for a member that failed, with its reason
+        in the attribute ``failures``. Coordinates ``time`` (UTC) and ``local_time``.
 
     Raises
     ------
     InputError
         Unknown path, columns of different lengths, a value that the parameter cannot have.
     SolverError
-        Every member failed, or a stretch of members kills its workers.
+        Every member failed, or the workers of a chunk of members died three times.
+
+    Examples
+    --------
+    >>> import mascarin as mc
+    >>> from mascarin.examples import box, box_climate
+    >>> samples = {"surfaces.facade.outside.absorptance": [0.3, 0.6, 0.9]}
+    >>> found = mc.sweep(box(), box_climate(), samples, step="1h", outputs=["room.air_temperature"])
+    >>> found["room.air_temperature"].dims
+    ('member', 'time')
     """
     import xarray as xr
 
@@ -96,14 +107,14 @@ def sweep(
         parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
         initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
-    recipe, found = _prepared(building, climate, samples, options, objectives)
+    inputs, found = _prepared(building, climate, samples, options, objectives)
     with reporting(progress, "members") as report:
-        pieces = _pieces(recipe, found, [(0, found.count)], workers, lambda done: report(done, found.count))
-        whole, closure, failures = _gathered(found, pieces)
+        chunks = _chunks(inputs, found, [(0, found.count)], workers, lambda done: report(done, found.count))
+        whole, closure, failures = _gathered(found, chunks)
     if len(failures) == found.count:
         raise SolverError(f"all {found.count} members failed; the first: {failures[0]}")
     return (
-        _dataset(recipe, found, whole)
+        _dataset(inputs, found, whole)
         .assign(closure=xr.DataArray(closure, dims="member", attrs=CLOSURE))
         .assign_attrs(failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())])
     )
@@ -111,7 +122,7 @@ def sweep(
 
 @described
 def sweep_into(
-    store: Path,
+    store: str | Path,
     building: Building,
     climate: Climate,
     samples: Mapping[str, npt.ArrayLike] | pd.DataFrame,
@@ -130,42 +141,68 @@ def sweep_into(
     workers: int | Executor | None = None,
     seed: int | None = None,
 ) -> Store:
-    """Run an ensemble into a folder; killed at any moment and called again it goes on where it was.
+    """Run an ensemble into a folder; called again after it was stopped, it continues.
+
+    The folder is locked while the ensemble runs: a second process stops at once with an error.
 
     Parameters
     ----------
-    store : Path
-        Folder: new, empty, or with the same ensemble half done.
-    building, climate, samples, objectives, workers
+    store : str or Path
+        Folder: new, empty, or with an unfinished ensemble of the same inputs.
+    building, climate, samples
         As in `sweep`.
     <run options>
+    objectives, workers
+        As in `sweep`.
     seed : int, optional
         Seed that the samples were drawn with, for the manifest.
 
     Returns
     -------
     Store
-        The complete ensemble. Members that failed are in it with their reason.
+        The complete ensemble, with the reasons of members that failed.
 
     Raises
     ------
     InputError
-        As `sweep`; also a folder with something else in it.
+        As `sweep`; also a folder with something else in it, or one that another process is writing to.
     SolverError
-        A stretch of members kills its workers; what is finished is kept.
+        The workers of a chunk of members died three times; finished chunks are kept.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from mascarin.ensemble import Statistic, sweep_into
+    >>> from mascarin.examples import box, box_climate
+    >>> store = sweep_into(
+    ...     Path(tempfile.mkdtemp()) / "july",
+    ...     box(),
+    ...     box_climate(),
+    ...     {"zones.room.volume": [20.0, 30.0]},
+    ...     objectives={"hottest": Statistic.read("max:room.air_temperature")},
+    ...     step="1h",
+    ... )
+    >>> store.to_dataframe()["hottest"].round(1).size
+    2
     """
     options = RunOptions(
         parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
         initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
-    recipe, found = _prepared(building, climate, samples, options, objectives)
-    kept = Store.begin(store, _manifest(recipe, found, seed))
-    before = kept.done
-    with reporting(progress, "members") as report:
-        told = lambda done: report(before + done, found.count)  # noqa: E731 (one line, used once)
-        for piece in _pieces(recipe, found, kept.gaps(), workers, told):
-            kept.add(piece, found.part(piece.first, piece.first + len(piece.closure)))
-    kept.finish()
+    inputs, found = _prepared(building, climate, samples, options, objectives)
+    folder = Path(store)
+    Store.require_usable(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    with FolderLock(folder), reporting(progress, "members") as report:
+        kept = Store.begin(folder, _manifest(inputs, found, seed))
+        before = kept.done
+
+        def told(done: int) -> object:
+            return report(before + done, found.count)
+
+        for chunk in _chunks(inputs, found, kept.gaps(), workers, told):
+            kept.add(chunk, found.part(chunk.first, chunk.first + len(chunk.closure)))
+        kept.finish()
     return kept
 
 
@@ -175,14 +212,14 @@ def _prepared(
     samples: Mapping[str, npt.ArrayLike] | pd.DataFrame,
     options: RunOptions,
     objectives: Mapping[str, Objective] | None,
-) -> tuple[Recipe, Members]:
-    """What the members share, with its hash, and the members.
+) -> tuple[EnsembleInputs, Members]:
+    """What the members have in common, with its hash, and the members.
 
-    The first shape is compiled, so that what cannot be used is found before anything is run.
+    The first structure is compiled, so that what cannot be used is found before anything is run.
     """
     building = with_parameters(building, options.parameters)
     members = read_members(building, samples)
-    recipe = Recipe(
+    inputs = EnsembleInputs(
         building=building,
         climate=climate,
         options=replace(options, parameters=None),
@@ -190,67 +227,67 @@ def _prepared(
         objectives=dict(objectives or {}),
         identity="",
     )
-    clash = set(recipe.objectives) & {"member", "closure", "failure", "samples"}
+    clash = set(inputs.objectives) & {"member", "closure", "failure", "samples"}
     if clash:
         raise InputError(f"objectives: '{clash.pop()}' is the name of something else; choose another")
-    whole = hashlib.sha256(recipe.compiled(_first_shape(members)).identity.encode())
-    whole.update(repr([sorted(recipe.ranges.items()), list(recipe.objectives)]).encode())
-    return replace(recipe, identity=whole.hexdigest()), members
+    whole = hashlib.sha256(inputs.compiled(_first_structure(members)).identity.encode())
+    whole.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives)]).encode())
+    return replace(inputs, identity=whole.hexdigest()), members
 
 
-def _first_shape(members: Members) -> dict[str, Any]:
-    return {path: values[0] for path, values in members.shapes.items()}
+def _first_structure(members: Members) -> dict[str, Any]:
+    return {path: values[0] for path, values in members.structures.items()}
 
 
-def _first(recipe: Recipe, members: Members) -> Simulation:
-    return recipe.simulation(_first_shape(members))
+def _first(inputs: EnsembleInputs, members: Members) -> Simulation:
+    return inputs.simulation(_first_structure(members))
 
 
-def _pieces(
-    recipe: Recipe,
+def _chunks(
+    inputs: EnsembleInputs,
     members: Members,
     gaps: list[tuple[int, int]],
     workers: int | Executor | None,
     report: Callable[[int], object] | None,
-) -> Iterator[Piece]:
+) -> Iterator[Chunk]:
     if workers is None:
-        return here(recipe, members, gaps, report)
+        return here(inputs, members, gaps, report)
     if isinstance(workers, int) and (isinstance(workers, bool) or workers < 1):
         raise InputError(f"workers: found {workers}; expected a number of processes, 1 or more")
-    return elsewhere(recipe, members, gaps, workers, report)
+    return elsewhere(inputs, members, gaps, workers, report)
 
 
-def _gathered(members: Members, pieces: Iterator[Piece]) -> tuple[Any, Any, dict[int, str]]:
+def _gathered(members: Members, chunks: Iterator[Chunk]) -> tuple[Any, Any, dict[int, str]]:
     """Results of all members in one array."""
     whole: Any = None
     closure = np.full(members.count, np.nan)
     failures: dict[int, str] = {}
-    for piece in pieces:
-        place = slice(piece.first, piece.first + len(piece.closure))
-        if whole is None and piece.kept.size:
-            whole = np.full((members.count, *piece.kept.shape[1:]), np.nan)
-        if whole is not None and piece.kept.size:
-            whole[place] = piece.kept
-        closure[place] = piece.closure
-        failures |= piece.failures
+    for chunk in chunks:
+        place = slice(chunk.first, chunk.first + len(chunk.closure))
+        if whole is None and chunk.kept.size:
+            whole = np.full((members.count, *chunk.kept.shape[1:]), np.nan)
+        if whole is not None and chunk.kept.size:
+            whole[place] = chunk.kept
+        closure[place] = chunk.closure
+        failures |= chunk.failures
     return whole, closure, failures
 
 
-def _dataset(recipe: Recipe, members: Members, values: Any) -> xr.Dataset:
+def _dataset(inputs: EnsembleInputs, members: Members, values: Any) -> xr.Dataset:
     import xarray as xr
 
-    simulation = _first(recipe, members)
-    if recipe.objectives:
-        columns = {name: ("member", values[:, k]) for k, name in enumerate(recipe.objectives)}
+    simulation = _first(inputs, members)
+    if inputs.objectives:
+        columns = {name: ("member", values[:, k]) for k, name in enumerate(inputs.objectives)}
         data = xr.Dataset(columns, attrs={"timezone": str(simulation.index.tz)})
     else:
         data = dataset(simulation.outputs, simulation.index, values)
     data = data.assign_coords(member=np.arange(members.count)).assign_attrs(mascarin_version=__version__)
-    units = {path: _unit(recipe.building, path) for path in members.paths}
-    if members.shapes:
-        everything: dict[str, Any] = {**members.numbers, **members.shapes}
+    units = {path: _unit(inputs.building, path) for path in members.paths}
+    if members.structures:
+        everything: dict[str, Any] = {**members.numbers, **members.structures}
         found = {
-            f"sample: {path}": ("member", column, {"units": units[path]} if units[path] else {})
+            f"sample: {path}": ("member", column, attributes(path, units[path]))
             for path, column in everything.items()
         }
         return data.assign(found)
@@ -267,24 +304,25 @@ def _unit(building: Building, path: str) -> str:
         return ""
 
 
-def _manifest(recipe: Recipe, members: Members, seed: int | None) -> dict[str, Any]:
-    simulation = _first(recipe, members)
+def _manifest(inputs: EnsembleInputs, members: Members, seed: int | None) -> dict[str, Any]:
+    simulation = _first(inputs, members)
     units = {output.name: output.unit for output in simulation.outputs}
     times = simulation.index.tz_convert("UTC").tz_localize(None)
     return {
         "mascarin_version": __version__,
-        "building": recipe.building.name,
-        "climate": summary(recipe.climate),
-        "identity": recipe.identity,
+        "building": inputs.building.name,
+        "climate": summary(inputs.climate),
+        "identity": inputs.identity,
         "samples": members.digest(),
         "members": members.count,
         "paths": members.paths,
+        "sample_units": {path: _unit(inputs.building, path) for path in members.paths},
         "seed": seed,
         "outputs": [output.name for output in simulation.outputs],
-        "objectives": list(recipe.objectives),
-        "kept": dict.fromkeys(recipe.objectives, "") if recipe.objectives else units,
+        "objectives": list(inputs.objectives),
+        "kept": dict.fromkeys(inputs.objectives, "") if inputs.objectives else units,
         "step_seconds": simulation.step_seconds,
-        "scheme": recipe.options.scheme,
+        "scheme": inputs.options.scheme,
         "timezone": str(simulation.index.tz),
-        "time": [] if recipe.objectives else [str(time) for time in times],
+        "time": [] if inputs.objectives else [str(time) for time in times],
     }

@@ -1,8 +1,8 @@
-"""A folder that an ensemble grows in: results in Parquet, and a manifest that says of what.
+"""The folder of an ensemble: results in Parquet, and a manifest of what was run.
 
-``manifest.json`` says what is run; ``pieces/`` holds stretches of members as they are finished, each written
-whole or not at all; when none is missing they become ``members.parquet``, one row a member, whose bytes do
-not depend on how often the work was cut off or on how it was cut into stretches.
+``manifest.json`` describes the ensemble; ``pieces/`` holds the finished chunks of members, each written
+completely or not at all; when none is missing they are joined to ``members.parquet``, one row a member, whose
+bytes do not depend on interruptions or on the size of the chunks.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.ensemble.work import CLOSURE
+from mascarin._io import atomic, display, locks
+from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
 from mascarin.simulation.labels import time_coordinates
 from mascarin.weather.timezones import parse_timezone
@@ -27,14 +28,16 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from mascarin.ensemble.members import Members
-    from mascarin.ensemble.work import Piece
+    from mascarin.ensemble.work import Chunk
 
+#: Names that are kept for old programs.
+_DEPRECATED: Final = frozenset({"table", "dataset"})
 MANIFEST: Final = "manifest.json"
 RESULTS: Final = "members.parquet"
-_PIECE: Final = re.compile(r"(\d+)-(\d+)\.parquet")
-#: Numbers in a row group of the finished file: so much is in memory when it is written and read in part.
+_CHUNK: Final = re.compile(r"(\d+)-(\d+)\.parquet")
+#: Numbers in a row group of the finished file, which is the part that is in memory while it is written.
 _GROUP: Final = 2**20
-#: What keeps two stores apart; the rest of a manifest describes.
+#: Entries of a manifest that must be equal to continue an ensemble.
 _SAME: Final = ("mascarin_version", "identity", "samples", "members", "kept")
 
 
@@ -58,9 +61,15 @@ class Store:
     ------
     InputError
         There is no manifest, or it cannot be read.
+
+    Examples
+    --------
+    >>> Store(Path("nowhere"))
+    Traceback (most recent call last):
+    mascarin.errors.InputError: nowhere/manifest.json: found no readable manifest ...
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         place = self.path / MANIFEST
         try:
@@ -71,31 +80,76 @@ class Store:
                 "sweep_into() or 'mascarin sweep --out' makes it"
             ) from None
 
+    @staticmethod
+    def require_usable(path: Path) -> None:
+        """Refuse a folder that holds something else than an ensemble.
+
+        Parameters
+        ----------
+        path : Path
+            Folder; it may not exist.
+
+        Raises
+        ------
+        InputError
+            The folder is not empty and holds no ensemble; or pyarrow is not installed.
+        """
+        _require_parquet()
+        if (path / MANIFEST).exists() or not path.exists():
+            return
+        if any(file.name != locks.NAME for file in path.iterdir()):
+            raise InputError(f"{path}: found a folder that is not empty and no ensemble; choose another")
+
     @classmethod
     def begin(cls, path: Path, manifest: Mapping[str, Any]) -> Store:
-        """Start a store, or go on with one of the same ensemble.
+        """Start a store, or continue one of the same ensemble, in a folder that this process has locked.
+
+        Parameters
+        ----------
+        path : Path
+            Folder; it exists.
+        manifest : mapping
+            Description of the ensemble.
 
         Raises
         ------
         InputError
             The folder holds something else, or another ensemble; or pyarrow is not installed.
         """
-        _require_parquet()
-        path = Path(path)
+        cls.require_usable(path)
+        atomic.remove_drafts(path)
         if (path / MANIFEST).exists():
             store = cls(path)
             other = [key for key in _SAME if store.manifest.get(key) != manifest[key]]
             if other:
                 raise InputError(
                     f"{path}: found an ensemble that differs in {', '.join(other)}; expected the same one, "
-                    "to go on with it. Choose another folder, or remove this one"
+                    "to continue it. Choose another folder, or remove this one"
                 )
             return store
-        if path.exists() and any(path.iterdir()):
-            raise InputError(f"{path}: found a folder that is not empty and no ensemble; choose another")
-        (path / "pieces").mkdir(parents=True, exist_ok=True)
-        _write(path / MANIFEST, json.dumps({**manifest, "complete": False}, indent=1) + "\n")
+        (path / "pieces").mkdir(exist_ok=True)
+        atomic.write(path / MANIFEST, json.dumps({**manifest, "complete": False}, indent=1) + "\n")
         return cls(path)
+
+    def __repr__(self) -> str:
+        return display.text(f"Store '{self.path}'", self._rows())
+
+    def _repr_html_(self) -> str:
+        tables = {"Members": self.to_dataframe()} if self.done else {}
+        return display.page(f"Store '{self.path}'", self._rows(), tables=tables)
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in _DEPRECATED]
+
+    def _rows(self) -> list[tuple[str, str]]:
+        manifest = self.manifest
+        return [
+            ("building", str(manifest["building"])),
+            ("members", f"{self.done} of {self.count} run"),
+            ("parameters", ", ".join(manifest["paths"])),
+            ("objectives" if manifest["objectives"] else "outputs", ", ".join(manifest["kept"])),
+            ("step", f"{manifest['step_seconds']:g} s, {manifest['scheme']}"),
+        ]
 
     @property
     def count(self) -> int:
@@ -113,47 +167,53 @@ class Store:
         return self.count - sum(last - first for first, last in self.gaps())
 
     def gaps(self) -> list[tuple[int, int]]:
-        """Stretches that have not been run: first member and the one behind the last."""
+        """Members that have not been run: ranges of the first and the one after the last."""
         if self.complete:
             return []
         gaps, at = [], 0
-        for first, last in sorted(self._pieces()):
+        for first, last in sorted(self._chunks()):
             if first > at:
                 gaps.append((at, first))
             at = max(at, last)
         return gaps if at >= self.count else [*gaps, (at, self.count)]
 
-    def add(self, piece: Piece, members: Members) -> None:
-        """Keep a stretch: written whole or not at all.
+    def add(self, chunk: Chunk, members: Members) -> None:
+        """Write a chunk, completely or not at all.
 
         Parameters
         ----------
-        piece : Piece
+        chunk : Chunk
             Its results.
         members : Members
             Its samples.
         """
         import pyarrow.parquet as pq
 
-        last = piece.first + len(piece.closure)
-        target = self.path / "pieces" / f"{piece.first:012d}-{last:012d}.parquet"
-        part = target.with_suffix(".part")
-        pq.write_table(self._table(piece, members), part)
-        part.replace(target)
+        last = chunk.first + len(chunk.closure)
+        target = self.path / "pieces" / f"{chunk.first:012d}-{last:012d}.parquet"
+        with atomic.drafted(target) as draft:
+            pq.write_table(self._table(chunk, members), draft)
 
     def finish(self) -> None:
-        """Join the stretches to one file and mark the store as complete."""
+        """Join the chunks to one file and mark the store as complete."""
+        if self.complete:
+            return
+        with atomic.drafted(self.path / RESULTS) as draft:
+            self._join(draft)
+        self.manifest["complete"] = True
+        atomic.write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
+        shutil.rmtree(self.path / "pieces", ignore_errors=True)
+
+    def _join(self, target: Path) -> None:
+        """Write all chunks to one file, a part at a time."""
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        if self.complete:
-            return
-        part = self.path / f"{RESULTS}.part"
         rows = max(_GROUP // self._width(), 1)
         held: list[pa.Table] = []
         writer: pq.ParquetWriter | None = None
         for table in self._ordered():
-            writer = writer or pq.ParquetWriter(part, table.schema)
+            writer = writer or pq.ParquetWriter(target, table.schema)
             held.append(table)
             joined = pa.concat_tables(held)
             whole = len(joined) // rows * rows
@@ -165,13 +225,20 @@ class Store:
             if len(rest):
                 writer.write_table(rest.combine_chunks(), row_group_size=rows)
             writer.close()
-        part.replace(self.path / RESULTS)
-        self.manifest["complete"] = True
-        _write(self.path / MANIFEST, json.dumps(self.manifest, indent=1) + "\n")
-        shutil.rmtree(self.path / "pieces", ignore_errors=True)
 
-    def table(self) -> pd.DataFrame:
-        """Samples, objectives, closure and reasons of failure by member; no series."""
+    def to_dataframe(self) -> pd.DataFrame:
+        """Samples, objectives, relative energy-balance residual and failures by member; no series.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each member that has been run.
+
+        Raises
+        ------
+        InputError
+            No member has been run.
+        """
         import pandas as pd
         import pyarrow.parquet as pq
 
@@ -183,8 +250,19 @@ class Store:
         whole: pd.DataFrame = pd.concat(found).drop_duplicates("member")
         return whole.sort_values("member").set_index("member")
 
-    def dataset(self, first: int = 0, last: int | None = None) -> xr.Dataset:
-        """Members from `first` to before `last`, as `sweep` gives them.
+    def to_xarray(self, first: int = 0, last: int | None = None) -> xr.Dataset:
+        """Members from `first` to before `last`, as `sweep` returns them.
+
+        Parameters
+        ----------
+        first, last : int
+            First member, and the one after the last. Default: all.
+
+        Returns
+        -------
+        xarray.Dataset
+            Each output over (member, time), or each objective over (member); the samples; ``closure``, the
+            relative energy-balance residual [-].
 
         Raises
         ------
@@ -204,27 +282,44 @@ class Store:
         if not np.array_equal(members, np.arange(first, until)):
             raise InputError(
                 f"{self.path}: members {first} to {until - 1} are not all there; {self.done} of {self.count} "
-                "have been run. Run the sweep again: it goes on"
+                "have been run. Run the sweep again: it continues"
             )
         dims = ("member",) if self.manifest["objectives"] else ("member", "time")
         data: dict[str, Any] = {}
         for name, unit in self.manifest["kept"].items():
             values = table.column(name).combine_chunks()
             numbers = values.to_numpy(zero_copy_only=False) if len(dims) == 1 else _matrix(values)
-            data[name] = xr.DataArray(numbers, dims=dims, attrs={"units": unit} if unit else {})
+            data[name] = xr.DataArray(numbers, dims=dims, attrs=attributes(name, unit))
+        units = self.manifest.get("sample_units", {})
         for path in self.manifest["paths"]:
-            data[f"sample: {path}"] = ("member", table.column(f"sample: {path}").to_pandas().to_numpy())
+            column = table.column(f"sample: {path}").to_pandas().to_numpy()
+            data[f"sample: {path}"] = ("member", column, attributes(path, units.get(path, "")))
         data["closure"] = ("member", table.column("closure").to_numpy(), CLOSURE)
         reasons = zip(members, table.column("failure").to_pylist(), strict=True)
         coords: dict[str, Any] = {"member": members}
         if len(dims) > 1:
             times = pd.DatetimeIndex(self.manifest["time"]).tz_localize("UTC")
             coords |= time_coordinates(times.tz_convert(parse_timezone(self.manifest["timezone"])))
-        attributes = {
+        facts = {
             "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
             "timezone": self.manifest["timezone"],
+            "mascarin_version": self.manifest["mascarin_version"],
         }
-        return xr.Dataset(data, coords=coords, attrs=attributes)
+        return xr.Dataset(data, coords=coords, attrs=facts)
+
+    def table(self) -> pd.DataFrame:
+        """Deprecated name of `to_dataframe`."""
+        return self.to_dataframe()
+
+    def dataset(self, first: int = 0, last: int | None = None) -> xr.Dataset:
+        """Deprecated name of `to_xarray`.
+
+        Parameters
+        ----------
+        first, last : int
+            First member, and the one after the last. Default: all.
+        """
+        return self.to_xarray(first, last)
 
     def _width(self) -> int:
         """Numbers in a row."""
@@ -232,8 +327,8 @@ class Store:
         rows = 1 if self.manifest["objectives"] else len(self.manifest["time"])
         return kept * rows + len(self.manifest["paths"]) + 3
 
-    def _pieces(self) -> list[tuple[int, int]]:
-        names = (_PIECE.fullmatch(file.name) for file in (self.path / "pieces").glob("*.parquet"))
+    def _chunks(self) -> list[tuple[int, int]]:
+        names = (_CHUNK.fullmatch(file.name) for file in (self.path / "pieces").glob("*.parquet"))
         return [(int(name[1]), int(name[2])) for name in names if name]
 
     def _files(self) -> list[Path]:
@@ -245,32 +340,32 @@ class Store:
         return found
 
     def _ordered(self) -> Iterator[pa.Table]:
-        """Tables of the stretches in the order of the members, each member once."""
+        """Tables of the chunks in the order of the members, each member once."""
         import pyarrow.parquet as pq
 
         at = 0
-        for first, last in sorted(self._pieces()):
+        for first, last in sorted(self._chunks()):
             if last <= at:
                 continue
             table = pq.read_table(self.path / "pieces" / f"{first:012d}-{last:012d}.parquet")
             yield table.slice(max(at - first, 0))
             at = last
 
-    def _table(self, piece: Piece, members: Members) -> pa.Table:
+    def _table(self, chunk: Chunk, members: Members) -> pa.Table:
         import pyarrow as pa
 
-        count = len(piece.closure)
-        numbers = range(piece.first, piece.first + count)
+        count = len(chunk.closure)
+        numbers = range(chunk.first, chunk.first + count)
         columns: dict[str, Any] = {"member": pa.array(numbers, pa.int64())}
         for path, values in members.numbers.items():
             columns[f"sample: {path}"] = pa.array(values)
-        for path, shapes in members.shapes.items():
-            columns[f"sample: {path}"] = pa.array([json.dumps(shape, sort_keys=True) for shape in shapes])
+        for path, structures in members.structures.items():
+            columns[f"sample: {path}"] = pa.array([json.dumps(shape, sort_keys=True) for shape in structures])
         for k, name in enumerate(self.manifest["kept"]):
-            column = np.ascontiguousarray(piece.kept[..., k]) if piece.kept.size else None
+            column = np.ascontiguousarray(chunk.kept[..., k]) if chunk.kept.size else None
             columns[name] = self._column(column, count)
-        columns["closure"] = pa.array(piece.closure)
-        columns["failure"] = pa.array([piece.failures.get(member) for member in numbers], pa.string())
+        columns["closure"] = pa.array(chunk.closure)
+        columns["failure"] = pa.array([chunk.failures.get(member) for member in numbers], pa.string())
         return pa.table(columns)
 
     def _column(self, values: Any, count: int) -> Any:
@@ -286,12 +381,6 @@ class Store:
 def _matrix(column: Any) -> Any:
     rows = column.type.list_size
     return column.flatten().to_numpy(zero_copy_only=False).reshape(-1, rows)
-
-
-def _write(target: Path, text: str) -> None:
-    part = target.with_name(f"{target.name}.part")
-    part.write_text(text, encoding="utf-8")
-    part.replace(target)
 
 
 def _require_parquet() -> None:

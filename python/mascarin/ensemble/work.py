@@ -1,4 +1,4 @@
-"""What one worker does: a stretch of members, run and reduced to what is kept."""
+"""The work of one worker: a chunk of members, run and reduced to what is kept."""
 
 from __future__ import annotations
 
@@ -30,30 +30,30 @@ Objective = Callable[["xr.Dataset"], Any]
 CLOSURE: Final = {"units": "1", "long_name": "relative energy-balance residual"}
 """Attributes of the variable ``closure``."""
 
-#: Series that are held at once before they are reduced to objectives. [bytes]
-_HELD: Final = 64 * 2**20
-#: Compiled buildings that a worker keeps at hand.
-_KEPT: Final = 4
+#: Series that are kept in memory at once before they are reduced to objectives. [bytes]
+_IN_MEMORY: Final = 64 * 2**20
+#: Compiled buildings that a worker keeps for the next chunks.
+_MOST_COMPILED: Final = 4
 
 
 @dataclass(frozen=True)
-class Recipe:
-    """All that the members have in common; small enough to travel to a worker.
+class EnsembleInputs:
+    """All that the members have in common; it is sent to every worker.
 
     Attributes
     ----------
     building : Building
-        The building; parameters that all members share are in it.
+        The building; values that all members have in common are in it.
     climate : Climate
         Its weather.
     options : RunOptions
         Options of the runs.
     ranges : mapping of str to (float, float)
-        Ranges of the samples, so that every worker chooses the same mesh.
+        Ranges of the samples, so that every worker chooses the same mesh. [unit of each]
     objectives : mapping of str to callable
         What is kept of each member instead of its series: functions of a Dataset over (member, time).
     identity : str
-        Hash of all this; what a worker keeps compiled is known by it.
+        Hash of all this; a worker finds its compiled buildings by it.
     """
 
     building: Building
@@ -63,17 +63,17 @@ class Recipe:
     objectives: Mapping[str, Objective]
     identity: str
 
-    def compiled(self, shape: Mapping[str, Any]) -> Simulation:
-        """The building of a shape in the climate."""
-        building = self.building.replace(shape) if shape else self.building
+    def compiled(self, structure: Mapping[str, Any]) -> Simulation:
+        """Compile the building with a structure in the climate."""
+        building = self.building.replace(structure) if structure else self.building
         return Simulation(building, self.climate, **self.options.keywords(), ranges=self.ranges)
 
-    def simulation(self, shape: Mapping[str, Any]) -> Simulation:
-        """The same, kept at hand for the next stretch."""
-        key = (self.identity, repr(sorted(shape.items())))
+    def simulation(self, structure: Mapping[str, Any]) -> Simulation:
+        """The same, kept for the next chunk."""
+        key = (self.identity, repr(sorted(structure.items())))
         if key not in _COMPILED:
-            _COMPILED[key] = self.compiled(shape)
-            while len(_COMPILED) > _KEPT:
+            _COMPILED[key] = self.compiled(structure)
+            while len(_COMPILED) > _MOST_COMPILED:
                 _COMPILED.popitem(last=False)
         _COMPILED.move_to_end(key)
         return _COMPILED[key]
@@ -83,17 +83,17 @@ _COMPILED: OrderedDict[tuple[str, str], Simulation] = OrderedDict()
 
 
 @dataclass(frozen=True)
-class Piece:
-    """Results of a stretch of members.
+class Chunk:
+    """Results of a chunk of members.
 
     Attributes
     ----------
     first : int
         Its first member.
     kept : ndarray, shape (members, rows, outputs) or (members, objectives)
-        Series, or objectives where some were asked for; NaN for a member that failed. [unit of each]
+        Series, or objectives where there are some; NaN for a member that failed. [unit of each]
     closure : ndarray, shape (members,)
-        Energy closure. [-]
+        Relative energy-balance residual. [-]
     failures : mapping of int to str
         Members that failed, counted from the start of the ensemble, and why.
     """
@@ -104,19 +104,19 @@ class Piece:
     failures: Mapping[int, str]
 
 
-def run_stretch(
-    recipe: Recipe, members: Members, first: int, report: Callable[[int], object] | None = None
-) -> Piece:
-    """Run a stretch of members.
+def run_chunk(
+    inputs: EnsembleInputs, members: Members, first: int, report: Callable[[int], object] | None = None
+) -> Chunk:
+    """Run a chunk of members.
 
     Parameters
     ----------
-    recipe : Recipe
+    inputs : EnsembleInputs
         What they have in common.
     members : Members
-        The stretch.
+        The chunk.
     first : int
-        Place of its first member in the ensemble.
+        Position of its first member in the ensemble.
     report : callable, optional
         Called with the number of members done.
     """
@@ -124,19 +124,19 @@ def run_stretch(
     closure = np.full(members.count, np.nan)
     failures: dict[int, str] = {}
     done = 0
-    for shape, places in members.groups():
+    for structure, rows in members.groups():
         try:
-            simulation = recipe.simulation(shape)
+            simulation = inputs.simulation(structure)
         except MascarinError as error:
-            # Such as a period that another place's climate does not cover: the other shapes go on.
-            failures |= {first + place: str(error) for place in places}
+            # Such as a period that the climate of another place does not cover: the others go on.
+            failures |= {first + row: str(error) for row in rows}
             continue
-        for batch in _batches(recipe, simulation, places):
+        for batch in _batches(inputs, simulation, rows):
             vectors = _vectors(simulation, members, batch)
             before = done
-            tell = None if report is None else (lambda count, _, before=before: report(before + count))
-            records, closures, failed = simulation.ensemble(vectors, progress=tell)
-            kept = _reduced(recipe, simulation, records)
+            call = None if report is None else (lambda count, _, before=before: report(before + count))
+            records, closures, failed = simulation.ensemble(vectors, progress=call)
+            kept = _reduced(inputs, simulation, records)
             if values is None:
                 values = np.full((members.count, *kept.shape[1:]), np.nan)
             values[batch], closure[batch] = kept, closures
@@ -145,37 +145,60 @@ def run_stretch(
                 values[batch[failure.member]] = np.nan
             done += len(batch)
     if values is None:
-        width = len(recipe.objectives) if recipe.objectives else 0
+        width = len(inputs.objectives) if inputs.objectives else 0
         values = np.full((members.count, width), np.nan)
-    return Piece(first, values, closure, dict(sorted(failures.items())))
+    return Chunk(first, values, closure, dict(sorted(failures.items())))
 
 
-def _batches(recipe: Recipe, simulation: Simulation, places: list[int]) -> list[list[int]]:
-    """Members that are run at once: all, or so few that their series fit in memory."""
-    size = len(places)
-    if recipe.objectives:
+def attributes(name: str, unit: str) -> dict[str, str]:
+    """Attributes of a variable: its name, and its unit where it has one."""
+    return {"long_name": name, **({"units": unit} if unit else {})}
+
+
+def dataset(outputs: list[Output], index: pd.DatetimeIndex, records: Array) -> xr.Dataset:
+    """Series by name over (member, time); times as in all results."""
+    import xarray as xr
+
+    return xr.Dataset(
+        {
+            output.name: xr.DataArray(
+                records[:, :, k],
+                dims=("member", "time"),
+                attrs=attributes(output.name, output.unit),
+            )
+            for k, output in enumerate(outputs)
+        },
+        coords=time_coordinates(index),
+        attrs={"timezone": str(index.tz)},
+    )
+
+
+def _batches(inputs: EnsembleInputs, simulation: Simulation, rows: list[int]) -> list[list[int]]:
+    """Members that are run at once: all, or as many as have room in memory with their series."""
+    size = len(rows)
+    if inputs.objectives:
         row = 8 * len(simulation.index) * len(simulation.outputs)
-        size = max(_HELD // row // 8 * 8, 8)
-    return [places[k : k + size] for k in range(0, len(places), size)]
+        size = max(_IN_MEMORY // row // 8 * 8, 8)
+    return [rows[k : k + size] for k in range(0, len(rows), size)]
 
 
-def _vectors(simulation: Simulation, members: Members, places: list[int]) -> Array:
-    vectors = np.tile(simulation.values, (len(places), 1))
+def _vectors(simulation: Simulation, members: Members, rows: list[int]) -> Array:
+    vectors = np.tile(simulation.values, (len(rows), 1))
     for path, column in members.numbers.items():
-        vectors[:, simulation.position(path)] = column[places]
+        vectors[:, simulation.position(path)] = column[rows]
     return vectors
 
 
-def _reduced(recipe: Recipe, simulation: Simulation, records: Array) -> Array:
-    """Series, or what the objectives make of them."""
-    if not recipe.objectives:
+def _reduced(inputs: EnsembleInputs, simulation: Simulation, records: Array) -> Array:
+    """Series, or the objectives calculated from them."""
+    if not inputs.objectives:
         return records
     series = dataset(simulation.outputs, simulation.index, records)
     columns = []
-    for name, objective in recipe.objectives.items():
+    for name, objective in inputs.objectives.items():
         try:
             column = np.asarray(objective(series), dtype=np.float64)
-        except Exception as error:  # whatever the user's function does
+        except Exception as error:  # a function of the user can raise anything
             raise InputError(f"objective '{name}' failed: {error!r}") from error
         if column.shape != (len(records),):
             raise InputError(
@@ -184,21 +207,3 @@ def _reduced(recipe: Recipe, simulation: Simulation, records: Array) -> Array:
             )
         columns.append(column)
     return np.stack(columns, axis=-1)
-
-
-def dataset(outputs: list[Output], index: pd.DatetimeIndex, records: Array) -> xr.Dataset:
-    """Series by name over (member, time); times are UTC without a zone."""
-    import xarray as xr
-
-    return xr.Dataset(
-        {
-            output.name: xr.DataArray(
-                records[:, :, k],
-                dims=("member", "time"),
-                attrs={"units": output.unit, "long_name": output.name},
-            )
-            for k, output in enumerate(outputs)
-        },
-        coords=time_coordinates(index),
-        attrs={"timezone": str(index.tz)},
-    )

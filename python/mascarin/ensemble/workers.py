@@ -1,4 +1,4 @@
-"""Stretches of members handed to workers; what a dying worker had in hand is run again."""
+"""Chunks of members sent to workers; the chunks of a worker that dies are run again."""
 
 from __future__ import annotations
 
@@ -10,65 +10,66 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from typing import Final
 
 from mascarin.ensemble.members import Members
-from mascarin.ensemble.work import Piece, Recipe, run_stretch
+from mascarin.ensemble.work import Chunk, EnsembleInputs, run_chunk
 from mascarin.errors import MascarinError, SolverError
 
-#: What a stretch should take: long beside the cost of handing it over, short beside what a kill may lose. [s]
-STRETCH: Final = 5.0
-#: Members of the first stretch of each worker, which shows how fast they are.
+#: Duration of a chunk: long compared with the cost of sending it, short enough that little is lost when a
+#: worker dies. [s]
+CHUNK_SECONDS: Final = 5.0
+#: Members of the first chunk of each worker, which shows how fast they are.
 FIRST: Final = 16
-#: Stretches waiting for each worker.
+#: Chunks waiting for each worker.
 QUEUED: Final = 2
-#: How often a stretch is given to a worker before it counts as one that kills workers.
+#: How often a chunk is sent to a worker before the ensemble fails.
 ATTEMPTS: Final = 3
 
 Gap = tuple[int, int]
 
 
 def here(
-    recipe: Recipe, members: Members, gaps: list[Gap], report: Callable[[int], object] | None
-) -> Iterator[Piece]:
-    """Run stretches in this process, on all its threads."""
+    inputs: EnsembleInputs, members: Members, gaps: list[Gap], report: Callable[[int], object] | None
+) -> Iterator[Chunk]:
+    """Run chunks in this process, on all its threads."""
     size, done = FIRST, 0
     for first, last in gaps:
         at = first
         while at < last:
             until = min(at + size, last)
             began, before = time.monotonic(), done
-            tell = None if report is None else (lambda count, before=before: report(before + count))
-            piece = run_stretch(recipe, members.part(at, until), at, tell)
+            call = None if report is None else (lambda count, before=before: report(before + count))
+            chunk = run_chunk(inputs, members.part(at, until), at, call)
             done += until - at
             if report is not None:
                 report(done)
-            yield piece
+            yield chunk
             size = _sized(until - at, time.monotonic() - began)
             at = until
 
 
 def elsewhere(
-    recipe: Recipe,
+    inputs: EnsembleInputs,
     members: Members,
     gaps: list[Gap],
     workers: int | Executor,
     report: Callable[[int], object] | None,
-) -> Iterator[Piece]:
-    """Run stretches on processes of this machine, or on whatever an executor stands for."""
+) -> Iterator[Chunk]:
+    """Run chunks on processes of this machine, or on the workers of an executor."""
     if isinstance(workers, Executor):
-        yield from _Dispatcher(recipe, members, gaps, workers, _slots(workers), report).pieces()
+        yield from _Dispatcher(inputs, members, gaps, workers, _slots(workers), report).chunks()
         return
-    dispatcher = _Dispatcher(recipe, members, gaps, _processes(workers), workers, report, renew=_processes)
+    dispatcher = _Dispatcher(inputs, members, gaps, _processes(workers), workers, report, renew=_processes)
     try:
-        yield from dispatcher.pieces()
+        yield from dispatcher.chunks()
     finally:
         dispatcher.executor.shutdown(wait=False, cancel_futures=True)
 
 
 class _Dispatcher:
-    """Keeps an executor busy with stretches, and gives lost ones out again."""
+    """Sends chunks to an executor, and lost ones again."""
 
     def __init__(
         self,
-        recipe: Recipe,
+        inputs: EnsembleInputs,
         members: Members,
         gaps: list[Gap],
         executor: Executor,
@@ -76,14 +77,14 @@ class _Dispatcher:
         report: Callable[[int], object] | None,
         renew: Callable[[int], Executor] | None = None,
     ) -> None:
-        self.recipe, self.members, self.report = recipe, members, report
+        self.inputs, self.members, self.report = inputs, members, report
         self.gaps = list(reversed(gaps))
         self.executor, self.slots, self.renew = executor, slots, renew
         self.size, self.done = FIRST, 0
-        self.running: dict[Future[Piece], tuple[Gap, float]] = {}
+        self.running: dict[Future[Chunk], tuple[Gap, float]] = {}
         self.attempts: dict[Gap, int] = {}
 
-    def pieces(self) -> Iterator[Piece]:
+    def chunks(self) -> Iterator[Chunk]:
         """Yield results as they come."""
         while self.gaps or self.running:
             while self.gaps and len(self.running) < QUEUED * self.slots:
@@ -91,22 +92,22 @@ class _Dispatcher:
             ready, _ = wait(self.running, return_when=FIRST_COMPLETED)
             for future in ready:
                 if future not in self.running:
-                    continue  # given out again together with others of a broken pool
+                    continue  # sent again together with others of a broken pool
                 gap, began = self.running.pop(future)
-                piece = self._result(future, gap)
-                if piece is None:
+                chunk = self._result(future, gap)
+                if chunk is None:
                     continue
                 self.done += gap[1] - gap[0]
-                # A stretch waits in the queue before it runs.
+                # A chunk waits in the queue before it runs.
                 self.size = _sized(gap[1] - gap[0], (time.monotonic() - began) / QUEUED)
                 if self.report is not None:
                     self.report(self.done)
-                yield piece
+                yield chunk
 
     def _cut(self) -> Gap:
-        """The next stretch."""
+        """The next chunk: first member and the one after the last."""
         first, last = self.gaps.pop()
-        # A stretch that was lost is given out again as it was.
+        # A chunk that was lost is sent again unchanged.
         if (first, last) in self.attempts or last - first <= self.size:
             return first, last
         self.gaps.append((first + self.size, last))
@@ -115,33 +116,33 @@ class _Dispatcher:
     def _submit(self, gap: Gap) -> None:
         part = self.members.part(*gap)
         try:
-            future = self.executor.submit(run_stretch, self.recipe, part, gap[0])
+            future = self.executor.submit(run_chunk, self.inputs, part, gap[0])
         except BrokenExecutor as error:
             self._lost(gap, error)
             return
         self.running[future] = (gap, time.monotonic())
 
-    def _result(self, future: Future[Piece], gap: Gap) -> Piece | None:
+    def _result(self, future: Future[Chunk], gap: Gap) -> Chunk | None:
         try:
             return future.result()
         except MascarinError:
-            # What was given cannot be run, here or anywhere.
+            # An input that cannot be run by any worker.
             raise
-        except Exception as error:  # whatever the executor says when a worker is gone
+        except Exception as error:  # executors differ in what they raise when a worker is gone
             self._lost(gap, error)
             return None
 
     def _lost(self, gap: Gap, error: Exception) -> None:
-        """Give a stretch out again; a pool of which a process died is replaced."""
+        """Send a chunk again; a pool of which a process died is replaced."""
         self.attempts[gap] = self.attempts.get(gap, 0) + 1
         if self.attempts[gap] >= ATTEMPTS:
             raise SolverError(
-                f"members {gap[0]} to {gap[1] - 1}: their worker died {ATTEMPTS} times ({error!r}); what is "
-                "finished is kept. Run these members alone to see why, or give the workers more memory"
+                f"members {gap[0]} to {gap[1] - 1}: their worker died {ATTEMPTS} times ({error!r}); finished "
+                "chunks are kept. Run these members alone to see why, or give the workers more memory"
             ) from error
         self.gaps.append(gap)
         if isinstance(error, BrokenExecutor) and self.renew is not None:
-            # All that was under way in the broken pool is lost with it.
+            # All chunks that ran in the broken pool are lost with it.
             for other, (lost, _) in list(self.running.items()):
                 if not (other.done() and other.exception() is None):
                     del self.running[other]
@@ -152,24 +153,24 @@ class _Dispatcher:
 
 
 def _sized(members: int, seconds: float) -> int:
-    """Members of a stretch that takes about `STRETCH`, whole packs of eight; at most four times the last."""
-    fitting = int(members * STRETCH / max(seconds, 1e-3))
+    """Members of a chunk of about `CHUNK_SECONDS`: a multiple of eight, at most four times the last."""
+    fitting = int(members * CHUNK_SECONDS / max(seconds, 1e-3))
     return max(min(fitting, 4 * members) // 8 * 8, 8)
 
 
 def _processes(workers: int) -> ProcessPoolExecutor:
-    # Fresh processes: a copy of one whose threads are running may stand still for ever.
+    # New processes: a copy of one whose threads are running may never continue.
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_one_thread)
 
 
 def _one_thread() -> None:
-    """One worker, one thread: the workers share the cores."""
+    """One thread for each worker, because the workers use all cores together."""
     os.environ["RAYON_NUM_THREADS"] = "1"
 
 
 def _slots(executor: Executor) -> int:
-    """Workers behind an executor, as far as it says."""
+    """Number of workers of an executor, where it can be found out."""
     for name in ("_max_workers", "_client"):
         found = getattr(executor, name, None)
         if isinstance(found, int):

@@ -1,4 +1,4 @@
-"""Buildings and studies that come with Mascarin."""
+"""Example buildings and studies."""
 
 from __future__ import annotations
 
@@ -6,26 +6,39 @@ from pathlib import Path
 from typing import Final
 
 from mascarin.errors import InputError, did_you_mean
-from mascarin.examples.small import box as box
-from mascarin.examples.small import box_climate as box_climate
+from mascarin.examples.small import box, box_climate
+from mascarin.examples.synthetic import SyntheticWall, synthetic_wall
+
+__all__ = ["FOLDER", "STUDIES", "SyntheticWall", "box", "box_climate", "locate", "synthetic_wall"]
 
 FOLDER: Final = Path(__file__).parent
-#: Studies by the name they are called with.
+#: Example studies by name.
 STUDIES: Final = {"wall-bench": FOLDER / "wall_bench" / "study.yaml", "lgi": FOLDER / "lgi" / "study.yaml"}
 
 
 def locate(name: str) -> Path:
-    """A study file, or a study that comes with Mascarin.
+    """Find a study file, or an example study by its name.
 
     Parameters
     ----------
     name : str
-        Path of a file, or a key of `STUDIES`.
+        Path of a file or of a folder with ``study.yaml``, or a key of `STUDIES`.
+
+    Returns
+    -------
+    Path
+        The study file.
 
     Raises
     ------
     InputError
-        It is neither.
+        There is no such file and no such example.
+
+    Examples
+    --------
+    >>> from mascarin.examples import locate
+    >>> locate("lgi").name
+    'study.yaml'
     """
     path = Path(name)
     if path.is_file():
@@ -35,6 +48,6 @@ def locate(name: str) -> Path:
     if path.is_dir() and (path / "study.yaml").is_file():
         return path / "study.yaml"
     raise InputError(
-        f"{name}: no such study file; expected a YAML file or one of {', '.join(STUDIES)}. "
+        f"{name}: found no study file, expected a YAML file or one of {', '.join(STUDIES)}. "
         f"{did_you_mean(name, STUDIES)}".rstrip()
     )

@@ -31,14 +31,14 @@ def box_climate() -> Climate:
     Examples
     --------
     >>> len(box_climate().index)
-    73
+    72
     """
     import numpy as np
     import pandas as pd
 
     from mascarin.weather import Climate
 
-    hours = np.arange(73)
+    hours = np.arange(72)
     day = 2.0 * np.pi * hours / 24.0
     light = np.maximum(-np.cos(day), 0.0)
     table = pd.DataFrame(
@@ -50,7 +50,7 @@ def box_climate() -> Climate:
             "direct_normal": 700.0 * light,
             "diffuse_horizontal": 120.0 * light,
         },
-        index=pd.date_range("2001-07-01", periods=73, freq="1h", tz="UTC-07:00"),
+        index=pd.date_range("2001-07-01", periods=72, freq="1h", tz="UTC-07:00"),
     )
     names = list(table.columns)
     return Climate.from_table(

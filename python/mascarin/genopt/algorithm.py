@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass, replace
 
 from mascarin.errors import did_you_mean
-from mascarin.genopt.catalog import ALGORITHMS, Algorithm
+from mascarin.genopt.catalog import ALGORITHMS, REMOVED, Algorithm
 from mascarin.genopt.project import Project
 from mascarin.genopt.searches import Context
 from mascarin.genopt.settings import check_groups, checked
 from mascarin.genopt.syntax import Block, ordered
-from mascarin.optimization import Continuous, Discrete, Observer, Optimiser, Space
+from mascarin.optimization import Continuous, Discrete, Observer, Optimizer, Space
 
 
 @dataclass
@@ -20,7 +20,7 @@ class Built:
 
     Parameters
     ----------
-    optimiser : Optimiser
+    optimiser : Optimizer
         The search.
     name : str
         The name after ``Main =``.
@@ -32,7 +32,7 @@ class Built:
         Whether GenOpt has no algorithm of this name.
     """
 
-    optimiser: Optimiser
+    optimiser: Optimizer
     name: str
     stop_at_error: bool = True
     counts_equal: bool = False
@@ -108,6 +108,8 @@ def chosen(project: Project) -> str:
     if main is None:
         place = project.algorithm.end or project.algorithm.place
         report.error(place, "missing specification of 'Main' in 'Algorithm'")
+    elif main.value in REMOVED:
+        report.error(main.place, f"algorithm '{main.value}' was removed; {REMOVED[main.value]}")
     elif main.value not in ALGORITHMS:
         hint = did_you_mean(main.value, ALGORITHMS)
         report.error(main.place, f"algorithm '{main.value}' is not known. {hint}".rstrip())
@@ -158,7 +160,7 @@ def _space(project: Project, name: str, rule: Algorithm) -> Space:
             project.discrete[0].place,
             f"Algorithm '{name}' can only have continuous variables. {verb} {listed} "
             f"{'are' if len(names) > 1 else 'is'} specified as discrete. Choose an algorithm that takes "
-            "them, such as PSOCC, GPSPSOCCHJ, MascarinHookeJeeves or MascarinDE",
+            "them, such as PSOCC, GPSPSOCCHJ or MascarinHookeJeeves",
         )
         project.report.raise_if_any()
     continuous = tuple(

@@ -9,7 +9,7 @@ from typing import Final
 from mascarin.genopt import modern, searches
 from mascarin.genopt.searches import Context
 from mascarin.genopt.settings import Keys
-from mascarin.optimization import CoordinateSearch, HookeJeeves, Optimiser
+from mascarin.optimization import CoordinateSearch, HookeJeeves, Optimizer
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Algorithm:
     """
 
     keys: tuple[str, ...]
-    build: Callable[[Context, Keys], Optimiser]
+    build: Callable[[Context, Keys], Optimizer]
     optional: tuple[str, ...] = ()
     discrete: bool = False
     mixed: bool = False
@@ -68,7 +68,6 @@ _GPS_TAIL = (
 _GPS_KEYS = (*_MULTI, *_DECREASE, *_GPS_TAIL)
 _GPS_OPTIONAL = (*_MULTI, *_DECREASE)
 _DAG_KEYS = ("Alpha", "Beta", "Gamma", "K0", "KStar", "LMax", "Kappa", "EpsilonM", "EpsilonX")
-_DIFFERENTIAL = ("PopulationSize", "NumberOfGeneration", "Weight", "Crossover", "Tolerance")
 
 ALGORITHMS: Final[dict[str, Algorithm]] = {
     "GPSHookeJeeves": Algorithm(_GPS_KEYS, searches.pattern(HookeJeeves), _GPS_OPTIONAL, mixed=True),
@@ -122,11 +121,14 @@ ALGORITHMS: Final[dict[str, Algorithm]] = {
     "MascarinHookeJeeves": Algorithm(
         _GPS_KEYS, searches.pattern(HookeJeeves), _GPS_OPTIONAL, discrete=True, own=True
     ),
-    "MascarinDE": Algorithm(
-        ("Seed", *_DIFFERENTIAL), modern.differential, _DIFFERENTIAL, discrete=True, bounds=True, own=True
-    ),
     "MascarinCMAES": Algorithm(
         ("Seed", "Sigma", "PopulationSize"), modern.covariance, ("Sigma", "PopulationSize"), own=True
     ),
 }
 """All algorithms by name, GenOpt's own first."""
+
+REMOVED: Final[dict[str, str]] = {
+    "MascarinDE": "choose MascarinCMAES for continuous parameters, or PSOCC, which also takes discrete ones "
+    "(docs/coming-from-genopt.md)"
+}
+"""Algorithms of earlier versions, and what to choose instead."""

@@ -22,7 +22,7 @@ from mascarin.genopt.numbers import double_text
 from mascarin.genopt.program import RUN_PREFIX, SEPARATORS, Program
 from mascarin.genopt.project import Project
 from mascarin.genopt.records import Log, Record, Replay, check_table, fingerprint, write_table
-from mascarin.optimization.pattern import EXHAUSTED
+from mascarin.optimization import EXHAUSTED
 from mascarin.progress import Progress
 
 LOG_NAME = "GenOpt.log"

@@ -22,7 +22,7 @@ from mascarin.optimization import (
     NelderMead,
     Observer,
     OneAtATime,
-    Optimiser,
+    Optimizer,
     ParticleSwarm,
     Space,
     SufficientDecrease,
@@ -57,7 +57,7 @@ class Context:
 
 def pattern(
     kind: type[HookeJeeves] | type[CoordinateSearch],
-) -> Callable[[Context, Keys], Optimiser]:
+) -> Callable[[Context, Keys], Optimizer]:
     """Make the builder of a search on a mesh.
 
     Parameters
@@ -71,7 +71,7 @@ def pattern(
         Makes the search from context and keys.
     """
 
-    def make(context: Context, keys: Keys) -> Optimiser:
+    def make(context: Context, keys: Keys) -> Optimizer:
         space, settings = context.space, context.project.settings
         starts = None
         if "MultiStart" in keys:
@@ -130,7 +130,7 @@ def _swarm_rules(keys: Keys) -> SwarmRules:
     """How particles move."""
     return SwarmRules(
         topology=keys["NeighborhoodTopology"],
-        neighbours=keys["NeighborhoodSize"],
+        neighbors=keys["NeighborhoodSize"],
         particles=keys["NumberOfParticle"],
         generations=keys["NumberOfGeneration"],
         seed=keys["Seed"],
@@ -143,7 +143,7 @@ def _swarm_rules(keys: Keys) -> SwarmRules:
     )
 
 
-def swarm(context: Context, keys: Keys) -> Optimiser:
+def swarm(context: Context, keys: Keys) -> Optimizer:
     """Make a particle swarm, on a mesh when one is given.
 
     Parameters
@@ -155,7 +155,7 @@ def swarm(context: Context, keys: Keys) -> Optimiser:
 
     Returns
     -------
-    Optimiser
+    Optimizer
         The search.
     """
     mesh = (keys["MeshSizeDivider"], keys["InitialMeshSizeExponent"]) if "MeshSizeDivider" in keys else None
@@ -171,7 +171,7 @@ def swarm(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def hybrid(context: Context, keys: Keys) -> Optimiser:
+def hybrid(context: Context, keys: Keys) -> Optimizer:
     """Make a particle swarm followed by Hooke-Jeeves.
 
     Parameters
@@ -183,7 +183,7 @@ def hybrid(context: Context, keys: Keys) -> Optimiser:
 
     Returns
     -------
-    Optimiser
+    Optimizer
         The search.
     """
     settings = context.project.settings
@@ -205,7 +205,7 @@ def hybrid(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def simplex(context: Context, keys: Keys) -> Optimiser:
+def simplex(context: Context, keys: Keys) -> Optimizer:
     """Make the simplex search of Nelder and Mead.
 
     Parameters
@@ -217,7 +217,7 @@ def simplex(context: Context, keys: Keys) -> Optimiser:
 
     Returns
     -------
-    Optimiser
+    Optimizer
         The search.
     """
     settings = context.project.settings
@@ -234,7 +234,7 @@ def simplex(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def gradient(context: Context, keys: Keys) -> Optimiser:
+def gradient(context: Context, keys: Keys) -> Optimizer:
     """Make the gradient descent with Armijo line search.
 
     Parameters
@@ -246,7 +246,7 @@ def gradient(context: Context, keys: Keys) -> Optimiser:
 
     Returns
     -------
-    Optimiser
+    Optimizer
         The search.
     """
     rules = ArmijoRules(
@@ -270,7 +270,7 @@ def gradient(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def golden(context: Context, keys: Keys) -> Optimiser:
+def golden(context: Context, keys: Keys) -> Optimizer:
     """Make the golden section search.
 
     Parameters
@@ -282,7 +282,7 @@ def golden(context: Context, keys: Keys) -> Optimiser:
 
     Returns
     -------
-    Optimiser
+    Optimizer
         The search.
     """
     limit = context.project.settings.max_iterations
@@ -297,7 +297,7 @@ def golden(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def fibonacci(context: Context, keys: Keys) -> Optimiser:
+def fibonacci(context: Context, keys: Keys) -> Optimizer:
     """Make the Fibonacci search.
 
     Parameters
@@ -309,7 +309,7 @@ def fibonacci(context: Context, keys: Keys) -> Optimiser:
 
     Returns
     -------
-    Optimiser
+    Optimizer
         The search.
     """
     limit = context.project.settings.max_iterations
@@ -317,7 +317,7 @@ def fibonacci(context: Context, keys: Keys) -> Optimiser:
     return FibonacciSearch(context.space, points, text=double_text, observer=context.observer, remember=False)
 
 
-def mesh(context: Context, keys: Keys) -> Optimiser:
+def mesh(context: Context, keys: Keys) -> Optimizer:
     """Make the run of all combinations.
 
     Parameters
@@ -329,7 +329,7 @@ def mesh(context: Context, keys: Keys) -> Optimiser:
 
     Returns
     -------
-    Optimiser
+    Optimizer
         The search.
     """
     _check_logarithms(context)
@@ -343,7 +343,7 @@ def mesh(context: Context, keys: Keys) -> Optimiser:
     )
 
 
-def parametric(context: Context, keys: Keys) -> Optimiser:
+def parametric(context: Context, keys: Keys) -> Optimizer:
     """Make the run of one parameter at a time.
 
     Parameters
@@ -355,7 +355,7 @@ def parametric(context: Context, keys: Keys) -> Optimiser:
 
     Returns
     -------
-    Optimiser
+    Optimizer
         The search.
     """
     _check_logarithms(context)

@@ -83,9 +83,6 @@ _NUMBERS = {
     "Sigma": _POSITIVE,
     "PopulationSize": Number(whole=True, low=4),
     "MaxEvaluations": _COUNT,
-    "Tolerance": _NOT_NEGATIVE,
-    "Weight": Number(low=0, high=2, open_low=True),
-    "Crossover": Number(low=0, high=1, open_low=True),
 }
 _BOOLEANS = {"ModifyStoppingCriterion", "StopAtError"}
 _WORDS = {"MultiStart": ["Uniform"], "NeighborhoodTopology": ["gbest", "lbest", "vonNeumann"]}

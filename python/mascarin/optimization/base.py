@@ -1,4 +1,4 @@
-"""The ask and tell interface that every optimiser here has."""
+"""Base of all optimizers: they propose points and receive their costs."""
 
 from __future__ import annotations
 
@@ -10,54 +10,74 @@ from dataclasses import replace
 from mascarin.optimization.space import Evaluation, Point, Space
 
 Steps = Generator[list[Point], list[Evaluation], str]
-"""What an algorithm is inside: it yields points, receives their evaluations and returns why it ended."""
+"""An algorithm as a generator: it yields points, receives their evaluations and returns why it ended."""
+
+CONVERGED = "required accuracy is reached"
+"""Reason of a search that ended by itself."""
+
+EXHAUSTED = "maximum number of evaluations is reached"
+"""Reason of a search that was ended by its limit."""
 
 Known = Callable[[Point], float | None]
 """Cost of a point if it has been evaluated already, else None."""
 
 
 class Observer:
-    """Listens to an optimiser; this one ignores everything.
+    """What is called during a search; this one does nothing.
 
-    A *sub* report tells of one trial, a *main* report closes an iteration. Reports come in the order of the
-    algorithm, whatever order the evaluations ran in.
+    A *sub* report is for one trial, a *main* report for the end of an iteration. Reports come in the order of
+    the algorithm, not in the order in which the evaluations ran.
+
+    Examples
+    --------
+    >>> class Printing(Observer):
+    ...     def main(self, evaluation, comment):
+    ...         print(f"{evaluation.cost:.2f} {comment}")
+    >>> from mascarin.optimization import OneAtATime, box
+    >>> search = OneAtATime(box(["x"], [0.0], [0.0], [1.0], step=[1]), observer=Printing())
+    >>> best = minimize(search, lambda points: [p.x[0] + 1.0 for p in points])
+    1.00 Initial point.
+    2.00 Function evaluation successful.
     """
 
     def sub(self, evaluation: Evaluation, comment: str) -> None:
-        """One trial of an iteration."""
+        """After one trial of an iteration."""
 
     def main(self, evaluation: Evaluation, comment: str) -> None:
-        """The result that closes an iteration."""
+        """After an iteration, with its result."""
 
     def minimum(self, comment: str) -> None:
-        """The lowest point so far ends the search."""
+        """After the search, which ends at the point of lowest cost so far."""
 
     def restart(self) -> None:
-        """The iteration counters begin again because the step number rose."""
+        """Before iteration counters start again, because the step number was raised."""
 
     def note(self, text: str) -> None:
-        """A remark on the course of the search."""
+        """A remark during the search."""
 
     def summary(self, lines: Sequence[str]) -> None:
-        """A closing overview, as lines of text."""
+        """An overview after the search, as lines of text."""
 
 
-class Optimiser(ABC):
-    """Proposes points and learns from their costs.
+class Optimizer(ABC):
+    """Base of the optimizers: proposes points and receives their costs.
 
-    Call `ask` for points that may be evaluated at the same time, evaluate them, hand the results to `tell` in
-    the order asked, and repeat until `done`. Nothing depends on time or on the order in which evaluations
-    finish. To continue an interrupted search, build the same optimiser again and hand the recorded
+    Call `ask` for points that may be evaluated at the same time, evaluate them, give the results to `tell` in
+    the same order, and repeat until `done`. The result does not depend on time, nor on the order in which
+    evaluations finish. To continue an interrupted search, make the same optimizer again and give the recorded
     evaluations to `replay`.
+
+    An algorithm is a subclass with the method `_search`, a generator that yields lists of points, receives
+    their evaluations and returns why it ended.
 
     Parameters
     ----------
     space : Space
-        What may vary.
+        The parameters.
     observer : Observer, optional
-        Listens to the course of the search.
+        Called during the search.
     remember : bool
-        Whether points that repeat are answered from memory instead of being asked again.
+        Whether a point that repeats takes its known cost instead of being evaluated again.
 
     Attributes
     ----------
@@ -65,6 +85,15 @@ class Optimiser(ABC):
         Current step number of penalty functions [-].
     phase : int
         Which of several searches in a row is running, counted from 0 [-].
+
+    Examples
+    --------
+    >>> from mascarin.optimization import Evaluation, GoldenSection, box
+    >>> search = GoldenSection(box(["x"], [0.5], [0.0], [1.0]), points=20)
+    >>> while points := search.ask():
+    ...     search.tell([Evaluation(p, (p.x[0] - 0.3) ** 2) for p in points])
+    >>> abs(search.best.point.x[0] - 0.3) < 1e-3
+    True
     """
 
     def __init__(self, space: Space, *, observer: Observer | None = None, remember: bool = True) -> None:
@@ -86,9 +115,9 @@ class Optimiser(ABC):
         """The algorithm itself, as a generator of batches."""
 
     def guesses(self, limit: int, known: Known) -> list[Point]:
-        """Points that are likely to be asked next, for workers that would be idle.
+        """Points that are likely to be asked for next, for processors that have nothing else to do.
 
-        Evaluating them never changes the course of the search, only how long it takes.
+        Evaluating them does not change the result of the search, only the time that it takes.
 
         Parameters
         ----------
@@ -106,12 +135,12 @@ class Optimiser(ABC):
 
     @property
     def expected(self) -> int | None:
-        """Number of evaluations the whole search takes, None when it cannot be told before [-]."""
+        """Number of evaluations the whole search takes, None when it is not known [-]."""
         return None
 
     @property
     def remaining(self) -> int | None:
-        """Estimate of the number of evaluations still to come, None when there is none [-]."""
+        """Estimate of the number of further evaluations, None when it is not known [-]."""
         return None if self.expected is None else max(self.expected - self._count, 0)
 
     @property
@@ -122,7 +151,7 @@ class Optimiser(ABC):
 
     @property
     def reason(self) -> str:
-        """Why the search ended, empty while it goes on."""
+        """Why the search ended; empty before that."""
         return self._reason
 
     @property
@@ -140,7 +169,7 @@ class Optimiser(ABC):
             Before the first evaluation.
         """
         if self._best is None:
-            msg = "no evaluation has been told yet"
+            msg = "no evaluation yet; call tell first"
             raise LookupError(msg)
         return self._best
 
@@ -150,8 +179,8 @@ class Optimiser(ABC):
         Parameters
         ----------
         ahead : int
-            How many further points to add as guesses of what comes next, so that a batch evaluator is
-            better used; needs `remember` [-].
+            Number of guesses of the next points to add, so that all processors are used; needs
+            `remember` [-].
 
         Returns
         -------
@@ -174,20 +203,20 @@ class Optimiser(ABC):
         return list(self._asked)
 
     def tell(self, results: Sequence[Evaluation]) -> None:
-        """Take the evaluations of the last `ask`, in the order asked.
+        """Take the evaluations of the points of the last `ask`, in their order.
 
         Parameters
         ----------
         results : sequence of Evaluation
-            One per point; a cost that is not a number counts as infinite.
+            One per point; a cost that is NaN is taken as infinite.
 
         Raises
         ------
         ValueError
-            When the results do not belong to the points asked.
+            When the results are not those of the points of the last `ask`.
         """
         if [(r.point.x, r.point.choices) for r in results] != [(p.x, p.choices) for p in self._asked]:
-            msg = f"expected the evaluations of the {len(self._asked)} points asked, in that order"
+            msg = f"expected the evaluations of the {len(self._asked)} points of the last ask, in their order"
             raise ValueError(msg)
         clean = [replace(r, cost=math.inf) if math.isnan(r.cost) else r for r in results]
         self._asked = []
@@ -198,7 +227,7 @@ class Optimiser(ABC):
             self._advance(clean)
 
     def replay(self, evaluations: Iterable[Evaluation]) -> None:
-        """Learn from evaluations recorded before, so that only new points are asked.
+        """Take evaluations that were recorded before, so that only new points are evaluated.
 
         Parameters
         ----------
@@ -210,7 +239,7 @@ class Optimiser(ABC):
         self._drain()
 
     def _known(self, point: Point) -> float | None:
-        """Cost of a remembered point."""
+        """Cost of a point that was evaluated before."""
         found = self._memory.get(point)
         return None if found is None else found.cost
 
@@ -221,7 +250,7 @@ class Optimiser(ABC):
             self._move(self._steps, None)
 
     def _drain(self) -> None:
-        """Go on as long as the memory answers."""
+        """Continue as long as all pending points have known costs."""
         while not self._reason and all(p in self._memory for p in self._pending):
             batch = []
             for p in self._pending:
@@ -234,7 +263,7 @@ class Optimiser(ABC):
             self._advance(batch)
 
     def _advance(self, batch: list[Evaluation]) -> None:
-        """Hand one whole batch to the algorithm."""
+        """Give the evaluations of one batch to the algorithm."""
         for e in batch:
             self._count = max(self._count, e.number)
             if self._best is None or e.cost < self._best.cost:
@@ -243,23 +272,23 @@ class Optimiser(ABC):
             self._move(self._steps, batch)
 
     def _move(self, steps: Steps, batch: list[Evaluation] | None) -> None:
-        """Resume the generator and keep what it wants next."""
+        """Continue the generator and keep the points it yields next."""
         try:
-            # A fresh generator must be started by next().
+            # A new generator is started by next().
             self._pending = next(steps) if batch is None else steps.send(batch)
         except StopIteration as end:
             self._pending = []
             self._reason = str(end.value) or "finished"
 
 
-def minimise(
-    optimiser: Optimiser, evaluate: Callable[[list[Point]], Sequence[float]], *, ahead: int = 0
+def minimize(
+    optimizer: Optimizer, evaluate: Callable[[list[Point]], Sequence[float]], *, ahead: int = 0
 ) -> Evaluation:
-    """Drive an optimiser to its end.
+    """Evaluate the points of an optimizer until it ends.
 
     Parameters
     ----------
-    optimiser : Optimiser
+    optimizer : Optimizer
         The search.
     evaluate : callable
         Costs of a batch of points, in their order [unit of the cost].
@@ -269,9 +298,17 @@ def minimise(
     Returns
     -------
     Evaluation
-        The lowest point.
+        The point of lowest cost.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import HookeJeeves, box
+    >>> space = box(["x", "y"], initial=[0.0, 0.0], lower=[-1.0, -1.0], upper=[1.0, 1.0])
+    >>> best = minimize(HookeJeeves(space), lambda points: [p.x[0] ** 2 + p.x[1] ** 2 for p in points])
+    >>> best.cost
+    0.0
     """
-    while points := optimiser.ask(ahead):
+    while points := optimizer.ask(ahead):
         costs = evaluate(points)
-        optimiser.tell([Evaluation(p, float(c)) for p, c in zip(points, costs, strict=True)])
-    return optimiser.best
+        optimizer.tell([Evaluation(p, float(c)) for p, c in zip(points, costs, strict=True)])
+    return optimizer.best

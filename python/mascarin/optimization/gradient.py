@@ -1,4 +1,4 @@
-"""Gradient descent with finite differences that become finer and an Armijo line search.
+"""Gradient descent with Armijo line search; the increments of the finite differences are refined.
 
 References
 ----------
@@ -12,8 +12,7 @@ import math
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
 
-from mascarin.optimization.base import Observer, Optimiser, Steps
-from mascarin.optimization.pattern import CONVERGED, EXHAUSTED
+from mascarin.optimization.base import CONVERGED, EXHAUSTED, Observer, Optimizer, Steps
 from mascarin.optimization.space import Evaluation, Point, Space
 from mascarin.optimization.transform import free_step, original, to_free
 
@@ -27,7 +26,7 @@ class ArmijoRules:
     Parameters
     ----------
     alpha : float
-        Share of the predicted decrease that a step must reach [-].
+        Part of the predicted decrease that a step must reach [-].
     beta : float
         Ratio of successive step lengths, between 0 and 1 [-].
     gamma : float
@@ -39,9 +38,14 @@ class ArmijoRules:
     l_max, kappa : int
         Limits of the line search before it begins again [-].
     epsilon_m : float
-        Ends the search when the increments are finer [-].
+        Ends the search when the increments are smaller [-].
     epsilon_x : float
         Ends the search when a step is shorter, in steps of the parameters [-].
+
+    Examples
+    --------
+    >>> ArmijoRules(beta=0.7).beta
+    0.7
     """
 
     alpha: float = 0.5
@@ -55,7 +59,7 @@ class ArmijoRules:
     epsilon_x: float = 0.05
 
 
-class ArmijoGradient(Optimiser):
+class ArmijoGradient(Optimizer):
     """Descent along a gradient by forward differences.
 
     Parameters
@@ -69,7 +73,20 @@ class ArmijoGradient(Optimiser):
     text : callable
         Text of a number in comments.
     observer, remember
-        See `Optimiser`.
+        See `Optimizer`.
+
+    References
+    ----------
+    Polak (1997), doi:10.1007/978-1-4612-0663-7. Armijo (1966), doi:10.2140/pjm.1966.16.1.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box, minimize
+    >>> space = box(["x", "y"], initial=[0.4, 0.4], lower=[-1.0, -1.0], upper=[1.0, 1.0])
+    >>> search = ArmijoGradient(space)
+    >>> best = minimize(search, lambda points: [1.0 + p.x[0] ** 2 + p.x[1] ** 2 for p in points])
+    >>> best.cost < 1.001
+    True
     """
 
     def __init__(
@@ -94,7 +111,7 @@ class ArmijoGradient(Optimiser):
         self._k = self._rules.k_star
 
     def _search(self) -> Steps:
-        """Directions, line searches and refinements in turn."""
+        """Directions, line searches and refinements, one after the other."""
         rules, m = self._rules, 0
         y = [0.0] * len(self._origin)
         (here,) = yield [self._point(y)]
@@ -135,7 +152,7 @@ class ArmijoGradient(Optimiser):
     def _line_search(
         self, y: list[float], h: list[float], here: Evaluation, slope: float
     ) -> Generator[list[Point], list[Evaluation], tuple[float, Evaluation]]:
-        """The longest step of the series that keeps its promise, or its next longer one if that is lower."""
+        """The longest step with the required decrease, or the next longer one if its cost is lower."""
         rules, k, loops, start, restarted = self._rules, self._k, 0, self._k, False
 
         def length(exponent: int) -> float:
@@ -144,7 +161,7 @@ class ArmijoGradient(Optimiser):
         def label(exponent: int) -> str:
             return f"Line search. lambda = {self._text(length(exponent))}."
 
-        def keeps(e: Evaluation, exponent: int) -> bool:
+        def decreases(e: Evaluation, exponent: int) -> bool:
             return self._change(e, here) <= length(exponent) * rules.alpha * slope
 
         short, long = yield from self._pair(y, h, k, label)
@@ -155,10 +172,10 @@ class ArmijoGradient(Optimiser):
                 short, long = yield from self._pair(y, h, k, label)
             elif loops > rules.l_max + rules.kappa:
                 break
-            elif not keeps(short, k):
+            elif not decreases(short, k):
                 k, long = k + 1, short
                 (short,) = yield from self._reported([_along(y, h, length(k))], [label(k)])
-            elif keeps(long, k - 1):
+            elif decreases(long, k - 1):
                 k -= 1
                 (further,) = yield from self._reported([_along(y, h, length(k - 1))], [label(k - 1)])
                 short, long = long, further
@@ -170,7 +187,7 @@ class ArmijoGradient(Optimiser):
         return length(k), short
 
     def _pair(self, y: list[float], h: list[float], k: int, label: Callable[[int], str]) -> _Batch:
-        """Two neighbouring step lengths, evaluated together."""
+        """Two neighboring step lengths, evaluated together."""
         ends = [_along(y, h, self._rules.beta**j) for j in (k, k - 1)]
         return (yield from self._reported(ends, [label(k), label(k - 1)]))
 
@@ -182,7 +199,7 @@ class ArmijoGradient(Optimiser):
         return found
 
     def _point(self, y: list[float]) -> Point:
-        """Parameter values for normalised coordinates around the initial point."""
+        """Parameter values for normalized coordinates around the initial point."""
         t = [o + v * w for o, v, w in zip(self._origin, y, self._width, strict=True)]
         return Point(original(self.space, t), (), self.step_number)
 

@@ -1,4 +1,4 @@
-"""Full grids and one-at-a-time variations, evaluated for their own sake."""
+"""Full grids, and variations of one parameter at a time."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 
-from mascarin.optimization.base import Observer, Optimiser, Steps
+from mascarin.optimization.base import Observer, Optimizer, Steps
 from mascarin.optimization.space import Continuous, Point, Space
 
 _DONE = "all points are evaluated"
@@ -31,13 +31,13 @@ def levels(c: Continuous, intervals: int) -> list[float]:
     if n == 0:
         return [c.initial]
     if intervals < 0:
-        # Rounding must not carry the last level beyond the bound.
+        # Rounding must not move the last level outside the bound.
         ratio = math.log(c.upper / c.lower) / n
         return [min(c.lower * math.exp(i * ratio), c.upper) for i in range(n + 1)]
     return [c.lower + i * (c.upper - c.lower) / n for i in range(n + 1)]
 
 
-class Grid(Optimiser):
+class Grid(Optimizer):
     """All combinations of levels, the first parameter varying fastest.
 
     Parameters
@@ -45,13 +45,20 @@ class Grid(Optimiser):
     space : Space
         Parameters; the step of a continuous one is its number of intervals, see `levels`.
     batch : int, optional
-        Number of points asked at once; all when absent [-].
+        Number of points in a batch; all when absent [-].
     rounding : callable, optional
         Rounded value for a value and its parameter's index.
     fresh_step : int
-        Step number that points carry before their evaluation [-].
+        Step number of points before their evaluation [-].
     observer, remember
-        See `Optimiser`.
+        See `Optimizer`.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box
+    >>> grid = Grid(box(["x", "y"], [0.0, 0.0], [0.0, 0.0], [1.0, 1.0], step=[2, 1]))
+    >>> [p.x for p in grid.ask()]
+    [(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 1.0), (1.0, 1.0)]
     """
 
     def __init__(
@@ -96,15 +103,22 @@ class Grid(Optimiser):
         return _DONE
 
 
-class OneAtATime(Optimiser):
-    """Each parameter through its levels while the others keep their initial values.
+class OneAtATime(Optimizer):
+    """Vary each parameter through its levels while the others keep their initial values.
 
     Parameters
     ----------
     space : Space
         Parameters; the step of a continuous one is its number of intervals, see `levels`.
     observer, remember
-        See `Optimiser`.
+        See `Optimizer`.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box
+    >>> search = OneAtATime(box(["x", "y"], [0.0, 0.0], [0.0, 0.0], [1.0, 1.0], step=[1, 1]))
+    >>> [p.x for p in search.ask()]
+    [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
     """
 
     def __init__(self, space: Space, *, observer: Observer | None = None, remember: bool = True) -> None:

@@ -12,7 +12,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Generator
 
 from mascarin.errors import InputError, SolverError
-from mascarin.optimization.base import Observer, Optimiser, Steps
+from mascarin.optimization.base import Observer, Optimizer, Steps
 from mascarin.optimization.space import Evaluation, Point, Space
 
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
@@ -20,7 +20,7 @@ _COMMENT = "Linesearch."
 _Batch = Generator[list[Point], list[Evaluation], list[Evaluation]]
 
 
-class IntervalSearch(Optimiser):
+class IntervalSearch(Optimizer):
     """Base of the searches that shrink an interval around a minimum.
 
     Parameters
@@ -34,7 +34,7 @@ class IntervalSearch(Optimiser):
     text : callable
         Text of a number in the overview.
     observer, remember
-        See `Optimiser`.
+        See `Optimizer`.
     """
 
     def __init__(
@@ -63,19 +63,19 @@ class IntervalSearch(Optimiser):
         return self._points
 
     @abstractmethod
-    def _share(self, done: int) -> float:
-        """Part of the interval that is kept when `done` points have been evaluated [-]."""
+    def _kept(self, done: int) -> float:
+        """Part of the interval that is kept after `done` evaluations. [-]"""
 
     def _search(self) -> Steps:
-        """Compare two inner points and cut off the worse end."""
+        """Compare two inner points and remove the end beside the higher cost."""
         c = self.space.continuous[0]
         low, high = c.lower, c.upper
-        width = self._share(2) * (high - low)
+        width = self._kept(2) * (high - low)
         left, right = yield from self._evaluate([high - width, low + width])
         done = 2
         while done < self._points:
             close = self._difference is not None and abs(left.cost - right.cost) < self._difference
-            width = self._share(done + 1) * width
+            width = self._kept(done + 1) * width
             if right.cost < left.cost:
                 low, left = left.point.x[0], right
                 (right,) = yield from self._evaluate([low + width])
@@ -107,7 +107,7 @@ class IntervalSearch(Optimiser):
         return found
 
     def _overview(self, low: float, high: float, whole: float) -> None:
-        """Report the interval that is left."""
+        """Report the remaining interval."""
         rows = [
             ("Lower border of uncertainty interval        ", low),
             ("Upper border of uncertainty interval        ", high),
@@ -121,18 +121,40 @@ class IntervalSearch(Optimiser):
 
 
 class GoldenSection(IntervalSearch):
-    """Interval search that keeps the same share of the interval every time."""
+    """Interval search that keeps the same part of the interval every time.
 
-    def _share(self, done: int) -> float:
+    Parameters are those of `IntervalSearch`.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box, minimize
+    >>> search = GoldenSection(box(["x"], [0.5], [0.0], [1.0]), points=20)
+    >>> best = minimize(search, lambda points: [(p.x[0] - 0.3) ** 2 for p in points])
+    >>> abs(best.point.x[0] - 0.3) < 1e-3
+    True
+    """
+
+    def _kept(self, done: int) -> float:
         """The golden ratio."""
         return _GOLDEN
 
 
 class FibonacciSearch(IntervalSearch):
-    """Interval search that keeps shares of Fibonacci numbers, best for a given number of points."""
+    """Interval search by ratios of Fibonacci numbers, which are optimal for a given number of points.
 
-    def _share(self, done: int) -> float:
-        """Ratio of two neighbouring Fibonacci numbers, counted down to one half at the last point."""
+    Parameters are those of `IntervalSearch`.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box, minimize
+    >>> search = FibonacciSearch(box(["x"], [0.5], [0.0], [1.0]), points=20)
+    >>> best = minimize(search, lambda points: [(p.x[0] - 0.3) ** 2 for p in points])
+    >>> abs(best.point.x[0] - 0.3) < 1e-3
+    True
+    """
+
+    def _kept(self, done: int) -> float:
+        """Ratio of two neighboring Fibonacci numbers, counted down to one half at the last point."""
         n = self._points - done + 2
         return _fibonacci(n) / _fibonacci(n + 1)
 
@@ -143,7 +165,7 @@ def golden_points(reduction: float) -> int:
     Parameters
     ----------
     reduction : float
-        Length of the last interval as a share of the first [-].
+        Length of the last interval as a part of the first [-].
 
     Returns
     -------
@@ -159,7 +181,7 @@ def fibonacci_points(reduction: float) -> int:
     Parameters
     ----------
     reduction : float
-        Length of the last interval as a share of the first [-].
+        Length of the last interval as a part of the first [-].
 
     Returns
     -------

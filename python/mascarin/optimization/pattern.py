@@ -1,415 +1,32 @@
-"""Generalised pattern search: Hooke-Jeeves and coordinate search on a mesh, with several starts.
+"""Pattern searches: Hooke-Jeeves and coordinate search, with several starts.
 
 References
 ----------
 Hooke and Jeeves (1961), doi:10.1145/321062.321069.
-Torczon (1997), On the convergence of pattern search algorithms, doi:10.1137/S1052623493250780.
-Polak and Wetter (2006), Precision control for generalized pattern search algorithms,
-doi:10.1137/040605527.
 """
 
 from __future__ import annotations
 
-import math
-import sys
-from abc import abstractmethod
-from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import dataclass
-from itertools import chain, islice, zip_longest
-from typing import TYPE_CHECKING
+from itertools import chain, islice
 
-from mascarin.errors import InputError, SolverError
-from mascarin.optimization.base import Known, Observer, Optimiser, Steps
-from mascarin.optimization.random import Lcg48
-from mascarin.optimization.space import Evaluation, Point, Space
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-CONVERGED = "required accuracy is reached"
-EXHAUSTED = "maximum number of evaluations is reached"
-
-_REFUSED = sys.float_info.max
-_Batch = Generator[list[Point], list[Evaluation], Evaluation]
-_Trials = Generator[list[Point], list[Evaluation], list[Evaluation]]
+from mascarin.optimization.base import Known
+from mascarin.optimization.mesh_search import OUTSIDE, MeshSearch, Trials
+from mascarin.optimization.space import Evaluation, Point
 
 
-def decimal_rounding(space: Space) -> Callable[[float, int], float]:
-    """Rounding to nine decimal places below the step of each parameter.
+class PatternSearch(MeshSearch):
+    """Base of the pattern searches: a search on a mesh that can predict the next points.
 
-    Points of the mesh that are reached on different ways then are the same number.
+    Parameters are those of `MeshSearch`; `HookeJeeves` and `CoordinateSearch` are two such searches.
 
-    Parameters
-    ----------
-    space : Space
-        The parameters with their steps.
-
-    Returns
-    -------
-    callable
-        Rounded value for a value and the index of its parameter.
+    Examples
+    --------
+    >>> issubclass(HookeJeeves, PatternSearch)
+    True
     """
-    places = [9 - math.floor(math.log10(abs(c.step))) if c.step != 0 else 15 for c in space.continuous]
-    return lambda value, i: round(value, places[i])
-
-
-@dataclass(frozen=True)
-class SufficientDecrease:
-    """Condition that a step must lower the cost by more than a given amount.
-
-    Parameters
-    ----------
-    zeta : float
-        Share of `phi` by which the cost must fall, relative to the first cost [-].
-    phi : callable
-        Required decrease for the mesh size, the step number and the evaluation [-].
-    alpha : float, optional
-        Exponent that ties the mesh size to `phi`, between 0 and 1 [-].
-    counts_steps : bool
-        Whether `phi` depends on the step number.
-    """
-
-    zeta: float
-    phi: Callable[[float, int, Evaluation], float]
-    alpha: float | None = None
-    counts_steps: bool = False
-
-
-class PatternSearch(Optimiser):
-    """Base of the searches on a mesh that is refined whenever no neighbour is better.
-
-    Parameters
-    ----------
-    space : Space
-        Continuous parameters; discrete ones keep the value of the start.
-    divider : int
-        The mesh is `divider ** -exponent` wide, in steps of the parameters [-].
-    exponent : int
-        First mesh exponent [-].
-    increment : int
-        Added to the exponent at every reduction [-].
-    reductions : int
-        Number of reductions before the search ends [-].
-    starts : sequence of Point, optional
-        Points to start from, one after the other; the initial point of the space when absent.
-    max_evaluations : int, optional
-        Number of evaluations after which the search stops [-].
-    sufficient : SufficientDecrease, optional
-        Condition on a decrease; any decrease counts when absent.
-    penalty : bool
-        Whether the cost depends on the step number, which then rises with every reduction.
-    discrete_moves : bool
-        Whether discrete parameters are tried at other values; else they keep the value of the start.
-    rounding : callable, optional
-        Rounded value for a value and its parameter's index; `decimal_rounding` when absent.
-    text : callable
-        Text of a number in comments.
-    observer, remember
-        See `Optimiser`.
-    """
-
-    _minimum_at_end = True
-
-    def __init__(
-        self,
-        space: Space,
-        *,
-        divider: int = 2,
-        exponent: int = 0,
-        increment: int = 1,
-        reductions: int = 4,
-        starts: Sequence[Point] | None = None,
-        max_evaluations: int | None = None,
-        sufficient: SufficientDecrease | None = None,
-        penalty: bool = False,
-        discrete_moves: bool = False,
-        rounding: Callable[[float, int], float] | None = None,
-        text: Callable[[float], str] = repr,
-        observer: Observer | None = None,
-        remember: bool = True,
-    ) -> None:
-        super().__init__(space, observer=observer, remember=remember)
-        if divider < 2 or exponent < 0 or increment < 1 or reductions < 1:
-            msg = (
-                f"mesh of divider {divider}, exponent {exponent}, increment {increment} and "
-                f"{reductions} reductions: expected at least 2, 0, 1 and 1"
-            )
-            raise InputError(msg)
-        if starts is None:
-            space.require_start()
-        self._divider, self._exponent = divider, exponent
-        self._increment, self._reductions = increment, reductions
-        self._starts = list(starts) if starts is not None else [space.initial]
-        self._limit = max_evaluations
-        self._sufficient = sufficient
-        self._penalty = penalty
-        self._discrete_moves = discrete_moves
-        self._steps_count = penalty or (sufficient is not None and sufficient.counts_steps)
-        self._round = rounding or decimal_rounding(space)
-        self._text = text
-        # 0: the positive direction of a coordinate is tried first, 1: the negative one.
-        self._signs = [0] * len(space.continuous)
-        self._delta = self._mesh(exponent)
-        self._scale: float | None = None
-        self._current = 0
-        self._reduced = 0
-        self._before = 0
-        self._plan: Callable[[], Iterable[Point]] = tuple
-        self._shadows: dict[int, PatternSearch] = {}
-
-    # ------------------------------------------------------------------ the algorithm
-
-    def _search(self) -> Steps:
-        """All starts, one after the other."""
-        several = len(self._starts) > 1
-        converged = False
-        lowest = math.inf
-        for k, start in enumerate(self._starts):
-            self._current = k
-            self._before = self._count
-            self.step_number = 1
-            if several:
-                self.observer.note(f"Start search for point number {k + 1}.")
-            reason, end = yield from self._descend(start, several=several)
-            converged = converged or reason == CONVERGED
-            if several:
-                self.observer.note(f"Minimum cost obtained for this point {self._text(end.cost)}.")
-                if k > 0:
-                    verb = "further decreased" if end.cost < lowest else "did not further decrease"
-                    self.observer.note(f"Search {verb} the cost.")
-            lowest = min(lowest, end.cost)
-        if several and self._minimum_at_end:
-            self.observer.minimum("Minimum point.")
-        return CONVERGED if converged else EXHAUSTED
-
-    def _descend(
-        self, start: Point, *, several: bool
-    ) -> Generator[list[Point], list[Evaluation], tuple[str, Evaluation]]:
-        """One search from one start."""
-        exponent, done = self._exponent, 0
-        self._delta = self._mesh(exponent)
-        best = yield from self._evaluate(start.x, start.choices, self._plan_around(start.x))
-        previous = best
-        self._both(best, "Initial point.")
-        iteration = 0
-        while True:
-            far = yield from self._global_search(best, previous, iteration)
-            near: list[Evaluation] = []
-            if not far or not self._better(_lowest(far), best):
-                near = yield from self._local_search(best)
-            candidates = near + far
-            found = _lowest(candidates) if candidates else best
-            iteration += 1
-            self._reduced = done
-            previous = best
-            if candidates and self._better(found, best):
-                where = "Local" if _index(candidates, found) < len(near) else "Global"
-                best = found
-                self._both(best, f"{where} search reduced cost{self._sufficiently_dot}")
-            elif done == self._reductions:
-                self._both(best, f"{self._failed} Maximum number of step reductions reached.")
-                if several:
-                    self._both(best, "Best iterate of current search.")
-                elif self._minimum_at_end:
-                    self.observer.minimum("Minimum point.")
-                return CONVERGED, best
-            else:
-                exponent, best = yield from self._reduce(exponent, best)
-                previous = best
-                done += 1
-            if self._exhausted:
-                self.observer.minimum("Current lowest point.")
-                return EXHAUSTED, best
-
-    @abstractmethod
-    def _global_search(self, best: Evaluation, previous: Evaluation, iteration: int) -> _Trials:
-        """Trials away from the current point."""
-
-    def _reduce(
-        self, exponent: int, best: Evaluation
-    ) -> Generator[list[Point], list[Evaluation], tuple[int, Evaluation]]:
-        """Refine the mesh after an iteration without success."""
-        by = self._increment
-        if self._sufficient is not None and self._sufficient.alpha is not None:
-            return (yield from self._control_precision(exponent, best, self._sufficient))
-        exponent += by
-        self._delta = self._mesh(exponent)
-        comment = f"{self._failed} Reduce step size to '{self._text(self._delta)}'."
-        self._both(best, comment)
-        if self._steps_count:
-            best = yield from self._raise_step(best, comment)
-        return exponent, best
-
-    def _control_precision(
-        self, exponent: int, best: Evaluation, rule: SufficientDecrease
-    ) -> Generator[list[Point], list[Evaluation], tuple[int, Evaluation]]:
-        """Let the mesh follow the precision that the required decrease asks for."""
-        alpha = rule.alpha or 0.0
-        before = rule.phi(self._delta, self.step_number, best)
-        after = rule.phi(self._delta, self.step_number + 1, best)
-        if not after < before:
-            msg = (
-                f"Phi does not fall when the step number rises from {self.step_number} by one "
-                f"({before!r} to {after!r}); with Alpha it must"
-            )
-            raise SolverError(msg)
-        if after**alpha / self._delta < self._delta:
-            ratio = math.log(self._delta / after ** (alpha / 2.0)) / math.log(self._divider)
-            by = int(self._increment * math.ceil(ratio / self._increment))
-            exponent += by
-            self._delta = self._mesh(exponent)
-            self.observer.note(
-                f"Set N = {self.step_number + 1}; Phi = {self._text(after)}; t = {by}; "
-                f"Delta = {self._text(self._delta)}."
-            )
-        comment = f"{self._failed} Reduce step size to '{self._text(self._delta)}'."
-        self._both(best, comment)
-        best = yield from self._raise_step(best, comment)
-        return exponent, best
-
-    def _raise_step(self, best: Evaluation, comment: str) -> _Batch:
-        """Next step number: counters start again and the point is evaluated for the new penalty."""
-        self.step_number += 1
-        self.observer.restart()
-        if self._penalty:
-            x = best.point.x
-            best = yield from self._evaluate(x, best.point.choices, self._plan_around(x))
-        self._both(best, comment)
-        return best
-
-    def _local_search(self, around: Evaluation) -> _Trials:
-        """Try both directions of every coordinate, going on from each success."""
-        low, trials = around, []
-        for i in range(len(self._signs)):
-            if self._exhausted:
-                break
-            trial = yield from self._perturb(low, i)
-            trials.append(trial)
-            if self._better(trial, low):
-                low = trial
-            elif not self._exhausted:
-                trial = yield from self._perturb(low, i)
-                trials.append(trial)
-                if self._better(trial, low):
-                    low = trial
-        if self._discrete_moves:
-            trials += yield from self._discrete_search(low)
-        return trials
-
-    def _discrete_search(self, low: Evaluation) -> _Trials:
-        """Try the other values of every discrete parameter, going on from each success.
-
-        Audet and Dennis (2001), doi:10.1137/S1052623499352024.
-        """
-        trials: list[Evaluation] = []
-        for j, d in enumerate(self.space.discrete):
-            here = low.point.choices
-            for k in range(d.size):
-                if k == here[j] or self._exhausted:
-                    continue
-                choices = (*here[:j], k, *here[j + 1 :])
-                trial = yield from self._evaluate(low.point.x, choices, tuple)
-                trials.append(trial)
-                better = self._better(trial, low)
-                if trial.cost != _REFUSED:
-                    verb = "reduced    " if better else "not reduced"
-                    self.observer.sub(trial, f"Cost {verb} at {d.name}, value {k + 1}.")
-                if better:
-                    low = trial
-        return trials
-
-    def _perturb(self, base: Evaluation, i: int) -> _Batch:
-        """One trial; after a failure the base itself, and the other direction comes next."""
-        name = self.space.continuous[i].name
-        x = self._moved(base.point.x, i, self._signs[i])
-        trial = yield from self._evaluate(x, base.point.choices, self._plan_poll(base.point.x, x, i))
-        at = f"at {name}{'-' if self._signs[i] else '+'}d{name}."
-        amount = "sufficiently " if self._sufficient else ""
-        feasible = trial.cost != _REFUSED
-        if self._better(trial, base):
-            if feasible:
-                self.observer.sub(trial, f"Cost {amount}reduced     {at}")
-            return trial
-        if feasible:
-            self.observer.sub(trial, f"Cost not {amount}reduced {at}")
-        self._signs[i] = 1 - self._signs[i]
-        return base
-
-    def _evaluate(
-        self, x: tuple[float, ...], choices: tuple[int, ...], plan: Callable[[], Iterable[Point]]
-    ) -> _Batch:
-        """Cost of a point; one outside the bounds costs more than any other and is not evaluated."""
-        point = self._point(x, choices)
-        if not self.space.feasible(point.x):
-            return Evaluation(point, _REFUSED, number=self._count)
-        self._plan = plan
-        (result,) = yield [point]
-        return result
-
-    def _better(self, new: Evaluation, old: Evaluation) -> bool:
-        """Whether a cost is lower, by the required amount where one is set."""
-        rule = self._sufficient
-        if rule is None:
-            return new.cost < old.cost
-        if self._scale is None:
-            if abs(old.cost) <= 1e-50:
-                scale = 1.0
-            else:
-                scale = self._scale = old.cost
-        else:
-            scale = self._scale
-        return (new.cost - old.cost) / scale < -rule.zeta * rule.phi(self._delta, self.step_number, new)
-
-    # ------------------------------------------------------------------ small helpers
-
-    @property
-    def remaining(self) -> int | None:
-        """Estimate: a round of neighbours for each mesh size left; later starts as earlier ones."""
-        around = 2 * len(self._signs) + sum(d.size - 1 for d in self.space.discrete if self._discrete_moves)
-        here = (self._reductions - self._reduced + 1) * around
-        used = self._before / self._current if self._current else self._count + here
-        later = (len(self._starts) - self._current - 1) * used
-        total = round(here + later)
-        return total if self._limit is None else min(total, max(self._limit - self._count, 0))
-
-    @property
-    def _failed(self) -> str:
-        """First sentence of the comment of an iteration without success."""
-        return f"Iteration step did not {'sufficiently ' if self._sufficient else ''}reduce cost."
-
-    @property
-    def _sufficiently_dot(self) -> str:
-        """End of the comment of an iteration with success."""
-        return " sufficiently ." if self._sufficient else "."
-
-    @property
-    def _exhausted(self) -> bool:
-        """Whether no more evaluations are allowed."""
-        return self._limit is not None and self._count >= self._limit
-
-    def _both(self, evaluation: Evaluation, comment: str) -> None:
-        """Report the end of an iteration."""
-        self.observer.sub(evaluation, comment)
-        self.observer.main(evaluation, comment)
-
-    def _mesh(self, exponent: int) -> float:
-        """Mesh size for an exponent [steps of the parameters]."""
-        return 1.0 / math.pow(self._divider, exponent)
-
-    def _moved(self, x: tuple[float, ...], i: int, sign: int) -> tuple[float, ...]:
-        """A neighbour on the mesh along one coordinate."""
-        step = self.space.continuous[i].step
-        return (*x[:i], x[i] + self._delta * (-step if sign else step), *x[i + 1 :])
-
-    def _point(self, x: Iterable[float], choices: tuple[int, ...]) -> Point:
-        """Rounded point at the current step number."""
-        rounded = tuple(self._round(v, i) for i, v in enumerate(x))
-        return Point(rounded, choices, self.step_number if self._steps_count else 1)
-
-    # ------------------------------------------------------------------ guesses for idle workers
 
     def guesses(self, limit: int, known: Known) -> list[Point]:
-        """Neighbours that this search would try next and the next points of later starts."""
+        """Neighbors that this search would try next, and the next points of later starts."""
         skip = set(self._pending)
         shadows = self._follow(known)
         ahead = chain(
@@ -422,11 +39,11 @@ class PatternSearch(Optimiser):
         )
         return list(islice(fresh, limit))
 
-    def _follow(self, known: Known) -> list[PatternSearch]:
+    def _follow(self, known: Known) -> list[MeshSearch]:
         """Advance a copy of every later start as far as known costs allow.
 
-        The copies assume that the earlier starts leave the directions as they are now. Where that is wrong
-        they only have guessed badly.
+        The copies assume that the earlier starts do not change the preferred directions. Where that is
+        wrong, their guesses are useless but do no harm.
         """
         for k in range(self._current + 1, len(self._starts)):
             if k not in self._shadows:
@@ -443,7 +60,7 @@ class PatternSearch(Optimiser):
         return list(self._shadows.values())
 
     def _shadow(self, start: Point) -> PatternSearch:
-        """A copy of this search for one start, which nobody listens to."""
+        """A copy of this search for one start, without an observer."""
         return type(self)(
             self.space,
             divider=self._divider,
@@ -458,125 +75,50 @@ class PatternSearch(Optimiser):
             remember=False,
         )
 
-    def _plan_around(self, x: tuple[float, ...]) -> Callable[[], Iterable[Point]]:
-        """All neighbours of a point, those in the preferred directions first."""
-        return lambda: chain.from_iterable(self._neighbours(x, i) for i in range(len(x)))
-
-    def _neighbours(self, x: tuple[float, ...], i: int) -> Iterator[Point]:
-        """Both neighbours along one coordinate."""
-        choices = self._starts[self._current].choices
-        for sign in (self._signs[i], 1 - self._signs[i]):
-            yield self._point(self._moved(x, i, sign), choices)
-
-    def _plan_poll(
-        self, base: tuple[float, ...], trial: tuple[float, ...], i: int
-    ) -> Callable[[], Iterable[Point]]:
-        """What comes after a trial, for its failure and for its success in turn."""
-
-        def plan() -> Iterator[Point]:
-            failure = chain(
-                islice(self._neighbours(base, i), 1, None),
-                chain.from_iterable(self._neighbours(base, j) for j in range(i + 1, len(base))),
-            )
-            success = chain.from_iterable(self._neighbours(trial, j) for j in range(i + 1, len(base)))
-            for pair in zip_longest(failure, success):
-                yield from (p for p in pair if p is not None)
-
-        return plan
-
 
 class HookeJeeves(PatternSearch):
-    """Pattern search that first leaps along the last successful move.
+    """Pattern search that first repeats the last successful move.
+
+    Parameters are those of `MeshSearch`.
 
     References
     ----------
     Hooke and Jeeves (1961), doi:10.1145/321062.321069.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box, minimize
+    >>> space = box(["x", "y"], initial=[0.0, 0.0], lower=[-1.0, -1.0], upper=[1.0, 1.0])
+    >>> best = minimize(HookeJeeves(space), lambda points: [p.x[0] ** 2 + p.x[1] ** 2 for p in points])
+    >>> best.cost
+    0.0
     """
 
-    def _global_search(self, best: Evaluation, previous: Evaluation, iteration: int) -> _Trials:
-        """Explore around the point that lies one more move ahead."""
+    def _global_search(self, best: Evaluation, previous: Evaluation, iteration: int) -> Trials:
+        """Explore around the point one more move ahead."""
         if iteration == 0:
             return (yield from self._local_search(best))
         ahead = tuple(2.0 * a - b for a, b in zip(best.point.x, previous.point.x, strict=True))
         base = yield from self._evaluate(ahead, best.point.choices, self._plan_around(ahead))
-        if base.cost != _REFUSED:
+        if base.cost != OUTSIDE:
             self.observer.sub(base, f"Exploration base, Delta = {self._text(self._delta)}.")
         return (yield from self._local_search(base))
 
 
 class CoordinateSearch(PatternSearch):
-    """Pattern search that only tries the neighbours of the current point."""
+    """Pattern search that only tries the neighbors of the current point.
 
-    def _global_search(self, best: Evaluation, previous: Evaluation, iteration: int) -> _Trials:
+    Parameters are those of `MeshSearch`.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box, minimize
+    >>> space = box(["x"], initial=[0.8], lower=[-1.0], upper=[1.0])
+    >>> minimize(CoordinateSearch(space), lambda points: [p.x[0] ** 2 for p in points]).cost
+    0.0
+    """
+
+    def _global_search(self, best: Evaluation, previous: Evaluation, iteration: int) -> Trials:
         """No trials away from the current point."""
         yield from ()
         return []
-
-
-def uniform_starts(
-    space: Space,
-    count: int,
-    seed: int,
-    *,
-    divider: int = 2,
-    exponent: int = 0,
-    rounding: Callable[[float, int], float] | None = None,
-    first: Point | None = None,
-) -> list[Point]:
-    """Starting points on the mesh around the initial point, uniformly random within the bounds.
-
-    Parameters
-    ----------
-    space : Space
-        Parameters with bounds.
-    count : int
-        Number of points; the first is the initial point [-].
-    seed : int
-        Seed of the random numbers [-].
-    divider, exponent : int
-        Mesh, as in `PatternSearch` [-].
-    rounding : callable, optional
-        As in `PatternSearch`.
-    first : Point, optional
-        Stands in for the initial point of the space.
-
-    Returns
-    -------
-    list of Point
-        The starts.
-
-    Raises
-    ------
-    InputError
-        When a parameter lacks a bound.
-    """
-    space.require_bounds()
-    to = rounding or decimal_rounding(space)
-    random = Lcg48(seed)
-    # The first draw of such a generator depends almost linearly on the seed.
-    random.uniform()
-    mesh = 1.0 / math.pow(divider, exponent)
-    starts = [first or space.initial]
-    for _ in range(count - 1):
-        x = []
-        for i, c in enumerate(space.continuous):
-            value = c.lower + random.uniform() * (c.upper - c.lower)
-            width = c.step * mesh
-            v = to(c.initial + round((value - c.initial) / width) * width, i)
-            if v < c.lower:
-                v = to(v + width, i)
-            elif v > c.upper:
-                v = to(v - width, i)
-            x.append(v)
-        starts.append(Point(tuple(x), tuple(random.below(d.size) for d in space.discrete)))
-    return starts
-
-
-def _lowest(evaluations: Sequence[Evaluation]) -> Evaluation:
-    """First evaluation of lowest cost."""
-    return min(evaluations, key=lambda e: e.cost)
-
-
-def _index(evaluations: Sequence[Evaluation], wanted: Evaluation) -> int:
-    """Position of the very object, not of an equal one."""
-    return next(i for i, e in enumerate(evaluations) if e is wanted)

@@ -1,4 +1,4 @@
-"""A small random generator whose stream is the same on every machine and version."""
+"""A random generator whose numbers are the same on every machine and in every version."""
 
 from __future__ import annotations
 
@@ -44,6 +44,6 @@ class Lcg48:
         while True:
             bits = self._bits(31)
             value = bits % bound
-            # The last incomplete block of the range would favour small values.
+            # The last incomplete block of the range would make small values more frequent.
             if bits - value + (bound - 1) < 1 << 31:
                 return value

@@ -13,8 +13,7 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
 
 from mascarin.errors import InputError, SolverError
-from mascarin.optimization.base import Observer, Optimiser, Steps
-from mascarin.optimization.pattern import CONVERGED, EXHAUSTED
+from mascarin.optimization.base import CONVERGED, EXHAUSTED, Observer, Optimizer, Steps
 from mascarin.optimization.space import Evaluation, Point, Space
 from mascarin.optimization.transform import free_step, original, to_free
 
@@ -34,7 +33,7 @@ _STRETCH = "expand step size in testing optimality condition"
 
 @dataclass(frozen=True, slots=True)
 class _Vertex:
-    """A corner of the simplex in free variables and its evaluation."""
+    """A corner of the simplex, in free variables, with its evaluation."""
 
     t: _Free
     e: Evaluation
@@ -47,8 +46,8 @@ class _Vertex:
 _One = Generator[list[Point], list[Evaluation], _Vertex]
 
 
-class NelderMead(Optimiser):
-    """Simplex search in free variables, restarted until no neighbour of the best point is lower.
+class NelderMead(Optimizer):
+    """Simplex search in free variables, restarted until no neighbor of the best point is lower.
 
     Parameters
     ----------
@@ -61,13 +60,25 @@ class NelderMead(Optimiser):
     block : int
         Number of iterations after a test before the next [-].
     modified : bool
-        Whether a test also needs a contraction and a simplex that does not keep its direction.
+        Whether a test also needs a contraction and a simplex that has changed its direction.
     max_iterations : int, optional
         Number of iterations after which the search stops [-].
     penalty : bool
         Whether the cost depends on the step number, which then rises with every iteration.
     observer, remember
-        See `Optimiser`.
+        See `Optimizer`.
+
+    References
+    ----------
+    Nelder and Mead (1965), doi:10.1093/comjnl/7.4.308. O'Neill (1971), doi:10.2307/2346772.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box, minimize
+    >>> space = box(["x", "y"], initial=[0.5, 0.5], lower=[-1.0, -1.0], upper=[1.0, 1.0])
+    >>> best = minimize(NelderMead(space), lambda points: [p.x[0] ** 2 + p.x[1] ** 2 for p in points])
+    >>> best.cost < 1e-4
+    True
     """
 
     def __init__(
@@ -104,14 +115,14 @@ class NelderMead(Optimiser):
         self._both(corner, _ESTABLISH)
         simplex = yield from self._build(corner, 1.0)
         allowed = self._block
-        centres = [_centre(simplex)]
+        centers = [_center(simplex)]
         while True:
             contracted = yield from self._iterate(simplex)
-            centres = [*centres[-2:], _centre(simplex)]
+            centers = [*centers[-2:], _center(simplex)]
             if self._limit is not None and self._main >= self._limit:
                 self.observer.minimum("Current lowest point.")
                 return EXHAUSTED
-            if self._main >= allowed and self._flat(simplex) and self._turning(centres, contracted):
+            if self._main >= allowed and self._flat(simplex) and self._turning(centers, contracted):
                 lower = yield from self._check(_best(simplex))
                 if lower is None:
                     self.observer.minimum("Minimum point.")
@@ -119,7 +130,7 @@ class NelderMead(Optimiser):
                 self._report_main(lower, _RESTART)
                 simplex = yield from self._build(lower, self._factor)
                 allowed = self._main + self._block
-                centres = [_centre(simplex)]
+                centers = [_center(simplex)]
             elif self._penalty:
                 yield from self._raise_step(simplex)
 
@@ -139,10 +150,10 @@ class NelderMead(Optimiser):
         low = _best(simplex)
         w = max(range(len(simplex)), key=lambda i: (simplex[i].f, i))
         high = simplex[w]
-        centre = _centre([v for i, v in enumerate(simplex) if i != w])
-        reflected = yield from self._trial(_line(centre, high.t, 2.0), _REFLECT)
+        center = _center([v for i, v in enumerate(simplex) if i != w])
+        reflected = yield from self._trial(_line(center, high.t, 2.0), _REFLECT)
         if reflected.f < low.f:
-            expanded = yield from self._trial(_line(reflected.t, centre, 2.0), _EXPAND)
+            expanded = yield from self._trial(_line(reflected.t, center, 2.0), _EXPAND)
             simplex[w] = expanded if expanded.f < low.f else reflected
             self._report_main(simplex[w], _EXPAND)
             return False
@@ -154,7 +165,7 @@ class NelderMead(Optimiser):
         inside = rank == len(simplex)
         towards = high if inside else reflected
         comment = _INSIDE if inside else _OUTSIDE
-        pulled = yield from self._trial(_middle(centre, towards.t), comment)
+        pulled = yield from self._trial(_middle(center, towards.t), comment)
         if pulled.f < high.f if inside else pulled.f <= reflected.f:
             simplex[w] = pulled
             self._report_main(pulled, comment)
@@ -171,7 +182,7 @@ class NelderMead(Optimiser):
                 self._both(simplex[i], _TOTAL)
 
     def _check(self, low: _Vertex) -> Generator[list[Point], list[Evaluation], _Vertex | None]:
-        """A lower neighbour of the best corner, if there is one."""
+        """A lower neighbor of the best corner, if there is one."""
         self._report_sub(low, _BASE)
         for i, step in enumerate(self._free_steps(low)):
             for sign in (1.0, -1.0):
@@ -186,7 +197,7 @@ class NelderMead(Optimiser):
         return [free_step(c, x) for c, x in pairs]
 
     def _probe(self, low: _Vertex, i: int, step: float) -> _One:
-        """A neighbour whose cost differs, going farther while it does not."""
+        """A neighbor whose cost differs; the distance grows while it does not."""
         for k in range(6):
             t = (*low.t[:i], low.t[i] + step * math.exp(k), *low.t[i + 1 :])
             near = yield from self._vertex(t)
@@ -214,13 +225,13 @@ class NelderMead(Optimiser):
         total = sum(v.f for v in simplex)
         return (sum(v.f * v.f for v in simplex) - total * total / (n + 1)) / n < self._accuracy**2
 
-    def _turning(self, centres: Sequence[_Free], contracted: bool) -> bool:
+    def _turning(self, centers: Sequence[_Free], contracted: bool) -> bool:
         """Whether the simplex shrinks and no longer moves in one direction."""
         if not self._modified:
             return True
-        if not contracted or len(centres) < 3:
+        if not contracted or len(centers) < 3:
             return False
-        a, b, c = centres
+        a, b, c = centers
         return sum((y - x) * (z - y) for x, y, z in zip(a, b, c, strict=True)) <= 0.0
 
     def _vertex(self, t: _Free) -> _One:
@@ -251,14 +262,14 @@ def _best(simplex: Sequence[_Vertex]) -> _Vertex:
     return min(simplex, key=lambda v: v.f)
 
 
-def _centre(simplex: Sequence[_Vertex]) -> _Free:
+def _center(simplex: Sequence[_Vertex]) -> _Free:
     """Mean of the corners."""
     n = len(simplex)
     return tuple(sum(column) / n for column in zip(*(v.t for v in simplex), strict=True))
 
 
 def _line(a: _Free, b: _Free, factor: float) -> _Free:
-    """The point `factor * a - b`, as far beyond `a` as `b` lies before it when the factor is 2."""
+    """The point `factor * a - b`, the reflection of `b` at `a` when the factor is 2."""
     return tuple(factor * x - y for x, y in zip(a, b, strict=True))
 
 

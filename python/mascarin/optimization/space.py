@@ -1,4 +1,4 @@
-"""What an optimiser varies: continuous and discrete parameters, points and evaluations."""
+"""Continuous and discrete parameters of an optimization, points and evaluations."""
 
 from __future__ import annotations
 
@@ -26,6 +26,11 @@ class Continuous:
         First step of a direct search; ignored by algorithms that need none [unit of the parameter].
     lower, upper : float
         Bounds, infinite when there are none [unit of the parameter].
+
+    Examples
+    --------
+    >>> Continuous("thickness", initial=0.1, step=0.01, lower=0.0, upper=0.3).bounded
+    True
     """
 
     name: str
@@ -52,6 +57,11 @@ class Discrete:
         Index of the starting value, counted from 0 [-].
     size : int
         Number of values [-].
+
+    Examples
+    --------
+    >>> Discrete("glazing", initial=0, size=3).size
+    3
     """
 
     name: str
@@ -70,7 +80,12 @@ class Point:
     choices : tuple of int
         Indices of the discrete values, counted from 0 [-].
     step : int
-        Step number, for penalty functions that sharpen as the search proceeds [-].
+        Step number, for penalty functions that become steeper during the search [-].
+
+    Examples
+    --------
+    >>> Point((0.1, 2.0), choices=(1,)).x
+    (0.1, 2.0)
     """
 
     x: tuple[float, ...]
@@ -87,13 +102,18 @@ class Evaluation:
     point : Point
         What was evaluated.
     cost : float
-        Value to be minimised; infinite for a failed evaluation [unit of the cost].
+        Value to be minimized; infinite for a failed evaluation [unit of the cost].
     outputs : tuple of float
-        Further results, carried along unused [own units].
+        Further results, not used by the search [own units].
     number : int
-        Count of evaluations when this result was used; 0 lets the optimiser count [-].
+        Count of evaluations when this result was used; 0 lets the optimizer count [-].
     failed : bool
-        Whether the cost is a stand-in for a failed evaluation.
+        Whether the evaluation failed and the cost replaces it.
+
+    Examples
+    --------
+    >>> Evaluation(Point((0.1,)), cost=3.5).cost
+    3.5
     """
 
     point: Point
@@ -105,7 +125,7 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Space:
-    """The parameters of one optimisation, continuous ones first.
+    """The parameters of one optimization, continuous ones first.
 
     Parameters
     ----------
@@ -113,6 +133,11 @@ class Space:
         Continuous parameters.
     discrete : tuple of Discrete
         Discrete parameters.
+
+    Examples
+    --------
+    >>> Space((Continuous("x", 0.5, 0.1, 0.0, 1.0),), (Discrete("n", 0, 3),)).names
+    ('x', 'n')
     """
 
     continuous: tuple[Continuous, ...]
@@ -236,7 +261,12 @@ def box(
     Raises
     ------
     InputError
-        When a starting value lies outside its bounds or bounds are reversed.
+        When bounds are reversed.
+
+    Examples
+    --------
+    >>> box(["x", "y"], [0.5, 0.5], [0.0, 0.0], [1.0, 1.0]).names
+    ('x', 'y')
     """
     steps = step if step is not None else [(b - a) / 10.0 for a, b in zip(lower, upper, strict=True)]
     rows = zip(names, initial, steps, lower, upper, strict=True)
@@ -244,7 +274,7 @@ def box(
 
 
 def _check_continuous(c: Continuous) -> None:
-    """Refuse reversed bounds and a step that is no number."""
+    """Refuse reversed bounds and a step that is not finite."""
     if not c.lower <= c.upper:
         msg = f"{c.name}: lower bound {c.lower:g} is above upper bound {c.upper:g}; exchange them"
         raise InputError(msg)

@@ -1,4 +1,4 @@
-"""Particle swarms on continuous and discrete parameters, and a swarm that starts a pattern search.
+"""Particle swarms for continuous and discrete parameters, and a swarm followed by a pattern search.
 
 References
 ----------
@@ -15,13 +15,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from mascarin.errors import InputError
-from mascarin.optimization.base import Observer, Optimiser, Steps
-from mascarin.optimization.pattern import (
-    HookeJeeves,
-    SufficientDecrease,
-    decimal_rounding,
-    uniform_starts,
-)
+from mascarin.optimization.base import Observer, Optimizer, Steps
+from mascarin.optimization.mesh import SufficientDecrease, decimal_rounding, uniform_starts
+from mascarin.optimization.pattern import HookeJeeves
 from mascarin.optimization.random import Lcg48
 from mascarin.optimization.space import Evaluation, Point, Space
 
@@ -35,8 +31,9 @@ class SwarmRules:
     Parameters
     ----------
     topology : str
-        Who knows of whom: all of all, neighbours in a ring, or neighbours in a square grid.
-    neighbours : int
+        Which particles a particle knows: all (`gbest`), neighbors in a ring (`lbest`) or in a square
+        grid (`vonNeumann`).
+    neighbors : int
         Reach to either side in a ring [-].
     particles : int
         Number of particles, rounded up to a square in a grid [-].
@@ -45,19 +42,28 @@ class SwarmRules:
     seed : int
         Seed of the random numbers [-].
     cognitive, social : float
-        Pull towards a particle's own and its neighbours' best [-].
+        Acceleration towards the best point of the particle and of its neighbors [-].
     speed : float
-        Largest step as a share of the range; none when not positive [-].
+        Largest step as a part of the range; no limit when not positive [-].
     discrete_speed : float
         Largest bit velocity [-].
     constriction : float, optional
         Gain of the constriction coefficient; inertia is used instead when absent [-].
     inertia : tuple of float
         First and last inertia weight [-].
+
+    References
+    ----------
+    Clerc and Kennedy (2002), doi:10.1109/4235.985692.
+
+    Examples
+    --------
+    >>> SwarmRules(particles=10).size
+    16
     """
 
     topology: Topology = "vonNeumann"
-    neighbours: int = 1
+    neighbors: int = 1
     particles: int = 16
     generations: int = 30
     seed: int = 1
@@ -69,14 +75,14 @@ class SwarmRules:
     inertia: tuple[float, float] = (1.2, 0.0)
 
     def __post_init__(self) -> None:
-        """Refuse a swarm that cannot move."""
+        """Refuse impossible settings."""
         known = ("gbest", "lbest", "vonNeumann")
         if self.topology not in known:
             msg = f"topology '{self.topology}' is not known: expected one of {', '.join(known)}"
             raise InputError(msg)
-        if self.particles < 2 or self.generations < 1 or self.neighbours < 1:
+        if self.particles < 2 or self.generations < 1 or self.neighbors < 1:
             msg = (
-                f"{self.particles} particles, {self.generations} generations, reach {self.neighbours}: "
+                f"{self.particles} particles, {self.generations} generations, reach {self.neighbors}: "
                 "expected at least 2, 1 and 1"
             )
             raise InputError(msg)
@@ -94,13 +100,13 @@ class SwarmRules:
         k, phi = self.constriction or 0.0, self.cognitive + self.social
         return 2.0 * k / abs(2.0 - phi - math.sqrt(phi * (phi - 4.0))) if phi > 4.0 else k
 
-    def neighbourhood(self, i: int) -> list[int]:
-        """Particles that particle `i` looks at, in order [-]."""
+    def neighborhood(self, i: int) -> list[int]:
+        """Particles that particle `i` knows, in order. [-]"""
         n = self.size
         if self.topology == "gbest":
             return list(range(n))
         if self.topology == "lbest":
-            return [j % n for j in range(i - self.neighbours, i + self.neighbours + 1)]
+            return [j % n for j in range(i - self.neighbors, i + self.neighbors + 1)]
         side = math.isqrt(n)
         row, column = divmod(i, side)
         near = [(row - 1, column), (row, column - 1), (row, column), (row, column + 1), (row + 1, column)]
@@ -112,7 +118,7 @@ class SwarmRules:
         return first - (first - last) * (generation - 1) / (self.generations - 1)
 
 
-class ParticleSwarm(Optimiser):
+class ParticleSwarm(Optimizer):
     """Swarm search with constriction or inertia, optionally on a mesh.
 
     Parameters
@@ -120,17 +126,29 @@ class ParticleSwarm(Optimiser):
     space : Space
         Parameters with bounds.
     rules : SwarmRules
-        How particles move.
+        Settings of the swarm.
     mesh : tuple of int, optional
         Divider and exponent of a mesh around the initial point that particles are moved to.
     penalty : bool
         Whether the cost depends on the step number, which then rises with every generation.
     fresh_step : int
-        Step number that new particles carry before their first evaluation [-].
+        Step number of new particles before their first evaluation [-].
     rounding : callable, optional
         Rounding on the mesh; see `PatternSearch`.
     observer, remember
-        See `Optimiser`.
+        See `Optimizer`.
+
+    References
+    ----------
+    Kennedy and Eberhart (1995), doi:10.1109/ICNN.1995.488968.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box, minimize
+    >>> space = box(["x", "y"], initial=[0.5, 0.5], lower=[-1.0, -1.0], upper=[1.0, 1.0])
+    >>> best = minimize(ParticleSwarm(space), lambda points: [p.x[0] ** 2 + p.x[1] ** 2 for p in points])
+    >>> best.cost < 1e-2
+    True
     """
 
     def __init__(
@@ -165,12 +183,12 @@ class ParticleSwarm(Optimiser):
 
     def _search(self) -> Steps:
         """All generations."""
-        yield from self._fly()
+        yield from self._generations()
         self.observer.minimum("Minimum point.")
         return "all generations are done"
 
-    def _fly(self) -> Generator[list[Point], list[Evaluation], Evaluation]:
-        """Let the swarm move for all generations; the lowest point of all is returned."""
+    def _generations(self) -> Generator[list[Point], list[Evaluation], Evaluation]:
+        """Move the swarm for all generations; the point of lowest cost is returned."""
         rules = self.rules
         points = self._populate()
         velocities = [[0.0] * len(self.space.continuous) for _ in points]
@@ -216,26 +234,26 @@ class ParticleSwarm(Optimiser):
         to_best = self.rules.social * self._random.uniform()
         moved = []
         for i, e in enumerate(swarm):
-            best = min((own[j] for j in self.rules.neighbourhood(i)), key=lambda b: b.cost).point
+            best = min((own[j] for j in self.rules.neighborhood(i)), key=lambda b: b.cost).point
             mine = own[i].point
-            x = self._fly_one(e.point.x, mine.x, best.x, velocities[i], (to_own, to_best), generation)
+            x = self._move_one(e.point.x, mine.x, best.x, velocities[i], (to_own, to_best), generation)
             choices = self._flip(e.point.choices, mine.choices, best.choices, bits[i], (to_own, to_best))
             moved.append(replace(e.point, x=x, choices=choices))
         return moved
 
-    def _fly_one(
+    def _move_one(
         self,
         x: tuple[float, ...],
         mine: tuple[float, ...],
         best: tuple[float, ...],
         velocity: list[float],
-        pull: tuple[float, float],
+        toward: tuple[float, float],
         generation: int,
     ) -> tuple[float, ...]:
         """Next continuous position; the velocity is changed in place."""
         rules, out = self.rules, []
         for k, c in enumerate(self.space.continuous):
-            towards = pull[0] * (mine[k] - x[k]) + pull[1] * (best[k] - x[k])
+            towards = toward[0] * (mine[k] - x[k]) + toward[1] * (best[k] - x[k])
             if rules.constriction is not None:
                 v = rules.gain * (velocity[k] + towards)
             else:
@@ -256,16 +274,16 @@ class ParticleSwarm(Optimiser):
         mine: tuple[int, ...],
         best: tuple[int, ...],
         velocity: list[list[float]],
-        pull: tuple[float, float],
+        toward: tuple[float, float],
     ) -> tuple[int, ...]:
-        """Next discrete position: every bit of the Gray code is drawn anew."""
+        """Next discrete position: every bit of the Gray code is drawn again."""
         most, out = self.rules.discrete_speed, []
         for k, d in enumerate(self.space.discrete):
             width = self._widths[k]
             here, own, there = (_gray(v, width) for v in (choices[k], mine[k], best[k]))
             drawn = []
             for b in range(width):
-                v = velocity[k][b] + pull[0] * (own[b] - here[b]) + pull[1] * (there[b] - here[b])
+                v = velocity[k][b] + toward[0] * (own[b] - here[b]) + toward[1] * (there[b] - here[b])
                 v = min(max(v, -most), most)
                 velocity[k][b] = v
                 drawn.append(1 if self._random.uniform() < 1.0 / (1.0 + math.exp(-v)) else 0)
@@ -273,7 +291,7 @@ class ParticleSwarm(Optimiser):
         return tuple(out)
 
     def _on_mesh(self, p: Point) -> Point:
-        """The nearest point of the mesh, pulled inside the bounds."""
+        """The nearest point of the mesh inside the bounds."""
         if self._grid is None:
             return p
         divider, exponent = self._grid
@@ -310,6 +328,14 @@ class SwarmThenPattern(ParticleSwarm):
     References
     ----------
     Wetter and Wright (2004), hybrid of swarm and pattern search, doi:10.1016/j.buildenv.2004.01.022.
+
+    Examples
+    --------
+    >>> from mascarin.optimization import box, minimize
+    >>> space = box(["x", "y"], initial=[0.5, 0.5], lower=[-1.0, -1.0], upper=[1.0, 1.0])
+    >>> search = SwarmThenPattern(space, SwarmRules(generations=5))
+    >>> minimize(search, lambda points: [p.x[0] ** 2 + p.x[1] ** 2 for p in points]).cost < 1e-3
+    True
     """
 
     def __init__(
@@ -366,16 +392,13 @@ class SwarmThenPattern(ParticleSwarm):
 
     def _search(self) -> Steps:
         """The swarm, then the pattern search."""
-        best = yield from self._fly()
+        best = yield from self._generations()
         self.observer.minimum("Minimum point.")
         self.observer.sub(best, "Minimum point of initialization.")
         self.observer.main(best, "Minimum point of initialization.")
         self.phase = 1
         search = self._pattern(best.point)
-        # The inner search counts on from the evaluations made so far.
-        search._count = self._count
         self._running = search
-        search._minimum_at_end = False
         while points := search.ask():
             self.step_number = search.step_number
             search.tell((yield points))
@@ -412,6 +435,8 @@ class SwarmThenPattern(ParticleSwarm):
             text=self._text,
             observer=self.observer,
             remember=False,
+            counted=self._count,
+            report_minimum=False,
         )
 
 

@@ -1,20 +1,23 @@
-"""The report of a study: one HTML file that holds everything it shows.
+"""The report of a study: one HTML file without anything outside of it.
 
-The only input is what a study leaves behind: the content of ``study.json`` and its series
-(:mod:`mascarin.report.payload`). Nothing is fetched: styles, scripts and pictures are part of the file, and
-its content security policy forbids the browser to load anything else.
+Its only input are the results of a study: the content of ``study.json`` (:mod:`mascarin.report.schema`) and
+its series (:mod:`mascarin.report.series`). Styles, scripts and pictures are part of the file, and its content
+security policy forbids the browser to load anything else.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from mascarin.report.payload import Series
+from mascarin._io import atomic
+from mascarin.report.folder import read_folder
+from mascarin.report.html import page
+from mascarin.report.payload import check, tidy
+from mascarin.report.series import Column, Series
 
-__all__ = ["render", "write", "write_folder"]
+__all__ = ["Column", "Series", "render", "write", "write_folder"]
 
 
 def render(study: Mapping[str, Any], series: Series) -> str:
@@ -23,9 +26,9 @@ def render(study: Mapping[str, Any], series: Series) -> str:
     Parameters
     ----------
     study : mapping
-        As in :class:`mascarin.report.payload.Study`.
+        As in :class:`mascarin.report.schema.Study`.
     series : Series
-        Curves; thinned if there are more values than a page should carry.
+        Curves; they are thinned if there are too many values for a page.
 
     Returns
     -------
@@ -35,17 +38,21 @@ def render(study: Mapping[str, Any], series: Series) -> str:
     Raises
     ------
     InputError
-        The study has no title, or its parts do not fit together.
-    """
-    from mascarin.report.html import page
-    from mascarin.report.payload import check, tidy
+        The study has no title, or its parts do not belong together.
 
+    Examples
+    --------
+    >>> from mascarin.report import Series, render
+    >>> page = render({"title": "An empty study"}, Series("2024-01-01T00:00", 900.0))
+    >>> "<h1>An empty study</h1>" in page
+    True
+    """
     check(study, series)
     return page(tidy(study), series.thinned())
 
 
 def write_folder(out: Path) -> Path:
-    """Make the page of a study that has been run, next to its other results.
+    """Make the page of a study that has been run, in the folder of its results.
 
     Parameters
     ----------
@@ -61,19 +68,26 @@ def write_folder(out: Path) -> Path:
     ------
     InputError
         A file is missing or cannot be read.
-    """
-    from mascarin.report.folder import read_folder
 
+    Examples
+    --------
+    >>> import tempfile
+    >>> from mascarin.report import write_folder
+    >>> write_folder(Path(tempfile.mkdtemp()))
+    Traceback (most recent call last):
+        ...
+    mascarin.errors.InputError: ...study.json: No such file or directory; expected ...
+    """
     return write(out / "report.html", *read_folder(out))
 
 
 def write(path: Path, study: Mapping[str, Any], series: Series) -> Path:
-    """Make the page and write it to a file, which appears only when it is complete.
+    """Make the page and write it to a file.
 
     Parameters
     ----------
     path : Path
-        Where to.
+        File to write; its folder exists.
     study, series
         As for :func:`render`.
 
@@ -81,9 +95,13 @@ def write(path: Path, study: Mapping[str, Any], series: Series) -> Path:
     -------
     Path
         The file.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from mascarin.report import Series, write
+    >>> file = Path(tempfile.mkdtemp()) / "report.html"
+    >>> write(file, {"title": "An empty study"}, Series("2024-01-01T00:00", 900.0)).name
+    'report.html'
     """
-    content = render(study, series)
-    draft = path.with_name(path.name + ".part")
-    draft.write_text(content, encoding="utf-8", newline="\n")
-    draft.replace(path)
-    return path
+    return atomic.write(path, render(study, series))

@@ -1,4 +1,4 @@
-"""The page of Standard 140: its cases beside the six programs, as one HTML file."""
+"""The page of Standard 140: its cases compared with six programs, as one HTML file."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from mascarin import __version__
+from mascarin._io import atomic
 from mascarin.report import text
 from mascarin.report.svg import Axis, Chart
 from mascarin.verification.bestest.catalogue import CASES, IN_DEPTH, MAIN, Case
@@ -43,34 +44,30 @@ _WORDS: Final = {
     "mean_temperature": "Mean temperature",
 }
 _CLASSES: Final = ("c0", "c1", "c2", "c3", "c6", "c7")
-"""Colour of each program; ours stands out by its own."""
+"""Color of each program."""
 _HOURS: Final = np.arange(24, dtype=np.float64) + 0.5
 
 
 def write(path: Path, rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[str, str]) -> Path:
-    """Write the page to a file, which appears only when it is complete.
+    """Write the page to a file.
 
     Parameters
     ----------
     path : Path
         Where to.
     rows : sequence of Quantity
-        Every quantity that was found.
+        All quantities.
     years : mapping of str to Year
         Hourly means by case.
     facts : mapping of str to str
-        How to get the same result, as name and value.
+        How to reproduce the results, as name and value.
 
     Returns
     -------
     Path
         The file.
     """
-    content = render(rows, years, facts)
-    draft = path.with_name(path.name + ".part")
-    draft.write_text(content, encoding="utf-8", newline="\n")
-    draft.replace(path)
-    return path
+    return atomic.write(path, render(rows, years, facts))
 
 
 def render(rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[str, str]) -> str:
@@ -83,16 +80,16 @@ def render(rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[s
     sections = [
         {"id": key, "title": title, "content": content}
         for key, title, content in (
-            ("loads", "Loads", _bars(found, ("annual_heating", "annual_cooling"), "MWh")),
-            ("peaks", "Peaks", _bars(found, ("peak_heating", "peak_cooling"), "kW")),
+            ("loads", "Annual loads", _bars(found, ("annual_heating", "annual_cooling"), "MWh")),
+            ("peaks", "Peak loads", _bars(found, ("peak_heating", "peak_cooling"), "kW")),
             ("floating", "Free-floating temperatures", _floating(found)),
-            ("sun", "The sun", _sun(found)),
-            ("differences", "What each change does", _differences(found)),
-            ("days", "Three days, hour by hour", _days(years)),
-            ("months", "Month by month", _months(years)),
+            ("sun", "Solar radiation", _sun(found)),
+            ("differences", "Differences between cases", _differences(found)),
+            ("days", "Hourly values of three days", _days(years)),
+            ("months", "Monthly values", _months(years)),
             ("bins", "Hours at each temperature", _bins(years)),
-            ("table", "Every number", _table(rows)),
-            ("repeat", "How to get the same result", dict(facts)),
+            ("table", "All values", _table(rows)),
+            ("repeat", "How to reproduce the results", dict(facts)),
         )
         if content
     ]
@@ -125,10 +122,10 @@ def _words(quantity: str) -> str:
     if quantity in _WORDS:
         return _WORDS[quantity]
     kind, _, plane = quantity.rpartition("_")
-    return f"{kind.replace('_', ' ').replace('solar', 'sun').capitalize()}, {plane}"
+    return f"{kind.replace('_', ' ').replace('solar', 'solar radiation').capitalize()}, {plane}"
 
 
-# ------------------------------------------------------------------ bars beside the six programs
+# ------------------------------------------------------------------ bars
 
 Found = Mapping[tuple[str, str], Quantity]
 Group = tuple[str, tuple[Case, ...]]
@@ -152,7 +149,7 @@ def _bars(found: Found, quantities: Sequence[str], unit: str) -> list[dict[str, 
 
 
 def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> dict[str, Any]:
-    """A group of bars for each row: the six programs, then ours, with a band from their lowest to highest."""
+    """A group of bars for each row: the six programs, then Mascarin, and a band over their range."""
     values = [v for _, row in rows for v in (*_theirs(row).programs.values(), row.value)]
     y = Axis.over(values, around=0.0)
     centres = np.arange(len(rows)) + 0.5
@@ -175,16 +172,18 @@ def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> d
 
 def _outside(row: Quantity) -> str:
     found = f"{_shown(row, row.value)} {text.unit(row.unit)}"
-    return f"{row.case}: {_words(row.quantity)}, {found} where the programs have {_span(row)}"
+    return (
+        f"{row.case}: {_words(row.quantity)}, {found} outside of the range {_span(row)} of the six programs"
+    )
 
 
 def _span(row: Quantity) -> str:
-    # With the digits of the number beside them: cut shorter, they would put it on the wrong side.
+    # With as many digits as the value: rounded, they could suggest the opposite.
     return f"{_shown(row, _theirs(row).low)} to {_shown(row, _theirs(row).high)}"
 
 
 def _theirs(row: Quantity) -> Range:
-    """What the six programs found for a quantity that is held against them."""
+    """The range of the six programs for a quantity."""
     return ranges()[row.case, row.quantity]
 
 
@@ -199,9 +198,9 @@ def _floating(found: Found) -> list[dict[str, Any]]:
 
 def _sun(found: Found) -> list[dict[str, Any]]:
     kinds = (
-        ("incident_solar", "Sun on each plane over the year, case 600", "kWh/m2"),
-        ("transmitted_solar", "Sun through the glass over the year", "kWh/m2"),
-        ("transmissivity", "Share of the sun that the glass lets through", "-"),
+        ("incident_solar", "Solar irradiation of each plane over the year, case 600", "kWh/m2"),
+        ("transmitted_solar", "Solar radiation through the window over the year", "kWh/m2"),
+        ("transmissivity", "Solar transmittance of the window over the year", "-"),
         ("shading_coefficient", "Share that the shades keep off", "-"),
     )
     figures = []
@@ -220,7 +219,7 @@ def _sun(found: Found) -> list[dict[str, Any]]:
 
 
 def _differences(found: Found) -> list[dict[str, Any]]:
-    """Each case less its base: the way to see which part of a model is off."""
+    """Each case minus its base, which isolates one part of the model."""
     rows = []
     for case in CASES.values():
         cells: list[dict[str, Any]] = []
@@ -253,7 +252,7 @@ def _difference(one: Quantity, other: Quantity) -> dict[str, Any]:
 
 
 def _days(years: Mapping[str, Year]) -> list[dict[str, Any]]:
-    """The charts that the standard asks for; a case that was not run is left out."""
+    """The charts that the standard requires, without cases that were not run."""
     figures = []
     for title, month, day, unit, curves in _DAYS:
         drawn = [
@@ -302,12 +301,12 @@ _DAYS: Final = (
     ("Free-floating temperature", "Feb", 1, "degC", _each(("600FF", "900FF"), "temperature")),
     ("Load, cooling below zero", "Jul", 14, "kW", _each(("600", "900"), "load")),
     ("Free-floating temperature", "Jul", 14, "degC", _each(("650FF", "950FF"), "temperature")),
-    ("Sun on three planes", "May", 4, "W/m2", _PLANES),
-    ("Sun on three planes", "Jul", 14, "W/m2", _PLANES),
+    ("Solar irradiance on three planes", "May", 4, "W/m2", _PLANES),
+    ("Solar irradiance on three planes", "Jul", 14, "W/m2", _PLANES),
     *(
         (title, month, day, unit, [(label, "600", series)])
         for title, unit, label, series in (
-            ("Sun through south glass", "W/m2", "600", THROUGH_GLASS),
+            ("Solar radiation through the south window", "W/m2", "600", THROUGH_GLASS),
             ("Sky temperature", "degC", "600", "sky_temperature"),
         )
         for month, day in (("Feb", 1), ("May", 4), ("Jul", 14))

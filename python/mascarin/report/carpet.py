@@ -1,22 +1,21 @@
-"""Carpet plots: one pixel per instant, days along, hours of the day up, as a small PNG of our own making."""
+"""Carpet plots: one pixel per instant, a column for each day, midnight at the bottom, as a small PNG."""
 
 from __future__ import annotations
 
 import base64
-import struct
-import zlib
+import io
 from dataclasses import dataclass
 from datetime import timedelta
 
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.report.payload import Array, Series
+from mascarin.report.series import Array, Series
 
-#: Colours at -limit, -limit/2, 0, +limit/2, +limit: blue to red through a light grey; told apart in the
-#: common kinds of colour blindness because they differ in lightness and on the blue-yellow axis.
+#: Colors at -limit, -limit/2, 0, +limit/2, +limit: blue to red through a light grey; distinct in the
+#: common kinds of color blindness because they differ in lightness and on the blue-yellow axis.
 STOPS = ((8, 64, 129), (91, 155, 203), (240, 239, 235), (232, 142, 88), (148, 30, 18))
-#: Colour of instants without a value.
+#: Color of instants without a value.
 EMPTY = (150, 150, 150)
 _LEVELS = 201
 _MOST_ROWS = 96
@@ -33,7 +32,7 @@ class Carpet:
     columns, rows : int
         Days and instants in a day. [-]
     limit : float
-        Value of the darkest colours.
+        Value of the darkest colors.
     days : list of (int, str)
         Marks of the day axis: column and date.
     """
@@ -55,7 +54,7 @@ def carpet(series: Series, values: Array, limit: float) -> Carpet:
     values : array, shape (n,)
         One value per instant.
     limit : float
-        Value of the darkest colours, the same to both sides.
+        Value of the darkest colors, the same to both sides.
     """
     first = series.time(0).replace(hour=0, minute=0, second=0, microsecond=0)
     offset = (series.time(0) - first).total_seconds()
@@ -75,14 +74,13 @@ def carpet(series: Series, values: Array, limit: float) -> Carpet:
         for column in range(0, columns, every)
         if column < 0.93 * columns
     ]
-    address = "data:image/png;base64," + base64.b64encode(_png(_levels(grid, limit))).decode("ascii")
-    return Carpet(address, columns, rows, limit, marks)
+    return Carpet(_address(_levels(grid, limit)), columns, rows, limit, marks)
 
 
 def legend() -> str:
-    """Give the colour scale from low to high as a ``data:`` address of a picture one pixel high."""
+    """Give the color scale from low to high as a ``data:`` address of a picture one pixel high."""
     scale = np.arange(_LEVELS, dtype=np.uint8)[None, :] + np.uint8(1)
-    return "data:image/png;base64," + base64.b64encode(_png(scale)).decode("ascii")
+    return _address(scale)
 
 
 def round_limit(spread: float) -> float:
@@ -99,22 +97,21 @@ def _levels(grid: Array, limit: float) -> npt.NDArray[np.uint8]:
     return levels.astype(np.uint8)
 
 
-def _palette() -> bytes:
+def _palette() -> list[int]:
+    """Red, green and blue of each level; level 0 is :data:`EMPTY`."""
     places = np.linspace(0.0, 1.0, _LEVELS)
     stops = np.array(STOPS, dtype=np.float64)
     at = np.linspace(0.0, 1.0, len(stops))
-    colours = np.column_stack([np.interp(places, at, stops[:, c]) for c in range(3)])
-    return bytes(EMPTY) + np.round(colours).astype(np.uint8).tobytes()
+    colors = np.column_stack([np.interp(places, at, stops[:, c]) for c in range(3)])
+    return [*EMPTY, *np.round(colors).astype(int).ravel().tolist()]
 
 
-def _png(levels: npt.NDArray[np.uint8]) -> bytes:
-    """PNG with a palette (ISO/IEC 15948); level 0 is :data:`EMPTY`."""
-    rows, columns = levels.shape
-    raw = b"".join(b"\0" + row.tobytes() for row in levels)
-    header = struct.pack(">IIBBBBB", columns, rows, 8, 3, 0, 0, 0)
-    chunks = [(b"IHDR", header), (b"PLTE", _palette()), (b"IDAT", zlib.compress(raw, 9)), (b"IEND", b"")]
-    body = b"".join(
-        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-        for name, data in chunks
-    )
-    return b"\x89PNG\r\n\x1a\n" + body
+def _address(levels: npt.NDArray[np.uint8]) -> str:
+    """A picture with a palette as a ``data:`` address."""
+    from PIL import Image
+
+    picture = Image.fromarray(levels, mode="P")
+    picture.putpalette(_palette())
+    file = io.BytesIO()
+    picture.save(file, format="PNG", optimize=True)
+    return "data:image/png;base64," + base64.b64encode(file.getvalue()).decode("ascii")

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from mascarin.report import text
-from mascarin.report.payload import Array
+from mascarin.report.series import Array
 from mascarin.report.svg import Svg
 
 
@@ -43,7 +43,7 @@ def view(building: Mapping[str, Any]) -> Markup | None:
     Parameters
     ----------
     building : mapping
-        As in :class:`~mascarin.report.payload.BuildingEntry`.
+        As in :class:`~mascarin.report.schema.BuildingEntry`.
 
     Returns
     -------
@@ -145,9 +145,9 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
     Parameters
     ----------
     building : mapping
-        As in :class:`~mascarin.report.payload.BuildingEntry`.
+        As in :class:`~mascarin.report.schema.BuildingEntry`.
     sensors : mapping
-        As in :class:`~mascarin.report.payload.SensorInfo`; the output's name says where a sensor sits.
+        As in :class:`~mascarin.report.schema.SensorInfo`; the output's name says where a sensor sits.
 
     Returns
     -------
@@ -307,11 +307,11 @@ def layers(
     Parameters
     ----------
     building : mapping
-        As in :class:`~mascarin.report.payload.BuildingEntry`.
+        As in :class:`~mascarin.report.schema.BuildingEntry`.
     construction : mapping
         ``name`` and ``layers``.
     sensors : mapping
-        As in :class:`~mascarin.report.payload.SensorInfo`; those in surfaces of this construction are marked.
+        As in :class:`~mascarin.report.schema.SensorInfo`; those in surfaces of this construction are marked.
     """
     entries = list(construction.get("layers", []))
     thick = _thickness(entries)

@@ -1,10 +1,10 @@
-"""The report of a study from the folder that it left behind."""
+"""Reads the results of a study from its folder, for the report."""
 
 from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any, Final
@@ -12,10 +12,10 @@ from typing import Any, Final
 import numpy as np
 
 from mascarin.errors import InputError
-from mascarin.report.payload import Array, Column, Series, read_json
+from mascarin.report.series import Array, Column, Series, read_json
 from mascarin.report.text import plain_path
 
-#: Climate channels by the words and units of a legend.
+#: Climate channels with the words and units of a legend.
 _WEATHER: Final = {
     "air_temperature": ("Outdoor air", "degC"),
     "dew_point": ("Dew point", "degC"),
@@ -31,14 +31,14 @@ _WEATHER: Final = {
 
 
 def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
-    """Read what a study left behind.
+    """Read the results of a study.
 
     Parameters
     ----------
     out : Path
         Folder with ``study.json`` and ``tables/series.csv``. The table's columns are ``time`` and
         ``SENSOR.measured``, ``SENSOR.MODEL``, and perhaps ``SENSOR.band`` (half-width),
-         ``weather.CHANNEL`` and ``state.OUTPUT``.
+        ``weather.CHANNEL`` and ``state.OUTPUT``.
 
     Returns
     -------
@@ -53,29 +53,57 @@ def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
     study = read_json(out / "study.json")
     if (out / "run.json").exists():
         study |= read_json(out / "run.json")
-    return study, _series(out / "tables" / "series.csv", study)
+    table = out / "tables" / "series.csv"
+    return study, read_series(_open(table), str(table), study)
 
 
-def _series(path: Path, study: Mapping[str, Any]) -> Series:
+def read_series(file: Iterable[str], where: str, study: Mapping[str, Any]) -> Series:
+    """Read the series of a study from the lines of its table.
+
+    Parameters
+    ----------
+    file : iterable of str
+        Lines of a CSV table; see `read_folder` for its columns.
+    where : str
+        Its name, for errors.
+    study : mapping
+        The content of ``study.json``.
+
+    Returns
+    -------
+    Series
+        As :func:`mascarin.report.render` takes them.
+
+    Raises
+    ------
+    InputError
+        The table cannot be read.
+    """
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            header, *rows = csv.reader(file)
+        header, *rows = csv.reader(file)
         times = [datetime.fromisoformat(row[0]).replace(tzinfo=None) for row in rows[:2]]
         values = np.array([[_number(cell) for cell in row[1:]] for row in rows], dtype=np.float64)
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; expected the series of a study; run it again") from error
     except (ValueError, IndexError) as error:
-        raise InputError(f"{path}: {error}; expected the series of a study; run it again") from error
+        raise InputError(f"{where}: {error}; expected the series of a study; run it again") from error
     if len(times) < 2 or values.shape[1:] != (len(header) - 1,):
         raise InputError(
-            f"{path}: {len(rows)} rows; expected at least two, as long as the header; run it again"
+            f"{where}: {len(rows)} rows; expected at least two, as long as the header; run it again"
         )
     columns = _columns(header[1:], values, study)
     return Series(times[0].isoformat(), (times[1] - times[0]).total_seconds(), columns)
 
 
+def _open(path: Path) -> list[str]:
+    try:
+        return path.read_text(encoding="utf-8").splitlines(keepends=True)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; expected the series of a study; run it again") from error
+    except ValueError as error:
+        raise InputError(f"{path}: {error}; expected the series of a study; run it again") from error
+
+
 def _parts(name: str, models: Sequence[str]) -> tuple[str, str]:
-    """Owner of a column and what it holds; both a sensor's name and a model's label may hold dots."""
+    """Owner and content of a column; names of sensors and models may contain dots."""
     if name.startswith(("weather.", "state.")):
         owner, _, what = name.partition(".")
         return owner, what

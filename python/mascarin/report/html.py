@@ -1,4 +1,4 @@
-"""Template, style and script put together into one file."""
+"""Renders the templates of a report into one file with its styles and scripts."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
-from jinja2 import Environment, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from mascarin.report.page import context, explorer
-from mascarin.report.payload import Series
+from mascarin.report.series import Series
 from mascarin.report.text import significant, typeset
 
 
@@ -23,12 +23,13 @@ def page(study: Mapping[str, Any], series: Series) -> str:
     Parameters
     ----------
     study : mapping
-        As in :class:`~mascarin.report.payload.Study`.
+        As in :class:`~mascarin.report.schema.Study`.
     series : Series
         Curves.
     """
     library, own = _asset("vendor/uPlot.iife.min.js"), _asset("report.js")
     environment = Environment(
+        loader=PackageLoader("mascarin", "report"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -38,7 +39,7 @@ def page(study: Mapping[str, Any], series: Series) -> str:
     environment.filters["typeset"] = typeset
     environment.filters["significant"] = significant
     environment.filters["symbol"] = _symbol
-    template = environment.from_string(_asset("template.html"))
+    template = environment.get_template("page.html")
     return template.render(
         **context(study, series),
         style=Markup(_asset("vendor/uPlot.min.css") + "\n" + _asset("report.css")),  # noqa: S704  (our own files)

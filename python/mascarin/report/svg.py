@@ -14,7 +14,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from mascarin.report import text
-from mascarin.report.payload import Array
+from mascarin.report.series import Array
 
 Attribute = str | float | int
 

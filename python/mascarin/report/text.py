@@ -23,7 +23,7 @@ _UNITS = {
 _CHOICES = {
     "linear_wind": "linear in wind",
     "alamdari_hammond": "Alamdari and Hammond",
-    "paper_eq5": "eq. 5 as printed",
+    "paper_eq5": "eq. 5 of the paper",
     "tarp": "TARP",
     "mowitt": "MoWiTT",
     "doe2": "DOE-2",
@@ -32,12 +32,12 @@ _CHOICES = {
     "martin_berdahl": "Martin and Berdahl, with clouds",
     "clark_allen": "Clark and Allen, with clouds",
     "brunt": "Brunt, with clouds",
-    "offset": "a fixed step below the air",
+    "offset": "a fixed difference below the air temperature",
     "measured": "measured",
     "perez": "Perez et al.",
     "hay_davies": "Hay and Davies",
-    "radiosity": "radiosity, exact",
-    "none": "none of its own",
+    "radiosity": "radiosity",
+    "none": "none",
 }
 NONE = "–"
 #: A parameter path in a longer text.
@@ -46,9 +46,9 @@ PATH = re.compile(r"[A-Za-z_][\w-]*(?:\.[\w-]+)+")
 DOI = re.compile(r"doi:\s*(10\.\d{4,9}/[^\s;,]+)")
 #: Ends of parameter paths in words.
 _ENDINGS = {
-    ".convection.factor": ".film factor",
-    ".convection.coefficient": ".film coefficient",
-    ".law.width": ".half-width of melting",
+    ".convection.factor": ".convection factor",
+    ".convection.coefficient": ".convection coefficient",
+    ".law.width": ".half-width of the melting range",
     ".infiltration.constant": ".infiltration",
 }
 MINUS = "−"

@@ -32,12 +32,17 @@ MEMORY: Final = 256 * 2**20
 class Failure:
     """A member of an ensemble that did not finish.
 
-    Attributes
+    Parameters
     ----------
     member : int
         Its row.
     reason : str
         Message of the engine.
+
+    Examples
+    --------
+    >>> Failure(2, "step 4 did not converge").member
+    2
     """
 
     member: int
@@ -50,7 +55,7 @@ class CompiledRun:
 
     Methods take parameter vectors; `Simulation` takes values by path.
 
-    Attributes
+    Parameters
     ----------
     description : str
         The building as the engine reads it, JSON.
@@ -107,7 +112,15 @@ class CompiledRun:
     def options(
         self, readings: Readings | None = None, record_from: int = 0, record_every: int = 1
     ) -> dict[str, Any]:
-        """Options of a run as the engine reads them."""
+        """Options of a run as the engine reads them.
+
+        Parameters
+        ----------
+        readings : Readings, optional
+            Outputs other than those of the compiled run.
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        """
         return {
             **self.settings,
             "probes": (readings or self.readings).probes,
@@ -243,7 +256,13 @@ class CompiledRun:
         return Trajectory(run, run.run()["records"], self.readings)
 
     def dated(self, message: str) -> str:
-        """Add the local time to a message of the engine that names a step."""
+        """Add the local time to a message of the engine that names a step.
+
+        Parameters
+        ----------
+        message : str
+            The message.
+        """
 
         def stamped(match: re.Match[str]) -> str:
             step = min(int(match[1]), len(self.forcing) - 1)
@@ -269,7 +288,17 @@ class CompiledRun:
 
     @classmethod
     def read(cls, header: Mapping[str, Any], forcing: Array, values: Array) -> CompiledRun:
-        """Make a compiled run again from its `header` and arrays."""
+        """Make a compiled run again from its `header` and arrays.
+
+        Parameters
+        ----------
+        header : mapping
+            What `header` returned.
+        forcing : ndarray, shape (steps, stages, channels)
+            Weather, measured boundaries and schedules. [unit of each channel]
+        values : ndarray, shape (P,)
+            Parameter vector of the building. [unit of each]
+        """
         recipes = tuple((kind, tuple(columns)) for kind, columns in header["recipes"])
         return cls(
             description=header["description"],

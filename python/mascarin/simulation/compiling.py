@@ -54,16 +54,14 @@ def with_parameters(building: Building, parameters: Mapping[str, float] | None) 
     """
     if not parameters:
         return building
-    values = {}
     for path, value in parameters.items():
-        known = building.parameter(path)
-        if isinstance(value, bool | str) or not np.isscalar(value):
+        if isinstance(value, str | bool) or not np.isscalar(value):
+            unit = building.parameter(path).unit or "its unit"
             raise InputError(
-                f"parameters: {path}: found {value!r}, expected a number in {known.unit or 'its unit'}. "
-                "Replace a whole part with Building.replace()"
+                f"parameters: {path}: found {value!r}, expected a number in {unit}. Replace a whole "
+                "part with Building.replace()"
             )
-        values[known.path] = value.item() if isinstance(value, np.generic) else value
-    return building.replace(values)
+    return building.with_values(parameters)
 
 
 def changed_parameters(

@@ -27,7 +27,7 @@ FLOWS: Final = (
 class EnergyLedger:
     """Heat by flow over a run, the heat stored, and how well they balance.
 
-    Attributes
+    Parameters
     ----------
     into : mapping of str to float
         Net heat into the building by flow. [J]
@@ -60,13 +60,25 @@ class EnergyLedger:
 
     @classmethod
     def read(cls, raw: Mapping[str, Any]) -> Self:
-        """From the values that the engine returns."""
+        """Make one from the values that the engine returns.
+
+        Parameters
+        ----------
+        raw : mapping
+            Heat by flow, ``stored``, ``turnover`` [J] and ``closure`` [-].
+        """
         into = {flow: float(raw[flow]) for flow in FLOWS}
         return cls(into, float(raw["stored"]), float(raw["turnover"]), float(raw["closure"]))
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
-        """From what `to_dict` gives."""
+        """Make one from the values of `to_dict`.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            The values.
+        """
         into = {flow: float(values[f"{flow}_joule"]) for flow in FLOWS}
         numbers = (values[key] for key in ("stored_joule", "turnover_joule", "closure"))
         return cls(into, *(float(number) for number in numbers))

@@ -1,4 +1,4 @@
-"""The start of a run: as it is asked for, and what it comes to in a building and a climate."""
+"""The start of a run: what a user gives, and the temperatures of a building that follow from it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.weather import Measurements
 
-#: A sensor's first value is looked for this long after the start. [s]
+#: The first value of a sensor lies within this time after the start. [s]
 WITHIN: Final = 3600.0
 _BETWEEN: Final = f"between {LIMITS[0]:g} and {LIMITS[1]:g} degC"
 
@@ -38,13 +38,25 @@ _BETWEEN: Final = f"between {LIMITS[0]:g} and {LIMITS[1]:g} degC"
 class MeasuredStart:
     """A start from measured temperatures.
 
-    Attributes
+    Parameters
     ----------
     measurements : Measurements
         The table; temperatures in degC.
     sensors : mapping of str to str or sequence of str
-        Output of the building -> column, or columns whose mean is taken. Airs of zones, faces, interfaces,
-        phase-change layers and sensors in walls say where a run starts; other outputs are passed over.
+        Column of each output, or columns whose mean is used. Temperatures of zone airs, surfaces, interfaces,
+        phase-change layers and sensors in walls are used; other outputs are ignored.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> import mascarin as mc
+    >>> from mascarin.examples import box, box_climate
+    >>> climate = box_climate()
+    >>> table = pd.DataFrame({"air": 24.5}, index=climate.index)
+    >>> measured = mc.Measurements.from_table(table, timezone="UTC-07:00")
+    >>> start = mc.MeasuredStart(measured, {"room.air_temperature": "air"})
+    >>> mc.simulate(box(), climate, step="1h", initial=start).provenance.start
+    'measured from 2001-07-01 00:00: room.air_temperature 24.5 degC...'
     """
 
     measurements: Measurements
@@ -53,6 +65,15 @@ class MeasuredStart:
     def known(self, building: Building, found: Sequence[Wall], start: pd.Timestamp) -> Known:
         """The first value of each sensor.
 
+        Parameters
+        ----------
+        building : Building
+            The building.
+        found : sequence of Wall
+            Its walls.
+        start : pandas.Timestamp
+            Start of the run.
+
         Raises
         ------
         StartError
@@ -60,13 +81,13 @@ class MeasuredStart:
         """
         zones: dict[str, float] = {}
         points: dict[str, list[tuple[float, float]]] = {}
-        said = []
+        notes = []
         for name, columns in self.sensors.items():
             place = located(building.output(name), found, building)
             if place is None:
                 continue
             value = self._first(name, [columns] if isinstance(columns, str) else list(columns), start)
-            said.append(f"{name} {value:g}")
+            notes.append(f"{name} {value:g}")
             if place[1] is None:
                 zones[place[0]] = value
             else:
@@ -74,10 +95,10 @@ class MeasuredStart:
         if building.zones and not zones:
             raise StartError(
                 ("initial",),
-                f"found no sensor in the air of {' or '.join(building.zones)}, expected one at least for a "
+                f"found no sensor in the air of {' or '.join(building.zones)}, expected at least one for a "
                 "measured start: add it, or give temperatures (initial: {zones: {...}})",
             )
-        return Known(zones, points, None, f"measured from {start:%Y-%m-%d %H:%M}: {', '.join(said)} degC")
+        return Known(zones, points, None, f"measured from {start:%Y-%m-%d %H:%M}: {', '.join(notes)} degC")
 
     def _first(self, name: str, columns: Sequence[str], start: pd.Timestamp) -> float:
         """First value within an hour of the start, the mean of the columns that have one. [degC]"""
@@ -87,7 +108,7 @@ class MeasuredStart:
         table, step = self.measurements, self.measurements.step_seconds
         times = pd.date_range(start, periods=1 + int(WITHIN // step), freq=pd.Timedelta(seconds=step))
         rows = np.stack([table.at(column, times) for column in columns])
-        told = f"{' and '.join(repr(column) for column in columns)} ({name})"
+        where = f"{' and '.join(repr(column) for column in columns)} ({name})"
         for row in rows.T:
             value = float(row[np.isfinite(row)].mean()) if np.isfinite(row).any() else None
             if value is None:
@@ -95,52 +116,52 @@ class MeasuredStart:
             if not LIMITS[0] < value < LIMITS[1]:
                 raise StartError(
                     ("initial",),
-                    f"found {value:g} in {told} at the start, expected a temperature {_BETWEEN}: correct the "
-                    "column or its unit, or leave that sensor out (in a study use: false)",
+                    f"found {value:g} in {where} at the start, expected a temperature {_BETWEEN}: correct "
+                    "the column or its unit, or leave that sensor out (in a study use: false)",
                 )
             return value
         raise StartError(
             ("initial",),
-            f"found no value of {told} within an hour from {start:%Y-%m-%d %H:%M} in {table.file} (missing "
+            f"found no value of {where} within an hour from {start:%Y-%m-%d %H:%M} in {table.file} (missing "
             "or masked), expected one: begin later, leave that sensor out (in a study use: false), or give "
             "temperatures (initial: {zones: {...}})",
         )
 
 
 Initial = Literal["repeat"] | float | Mapping[str, Any] | GivenStart | MeasuredStart
-"""What a run starts from, as `Simulation` takes it."""
+"""Values of the option ``initial``."""
 
 
-def read(asked: object) -> float | GivenStart | MeasuredStart | None:
-    """What was asked for: one temperature [degC], given or measured ones, or None for a repeated period.
+def read(wanted: object) -> float | GivenStart | MeasuredStart | None:
+    """Read the option ``initial``: one temperature [degC], given or measured ones, or None for ``repeat``.
 
     Raises
     ------
     InputError
-        It is none of these.
+        Another value.
     """
-    if isinstance(asked, GivenStart | MeasuredStart):
-        return asked
-    if isinstance(asked, str) and asked == "repeat":
+    if isinstance(wanted, GivenStart | MeasuredStart):
+        return wanted
+    if isinstance(wanted, str) and wanted == "repeat":
         return None
-    if isinstance(asked, (int, float)) and not isinstance(asked, bool) and LIMITS[0] < asked < LIMITS[1]:
-        return float(asked)
-    if isinstance(asked, Mapping):
+    if isinstance(wanted, (int, float)) and not isinstance(wanted, bool) and LIMITS[0] < wanted < LIMITS[1]:
+        return float(wanted)
+    if isinstance(wanted, Mapping):
         from mascarin.building.reading import explained
 
-        plain = dict(asked)
+        plain = dict(wanted)
         try:
             return GivenStart.model_validate(plain)
         except ValidationError as error:
             raise explained(error, plain, "initial") from None
     raise InputError(
-        f"initial: found {asked!r}, expected 'repeat', a temperature {_BETWEEN}, a mapping of temperatures "
+        f"initial: found {wanted!r}, expected 'repeat', a temperature {_BETWEEN}, a mapping of temperatures "
         "such as {'zones': {'room': 21}}, or a MeasuredStart"
     )
 
 
 def resolved(
-    asked: GivenStart | MeasuredStart,
+    wanted: GivenStart | MeasuredStart,
     building: Building,
     nodes: Mapping[tuple[str, str], int],
     ambient: Ambient,
@@ -150,14 +171,14 @@ def resolved(
 
     Parameters
     ----------
-    asked : GivenStart or MeasuredStart
-        What is known.
+    wanted : GivenStart or MeasuredStart
+        Temperatures that are given or measured.
     building : Building
         The building.
     nodes : mapping of (str, str) to int
         Finite volumes by construction and layer.
     ambient : Ambient
-        What surrounds it.
+        Temperatures around it at the start.
     start : pandas.Timestamp
         Start of the run.
 
@@ -167,6 +188,6 @@ def resolved(
         A name that does not exist, a sensor without a value, no temperature of any air.
     """
     found = walls(building, nodes)
-    if isinstance(asked, MeasuredStart):
-        return profile(building, found, asked.known(building, found, start), ambient)
-    return profile(building, found, given(asked, found, building), ambient)
+    if isinstance(wanted, MeasuredStart):
+        return profile(building, found, wanted.known(building, found, start), ambient)
+    return profile(building, found, given(wanted, found, building), ambient)

@@ -1,4 +1,4 @@
-"""A linear building as the matrices of the paper's eq. 1."""
+"""A linear building as matrices (Guichard et al., eq. 1)."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from mascarin import _engine
 from mascarin.simulation.engine_errors import translated
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -20,18 +21,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class StateSpace:
-    """``dx/dt = A x + B u``, ``y = C x + D u``.
+    """A linear model in state space: ``dx/dt = A x + B u``, ``y = C x + D u``.
 
-    States are cell and air temperatures [degC]. Inputs are the outdoor air [degC], the emission of the sky
-    [W/m2], irradiances on faces [W/m2], measured temperatures [degC], and `one`, the constant 1 that carries
-    what linearised radiation leaves over. Outputs are air and face temperatures [degC].
+    States are temperatures of finite volumes and zone airs [degC]. Inputs are the outdoor air temperature
+    [degC], the emission of the sky [W/m2], irradiances on surfaces [W/m2], measured temperatures [degC], and
+    ``one``, the constant 1, for the constant terms of linearized radiation. Outputs are temperatures of zone
+    airs and surfaces [degC].
 
-    Attributes
+    Parameters
     ----------
     a, b, c, d : ndarray, shapes (n, n), (n, m), (p, n), (p, m)
         The matrices. [1/s and units of the inputs]
     states, inputs, outputs : list of str
         Names of rows and columns.
+
+    Examples
+    --------
+    >>> one = np.ones((1, 1))
+    >>> StateSpace(-one / 3600.0, one, one, one, ["air"], ["outdoor"], ["air"]).time_constants()
+    array([3600.])
     """
 
     a: Array
@@ -47,16 +55,16 @@ class StateSpace:
         return np.sort(-1.0 / np.linalg.eigvals(self.a).real)[::-1]
 
 
-def state_space(building: Building, *, step: float = 900.0) -> StateSpace:
-    """Write a linear building as matrices.
+def state_space(building: Building, *, step: str | float = "15min") -> StateSpace:
+    """Write a linear building as the matrices of a model in state space.
 
     Parameters
     ----------
     building : Building
-        Every law in it linear and constant: constant films, linearised or no long-wave exchange, no phase
-        change, constant infiltration.
-    step : float
-        Step the mesh is chosen for. [s]
+        Every law in it is linear and constant: constant convective coefficients, linearized or no long-wave
+        exchange, no phase change, constant infiltration.
+    step : str or float
+        Time step for which the mesh is chosen, such as ``15min``, or a number of seconds. [s]
 
     Returns
     -------
@@ -71,8 +79,18 @@ def state_space(building: Building, *, step: float = 900.0) -> StateSpace:
     References
     ----------
     Guichard et al., eq. 1: ``C dT/dt = A T + B``.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> linear = {"kind": "linearised", "reference": 20.0}
+    >>> building = box().replace(
+    ...     {"zones.room.longwave": linear, "surfaces.facade.outside.longwave": linear}
+    ... )
+    >>> state_space(building).outputs
+    ['room.air_temperature', 'facade.outside_temperature', 'facade.inside_temperature']
     """
-    description = building.to_engine(step, {})
+    description = building.to_engine(seconds_of(step), {})
     with translated():
         raw = _engine.Plan(description.json).state_space(description.values)
     return StateSpace(**raw)

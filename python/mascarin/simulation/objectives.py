@@ -24,7 +24,7 @@ Objective = Callable[[Mapping[str, Array]], tuple[float, Mapping[str, Array]]]
 class Mean:
     """Mean of an output over the records.
 
-    Attributes
+    Parameters
     ----------
     output : str
         Name of the output.
@@ -48,7 +48,7 @@ class Mean:
 class SquaredResiduals:
     """Sum of squared residuals, each divided by its standard uncertainty; NaN is left out.
 
-    Attributes
+    Parameters
     ----------
     measured : mapping of str to ndarray, shape (T,)
         Measured series by output. [unit of the output]
@@ -86,7 +86,7 @@ class SquaredResiduals:
 class Gradient:
     """A quantity and its derivatives by all parameters.
 
-    Attributes
+    Parameters
     ----------
     value : float
         The quantity.

@@ -73,6 +73,10 @@ TABLE: Final[Mapping[str, tuple[str, str]]] = {
 class RunOptions:
     """The options of a run; `progress` is not among them, because it changes no result.
 
+    Parameters
+    ----------
+    <run options>
+
     Raises
     ------
     InputError
@@ -129,3 +133,6 @@ def described(function: F) -> F:
     text = inspect.cleandoc(text)
     function.__doc__ = text.replace("<run options>", "\n".join(lines))
     return function
+
+
+described(RunOptions)

@@ -15,7 +15,7 @@ _KEYS: Final = {"version": "mascarin_version", "building_hash": "building_sha256
 class Provenance:
     """What a run was made from.
 
-    Attributes
+    Parameters
     ----------
     building : str
         Name of the building.
@@ -76,6 +76,12 @@ class Provenance:
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
-        """From what `to_dict` gives."""
+        """Make one from the values of `to_dict`.
+
+        Parameters
+        ----------
+        values : mapping
+            The values.
+        """
         names = {_KEYS.get(name, name): name for name in cls.__dataclass_fields__}
         return cls(**{names[key]: value for key, value in values.items() if key in names})

@@ -116,7 +116,7 @@ def globe_temperature(air: Array, radiant: Array, diameter: float = 0.15, emissi
     Examples
     --------
     >>> globe_temperature(np.array([20.0]), np.array([30.0])).round(1)
-    array([25.5])
+    array([26.2])
     """
     sigma, kelvin = 5.670374419e-8, 273.15
     globe = 0.5 * (air + radiant)

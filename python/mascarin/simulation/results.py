@@ -45,7 +45,7 @@ class Results(Mapping[str, "xr.DataArray"]):
     ``results["room.air_temperature"]`` is an xarray.DataArray over ``time`` (UTC) with the coordinate
     ``local_time``. Names and aliases of outputs are keys.
 
-    Attributes
+    Parameters
     ----------
     outputs : sequence of Output
         What was recorded.
@@ -110,7 +110,15 @@ class Results(Mapping[str, "xr.DataArray"]):
         return any(name == output.name or name in output.aliases for output in self.outputs)
 
     def get(self, name: str, default: Default | None = None) -> xr.DataArray | Default | None:  # type: ignore[override]
-        """One series, or the default where it was not recorded."""
+        """One series, or the default where it was not recorded.
+
+        Parameters
+        ----------
+        name : str
+            Name or alias of the output.
+        default : object, optional
+            What to return where it was not recorded.
+        """
         return self[name] if name in self else default  # noqa: SIM401 (this is get itself)
 
     def __eq__(self, other: object) -> bool:
@@ -210,6 +218,11 @@ class Results(Mapping[str, "xr.DataArray"]):
 
     def heat(self, name: str) -> float:
         """Heat of a load over the run. [J]
+
+        Parameters
+        ----------
+        name : str
+            Output in W, such as ``room.heating_load``.
 
         Raises
         ------
@@ -371,11 +384,11 @@ class Results(Mapping[str, "xr.DataArray"]):
         >>> figure.axes[0].get_ylabel()
         'degC'
         """
-        from mascarin.simulation.plotting import draw
+        from mascarin.figures.series import draw  # matplotlib
 
         chosen = [names] if isinstance(names, str) else list(self) if names is None else names
         positions = [self._position(name) for name in chosen]
-        series = [(self.outputs[p], self.records[:, p]) for p in positions]
+        series = [(self.outputs[p].name, self.outputs[p].unit, self.records[:, p]) for p in positions]
         return draw(series, self.index, ax)
 
     # --- in words -----------------------------------------------------------------------------------------

@@ -9,27 +9,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mascarin.errors import InputError
 from mascarin.progress import reporting
-from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
+from mascarin.simulation.compiled import MEMORY, CompiledRun
 from mascarin.simulation.energy import EnergyLedger
-from mascarin.simulation.limits import Limits, require_set_points_apart
 from mascarin.simulation.options import RunOptions, described
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.readings import Readings
 from mascarin.simulation.results import Results
 from mascarin.simulation.slopes import gradient_of, labelled_slopes
+from mascarin.simulation.vectors import VectorRuns
 from mascarin.weather import CHANNELS, summary
 from mascarin.weather.times import epoch_seconds, seconds_of
 from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-    import pandas as pd
     import xarray as xr
 
     from mascarin.building import Building
-    from mascarin.progress import ProgressOption, Report
+    from mascarin.progress import ProgressOption
     from mascarin.simulation.initial import Initial
     from mascarin.simulation.objectives import Gradient, Objective
     from mascarin.simulation.options import Scheme, TimeLike
@@ -38,7 +36,7 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 
-class Simulation:
+class Simulation(VectorRuns):
     """A building compiled for a climate, a period and a step.
 
     Use it where the same building is run several times: `run`, `jacobian` and `gradient` take values of
@@ -125,7 +123,7 @@ class Simulation:
             self.building, climate, description, start=self.start, end=self.end,
             step_seconds=self.step_seconds, scheme=scheme, measurements=measurements,
         )  # fmt: skip
-        self._channels = tuple(description.channels)
+        self.channels = tuple(description.channels)
         self.initial = compiling.start_of(wanted, self.building, description, forcing, self.start)
         self.compiled = CompiledRun(
             description=description.json,
@@ -221,7 +219,9 @@ class Simulation:
         """
         paths = [self.building.parameter(path).path for path in vary]
         with reporting(progress, "parameters") as report:
+            report(0, len(paths))
             records, slopes = self.jacobian_vector(paths, self.vector(parameters or {}), progress=report)
+            report(len(paths), len(paths))
         units = [self.building.parameter(path).unit for path in paths]
         named = dict(zip(paths, units, strict=True))
         return labelled_slopes(self.outputs, self.index, named, records, slopes)
@@ -268,57 +268,6 @@ class Simulation:
             report(2, 2)
         return found
 
-    def vector(self, parameters: Mapping[str, float]) -> Array:
-        """The parameter vector with some values replaced.
-
-        Parameters
-        ----------
-        parameters : mapping of str to float
-            Values by path. [unit of each]
-
-        Returns
-        -------
-        ndarray, shape (P,)
-            Values in the order of `paths`. [unit of each]
-
-        Raises
-        ------
-        InputError
-            Unknown path; the text names the nearest ones.
-        """
-        vector = self.values.copy()
-        for path, value in parameters.items():
-            vector[self.position(path)] = value
-        return vector
-
-    def position(self, path: str) -> int:
-        """Position of a path in a parameter vector.
-
-        Raises
-        ------
-        InputError
-            Unknown path, or a structural one, which needs another compiled building.
-        """
-        parameter = self.building.parameter(path)
-        if parameter.path not in self._positions:
-            raise InputError(
-                f"{path}: is structural ({parameter.reason}); give it in the building, for example with "
-                "replace()"
-            )
-        return self._positions[parameter.path]
-
-    # --- parameter vectors --------------------------------------------------------------------------------
-
-    @property
-    def paths(self) -> list[str]:
-        """Path of each parameter, in the order of a parameter vector."""
-        return list(self.compiled.paths)
-
-    @property
-    def values(self) -> Array:
-        """Parameter vector of the building, shape (P,). [unit of each]"""
-        return self.compiled.values  # noqa: PD011 (no pandas object)
-
     def run_vector(self, vector: Array) -> Results:
         """Run once with a parameter vector; as `run`.
 
@@ -355,139 +304,7 @@ class Simulation:
             warnings=tuple(unmelted.warnings(self.building, seen)),
         )
 
-    def ensemble(
-        self,
-        vectors: Array,
-        *,
-        record_from: int = 0,
-        record_every: int = 1,
-        progress: Report | None = None,
-    ) -> tuple[Array, Array, list[Failure]]:
-        """Run many parameter vectors, several at a time in lanes and threads.
-
-        Parameters
-        ----------
-        vectors : ndarray, shape (M, P)
-            One parameter vector a row. [unit of each]
-        record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
-        progress : callable, optional
-            Called with the number of members done and their total.
-
-        Returns
-        -------
-        records : ndarray, shape (M, rows, outputs)
-            NaN for a member that failed.
-        residuals : ndarray, shape (M,)
-            Relative energy-balance residual of each member. [-]
-        failures : list of Failure
-            Members that failed, and why.
-
-        Raises
-        ------
-        InputError
-            The vectors do not have a column for each parameter, or hold an impossible value.
-        """
-        members: Array = np.ascontiguousarray(vectors, dtype=np.float64)
-        self._require_possible(members)
-        return self.compiled.ensemble(
-            members, record_from=record_from, record_every=record_every, progress=progress
-        )
-
-    def jacobian_vector(
-        self,
-        vary: Sequence[str],
-        vector: Array | None = None,
-        *,
-        record_from: int = 0,
-        record_every: int = 1,
-        progress: Report | None = None,
-    ) -> tuple[Array, Array]:
-        """Run once with the derivatives of every output by some parameters, in forward mode.
-
-        What comes back is the derivative of the discrete solution, the repeated first period included, not a
-        difference quotient. At a switch (the end of a melting range, a wind that changes sides) it is the
-        derivative of the branch that the run took.
-
-        Parameters
-        ----------
-        vary : sequence of str
-            Paths of the parameters to derive by.
-        vector : ndarray, shape (P,), optional
-            Parameter vector; default that of the building. [unit of each]
-        record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
-        progress : callable, optional
-            Called with the number of parameters done and their total.
-
-        Returns
-        -------
-        records : ndarray, shape (rows, outputs)
-            As of `run_vector`.
-        slopes : ndarray, shape (vary, rows, outputs)
-            Derivative of each record by each parameter. [unit of the output / unit of the parameter]
-
-        Raises
-        ------
-        InputError
-            A path that is unknown or structural, or no path.
-        SolverError
-            A step or the repeated first period did not converge.
-        """
-        if not vary:
-            raise InputError(
-                "derivatives: no parameters; give at least one path, as `mascarin parameters` lists"
-            )
-        return self.compiled.jacobian(
-            [self.position(path) for path in vary],
-            self._checked(vector),
-            record_from=record_from,
-            record_every=record_every,
-            progress=progress,
-        )
-
-    def trajectory(
-        self,
-        vector: Array | None = None,
-        *,
-        record_from: int = 0,
-        record_every: int = 1,
-        memory: int = MEMORY,
-    ) -> Trajectory:
-        """Run once and keep what the derivatives in reverse mode need.
-
-        Parameters
-        ----------
-        vector : ndarray, shape (P,), optional
-            Parameter vector; default that of the building. [unit of each]
-        record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
-        memory : int
-            About how much may be kept: beyond it parts of the run are calculated again. [B]
-
-        Returns
-        -------
-        Trajectory
-            Its records, and the derivatives of quantities made of them by all parameters.
-
-        Raises
-        ------
-        SolverError
-            A step or the repeated first period did not converge.
-        """
-        return self.compiled.trajectory(
-            self._checked(vector), record_from=record_from, record_every=record_every, memory=memory
-        )
-
     # --- times, weather, identity -------------------------------------------------------------------------
-
-    @cached_property
-    def index(self) -> pd.DatetimeIndex:
-        """Times of the records in local time, shape (rows,): the start, then the end of every step."""
-        import pandas as pd
-
-        step = pd.Timedelta(seconds=self.step_seconds)
-        return pd.date_range(self.start, periods=round((self.end - self.start) / step) + 1, freq=step)
 
     @cached_property
     def identity(self) -> str:
@@ -501,33 +318,18 @@ class Simulation:
         return digest.hexdigest()
 
     def weather(self, channel: str) -> Array:
-        """A climate channel at the recorded times, as the engine reads it, shape (rows,). [its unit]"""
+        """A climate channel at the recorded times, as the engine reads it, shape (rows,). [its unit]
+
+        Parameters
+        ----------
+        channel : str
+            Such as ``air_temperature``; see `mascarin.weather.CHANNELS`.
+        """
         values = self.compiled.forcing[:, :, CHANNELS.index(channel)]
         # The start has no stage: the first one of the first step stands for it.
         return np.concatenate([values[:1, 0], values[:, -1]])
 
     # --- checks and provenance ----------------------------------------------------------------------------
-
-    @cached_property
-    def _positions(self) -> dict[str, int]:
-        return {path: index for index, path in enumerate(self.compiled.paths)}
-
-    def _checked(self, vector: Array | None) -> Array:
-        found: Array = np.array(self.values if vector is None else vector, dtype=np.float64)
-        self._require_possible(found[None, :])
-        return found
-
-    def _require_possible(self, vectors: Array) -> None:
-        """Refuse parameter vectors of the wrong length, or with a value that its parameter cannot have."""
-        self._limits.require(vectors)
-        require_set_points_apart(
-            self.building, vectors, self.compiled.forcing, positions=self._positions,
-            channels=self._channels, times=self.index,
-        )  # fmt: skip
-
-    @cached_property
-    def _limits(self) -> Limits:
-        return Limits([self.building.parameter(path) for path in self.compiled.paths])
 
     def _changed(self, vector: Array) -> dict[str, float]:
         """Parameters of a vector that differ from those of the building."""

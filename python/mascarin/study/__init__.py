@@ -1,7 +1,12 @@
-"""The whole method as one pipeline that can be interrupted and goes on where it was."""
+"""Studies: comparison with measurements, sensitivity analysis, calibration and validation in one run.
+
+An interrupted study continues where it was.
+"""
 
 from __future__ import annotations
 
-from mascarin.study.pipeline import Findings, ModelRun, Study
+from mascarin.study.description import Sensor
+from mascarin.study.results import StudyResults
+from mascarin.study.study import Study
 
-__all__ = ["Findings", "ModelRun", "Study"]
+__all__ = ["Sensor", "Study", "StudyResults"]

@@ -1,4 +1,4 @@
-"""The identification step of a study."""
+"""Calibration of a study."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mascarin.validation.observation import Observation
 
 
-#: So much work may be lost when a study is killed. [s]
+#: Work that is lost at most when a study is killed. [s]
 CHUNK_SECONDS: Final = 1.0
 _MOST: Final = 64
 _PACK: Final = 8
@@ -34,7 +34,7 @@ def free_parameter(building: Building, path: str, free: Free | None) -> FitParam
     Raises
     ------
     InputError
-        Unknown path, or bounds outside of what the parameter can be.
+        Unknown path, or bounds beyond the limits of the parameter.
     """
     if free is None:
         return fit_parameter(building, path)
@@ -61,20 +61,20 @@ def problem(
     sensors: Mapping[str, Sensor],
     plan: IdentificationPlan,
 ) -> CalibrationProblem:
-    """What a plan asks for.
+    """The calibration problem of a plan.
 
     Parameters
     ----------
     simulation : Simulation
-        Covers the lead and the identification period.
+        Covers the warm-up and the identification period.
     observation : Observation
         Measured series.
     use : ndarray of bool, shape (n,)
         Instants of the identification period.
     sensors : mapping of str to Sensor
-        Uncertainties, and which take part.
+        Uncertainties, and which sensors are used.
     plan : IdentificationPlan
-        What to find and how.
+        Parameters and method.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def problem(
 
 
 def independent_weight(plan: IdentificationPlan, interval: float) -> float:
-    """What one of many samples counts, where samples closer together than some time share one weight.
+    """Weight of a sample if samples closer together than some time count as one.
 
     Parameters
     ----------
@@ -114,18 +114,18 @@ def identify(
     record: Path | None,
     progress: Callable[[int, float], object] | None = None,
 ) -> Fit:
-    """Find the parameters of a plan.
+    """Carry out the calibration of a plan.
 
     Parameters
     ----------
     simulation : Simulation
-        What the problem runs.
+        The model of the problem.
     stated : CalibrationProblem
         From `problem`.
     plan : IdentificationPlan
-        How to find them.
+        Method and its options.
     record : Path, optional
-        File in which every evaluation is kept.
+        File that stores every evaluation.
     progress : callable, optional
         Called with the number of evaluations and the lowest cost so far.
     """
@@ -149,7 +149,7 @@ def identify(
 
 
 def _batch(simulation: Simulation) -> int:
-    """How many evaluations to keep at a time; it changes how much work can be lost and no result."""
+    """Number of evaluations to store at once; it has no influence on the result."""
     began = time.monotonic()
     simulation.ensemble(np.tile(simulation.vector({}), (_PACK, 1)))
     seconds = max(time.monotonic() - began, 1e-6)

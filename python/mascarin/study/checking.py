@@ -1,4 +1,4 @@
-"""Everything that can be refused in a study, refused before the first run and before anything is written."""
+"""Checks of a whole study, before the first run and before anything is written."""
 
 from __future__ import annotations
 
@@ -6,19 +6,14 @@ import warnings
 from typing import TYPE_CHECKING, Final
 
 from mascarin.calibration.building_problem import DEAD, MOST_DEAD
-from mascarin.errors import InputError, did_you_mean
-from mascarin.study.calibration_step import free_parameter
-from mascarin.study.sensitivity_step import check_plan
-from mascarin.validation.observation import PERIODS, require_comparable
+from mascarin.errors import InputError
+from mascarin.validation.observation import require_comparable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pandas as pd
 
     from mascarin.building import Building
-    from mascarin.study.locations import Faults
-    from mascarin.study.pipeline import Study
+    from mascarin.study.setup import Setup
 
 #: Measured temperatures of a building lie between these. [degC]
 _TEMPERATURES: Final = (-100.0, 200.0)
@@ -26,75 +21,26 @@ _TEMPERATURES: Final = (-100.0, 200.0)
 _DARK: Final = 2.0
 
 
-def check(study: Study) -> None:
-    """Refuse what cannot be used.
+def check(study: Setup) -> None:
+    """Check everything that a run needs.
 
     Parameters
     ----------
-    study : Study
-        Its files are open, and its names are known.
+    study : Setup
+        Its names are checked already.
 
     Raises
     ------
     InputError
-        File, line and place in the study, what was found, what was expected, what to do.
+        File, line and entry of the study, what was found, what was expected, what to do.
     """
     _periods(study)
-    _alive(study)
+    _working(study)
     _runs(study)
-    _sensible(study)
+    _plausible(study)
 
 
-def names(study: Study, faults: Faults) -> None:
-    """Outputs, parameters, criteria: whatever is called by a name that must exist. No table is needed.
-
-    Parameters
-    ----------
-    study : Study
-        Its building is read.
-    faults : Faults
-        Takes what is wrong.
-    """
-    file, places = study.file, study.places
-    for name, sensor in file.sensors.items():
-        with places.noting(faults, "sensors", name, "output"):
-            study.building.output(sensor.output)
-    with places.noting(faults, "sensors"):
-        if not any(sensor.use for sensor in file.sensors.values()):
-            raise InputError("found use: false on every sensor, expected one at least that takes part")
-    seen: dict[str, str] = {}
-    for path, free in {} if file.identification is None else file.identification.parameters.items():
-        with places.noting(faults, "identification", "parameters", path):
-            found = free_parameter(study.building, path, free).path
-            if found in seen:
-                raise InputError(f"is the same as {seen[found]}, expected each parameter once; remove one")
-            seen[found] = path
-    for what, limits in (("criteria", file.criteria), ("aims", file.aims)):
-        for k, criterion in enumerate(limits):
-            for key, known in (("sensors", tuple(file.sensors)), ("periods", PERIODS)):
-                for name in getattr(criterion, key) or ():
-                    with places.noting(faults, what, k, key):
-                        _require_known(name, known)
-    for name in {} if file.reference is None else file.reference.sensors:
-        with places.noting(faults, "reference", "sensors", name):
-            _require_known(name, tuple(file.sensors))
-    for k, entry in enumerate(() if file.reference is None else file.reference.influential):
-        with places.noting(faults, "reference", "influential", k, "parameter"):
-            study.building.parameter(entry.parameter)
-    if file.sensitivity is not None:
-        with faults.kept():
-            check_plan(study.building, file.sensitivity, places)
-    for variant in file.variants:
-        with faults.kept():
-            study.building_of(variant)
-
-
-def _require_known(name: str, known: Sequence[str]) -> None:
-    if name not in known:
-        raise InputError(f"found '{name}', expected one of {', '.join(known)}. {did_you_mean(name, known)}")
-
-
-def _periods(study: Study) -> None:
+def _periods(study: Setup) -> None:
     blame, (first, last) = study.places.blame, study.record
     given = study.moment_of_end
     with blame("periods", "end"):
@@ -124,7 +70,7 @@ def _periods(study: Study) -> None:
         if held is not None and held[0] < known[1] and known[0] < held[1]:
             raise InputError(
                 f"found {_words(*held)}, which overlaps the identification {_words(*known)}; expected days "
-                "that the fit has not seen, for only they corroborate anything: move one of the two"
+                "that the identification does not use: move one of the two"
             )
     with blame("periods", "identification"):
         if warm_up is not None and known[0] < warm_up[1]:
@@ -138,11 +84,11 @@ def _words(first: pd.Timestamp, last: pd.Timestamp) -> str:
     return f"{first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M}"
 
 
-def _alive(study: Study) -> None:
-    """Refuse to fit to a sensor that repeats itself and that nobody asked to mask."""
+def _working(study: Setup) -> None:
+    """Refuse to calibrate with a sensor that repeats its value and is not masked."""
     start, end = study.identification
-    for name, sensor in study.file.sensors.items():
-        kinds = [kind for kind in DEAD if kind not in study.file.quality.mask]
+    for name, sensor in study.plan.sensors.items():
+        kinds = [kind for kind in DEAD if kind not in study.plan.quality.mask]
         for stretch in study.quality:
             if not sensor.use or stretch.channel not in sensor.columns or stretch.kind not in kinds:
                 continue
@@ -152,17 +98,17 @@ def _alive(study: Study) -> None:
                     raise InputError(
                         f"found column {stretch.channel} {stretch.kind.replace('_', '-')} from "
                         f"{stretch.start:%Y-%m-%d %H:%M} to {stretch.end:%Y-%m-%d %H:%M} ({stretch.detail}), "
-                        "over most of the identification; expected a sensor that measures: write "
+                        "over most of the identification; expected a working sensor: write "
                         f"quality: {{mask: [{stretch.kind}]}}, use: false, or choose another period"
                     )
 
 
-def _runs(study: Study) -> None:
-    """Compile every model, and state every problem: what they refuse is refused now."""
-    file, blame = study.file, study.places.blame
+def _runs(study: Setup) -> None:
+    """Compile every model and set up every calibration, so that their errors are raised now."""
+    file, blame = study.plan, study.places.blame
     with blame("periods"):
         _ = study.simulation
-    _corroborated(study)
+    _require_validation_days(study)
     for period in ("identification", "corroboration"):
         for name in (name for name, sensor in file.sensors.items() if sensor.use):
             with blame("sensors", name):
@@ -177,26 +123,26 @@ def _runs(study: Study) -> None:
                 study.problem(name)
 
 
-def _corroborated(study: Study) -> None:
-    """Refuse a study in which no instant is left to hold the fitted model against."""
+def _require_validation_days(study: Setup) -> None:
+    """Refuse a study without measured instants outside of the identification period."""
     if study.during["corroboration"].any():
         return
     held = study.span("corroboration")
     with study.places.blame("periods", "identification" if held is None else "corroboration"):
-        why = "only days that the fit has not seen corroborate anything"
+        why = "a model is validated on days that the identification does not use"
         if held is not None:
             raise InputError(
-                f"found {_words(*held)}, in which no measured instant lies; {why}: make it longer"
+                f"found {_words(*held)}, which contains no measured instant; {why}: make it longer"
             )
         raise InputError(
             f"found {_words(*study.identification)}, which leaves nothing of the record, up to "
-            f"{study.end:%Y-%m-%d %H:%M}, to hold the model against; {why}: end it earlier, or name a "
-            "corroboration before it"
+            f"{study.end:%Y-%m-%d %H:%M}, for the comparison; {why}: end it earlier, or give a "
+            "corroboration period before it"
         )
 
 
-def _sensible(study: Study) -> None:
-    """Refuse temperatures that are codes; ask about irradiances that look like kW/m2."""
+def _plausible(study: Setup) -> None:
+    """Refuse temperatures that are error codes; warn of irradiances that look like kW/m2."""
     import numpy as np
 
     low, high = _TEMPERATURES
@@ -211,7 +157,7 @@ def _sensible(study: Study) -> None:
             with study.places.blame("sensors", name, "column"):
                 raise InputError(
                     f"found {value:g} at {observation.times[outside[0]]:%Y-%m-%d %H:%M} ({outside.size} such "
-                    f"values), expected a temperature from {low:g} to {high:g} degC; if it stands for no "
+                    f"values), expected a temperature from {low:g} to {high:g} degC; if it marks a missing "
                     f"value write missing: [{value:g}] in measurements, else mask: [out_of_range] in quality"
                 )
     for name in _irradiances(study.building):

@@ -1,4 +1,4 @@
-"""What a study file says: building, climate, measurements, periods, and what to do with them."""
+"""The keys of a study file: building, climate, measurements, periods, and the steps of the study."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _duration(text: str) -> str:
 
 
 def _seconds(given: Any) -> Any:
-    """A bare number is a number of seconds."""
+    """A number without a unit is a number of seconds."""
     return f"{given}s" if isinstance(given, int | float) and not isinstance(given, bool) else given
 
 
@@ -53,18 +53,16 @@ def _timezone(text: object) -> object:
 
 
 def _bounds(given: Any) -> Any:
-    """Two numbers are bounds that were meant, and are to be written as such."""
+    """Refuse two numbers, which are probably bounds, and a single number."""
     if isinstance(given, list) and len(given) == 2:
         raise problem(str(given), "a mapping", f"Write {{low: {given[0]}, high: {given[1]}}}.")
     if isinstance(given, int | float):
-        raise problem(
-            str(given), "a mapping", "A value belongs into the building; write {low: , high: } here."
-        )
+        raise problem(str(given), "a mapping", "Write values in the building; write {low: , high: } here.")
     return given
 
 
 def _start(given: Any) -> Any:
-    """A word that is one of the two."""
+    """Check a word."""
     if isinstance(given, str) and given not in ("repeat", "measured"):
         expected = "repeat, measured, a temperature in degC, or a mapping of temperatures"
         raise problem(f"'{given}'", expected, did_you_mean(given, ("repeat", "measured")))
@@ -92,7 +90,7 @@ Duration = Annotated[str, BeforeValidator(_seconds), AfterValidator(_duration)]
 TimeZone = Annotated[str, BeforeValidator(_timezone)]
 Columns = str | tuple[str, ...] | dict[str, Any]
 
-#: Names that the results give to models, metrics and series, so that no variant may bear them.
+#: Names of models, metrics and series in the results; variants need other names.
 TAKEN: Final = (
     "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
     "max_error_percent", "measured_range", "measured", "band", "as described", "observed", "weather", "state",
@@ -102,27 +100,36 @@ TAKEN: Final = (
 class Table(Part):
     """A table of measured columns."""
 
-    table: str = Field(description="CSV or Parquet file beside the study, or data:NAME of a known data set")
-    timezone: TimeZone = Field(
-        description="Time zone that the logger's clock kept: IANA name (Europe/Paris) or offset (UTC+4)"
+    table: str = Field(
+        description="CSV or Parquet file, its path starting at the folder of the study, or data:NAME of a "
+        "known data set"
     )
-    stamps: Literal["start", "end"] = Field("start", description="Which end of its interval a stamp marks")
+    timezone: TimeZone = Field(
+        description="Time zone of the stamps: IANA name (Europe/Paris) or offset (UTC+4)"
+    )
+    stamps: Literal["start", "end"] = Field(
+        "start", description="Whether a stamp marks the start or the end of its interval"
+    )
     mean: tuple[str, ...] = Field((), description="Columns that are means over their interval")
-    separator: str | None = Field(None, description="Column separator; found when absent")
-    decimal: str = Field(".", description="Decimal sign")
-    time: str | tuple[str, ...] | None = Field(None, description="Time column or columns; found when absent")
-    time_format: str | None = Field(None, description="How stamps are written, as in strptime")
+    separator: str | None = Field(None, description="Column separator; detected by default")
+    decimal: str = Field(".", description="Decimal mark")
+    time: str | tuple[str, ...] | None = Field(
+        None, description="Time column or columns; detected by default"
+    )
+    time_format: str | None = Field(None, description="Format of the stamps, as in strptime")
     skip_lines: int = Field(0, ge=0, description="Lines before the header")
-    missing: tuple[str | float, ...] = Field((), description="Entries that stand for no value, such as -999")
+    missing: tuple[str | float, ...] = Field(
+        (), description="Entries that mark a missing value, such as -999"
+    )
     fill_gaps: Duration | None = Field(
         None,
-        description="Gaps up to this length are filled by straight lines in what drives the model, never in "
-        "what it is compared with",
+        description="Gaps up to this length are filled by linear interpolation in the inputs of the model, "
+        "never in "
+        "the columns of the sensors",
     )
     inspect: tuple[str, ...] = Field(
         (),
-        description="Further columns whose quality is judged, though not used; every column of numbers when "
-        "absent",
+        description="Further columns to check for suspicious values; by default all columns of numbers",
     )
 
     @property
@@ -146,11 +153,13 @@ class MeasuredWeather(Table):
     """Weather from a measured table."""
 
     columns: dict[str, Columns] = Field(description="Climate channel -> column")
-    absent: tuple[str, ...] = Field((), description="Channels that were not measured and get a neutral value")
+    absent: tuple[str, ...] = Field(
+        (), description="Channels that were not measured; they get a neutral value"
+    )
 
 
 class ClimateSource(Part):
-    """Where the weather comes from; exactly one kind."""
+    """Source of the weather data; exactly one kind."""
 
     epw: str | None = Field(None, description="EPW file")
     tmy: str | None = Field(None, description="TMY3 file")
@@ -165,9 +174,9 @@ class ClimateSource(Part):
 
 
 class Sensor(Part):
-    """A measured series and the model output that stands for it."""
+    """A measured series and the model output that it is compared with."""
 
-    column: str | tuple[str, ...] = Field(description="Column, or several whose mean is taken")
+    column: str | tuple[str, ...] = Field(description="Column, or several columns, of which the mean is used")
     output: str = Field(description="Output of the model")
     uncertainty: float = Field(
         0.5, gt=0, description="Half-width of the 95 % band of the sensor [unit of the output]"
@@ -175,8 +184,8 @@ class Sensor(Part):
     relative: float = Field(
         0.0, ge=0, lt=1, description="Further half-width as a share of the measured value, such as 0.05 [-]"
     )
-    label: str | None = Field(None, description="What the report calls it")
-    use: bool = Field(True, description="Whether it takes part in the identification")
+    label: str | None = Field(None, description="Name in the report")
+    use: bool = Field(True, description="Whether it is used in the identification")
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -185,30 +194,32 @@ class Sensor(Part):
 
 
 class Periods(Part):
-    """Which part of the record is for what; local time of the weather. Ends are not included."""
+    """Parts of the record, in local time of the weather data. The end of a period is not included."""
 
     warm_up: Span | None = Field(
-        None, description="Start and end of what is run but not compared; the run starts here"
+        None,
+        description="Start and end of the warm-up, which is simulated but not compared; the run starts here",
     )
-    identification: Span = Field(description="Start and end of what the parameters are identified on")
+    identification: Span = Field(description="Start and end of the period used to identify the parameters")
     corroboration: Span | None = Field(
         None,
-        description="Start and end of what is held back and named; all that follows the identification when "
-        "absent",
+        description="Start and end of the validation period; by default everything after the identification",
     )
-    end: Time | None = Field(None, description="End of the record to use; its end when absent")
+    end: Time | None = Field(
+        None, description="End of the used part of the record; by default the end of the record"
+    )
 
 
 class Quality(Part):
-    """What to do with suspicious stretches. They are always reported."""
+    """Treatment of suspicious values. They are always reported."""
 
     mask: tuple[Literal["stuck", "forward_filled", "spike", "out_of_range"], ...] = Field(
-        (), description="Kinds that are left out of all comparisons"
+        (), description="Kinds that are excluded from all comparisons"
     )
 
 
 class SensitivityPlan(Part):
-    """Sensitivity to all parameters that have a range; docs/sensitivity.md says which method when."""
+    """Sensitivity analysis of all parameters with a range; docs/sensitivity.md compares the methods."""
 
     method: MethodName = Field("spectral", description="Method; all but spectral need SALib")
     replicates: int = Field(8, ge=3, description="Independent repetitions of the design")
@@ -216,83 +227,90 @@ class SensitivityPlan(Part):
         None,
         ge=1,
         description="Size of a replicate: runs (spectral, rbd-fast), base points (sobol), trajectories "
-        "(morris); what the method needs when absent",
+        "(morris); by default what the method needs",
     )
     order: int | None = Field(
-        None, ge=1, description="Harmonics counted as a parameter's own (spectral, rbd-fast)"
+        None, ge=1, description="Number of harmonics assigned to a parameter (spectral, rbd-fast)"
     )
-    seed: int = Field(1, description="Of the random numbers")
-    interval: Duration = Field("1h", description="Spacing of the outputs that are analysed")
+    seed: int = Field(1, description="Seed of the random numbers")
+    interval: Duration = Field("1h", description="Interval of the analyzed outputs")
     ranges: dict[str, tuple[float, float]] = Field(
         default_factory=dict, description="Ranges that replace those of the building"
     )
     distributions: dict[str, DistributionName] = Field(
-        default_factory=dict, description="Path -> distribution over its range; uniform when absent"
+        default_factory=dict, description="Path -> distribution over its range; uniform by default"
     )
     groups: dict[str, tuple[str, ...]] = Field(
-        default_factory=dict, description="Name -> paths that are judged together"
+        default_factory=dict, description="Name -> paths of parameters that are analyzed as a group"
     )
-    leave_out: tuple[str, ...] = Field((), description="Parameters that stay at their value")
+    leave_out: tuple[str, ...] = Field((), description="Parameters that are not varied")
 
 
 class Free(Part):
     """A parameter to identify."""
 
-    low: float | None = Field(None, description="Lowest value; that of the building's range when absent")
-    high: float | None = Field(None, description="Highest value; that of the building's range when absent")
+    low: float | None = Field(None, description="Lower bound; by default that of the range in the building")
+    high: float | None = Field(None, description="Upper bound; by default that of the range in the building")
     prior: float | None = Field(
-        None, gt=0, description="Standard deviation of a normal prior about the value"
+        None,
+        gt=0,
+        description="Standard deviation of a normal prior distribution around the value of the building",
     )
-    start: float | None = Field(None, description="Where the search begins; the building's value when absent")
+    start: float | None = Field(
+        None, description="Initial value of the search; by default the value of the building"
+    )
     scale: Literal["linear", "log"] = Field(
-        "linear", description="How distances are measured in the search; log for what spans decades"
+        "linear", description="Scale of the search; log for parameters that span several decades"
     )
-    at_bound: str | None = Field(None, description="Why an estimate on a bound would be right")
+    at_bound: str | None = Field(None, description="Why an estimate at a bound would be plausible")
     reference: tuple[float, float] | None = Field(
-        None, description="Before and after in a publication, shown beside ours"
+        None, description="Published values before and after calibration, shown for comparison"
     )
 
 
-#: What is known of a parameter; nothing for the usual.
+#: What is known of a parameter; None for the defaults.
 Stated = Annotated[Free | None, BeforeValidator(_bounds)]
 
 
 class IdentificationPlan(Part):
-    """Which parameters to identify, and how."""
+    """Parameters to identify, and the method."""
 
     parameters: dict[str, Stated] = Field(
-        min_length=1, description="Path -> what is known of it; nothing after the colon for the usual"
+        min_length=1, description="Path -> bounds, prior and more; nothing after the colon for the defaults"
     )
-    method: FitMethod = Field("least-squares", description="Optimiser; docs/calibration.md says which when")
+    method: FitMethod = Field("least-squares", description="Method; docs/calibration.md compares the methods")
     slopes: SlopesName = Field(
         "differences",
-        description="Derivatives of least squares and of the intervals: differences of runs side by side, or "
-        "exact from the engine, which costs more (docs/calibration.md has numbers)",
+        description="Derivatives for least squares and the intervals: finite differences, or exact "
+        "derivatives of the "
+        "engine, which take more time (see docs/calibration.md)",
     )
     starts: int = Field(4, ge=1, description="Starts of least squares and of a coupled GenOpt project")
     sequences: int = Field(
-        100, ge=1, description="Most sequences of the other methods; they end when enough of them agree"
+        100,
+        ge=1,
+        description="Largest number of searches of the other methods; they end when enough of them agree",
     )
     agree: int | None = Field(
         None,
         ge=1,
-        description="Sequences that must have reached the same minimum; 10 for hooke-jeeves and 2 for the "
-        "others when absent",
+        description="Number of searches that must reach the same minimum; by default 10 for hooke-jeeves "
+        "and 2 for "
+        "the others",
     )
-    moves: int = Field(500, ge=50, description="How often the walkers of emcee move")
-    profiles: bool = Field(
-        False, description="Whether the profile likelihood of every parameter is made and drawn"
-    )
-    seed: int = Field(1, description="Of all random numbers")
-    lead: Duration = Field("3d", description="Run before the identification period starts to be compared")
-    budget: int | None = Field(None, ge=1, description="Largest number of evaluations of all sequences")
+    moves: int = Field(500, ge=50, description="Number of moves of the walkers of emcee")
+    profiles: bool = Field(False, description="Whether the profile likelihood of every parameter is computed")
+    seed: int = Field(1, description="Seed of all random numbers")
+    lead: Duration = Field("3d", description="Length of the warm-up before the identification period")
+    budget: int | None = Field(None, ge=1, description="Largest number of evaluations of all searches")
     cost: Literal["nll", "sd", "rmse", "cv_rmse"] = Field(
-        "nll", description="What is minimised; least-squares and emcee know nll only, priors need it"
+        "nll", description="Cost function; least-squares, emcee and priors need nll"
     )
     independent: Duration | None = Field(
         None,
-        description="Time after which residuals of a model count as independent; samples closer together "
-        "share one weight, so that priors are not drowned by an error that lasts",
+        description="Time after which residuals are considered independent; samples closer together share "
+        "the "
+        "weight of one sample, so that correlated errors do not outweigh the priors",
     )
 
     @model_validator(mode="after")
@@ -320,99 +338,125 @@ class Published(Part):
     """One sensor and period of a publication."""
 
     sd: float = Field(ge=0.0, description="Standard deviation of the error [degC]")
-    max_error: float = Field(description="Largest error, with its sign [degC]")
-    max_error_percent: float = Field(description="The same as a share of the measured range [%]")
-    mean_error_percent: float = Field(description="Mean of the magnitudes as a share of the range [%]")
+    max_error: float = Field(description="Error of the largest magnitude, with its sign [degC]")
+    max_error_percent: float = Field(description="The same, relative to the measured range [%]")
+    mean_error_percent: float = Field(
+        description="Mean of the magnitudes, relative to the measured range [%]"
+    )
 
 
 class Influential(Part):
-    """A parameter that a publication found to matter."""
+    """An influential parameter of a publication."""
 
-    parameter: str = Field(description="What stands for it here")
-    symbol: str = Field(description="What it is called there")
-    frequency: int | None = Field(None, ge=1, description="At which frequency it was heard there")
+    parameter: str = Field(description="Path of the corresponding parameter")
+    symbol: str = Field(description="Its symbol in the publication")
+    frequency: int | None = Field(None, ge=1, description="Its frequency in the publication")
 
 
 class Reference(Part):
-    """What a publication reached: a scale to read the numbers by, shown beside them."""
+    """Results of a publication, shown beside those of the study."""
 
-    label: str = Field(description="What the report calls it")
-    note: str = Field(description="What it was compared with, and what the two can say of each other")
+    label: str = Field(description="Name in the report")
+    note: str = Field(description="What the publication compares with, and limits of the comparison")
     tables: dict[Literal["influential", "parameters", "identification", "corroboration", "blind"], str] = (
-        Field(default_factory=dict, description="Which of its tables ours are laid out after")
+        Field(default_factory=dict, description="Its tables with the same layout as tables of the report")
     )
-    influential: tuple[Influential, ...] = Field((), description="The parameters that matter there")
+    influential: tuple[Influential, ...] = Field((), description="Its influential parameters")
     sensors: dict[str, dict[Literal["identification", "corroboration", "blind"], Published]] = Field(
         description="Sensor -> period -> numbers"
     )
 
 
 class Variant(Part):
-    """Another choice of model, compared on the blind days."""
+    """Another choice of model."""
 
-    changes: dict[str, Any] = Field(description="Path -> value or part")
-    identify: bool = Field(True, description="Whether its parameters are identified too")
+    changes: dict[str, Any] = Field(description="Path -> value or part of the building")
+    identify: bool = Field(True, description="Whether its parameters are identified")
     candidate: bool = Field(
         False,
-        description="Whether it may become the fitted model: of all candidates and the building as "
-        "described, the one with the lowest cost on the identification period does",
+        description="Whether it may become the fitted model, which is the one with the lowest cost in the "
+        "identification period among all candidates and the building as described",
     )
-    alone: bool = Field(
-        False, description="Whether only its own parameters are identified, all others as in the building"
-    )
+    alone: bool = Field(False, description="Whether only its own parameters are identified")
     parameters: dict[str, Stated] = Field(
         default_factory=dict,
-        description="Path -> bounds of what it adds to the identification; what it has not is left out",
+        description="Path -> bounds of its additional parameters",
     )
-    note: str | None = Field(None, description="What it is")
+    note: str | None = Field(None, description="Description for the report")
 
     @model_validator(mode="after")
     def _identified(self) -> Self:
         if not self.identify and (self.candidate or self.parameters):
             what = "candidate" if self.candidate else "parameters"
-            insist(fault((what,), "identify: false", "identify: true", "A candidate has to be identified."))
+            insist(fault((what,), "identify: false", "identify: true", "A candidate must be identified."))
         if self.alone and not self.parameters:
-            insist(fault(("alone",), "no parameters", "parameters: of its own", "Name what is identified."))
+            insist(fault(("alone",), "no parameters", "parameters: of its own", "Name its parameters."))
         return self
 
 
-class StudyFile(Part):
-    """A study: compare, find what matters, identify, compare again, corroborate."""
+class StudyPlan(Part):
+    """What is done in a study; the building, the weather and the measurements come beside it."""
 
-    name: str = Field(description="Title of the study")
+    name: str = Field("study", description="Title of the study")
     about: str = Field("", description="A few sentences for the report")
     observed: str = Field(
         "measurement", description="What the data are called: measurement, virtual experiment"
     )
-    observed_note: str = Field("", description="What whoever reads the numbers must know of the data")
-    building: str = Field(description="Building file, beside the study")
-    set: dict[str, Any] = Field(
-        default_factory=dict, description="Path -> value, on top of the building file"
-    )
-    climate: ClimateSource = Field(description="The weather")
-    measurements: Table = Field(description="The measured table")
+    observed_note: str = Field("", description="What readers of the report must know about the data")
     sensors: dict[Name, Sensor] = Field(min_length=1, description="Sensors by name")
     step: Duration = Field("15min", description="Time step")
-    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field("sdirk2", description="Scheme")
+    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = Field(
+        "sdirk2", description="Time integration scheme"
+    )
     initial: Initial = Field(
         "repeat",
-        description="State that a run starts from: its first day repeated until it settles (repeat), the "
-        "first values of the sensors (measured), one temperature everywhere [degC], or those that are given",
+        description="Initial state of a run: its first period repeated until the state converges (repeat), "
+        "the first values of the sensors (measured), one temperature everywhere [degC], or temperatures of "
+        "zones and surfaces",
     )
-    periods: Periods = Field(description="Which part of the record is for what")
-    quality: Quality = Field(default_factory=lambda: Quality(mask=()), description="Suspicious stretches")
-    criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit 1 when one is missed")
+    periods: Periods = Field(description="Which part of the record is used for what")
+    quality: Quality = Field(
+        default_factory=lambda: Quality(mask=()), description="What to do with suspicious values"
+    )
+    criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit code 1 if one is not met")
     aims: tuple[Limit, ...] = Field(
         (),
-        description="Limits that one would like to reach: where one is missed the report says what would "
-        "take the rest of the error away, and nothing fails",
+        description="Limits that are desired but not required: if one is not met, the report shows the "
+        "sources of the remaining error, and the exit code does not change",
     )
-    sensitivity: SensitivityPlan | None = Field(None, description="Which parameters matter")
+    sensitivity: SensitivityPlan | None = Field(
+        None, description="Sensitivity analysis of all parameters with a range"
+    )
     identification: IdentificationPlan | None = Field(
-        None, description="Which parameters to identify; without it the building can only be compared"
+        None, description="Parameters to identify; without it the building can only be compared"
     )
-    reference: Reference | None = Field(None, description="Numbers of a publication, shown as a scale")
-    variants: dict[str, Variant] = Field(default_factory=dict, description="Other model choices")
+    reference: Reference | None = Field(
+        None, description="Numbers of a publication, shown beside the results"
+    )
+    variants: dict[str, Variant] = Field(default_factory=dict, description="Other choices of model")
+
+    @model_validator(mode="after")
+    def _named(self) -> Self:
+        insist(
+            *(
+                fault(("variants", name), f"'{name}'", "another name", "Results use this name already.")
+                for name in self.variants
+                if name in TAKEN
+            )
+        )
+        return self
+
+
+class StudyFile(StudyPlan):
+    """A study as a file: the plan, and the files of the building, the weather and the measurements."""
+
+    name: str = Field(description="Title of the study")
+    building: str = Field(description="Building file; its path starts at the folder of the study")
+    set: dict[str, Any] = Field(
+        default_factory=dict, description="Path -> value that replaces the one of the building file"
+    )
+    climate: ClimateSource = Field(description="Weather data")
+    measurements: Table = Field(description="Table of measurements")
 
     @model_validator(mode="before")
     @classmethod
@@ -421,17 +465,6 @@ class StudyFile(Part):
             expected = "a study: building, climate, measurements, sensors, periods, identification"
             insist(fault((), "a building", expected, "A study names a building; see docs/your-own-wall.md."))
         return data
-
-    @model_validator(mode="after")
-    def _named(self) -> Self:
-        insist(
-            *(
-                fault(("variants", name), f"'{name}'", "another name", "Results use this one already.")
-                for name in self.variants
-                if name in TAKEN
-            )
-        )
-        return self
 
 
 def read_study(path: str | Path) -> StudyFile:

@@ -1,4 +1,4 @@
-"""The inputs of a study: files found, read, and remembered with their hashes."""
+"""Reads the files of a study: weather and measurements."""
 
 from __future__ import annotations
 
@@ -9,17 +9,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.errors import InputError
+from mascarin.building.engine_input import measured_columns
+from mascarin.errors import InputError, did_you_mean
+from mascarin.study.locations import Faults, Places
 from mascarin.weather import Climate, Measurements
+from mascarin.weather.data import data_file
 from mascarin.weather.table import read_table
 
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.building.site import Site
     from mascarin.study.description import ClimateSource, MeasuredWeather, StudyFile, Table
-    from mascarin.study.locations import Places
 
-#: A file that the data module knows, by name.
+#: Prefix of a known data set.
 KNOWN = "data:"
 
 
@@ -39,8 +41,6 @@ def find(name: str, beside: Path) -> Path:
         There is no such file.
     """
     if name.startswith(KNOWN):
-        from mascarin.weather.data import data_file
-
         return data_file(name.removeprefix(KNOWN))
     path = beside / name
     if not path.is_file():
@@ -52,9 +52,7 @@ def find(name: str, beside: Path) -> Path:
 
 
 def _neighbours(path: Path) -> str:
-    """What a mistyped name may have meant."""
-    from mascarin.errors import did_you_mean
-
+    """Hint at a similar file name."""
     if not path.parent.is_dir():
         return f"There is no folder {path.parent} either: correct the path."
     same = [other.name for other in path.parent.iterdir() if other.suffix == path.suffix]
@@ -99,7 +97,7 @@ def _measured_climate(table: MeasuredWeather, beside: Path, site: Site, places: 
 
 
 def require_one_clock(study: StudyFile, places: Places) -> None:
-    """Refuse one table that is read as if it had two clocks.
+    """Refuse one table that is read with two time zones or two meanings of its stamps.
 
     Raises
     ------
@@ -115,8 +113,8 @@ def require_one_clock(study: StudyFile, places: Places) -> None:
             with places.blame("measurements", key):
                 raise InputError(
                     f"found {theirs}, but the climate reads the same table with {key} {mine} "
-                    f"({places.at('climate', 'measured', key)}); expected one clock for one table: write the "
-                    "same in both"
+                    f"({places.at('climate', 'measured', key)}); expected the same in both: change one of "
+                    "them"
                 )
 
 
@@ -140,7 +138,7 @@ def open_measurements(
     beside : Path
         Folder of the study.
     building : Building
-        Names the columns that drive it.
+        Names the columns of its measured boundaries.
     places, of_building : Places
         Lines of the study and of the building, for errors.
 
@@ -149,61 +147,57 @@ def open_measurements(
     InputError
         A file, column or time zone is missing, or a value cannot be used.
     """
-    from mascarin.building.engine_input import measured_columns
-
     table: Table = study.measurements
     with places.blame("measurements", "table"):
         path = find(table.table, beside)
-    driving = measured_columns(building)
-    # What asks for each column, for errors.
-    asks = {name: places.at("measurements", "inspect") for name in table.inspect}
-    for name in driving:
+    boundaries = measured_columns(building)
+    # Entry that needs each column, for errors.
+    needed = {name: places.at("measurements", "inspect") for name in table.inspect}
+    for name in boundaries:
         line = of_building.find("measured", name) or of_building.find("irradiance", name)
-        asks[name] = f"{line or of_building.path}: measured column"
+        needed[name] = f"{line or of_building.file}: measured column"
     for sensor, entry in study.sensors.items():
-        asks |= dict.fromkeys(entry.columns, places.at("sensors", sensor, "column"))
-    others = () if table.inspect else _other_columns(path, table, asks)
+        needed |= dict.fromkeys(entry.columns, places.at("sensors", sensor, "column"))
+    others = () if table.inspect else _other_columns(path, table, needed)
     try:
-        return Measurements.from_table(path, columns=[*asks, *others], **table.options)
+        return Measurements.from_table(path, columns=[*needed, *others], **table.options)
     except InputError as error:
-        _tell(path, table, asks, places)
+        _explain(path, table, needed, places)
         raise InputError(f"{places.at('measurements', 'mean')}: {error}") from None
 
 
-def _other_columns(path: Path, table: Table, asks: Mapping[str, str]) -> list[str]:
-    """Columns of numbers that nothing asks for: their quality is judged all the same."""
+def _other_columns(path: Path, table: Table, needed: Mapping[str, str]) -> list[str]:
+    """Further columns of numbers; their quality is checked too."""
     options = {key: value for key, value in table.options.items() if key not in ("stamps", "mean")}
     try:
         read = read_table(path, **options)
     except InputError:
-        # What is wrong is said where the columns that are asked for are read.
+        # The error is raised where the needed columns are read.
         return []
     others = []
     for column in map(str, read.frame.columns):
         with contextlib.suppress(InputError):
-            if column not in asks and np.isfinite(read.numbers(column, column)).any():
+            if column not in needed and np.isfinite(read.numbers(column, column)).any():
                 others.append(column)
     return others
 
 
-def _tell(path: Path, table: Table, asks: Mapping[str, str], places: Places) -> None:
-    """Say what cannot be read: the table as a whole, else every column, with the entry that asks for it."""
-    from mascarin.study.locations import Faults
-
+def _explain(path: Path, table: Table, needed: Mapping[str, str], places: Places) -> None:
+    """Raise the error of the whole table, else of every column with the entry that needs it."""
     plain, faults = {**table.options, "mean": ()}, Faults()
     with places.blame("measurements"):
         Measurements.from_table(path, columns=(), **plain)
-    for column, place in asks.items():
+    for column, place in needed.items():
         with faults.kept():
             try:
                 Measurements.from_table(path, columns=[column], **plain)
             except InputError as error:
                 raise InputError(f"{place}: {error}") from None
-    faults.tell(places.path)
+    faults.raise_all(places.file)
 
 
 def filled(read: Measurements, building: Building, longest: str) -> Measurements:
-    """The same with short gaps filled in the columns that drive the building.
+    """Fill short gaps in the columns of measured boundaries.
 
     Parameters
     ----------
@@ -214,6 +208,4 @@ def filled(read: Measurements, building: Building, longest: str) -> Measurements
     longest : str
         Longest gap to fill, such as ``2h``.
     """
-    from mascarin.building.engine_input import measured_columns
-
     return read.fill_gaps(longest, measured_columns(building))

@@ -1,32 +1,34 @@
-"""Where in its file each entry of a study stands, so that a late complaint can still point at it."""
+"""File and line of each entry of a study, for error messages."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from mascarin.building.initial_state import StartError
+from mascarin.building.reading import lines
 from mascarin.errors import InputError
 
 
 class _Several(InputError):
-    """Errors told together."""
+    """Several errors in one message."""
 
-    def __init__(self, where: Path, texts: list[str]) -> None:
+    def __init__(self, where: Path | str, texts: list[str]) -> None:
         super().__init__("\n".join([f"{where}: {len(texts)} faults", *texts]))
         self.texts = texts
 
 
 class Faults:
-    """Errors that do not hang on each other, told together."""
+    """Collects independent errors, so that one message names them all."""
 
     def __init__(self) -> None:
         self._found: list[str] = []
 
     @contextmanager
     def kept(self) -> Iterator[None]:
-        """Keep an InputError raised inside."""
+        """Collect an InputError raised inside."""
         try:
             yield
         except _Several as error:
@@ -34,13 +36,13 @@ class Faults:
         except InputError as error:
             self._found.append(str(error))
 
-    def tell(self, where: Path) -> None:
-        """Raise what was kept, if anything.
+    def raise_all(self, where: Path | str) -> None:
+        """Raise one error that names all that were collected, if there are any.
 
         Raises
         ------
         InputError
-            All that was kept, one after the other.
+            All collected errors, one after the other.
         """
         found = list(dict.fromkeys(self._found))
         if len(found) == 1:
@@ -50,40 +52,37 @@ class Faults:
 
 
 class Places:
-    """Lines of the entries of a YAML file.
+    """Lines of the entries of a YAML file; without a file, the dotted names of the entries alone.
 
     Parameters
     ----------
-    path : Path
+    path : Path, optional
         A file that has been read before.
     """
 
-    def __init__(self, path: Path) -> None:
-        from mascarin.building.reading import lines
-
-        self.path = path
-        self._lines = lines(path.read_text(encoding="utf-8"), str(path))
+    def __init__(self, path: Path | None = None) -> None:
+        self.file = "study" if path is None else str(path)
+        self._text = "" if path is None else path.read_text(encoding="utf-8")
+        self._lines = {} if path is None else lines(self._text, self.file)
 
     def at(self, *place: str | int) -> str:
-        """File, line and dotted place of an entry; the line of what holds it when it is not written."""
+        """File, line and dotted name of an entry; the line of its parent if it is not written."""
         written = next((place[:n] for n in range(len(place), -1, -1) if place[:n] in self._lines and n), ())
         line = self._lines.get(written)
-        where = f"{self.path}:{line}" if line else str(self.path)
+        where = f"{self.file}:{line}" if line else self.file
         return f"{where}: {'.'.join(map(str, place))}"
 
     def find(self, key: str, value: str) -> str | None:
-        """File and line of the first line that gives a key this value, None when there is none."""
-        import re
-
+        """File and line of the first line that gives a key this value; None if there is none."""
         wanted = re.compile(rf"\b{re.escape(key)}:\s*[\"']?{re.escape(value)}\b")
-        for number, line in enumerate(self.path.read_text(encoding="utf-8").splitlines(), start=1):
+        for number, line in enumerate(self._text.splitlines(), start=1):
             if wanted.search(line):
-                return f"{self.path}:{number}"
+                return f"{self.file}:{number}"
         return None
 
     @contextmanager
     def blame(self, *place: str | int) -> Iterator[None]:
-        """Put file, line and place in front of what an InputError says inside."""
+        """Put file, line and entry in front of the text of an InputError raised inside."""
         try:
             yield
         except InputError as error:
@@ -91,12 +90,12 @@ class Places:
 
     @contextmanager
     def noting(self, faults: Faults, *place: str | int) -> Iterator[None]:
-        """The same, but keep the error among others and go on."""
+        """The same, but collect the error and continue."""
         with faults.kept(), self.blame(*place):
             yield
 
     def blamed(self, error: InputError, *place: str | int) -> InputError:
-        """The same error with file, line and place in front, its own where it has one; none is said twice."""
+        """The same error with file, line and entry in front, without repeating them."""
         text, place = str(error), error.place if isinstance(error, StartError) else place
         for said in (".".join(map(str, place)), *map(str, place[-1:])):
             text = text.removeprefix(f"{said}: ")

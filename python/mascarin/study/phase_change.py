@@ -1,4 +1,4 @@
-"""Phase-change layers of a building: what is recorded of them, and the law that they follow."""
+"""Phase-change layers of a building: their outputs, and the enthalpy curve of their material."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: Points of a law's curve.
+#: Points of an enthalpy curve.
 _POINTS: Final = 161
 
 
@@ -33,8 +33,8 @@ class MeltingLayer:
         Their names.
     liquid_fraction, enthalpy : str
         Outputs: the mean liquid fraction, and the mean enthalpy. [-], [J/m3]
-    faces : tuple of str
-        Outputs: the temperatures of its two faces, outside and inside. [degC]
+    surfaces : tuple of str
+        Outputs: the temperatures of its two surfaces, outside and inside. [degC]
     """
 
     surface: str
@@ -42,22 +42,22 @@ class MeltingLayer:
     material: str
     liquid_fraction: str
     enthalpy: str
-    faces: tuple[str, str]
+    surfaces: tuple[str, str]
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """All that is recorded."""
-        return (self.liquid_fraction, self.enthalpy, *self.faces)
+        """All recorded outputs."""
+        return (self.liquid_fraction, self.enthalpy, *self.surfaces)
 
     def of(self, building: Building) -> PhaseChangeMaterial:
-        """What it is made of."""
+        """Its material."""
         material = building.materials[self.material]
         assert isinstance(material, PhaseChangeMaterial)  # noqa: S101 (melting_layers finds no other)
         return material
 
 
 def melting_layers(building: Building) -> list[MeltingLayer]:
-    """Every phase-change layer, surface by surface.
+    """All phase-change layers, surface by surface.
 
     Parameters
     ----------
@@ -96,28 +96,28 @@ def solid_density(material: PhaseChangeMaterial) -> float:
 
 
 def path(results: Results, building: Building, layer: MeltingLayer) -> tuple[Array, Array]:
-    """Where a layer was at every recorded time.
+    """Temperature and enthalpy of a layer at every recorded time.
 
     Parameters
     ----------
     results : Results
         A run that recorded the layer's outputs.
     building : Building
-        What was run, with the values of the run.
+        The building, with the values of the run.
     layer : MeltingLayer
         Which layer.
 
     Returns
     -------
     temperature : ndarray, shape (rows,)
-        Mean of its two faces. [degC]
+        Mean of its two surfaces. [degC]
     enthalpy : ndarray, shape (rows,)
-        Mean over the layer, above its law's zero. [kJ/kg]
+        Mean over the layer, relative to the zero of its enthalpy curve. [kJ/kg]
     """
     names = [output.name for output in results.outputs]
-    faces = [results.records[:, names.index(name)] for name in layer.faces]
+    sides = [results.records[:, names.index(name)] for name in layer.surfaces]
     enthalpy = results.records[:, names.index(layer.enthalpy)] / (1000.0 * solid_density(layer.of(building)))
-    return 0.5 * (faces[0] + faces[1]), enthalpy
+    return 0.5 * (sides[0] + sides[1]), enthalpy
 
 
 def law_curve(material: PhaseChangeMaterial, low: float, high: float) -> tuple[Array, Array] | None:

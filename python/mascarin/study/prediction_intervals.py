@@ -1,17 +1,20 @@
-"""What the fitted model foresees of the record: a band, and how often it held."""
+"""Prediction intervals of the calibrated model, and their coverage."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+
+from mascarin.calibration.series import effective_samples
+from mascarin.study.findings import PredictionIntervals
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.calibration import Fit
-    from mascarin.study.pipeline import ModelRun, Study
+    from mascarin.study.findings import ModelRun
+    from mascarin.study.setup import Setup
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]
@@ -19,51 +22,27 @@ if TYPE_CHECKING:
 #: Step of the differences, in ranges.
 _STEP: Final = 1e-3
 _BATCH: Final = 64
-#: A band of 95 % that held less often than this is spoken of.
-_NARROW: Final = 0.85
+#: A coverage below this is mentioned in the notes. [-]
+_LOW_COVERAGE: Final = 0.85
 
 
-@dataclass(frozen=True, eq=False)
-class Band:
-    """A 95 % band about the fitted model.
-
-    Attributes
-    ----------
-    confidence : float
-        What it promises. [-]
-    half_width : ndarray, shape (n, S)
-        [unit of each sensor]
-    parameters, error : ndarray, shape (n, S) and (S,)
-        The two standard deviations it is made of: that of the estimates, carried to each instant, and that
-        of the model's errors on the identification days. [unit of each sensor]
-    held : dict of str to ndarray, shape (S,)
-        Share of the measured values inside, by period; NaN where nothing was measured. [-]
-    """
-
-    confidence: float
-    half_width: Array
-    parameters: Array
-    error: Array
-    held: dict[str, Array]
-
-
-def answers(study: Study, run: ModelRun, fit: Fit) -> Array:
-    """How the sensors answer to the fitted parameters over the record.
+def slopes(study: Setup, run: ModelRun, fit: Fit) -> Array:
+    """Derivatives of the sensors with respect to the calibrated parameters.
 
     Parameters
     ----------
-    study : Study
+    study : Setup
         Gives the instants of the comparison.
     run : ModelRun
         The fitted model.
     fit : Fit
-        What was fitted, and how far each parameter may go.
+        The calibration, with the ranges of its parameters.
 
     Returns
     -------
     ndarray, shape (P, n, S)
-        Change of each series when the parameter goes through its range, at the rate that it has here; NaN
-        where the model cannot be run beside it. [unit of each sensor]
+        Derivative of each series with respect to the parameter, times the range of the parameter; NaN where
+        the model cannot be run. [unit of each sensor]
     """
     base = run.simulation.vector(fit.values)
     vectors, steps = [base], []
@@ -78,23 +57,21 @@ def answers(study: Study, run: ModelRun, fit: Fit) -> Array:
     return np.asarray((series[1:] - series[0]) / np.array(steps)[:, None, None])
 
 
-def band(study: Study, run: ModelRun, fit: Fit, slope: Array) -> Band:
-    """The band in which the fitted model expects new measurements.
+def prediction_intervals(study: Setup, run: ModelRun, fit: Fit, slope: Array) -> PredictionIntervals:
+    """Intervals in which new measurements are expected.
 
     Parameters
     ----------
-    study : Study
+    study : Setup
         Gives periods and measurements.
     run : ModelRun
         The fitted model.
     fit : Fit
-        Gives the covariance of the estimates and the model's error on the identification days.
+        Gives the covariance of the estimates and the model error in the identification period.
     slope : ndarray, shape (P, n, S)
-        From `answers`. [unit of each sensor]
+        From `slopes`. [unit of each sensor]
     """
     from scipy import stats
-
-    from mascarin.calibration.series import effective_samples
 
     found, observation, seen = fit.uncertainty, study.observation, study.during["identification"]
     variance = np.maximum(np.einsum("pts,pq,qts->ts", slope, found.covariance, slope, optimize=True), 0.0)
@@ -104,26 +81,26 @@ def band(study: Study, run: ModelRun, fit: Fit, slope: Array) -> Band:
     for s, name in enumerate(observation.names):
         if name in known:
             error[s], count[s] = found.error[known[name]], found.effective_samples[known[name]]
-        else:  # It took no part in the fit, and has its error on the same days all the same.
+        else:  # Not used in the calibration; its error in the same period is known all the same.
             error[s] = _root_mean_square(misses[seen, s])
             count[s] = effective_samples(misses[seen, s]) if np.isfinite(error[s]) else 1.0
     tail = 0.5 + 0.5 * fit.confidence
     estimates = float(stats.t.ppf(tail, found.freedom)) * np.sqrt(variance)
-    # The error of a few independent samples: their scatter is known as little as their mean.
+    # With few independent samples their standard deviation is as uncertain as their mean.
     count = np.maximum(count, 2.0)
     errors = stats.t.ppf(tail, count - 1.0) * error * np.sqrt(1.0 + 1.0 / count)
     half = np.hypot(estimates, errors)
-    held = {period: _held(misses, half, use) for period, use in study.during.items()}
-    return Band(fit.confidence, half, np.sqrt(variance), error, held)
+    coverage = {period: _coverage(misses, half, use) for period, use in study.during.items()}
+    return PredictionIntervals(fit.confidence, half, np.sqrt(variance), error, coverage)
 
 
-def band_table(study: Study, found: Band) -> dict[str, Any]:
-    """How wide the band is and how often it held, as a table of the report."""
+def interval_table(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
+    """Half-width and coverage of the intervals, as a table of the report."""
     rows = []
     for s, name in enumerate(study.observation.names):
-        sensor = study.file.sensors[name]
+        sensor = study.plan.sensors[name]
         unit = study.building.output(sensor.output).unit.replace("degC", "K")
-        shares = [found.held[period][s] for period in study.during]
+        shares = [found.coverage[period][s] for period in study.during]
         rows.append(
             [
                 sensor.label or name.replace("_", " "),
@@ -133,12 +110,12 @@ def band_table(study: Study, found: Band) -> dict[str, Any]:
             ]
         )
     return {
-        "title": "What the model foresaw",
+        "title": "Prediction intervals",
         "caption": (
-            f"A band of {100.0 * found.confidence:g} % about the fitted model: the uncertainty of the "
-            "estimates, carried to each instant, and the size of the model's errors on the identification "
-            "days, as far as so few independent ones tell it. The shares of the measured values inside show "
-            "whether the errors stay as they were there. [%]"
+            f"{100.0 * found.confidence:g} % prediction interval of the fitted model. It combines the "
+            "uncertainty of the estimated parameters, propagated to each instant, and the standard deviation "
+            "of the model error in the identification period. The columns of the periods show the coverage: "
+            "the part of the measured values inside the interval. [%]"
         ),
         "columns": ["sensor", "unit", "mean half-width", *study.during],
         "rows": rows,
@@ -146,27 +123,27 @@ def band_table(study: Study, found: Band) -> dict[str, Any]:
     }
 
 
-def band_entry(study: Study, found: Band) -> dict[str, Any]:
-    """The same for study.json: sensor -> half_width, parameters, error, held."""
+def interval_entry(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
+    """The intervals for study.json: sensor -> half_width, parameters, error, held."""
     return {
         name: {
             "confidence": found.confidence,
             "half_width": _number(np.mean(found.half_width[:, s])),
             "parameters": _number(np.mean(found.parameters[:, s])),
             "error": _number(found.error[s]),
-            "held": {period: _number(shares[s]) for period, shares in found.held.items()},
+            "held": {period: _number(shares[s]) for period, shares in found.coverage.items()},
         }
         for s, name in enumerate(study.observation.names)
     }
 
 
-def band_words(study: Study, found: Band) -> list[str]:
-    """Sensors whose band held less often than it promised, in words."""
+def interval_words(study: Setup, found: PredictionIntervals) -> list[str]:
+    """Sensors with a low coverage on the blind days, in words."""
     return [
-        f"{name}: the band of {100.0 * found.confidence:g} % held only {100.0 * share:.0f} % of the values "
-        f"of the blind days: the model errs there in ways that the identification days did not show."
-        for name, share in zip(study.observation.names, found.held["blind"], strict=True)
-        if share < _NARROW
+        f"{name}: the {100.0 * found.confidence:g} % prediction interval contains {100.0 * share:.0f} % of "
+        f"the values of the blind days: the model error there differs from that of the identification."
+        for name, share in zip(study.observation.names, found.coverage["blind"], strict=True)
+        if share < _LOW_COVERAGE
     ]
 
 
@@ -176,7 +153,7 @@ def _root_mean_square(misses: Array) -> float:
     return float(np.sqrt(np.mean(there**2))) if there.size > 1 else float("nan")
 
 
-def _series(study: Study, run: ModelRun, vectors: Array) -> Array:
+def _series(study: Setup, run: ModelRun, vectors: Array) -> Array:
     """Series (M, n, S) of all sensors at the instants of the comparison; NaN for a member that failed."""
     parts = []
     for first in range(0, len(vectors), _BATCH):
@@ -185,8 +162,8 @@ def _series(study: Study, run: ModelRun, vectors: Array) -> Array:
     return np.concatenate(parts)
 
 
-def _held(misses: Array, half: Array, use: Flags) -> Array:
-    """Share of the measured values of a period inside the band, by sensor."""
+def _coverage(misses: Array, half: Array, use: Flags) -> Array:
+    """Part of the measured values of a period inside the interval, by sensor."""
     there = np.isfinite(misses) & np.isfinite(half) & use[:, None]
     inside = there & (np.abs(np.where(there, misses, 0.0)) <= half)
     with np.errstate(invalid="ignore"):

@@ -1,4 +1,4 @@
-"""The sensitivity step of a study: runs in chunks of about a second, each kept as soon as it is done."""
+"""Sensitivity analysis of a study: runs in chunks of about a second, each saved when it is done."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
-    from mascarin.progress import Progress
+    from mascarin.progress import Report
     from mascarin.sensitivity import Factor, Sensitivity
     from mascarin.sensitivity.methods import Plan
     from mascarin.simulation.simulation import Simulation
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: At most so much work is lost when a study is killed. [s]
+#: Work that is lost at most when a study is killed. [s]
 CHUNK_SECONDS: Final = 1.0
 _FIRST_CHUNK: Final = 8
 
 
 def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> None:
-    """Refuse what a plan says about parameters that are none, or cannot be so.
+    """Check the parameters of a plan.
 
     Raises
     ------
     InputError
-        Unknown or structural path, a range the wrong way round or beyond what the parameter can be.
+        Unknown or structural path, a reversed range, or a range beyond the limits of the parameter.
     """
     for path, span in plan.ranges.items():
         with places.blame("sensitivity", "ranges", path):
@@ -58,7 +58,7 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
 
 
 def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
-    """All parameters that act and have a range, as the plan says.
+    """All active parameters with a range, as the plan says.
 
     Raises
     ------
@@ -75,12 +75,12 @@ def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
 
 
 def runs_of(plan: SensitivityPlan, chosen: list[Factor]) -> Plan:
-    """The runs that a plan asks for.
+    """The runs of a plan.
 
     Raises
     ------
     InputError
-        Numbers or groups that the method cannot use; SALib is not installed.
+        The method does not support the numbers or groups; SALib is not installed.
     """
     return design(
         chosen,
@@ -92,33 +92,33 @@ def runs_of(plan: SensitivityPlan, chosen: list[Factor]) -> Plan:
     )
 
 
-def screen(
+def analyze(
     simulation: Simulation,
     plan: SensitivityPlan,
     chosen: list[Factor],
     lead_seconds: float,
     names: tuple[str, ...],
     workspace: Workspace,
-    progress: Progress,
+    progress: Report,
 ) -> Sensitivity:
-    """Make the runs and analyse them.
+    """Carry out the runs and analyze them.
 
     Parameters
     ----------
     simulation : Simulation
-        Covers the lead and the period that is analysed.
+        Covers the warm-up and the analyzed period.
     plan : SensitivityPlan
         Method, replicates, seed.
     chosen : list of Factor
-        What varies.
+        Parameters that vary.
     lead_seconds : float
-        Run before the outputs are analysed. [s]
+        Length of the warm-up. [s]
     names : tuple of str
         Names of the outputs, in the order of the simulation.
     workspace : Workspace
-        Keeps finished chunks.
-    progress : Progress
-        Is told how far it is.
+        Stores finished chunks.
+    progress : callable
+        Called with the number of runs done and their total.
 
     Raises
     ------
@@ -141,25 +141,25 @@ def screen(
         workspace.keep(name, first, records)
         taken.add(first, records)
         done[first : first + len(samples)] = True
-        pace.learn(len(samples), time.monotonic() - began)
-        progress.update(int(done.sum()), len(runs))
+        pace.update(len(samples), time.monotonic() - began)
+        progress(int(done.sum()), len(runs))
     return taken.result()
 
 
 class _Pace:
-    """How many runs fill a chunk, in whole packs of lanes where they fit; learnt from the last one."""
+    """Number of runs in a chunk, from the time of the last chunk; whole groups of 8 where they fit."""
 
     def __init__(self) -> None:
         self.size = _FIRST_CHUNK
 
-    def learn(self, runs: int, seconds: float) -> None:
+    def update(self, runs: int, seconds: float) -> None:
         wanted = runs * CHUNK_SECONDS / max(seconds, 1e-3)
         whole = 8 * round(wanted / 8) if wanted >= 8 else int(wanted)
         self.size = int(np.clip(whole, 1, 2048))
 
 
 def _missing(runs: Plan, done: npt.NDArray[np.bool_], pace: _Pace) -> Iterator[tuple[int, Array]]:
-    """Runs that have not been made, in consecutive pieces of one replicate."""
+    """Runs that are not done yet, in consecutive chunks of one replicate."""
     for replicate in range(runs.replicates):
         start = replicate * runs.runs
         samples = runs.samples(replicate)

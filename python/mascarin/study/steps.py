@@ -1,6 +1,6 @@
-"""One step of a study alone: the same inputs, the same work, the same pieces of the result.
+"""Single steps of a study: sensitivity analysis, calibration, comparison of the uncalibrated model.
 
-Unfinished work is kept where the whole study keeps it: a study goes on from what a step has done.
+Intermediate results are stored as by the whole study, which uses what a single step has computed.
 """
 
 from __future__ import annotations
@@ -10,42 +10,43 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mascarin._io import atomic
+from mascarin.sensitivity.files import save_all
 from mascarin.study.description import SensitivityPlan
-from mascarin.study.document import (
-    analysed_hours,
-    comparison,
-    estimates,
-    foreseen,
-    header,
-    importance,
-    profile_entries,
-)
-from mascarin.study.outputs import criteria_table, fit_figures, metrics_table, quality_table, write_tables
-from mascarin.study.pipeline import Study, Teller
-from mascarin.study.prediction_intervals import answers, band, band_words
-from mascarin.study.storage import Workspace, write_whole
+from mascarin.study.document.comparison import comparison
+from mascarin.study.document.estimates import estimates, prediction_entries, profile_entries
+from mascarin.study.document.header import header
+from mascarin.study.document.sensitivity import analyzed_hours, importance
+from mascarin.study.document.whole import ESTIMATES
+from mascarin.study.model_runs import ModelRuns, judged, nominal
+from mascarin.study.outputs import fit_figures
+from mascarin.study.prediction_intervals import interval_words, prediction_intervals, slopes
+from mascarin.study.storage import Workspace
+from mascarin.study.tables import criteria_table, metrics_table, quality_table, write_tables
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.progress import ProgressOption
     from mascarin.sensitivity import MethodName
+    from mascarin.study.setup import Setup
 
 
 def sensitivity(
-    study: Study, out: Path, *, method: MethodName | None = None, quiet: bool = False
+    study: Setup, out: Path, *, method: MethodName | None = None, progress: ProgressOption = True
 ) -> dict[str, Any]:
-    """Which parameters matter.
+    """Sensitivity analysis.
 
     Parameters
     ----------
-    study : Study
-        Without a ``sensitivity`` of its own it gets the usual one.
+    study : Setup
+        If it has no ``sensitivity``, the defaults are used.
     out : Path
         Folder for sensitivity.json, tables/sensitivity.csv and the figures.
     method : str, optional
-        In the place of the study's, with the usual number of samples.
-    quiet : bool
-        No progress on stderr.
+        Replaces that of the study, with the default number of samples.
+    progress : bool, callable or None
+        Where progress is shown; see `mascarin.progress.ProgressOption`.
 
     Returns
     -------
@@ -55,17 +56,15 @@ def sensitivity(
     Raises
     ------
     InputError
-        The method cannot do what the study asks for.
+        The method does not support the plan of the study.
     """
-    from mascarin.sensitivity.files import save_all
-
     with Workspace(out, study.inputs()) as workspace:
-        # A default of pydantic's own, so that every other key is the usual one.
-        plan = study.file.sensitivity or SensitivityPlan.model_validate({})
+        # An empty plan takes the default of every key.
+        plan = study.plan.sensitivity or SensitivityPlan.model_validate({})
         if method is not None and method != plan.method:
             plan = plan.model_copy(update={"method": method, "samples": None, "order": None})
-        found = study.screened(plan, workspace, Teller(quiet))
-        hours = analysed_hours(study, found)
+        found = ModelRuns(study, workspace, progress).sensitivity(plan)
+        hours = analyzed_hours(study, found)
         drawn = [
             path for name in found.outputs for path in save_all(found, name, out / "figures", name, hours)
         ]
@@ -74,17 +73,17 @@ def sensitivity(
     return content
 
 
-def calibration(study: Study, out: Path, *, quiet: bool = False) -> dict[str, Any]:
-    """The parameters that bring the model closest to the measurements, and how close that is on other days.
+def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> dict[str, Any]:
+    """Calibration, and the comparison before and after it.
 
     Parameters
     ----------
-    study : Study
-        Says what to identify.
+    study : Setup
+        Has an identification.
     out : Path
         Folder for calibration.json, its tables and figures.
-    quiet : bool
-        No progress on stderr.
+    progress : bool, callable or None
+        Where progress is shown; see `mascarin.progress.ProgressOption`.
 
     Returns
     -------
@@ -93,30 +92,31 @@ def calibration(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
     """
     _ = study.sought
     with Workspace(out, study.inputs()) as workspace:
-        nominal = study.nominal()
-        fitted, fit = study.fitted(workspace, Teller(quiet))
-        models, verdicts = {"nominal": nominal, "fitted": fitted}, study.judged(nominal, fitted)
-        found = band(study, fitted, fit, answers(study, fitted, fit))
-        profiles = study.profiled(fit, Teller(quiet))
+        runs = ModelRuns(study, workspace, progress)
+        before = nominal(study)
+        fitted, fit = runs.fitted()
+        models, verdicts = {"nominal": before, "fitted": fitted}, judged(study, before, fitted)
+        intervals = prediction_intervals(study, fitted, fit, slopes(study, fitted, fit))
+        profiles = runs.profiled(fit)
         content = {
             **header(study, "calibrate"),
             **comparison(models, verdicts),
             **estimates(study, fit),
             **profile_entries(profiles),
-            **foreseen(study, found),
+            **prediction_entries(study, intervals),
             "notes": [
-                {"title": "The estimates", "text": text}
+                {"title": ESTIMATES, "text": text}
                 for text in (
                     *fit.warnings,
                     *(p.words for p in profiles if p.words),
-                    *band_words(study, found),
+                    *interval_words(study, intervals),
                 )
             ],
         }
         tables = {
             "parameters": fit.table(),
             "evaluations": fit.evaluations(),
-            "calibration_metrics": metrics_table([nominal, fitted]),
+            "calibration_metrics": metrics_table([before, fitted]),
             "calibration_criteria": criteria_table(verdicts),
             "quality": quality_table(study.quality),
         }
@@ -124,13 +124,13 @@ def calibration(study: Study, out: Path, *, quiet: bool = False) -> dict[str, An
     return content
 
 
-def validation(study: Study, out: Path | None) -> dict[str, Any]:
-    """The building as described against the measurements.
+def validation(study: Setup, out: Path | None) -> dict[str, Any]:
+    """Comparison of the uncalibrated model with the measurements.
 
     Parameters
     ----------
-    study : Study
-        Its identification is not carried out.
+    study : Setup
+        Its calibration is not carried out.
     out : Path, optional
         Folder for validation.json and its tables; without it nothing is written.
 
@@ -141,21 +141,21 @@ def validation(study: Study, out: Path | None) -> dict[str, Any]:
     """
     if out is None:
         return _validated(study)[0]
-    with Workspace(out, study.inputs()) as workspace:  # refuses what is no folder before anything is run
+    with Workspace(out, study.inputs()) as workspace:  # raises before the run if the folder cannot be used
         content, tables = _validated(study)
         _write(workspace, "validation", content, tables)
     return content
 
 
-def _validated(study: Study) -> tuple[dict[str, Any], dict[str, pd.DataFrame]]:
-    nominal = study.nominal()
-    verdicts = study.judged(nominal)
+def _validated(study: Setup) -> tuple[dict[str, Any], dict[str, pd.DataFrame]]:
+    run = nominal(study)
+    verdicts = judged(study, run)
     tables = {
-        "validation_metrics": metrics_table([nominal]),
+        "validation_metrics": metrics_table([run]),
         "validation_criteria": criteria_table(verdicts),
         "quality": quality_table(study.quality),
     }
-    return {**header(study, "validate"), **comparison({"nominal": nominal}, verdicts)}, tables
+    return {**header(study, "validate"), **comparison({"nominal": run}, verdicts)}, tables
 
 
 def _write(
@@ -167,8 +167,8 @@ def _write(
 ) -> None:
     result = workspace.out / f"{name}.json"
     written = [*write_tables(workspace.out / "tables", tables), *further, result]
-    write_whole(result, as_json(content))
-    workspace.settle(name, written)
+    atomic.write(result, as_json(content))
+    workspace.record(name, written)
 
 
 def as_json(content: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""What is not measured and follows from what is: dew point, diffuse part, cloud cover.
+"""Quantities derived from measured ones: dew point, diffuse irradiance, cloud cover.
 
 References
 ----------
@@ -68,8 +68,8 @@ def diffuse_erbs(total: Array, up: Array, extra: Array) -> Array:
     from pvlib.irradiance import erbs
 
     lit = up > np.sin(np.radians(3.0))
-    # pvlib takes the day of the year only to know the extraterrestrial irradiance; scaling the global
-    # irradiance to the solar constant of that day gives the clearness for our own.
+    # pvlib uses the day of the year only for the extraterrestrial irradiance. Scaling the global irradiance
+    # to that day gives the clearness index for the irradiance that is used here.
     zenith = np.degrees(np.arccos(np.clip(up, 0.0, 1.0)))
     day = np.full(len(total), 94.0)
     from pvlib.irradiance import get_extra_radiation
@@ -81,12 +81,12 @@ def diffuse_erbs(total: Array, up: Array, extra: Array) -> Array:
 
 
 def cloud_cover(total: Array, up: Array, interval: float) -> Array:
-    """Cloud cover from global irradiance, Kasten & Czeplak's relation the other way round.
+    """Cloud cover from global irradiance, by the inverse of the relation of Kasten & Czeplak.
 
     G / G_clear = 1 - 0.75 (N/8)^3.4, N in oktas, on running means of an hour; with the sun below 10 deg, and
     at night, linear between the last and the next value. G_clear is Haurwitz's 1098 sin h exp(-0.057 / sin h)
-    W/m2: Kasten and Czeplak's own, from Hamburg, is a quarter too low under a high sun, so that cloud would
-    seem to come and go with the hour.
+    W/m2. The clear-sky relation of Kasten and Czeplak, from Hamburg, is a quarter too low for a high sun, so
+    that the cloud cover would depend on the hour.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the engine takes as input: every channel at every stage of every step."""
+"""Input of the engine: every channel at every stage of every step."""
 
 from __future__ import annotations
 

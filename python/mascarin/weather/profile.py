@@ -1,13 +1,12 @@
-"""Quantities inside the intervals of their source: shapes that keep every interval's mean.
+"""Reconstruct a quantity inside the intervals of its source, such that every mean is kept.
 
 A `Profile` is linear between evenly spaced nodes inside each source interval. It may jump
 from one interval to the next. Its means over any span follow exactly from the nodes.
 
 A mean is reconstructed as `k(t) shape(t)`: the shape follows the sun (or is constant), and the
-index k is linear between the edges and the middle of the interval. k agrees with its neighbour
-at a shared edge; in the middle it is what the interval's mean requires; where that would
-be negative the shared edges are lowered, where it would be too large the interval's k is drawn
-towards a constant. The means are kept in each of these cases.
+index k is linear between the edges and the middle of the interval. At an edge, k is the same on both
+sides; in the middle, k follows from the mean of the interval. Where that would be negative, k is lowered
+at the edges; where it would be too large, k is moved towards a constant. The means are kept in each case.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ _TIME_TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class Profile:
-    """A piecewise linear course of a quantity.
+    """A piecewise linear quantity over time.
 
     Attributes
     ----------
@@ -113,7 +112,7 @@ def trapezoid_weights(pieces: int) -> Array:
 
 
 def index_nodes(means: Array, shape: Array, largest: float | None = None) -> Array:
-    """The index k at the nodes, such that each interval's mean of `k shape` is what is asked for.
+    """The index k at the nodes, such that `k shape` has the given mean in each interval.
 
     Parameters
     ----------
@@ -123,7 +122,7 @@ def index_nodes(means: Array, shape: Array, largest: float | None = None) -> Arr
         Non-negative shape at the nodes.
     largest : float, optional
         k may not exceed this in the middle of an interval, nor fall below zero, except where the
-        interval's own mean needs more. None: k is free (temperatures) [-].
+        interval's own mean needs more. None: k has no limits (temperatures) [-].
 
     Returns
     -------
@@ -149,7 +148,7 @@ def index_nodes(means: Array, shape: Array, largest: float | None = None) -> Arr
         limit = np.maximum(largest, constant)
         over = tented & (centre > limit)
         share = np.where(over, (limit - constant) / np.where(over, centre - constant, 1.0), share)
-        centre = np.maximum(centre, 0.0)  # against the last bit where the edges were lowered
+        centre = np.maximum(centre, 0.0)  # rounding, where the edges were lowered
     flat = (1.0 - share) * constant
     ends = [flat + share * edges[:-1], flat + share * centre, flat + share * edges[1:]]
     return np.asarray(sum(end[:, None] * tent for end, tent in zip(ends, (left, middle, right), strict=True)))
@@ -195,7 +194,7 @@ def _shared_edges(index: Array, lit: Flags) -> Array:
 
 
 def _lowered(edges: Array, means: Array, on_left: Array, on_right: Array) -> Array:
-    """Lower the edges so far that no interval's two edges alone exceed its mean."""
+    """Lower the edges until the two edges of an interval alone do not exceed its mean."""
     taken = edges[:-1] * on_left + edges[1:] * on_right
     over = taken > means
     factor = np.where(over, means / np.where(over, taken, 1.0), 1.0)

@@ -95,7 +95,11 @@ def record_of_pvlib(
         extra=(),
         absent=absent,
         stamps="end" if marked == "end" else "start",
-        instant=[name for name in (*RADIATION, "infrared") if name in columns and marked == "instant"],
+        instant=[
+            name
+            for name in (*RADIATION, "infrared")
+            if name in columns and (marked == "instant" or (epw and name == "infrared"))
+        ],
         mean=[str(name) for name in columns if marked == "middle"],
     )
     record = replace(record, site=place)
@@ -250,23 +254,28 @@ def _ordered(columns: pd.DataFrame, marked: PvlibStamps, zone: tzinfo) -> pd.Dat
     index = cast("pd.DatetimeIndex", columns.index)
     local = index.tz_localize(zone) if index.tz is None else index.tz_convert(zone)
     naive = local.tz_localize(None)
-    per_day = len(columns) / 365.0
-    if per_day != round(per_day) and len(columns) % 366 == 0:
-        per_day = len(columns) / 366.0
-    interval = _DAY / per_day
-    if per_day != round(per_day):
+    days = 366 if len(columns) % 366 == 0 and len(columns) % 365 else 365
+    if len(columns) % days or _DAY % (len(columns) // days):
         raise InputError(
             f"{_WHERE}: found {len(columns)} rows for a typical year, expected 365 whole days; a record of "
             "several years has typical=False."
         )
-    shift = {"start": 0.0, "instant": 0.0, "middle": 0.5 * interval, "end": interval}[marked]
-    starts = naive - _seconds(shift)
-    keep = ~((starts.month == 2) & (starts.day == 29))
-    starts = starts[keep]
-    labels = pd.DatetimeIndex([stamp.replace(year=2001) for stamp in starts])
-    frame = columns.loc[keep].set_axis(labels + _seconds(shift), axis=0).sort_index()
+    interval = _DAY / (len(columns) // days)
+    shift = _seconds({"start": 0.0, "instant": 0.0, "middle": 0.5 * interval, "end": interval}[marked])
+    keep = np.ones(len(columns), dtype=bool)
+    if days == 366:
+        starts = naive - shift
+        keep = ~((starts.month == 2) & (starts.day == 29))
+    else:
+        # The end of 28 February may be stamped 29 February or 1 March; both are 1 March of 2001.
+        late = (naive.month == 2) & (naive.day == 29)
+        moved = naive.where(~late, naive + _seconds(_DAY))
+        same_year = [stamp.replace(year=2001) for stamp in moved]
+        starts = pd.DatetimeIndex(same_year) - shift
+    labels = pd.DatetimeIndex([stamp.replace(year=2001) for stamp in starts[keep]])
+    frame = columns.loc[keep].set_axis(labels + shift, axis=0).sort_index()
     first = labels.min()
-    if first != pd.Timestamp(2001, 1, 1) or labels.has_duplicates or len(frame) != 365 * per_day:
+    if first != pd.Timestamp(2001, 1, 1) or labels.has_duplicates:
         raise InputError(
             f"{_WHERE}: the rows are not those of one year of 365 days in {zone_name(zone)}: the first "
             f"interval starts at {first:%m-%d %H:%M}, expected 01-01 00:00, every time once. Check stamps, "

@@ -1,8 +1,8 @@
-"""Suspicious stretches of measured series: stuck, forward-filled, spiking, missing, out of range.
+"""Find suspicious parts of measured series: stuck, forward-filled, spikes, missing, out of range.
 
-Nothing is corrected here. What is ordinary is learnt from each channel itself: how often it
-repeats a value, how far it moves in one step, where it rests (night, calm, saturation).
-A stretch is named when it is far from that, so coarse loggers are not blamed for their steps.
+Nothing is corrected here. What is usual is derived from each channel: how often it repeats a value, how far
+it changes in one step, where it is constant (night, no wind, saturation). A part of a series is reported when
+it is far from that, so that the steps of a coarse logger are not reported.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 Defect = Literal["stuck", "forward_filled", "spike", "missing", "out_of_range"]
 
 _LONGER: Final = 3.0
-"""A run of equal values is long when it exceeds the channel's ordinary longest run by this factor."""
+"""A run of equal values is long when it exceeds the longest usual run of the channel by this factor."""
 _FEWEST: Final = 6
 """Equal values in a row that one channel must show at least."""
 _FEWEST_TOGETHER: Final = 4
 """The same for several channels at once."""
 _SUPPORT: Final = 3
-"""So many runs of about a length make that length ordinary."""
+"""Number of runs of similar length that make that length usual."""
 _TURNING: Final = 6.0
-"""A coarse logger at a turning point may exceed its ordinary longest run by this factor."""
-_HOPELESS: Final = 10.0
-"""Beyond this factor no turning point and no quiet spell explains a run."""
+"""A coarse logger at a turning point may exceed its longest usual run by this factor."""
+_CERTAIN: Final = 10.0
+"""Beyond this factor, neither a turning point nor a calm period explains a run."""
 _ALIKE: Final = 0.8
 """Runs of two channels are one event when they share this part of the rows that either covers."""
 _DAY: Final = 86400.0
@@ -46,21 +46,21 @@ _FAR: Final = 5.0
 
 @dataclass(frozen=True)
 class Stretch:
-    """A suspicious stretch of one channel.
+    """A suspicious part of one channel.
 
     Attributes
     ----------
     channel : str
         Column.
     kind : str
-        `stuck` (one channel repeats a value while it should move), `forward_filled` (several channels repeat
-        theirs over the same rows), `spike`, `missing`, `out_of_range`.
+        `stuck` (one channel repeats a value while it should change), `forward_filled` (several channels
+        repeat their values over the same rows), `spike`, `missing`, `out_of_range`.
     start, end : pandas.Timestamp
-        First and last row concerned. Where a value is repeated, `start` is its first repetition.
+        First and last row. Where a value is repeated, `start` is its first repetition.
     count : int
-        Rows concerned.
+        Number of rows.
     detail : str
-        What was found, for a reader.
+        What was found, as text.
     """
 
     channel: str
@@ -76,7 +76,7 @@ def find(
     *,
     limits: Mapping[str, tuple[float, float]] | None = None,
 ) -> list[Stretch]:
-    """Find the suspicious stretches of every column.
+    """Find the suspicious parts of every column.
 
     Parameters
     ----------
@@ -118,12 +118,12 @@ def find(
 def mask(
     data: pd.DataFrame, stretches: Sequence[Stretch], kinds: Sequence[str] | None = None
 ) -> pd.DataFrame:
-    """Where values would be left out, if one wants to.
+    """Mark values that belong to suspicious parts, to leave them out.
 
     Parameters
     ----------
     data : pandas.DataFrame
-        The table that the stretches were found in.
+        The table in which they were found.
     stretches : sequence of Stretch
         From `find`.
     kinds : sequence of str, optional
@@ -132,7 +132,7 @@ def mask(
     Returns
     -------
     pandas.DataFrame
-        True where a value belongs to a stretch; the shape of `data`.
+        True where a value belongs to one of them; same shape as `data`.
     """
     import pandas as pd
 
@@ -179,7 +179,7 @@ def _out_of_range(values: Array, limits: tuple[float, float] | None) -> list[tup
 
 
 def _usual_range(values: Array) -> tuple[float, float]:
-    """Limits far outside of what the column does; none for one that mostly rests (rain)."""
+    """Limits far outside the usual values; none for a column that is mostly constant (rain)."""
     there = values[~np.isnan(values)]
     if len(there) < 20:
         return -np.inf, np.inf
@@ -196,8 +196,9 @@ def _usual_range(values: Array) -> tuple[float, float]:
 def _spikes(kept: Array, shown: Array) -> list[tuple[Defect, int, int, str]]:
     """Excursions of at most three rows that come back to where they started.
 
-    What is an excursion is learnt from the values that are possible (`kept`, NaN elsewhere). An excursion may
-    itself be impossible: it is then a spike as well as out of range. Values are told as they are `shown`.
+    The usual change in one step is derived from the values that are possible (`kept`, NaN elsewhere). An
+    excursion may itself be impossible: it is then a spike as well as out of range. The text names the values
+    as `shown`.
     """
     least = _least_spike(kept[~np.isnan(kept)])
     possible = ~np.isnan(kept)
@@ -218,7 +219,7 @@ def _spikes(kept: Array, shown: Array) -> list[tuple[Defect, int, int, str]]:
 
 
 def _least_spike(series: Array) -> float:
-    """Height from which on an excursion is a spike; infinite where too little is known of the column."""
+    """Height from which on an excursion is a spike; infinite where the column has too few values."""
     steps = np.abs(np.diff(series))
     steps = steps[steps > 0.0]
     if len(series) < 20 or len(steps) < 10:
@@ -267,8 +268,8 @@ def _runs_of_equal(values: Array) -> tuple[Lines, Lines]:
     return start, np.diff(np.concatenate([start, [len(values)]]))
 
 
-def _ordinary_longest(lengths: Lines, least: int = 2) -> float:
-    """Longest run that is ordinary: the least, or reached from it in strides that several runs support."""
+def _usual_longest(lengths: Lines, least: int = 2) -> float:
+    """Longest usual run: the least, or longer ones as far as several runs of similar length exist."""
     ordered = np.sort(lengths)
     longest = float(max(least, np.quantile(ordered, 0.99, method="lower")))
     while True:
@@ -279,23 +280,23 @@ def _ordinary_longest(lengths: Lines, least: int = 2) -> float:
 
 
 def _stuck(values: Array, interval: float, bounds: Sequence[float]) -> list[tuple[int, int]]:
-    """Runs of equal values that this channel does not show by itself: first and past-the-end row."""
+    """Runs of equal values that are not usual for this channel: first and past-the-end row."""
     there = values[~np.isnan(values)]
     if len(there) < _FEWEST:
         return []
     if np.all(there == there[0]):
-        # Never moves: a whole number is an entry that stands for the channel, another comes from a sensor.
+        # Never changes: a whole number was written by hand, any other number comes from a sensor.
         return [] if float(there[0]).is_integer() else [(0, len(values))]
     start, length = _runs_of_equal(values)
     idle = _idle(values, start, length, interval) | np.isin(values[start], bounds) | np.isnan(values[start])
-    longest = _ordinary_longest(length[~idle])
+    longest = _usual_longest(length[~idle])
     long = ~idle & (length >= _FEWEST) & (length > _LONGER * longest)
     long &= ~_returning(values[start], length)
     candidates = [(int(a), int(a + n)) for a, n in zip(start[long], length[long], strict=True)]
     return [
         run
         for run in candidates
-        if run[1] - run[0] > _HOPELESS * longest
+        if run[1] - run[0] > _CERTAIN * longest
         or (_elsewhere_moves(values, candidates, run) and not _turns(values, run, longest))
     ]
 
@@ -316,7 +317,7 @@ def _returning(value: Array, length: Lines) -> Flags:
 
 
 def _elsewhere_moves(values: Array, candidates: list[tuple[int, int]], run: tuple[int, int]) -> bool:
-    """Whether windows as long as the run, or as can be judged, move elsewhere by two steps of the logger."""
+    """Whether the values change by two steps of the logger in other windows of similar length."""
     keep = ~np.isnan(values)
     for first, last in candidates:
         keep[first + 1 : last] = False
@@ -334,14 +335,14 @@ def _elsewhere_moves(values: Array, candidates: list[tuple[int, int]], run: tupl
 
 
 def _resolution(values: Array) -> float:
-    """Smallest step that the channel usually makes: the resolution of a coarse logger."""
+    """Smallest usual change of the channel: the resolution of a coarse logger. [unit of the channel]"""
     steps = np.abs(np.diff(values))
     steps = steps[steps > 0.0]
     return float(np.quantile(steps, 0.05)) if len(steps) else 0.0
 
 
 def _turns(values: Array, run: tuple[int, int], longest: float) -> bool:
-    """Whether a coarse logger may stand at a turning point: entered and left by one step, not too long."""
+    """Whether a coarse logger may be at a turning point: one step before and after, not too long."""
     first, last = run
     if longest <= 2.0 or last - first > _TURNING * longest:
         return False
@@ -354,7 +355,7 @@ def _turns(values: Array, run: tuple[int, int], longest: float) -> bool:
 def _repeated(
     columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]]
 ) -> dict[str, list[tuple[Defect, int, int, str]]]:
-    """Sort runs of repeated values into stuck ones and forward-filled ones."""
+    """Divide runs of repeated values into stuck and forward-filled ones."""
     together = _held_together(columns, stuck)
     found: dict[str, list[tuple[Defect, int, int, str]]] = {name: [] for name in columns}
     count = len(next(iter(columns.values())))
@@ -392,7 +393,7 @@ def _held_together(
 
 
 def _still(columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]]) -> list[tuple[int, int]]:
-    """Blocks of rows in which no channel changes at all, longer than that ordinarily happens."""
+    """Blocks of rows in which no channel changes, longer than usual."""
     count = len(next(iter(columns.values())))
     moving = np.zeros(count, dtype=bool)
     moving[0] = True
@@ -401,14 +402,14 @@ def _still(columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int
     still = runs(~moving)
     lengths = np.ones(max(int(moving.sum()), 1), dtype=np.int64)
     lengths[: len(still)] = [last - first + 1 for first, last in still]
-    limit = max(_LONGER * _ordinary_longest(lengths, least=1), _FEWEST_TOGETHER - 1)
+    limit = max(_LONGER * _usual_longest(lengths, least=1), _FEWEST_TOGETHER - 1)
     return [
         block for block in still if block[1] - block[0] + 1 > limit and len(_free(columns, stuck, block)) >= 2
     ]
 
 
 def _tail(columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]]) -> list[tuple[int, int]]:
-    """Block at the end of the record in which several channels show their longest run of all."""
+    """Block at the end of the record in which several channels have their longest run."""
     count = len(next(iter(columns.values())))
     longest = []
     for name, values in columns.items():
@@ -447,7 +448,7 @@ def _held(values: Array, block: tuple[int, int]) -> bool:
 
 
 def _counts(values: Array, block: tuple[int, int]) -> bool:
-    """Whether a repeated value says anything: the column moves elsewhere, and does not rest at this value."""
+    """Whether a repeated value is suspicious: the column changes elsewhere and rarely has this value."""
     value = values[block[0]]
     if np.isnan(value):
         return False

@@ -1,4 +1,4 @@
-"""Schedules at the stages of every step: fractions as means over the step, temperatures as they are."""
+"""Schedules at the stages of every step: fractions as means over the step, temperatures at the stage."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from mascarin.building.schedule import Schedule
 
-#: A step that ends at a switch ends before it. [s]
+# A step that ends at a switch ends before it. [s]
 _BEFORE: Final = 1e-3
 
 
@@ -44,11 +44,11 @@ class StraightPieces:
     last: Array
 
     def before(self, times: Array) -> Array:
-        """Values just before some times: a piece holds up to and including its end."""
+        """Values just before some times: the end of a piece belongs to the piece."""
         piece = np.searchsorted(self.knots, times - _BEFORE, side="right") - 1
         length = self.knots[piece + 1] - self.knots[piece]
-        share = (times - self.knots[piece]) / length
-        return np.asarray(self.first[piece] + (self.last[piece] - self.first[piece]) * share)
+        part = (times - self.knots[piece]) / length
+        return np.asarray(self.first[piece] + (self.last[piece] - self.first[piece]) * part)
 
     def means(self, edges: Array) -> Array:
         """Means between edges, shape (len(edges) - 1,)."""
@@ -73,13 +73,13 @@ def scheduled(
 ) -> Array:
     """Values of schedules at the stages of every step of a period.
 
-    A fraction is its mean over the step, the same in all stages: no heat is lost where a switch falls
-    inside a step. A temperature is its value at the time of the stage; before a jump there.
+    A fraction is the mean over the step, the same in all stages, so that the heat is right where a switch is
+    inside a step. A temperature is the value at the time of the stage; at a jump, the value before it.
 
     Parameters
     ----------
     climate : Climate
-        Gives the period its clock, and may hold measured columns.
+        Gives the time zone of the period, and may hold measured columns.
     schedules : mapping of str to Schedule
         Schedules by name.
     timezone : datetime.tzinfo
@@ -101,7 +101,7 @@ def scheduled(
     Raises
     ------
     InputError
-        A measured column is unknown, lacks a value or holds one that cannot be.
+        A measured column is unknown, or a value in it is missing or impossible.
     """
     steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme)
     out = np.empty((*steps.stage.shape, len(schedules)))
@@ -117,14 +117,14 @@ def scheduled(
 
 
 def pieces_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -> StraightPieces:
-    """The profile of a schedule over a span, on the clocks of a time zone.
+    """A schedule over a span of time, by the clocks of a time zone.
 
     Parameters
     ----------
     schedule : Schedule
         One value, or profiles of days.
     timezone : datetime.tzinfo
-        Whose clocks.
+        The time zone.
     first, last : float
         Span, seconds since 1970-01-01 UTC [s].
 
@@ -150,13 +150,13 @@ def pieces_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -
     stamps = pd.DatetimeIndex([*starts, days[-1] + pd.Timedelta(days=1)])
     knots = _instants(stamps, timezone) - first
     pairs = np.array(values)
-    # Where clocks go forward, the pieces that they leap over have no length.
+    # Where clocks go forward, the pieces in the skipped hour have no length.
     real = np.diff(knots) > 0.0
     return StraightPieces(np.concatenate([knots[:-1][real], knots[-1:]]), pairs[real, 0], pairs[real, 1])
 
 
 def _instants(stamps: pd.DatetimeIndex, timezone: tzinfo) -> Array:
-    """Seconds since 1970-01-01 UTC of local times; of an hour that comes twice, the first."""
+    """Seconds since 1970-01-01 UTC of local times; the first one where an hour occurs twice."""
     local = stamps.tz_localize(timezone, ambiguous=np.ones(len(stamps), bool), nonexistent="shift_forward")
     return np.asarray(
         local.tz_convert("UTC").tz_localize(None).to_numpy().astype("datetime64[s]"), dtype=np.float64

@@ -48,7 +48,7 @@ def to_starts(
     Raises
     ------
     InputError
-        `stamps` is neither of the two.
+        `stamps` is neither `start` nor `end`.
     """
     if stamps not in ("start", "end"):
         raise InputError(f"{table.where}: stamps is {stamps!r}, expected 'start' or 'end'.")
@@ -68,7 +68,7 @@ def to_starts(
     note += f"means: {', '.join(means)}; " if means else "no means; "
     note += "all other columns are values at the stamp"
     note += ", means moved to the start" if late and means else ""
-    held = "the first is held back to the start" if late else "the last is held to the end"
+    held = "the first also stands for the start" if late else "the last also stands for the end"
     note += f"; of these {held} of the record."
     return columns, closing, grid, note
 
@@ -81,7 +81,7 @@ def knot_lines(lines: Lines, stamps: str) -> Lines:
     lines : ndarray, shape (n,)
         Line of each row of the table.
     stamps : str
-        `start` or `end`; with the latter the instants moved on by one interval.
+        `start` or `end`; with `end`, instants are those of the next row.
 
     Returns
     -------

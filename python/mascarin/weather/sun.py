@@ -1,8 +1,8 @@
-"""The sun's true direction and the extraterrestrial irradiance at any time, from pvlib.
+"""Direction of the sun and extraterrestrial irradiance at any time, from pvlib.
 
-pvlib's solar position algorithm is evaluated once an hour; between, the direction is turned with
-the earth and the remainder, which moves by a degree a day, is interpolated by a cubic. The
-result stays within 1e-6 rad of pvlib at every instant, and costs next to nothing at a million of them.
+The solar position algorithm of pvlib is evaluated once an hour. Between, the direction is turned with the
+earth, and the rest, which changes by one degree a day, is interpolated by a cubic. The result is within
+1e-6 rad of pvlib at any time, and a million times take less than a second.
 
 References
 ----------
@@ -74,7 +74,7 @@ class SunPath:
         first = (np.floor(start / _NODE_STEP) - 2.0) * _NODE_STEP
         count = int(np.ceil((end - first) / _NODE_STEP)) + 4
         seconds = first + _NODE_STEP * np.arange(count)
-        # At sea level; pressure and temperature act on refraction alone, which is not looked at.
+        # At sea level; pressure and temperature only change the refraction, which is not used.
         _, zenith, _, _, azimuth, _ = spa.solar_position(
             seconds, latitude, longitude, 0.0, 1013.25, 12.0, _DELTA_T, 0.5667, 1
         )
@@ -120,7 +120,7 @@ class SunPath:
 
 @cache
 def _algorithm() -> ModuleType:
-    """The file of pvlib with the algorithm, without the rest of pvlib where that is not in use already.
+    """The file of pvlib with the algorithm, without the rest of pvlib if that is not imported yet.
 
     All of pvlib takes half a second to import; this file needs numpy alone.
     """

@@ -290,13 +290,12 @@ def _ordered(gaps: Array, index: pd.DatetimeIndex, lines: Lines, where: str, zon
     if gaps[row] == -3600.0 or (gaps[row] < 0.0 and np.any(gaps == -gaps[row])):
         hint = (
             f"if the clock of the file follows daylight saving time, {zone_name(zone)} is the wrong "
-            "zone: write the "
-            "stamps with their offset, as in 2024-10-27T02:00+01:00; otherwise remove or sort the rows."
+            "zone: write the stamps with their offset, as in 2024-10-27T02:00+01:00; otherwise remove or "
+            "sort the rows."
         )
     raise InputError(
-        f"{where}:{lines[row + 1]}: time {index[row + 1]:%Y-%m-%d %H:%M:%S} {found}, expected "
-        "increasing times "
-        f"({len(wrong)} such rows in all); {hint}"
+        f"{where}:{lines[row + 1]}: time {index[row + 1]:%Y-%m-%d %H:%M:%S} {found}, expected increasing "
+        f"times ({len(wrong)} such rows in all); {hint}"
     )
 
 
@@ -321,8 +320,8 @@ def _numbers(series: pd.Series[Any], lines: Lines, where: str) -> Array:
             row = int(bad[0])
             raise InputError(
                 f"{where}, line {lines[row]}: found {text.iloc[row]!r}, expected a number ({len(bad)} "
-                "such entries); "
-                "repair it, or name it in `missing` (and state `decimal` if the mark is a comma)."
+                "such entries); repair it, or name it in `missing` (and state `decimal` if the mark is a "
+                "comma)."
             )
     infinite = np.flatnonzero(np.isinf(values))
     if len(infinite):

@@ -35,7 +35,7 @@ def seconds_of(step: str | float, where: str = "step") -> float:
     step : str or float
         Text such as `15min`, `1h`, `90s`, `3d`, or a number of seconds [s].
     where : str
-        What the length belongs to, for the error.
+        Name of the length, for the error.
 
     Returns
     -------
@@ -46,6 +46,11 @@ def seconds_of(step: str | float, where: str = "step") -> float:
     ------
     InputError
         No positive length can be read.
+
+    Examples
+    --------
+    >>> seconds_of("15min"), seconds_of("1h"), seconds_of(90)
+    (900.0, 3600.0, 90.0)
     """
     match = _LENGTH_OF_TIME.fullmatch(str(step).strip())
     if match is None or isinstance(step, bool):

@@ -1,4 +1,4 @@
-"""Time zones: fixed offsets and IANA names, and local stamps that do not exist or exist twice."""
+"""Time zones: fixed offsets and IANA names; local stamps that do not exist or exist twice."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def parse_timezone(text: object, where: str = "timezone") -> tzinfo:
     text : str
         IANA name (`Europe/Paris`) or fixed offset east of Greenwich (`UTC+4`, `UTC-07:00`, `UTC`).
     where : str
-        What the text belongs to, for the error.
+        Place of the text, for the error.
 
     Returns
     -------
@@ -41,7 +41,7 @@ def parse_timezone(text: object, where: str = "timezone") -> tzinfo:
     Raises
     ------
     InputError
-        The text is missing or names no zone.
+        The text is missing or does not name a time zone.
     """
     if not isinstance(text, str) or not text.strip():
         raise InputError(f"{where}: a time zone is required, found {text!r}; {_WANTED}.")
@@ -99,7 +99,7 @@ def fixed_offset(zone: tzinfo) -> bool:
 
 
 def zone_name(zone: tzinfo) -> str:
-    """Text from which `parse_timezone` makes the zone again."""
+    """Name of a zone, from which `parse_timezone` makes the same zone."""
     if isinstance(zone, ZoneInfo):
         return zone.key
     return _offset_name(zone.utcoffset(datetime(2001, 1, 1)) or timedelta())
@@ -115,7 +115,7 @@ def _offset_name(offset: timedelta) -> str:
 
 
 def localize(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeIndex:
-    """Give local stamps their zone.
+    """Add the time zone to local stamps.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def localize(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeI
     Raises
     ------
     InputError
-        Stamps that the zone skips in spring, or has twice in autumn.
+        Stamps that do not exist in spring, or exist twice in autumn.
     """
     import numpy as np
 
@@ -155,10 +155,8 @@ def _clock_text(stamps: pd.DatetimeIndex, zone: tzinfo, where: str, verb: str, w
     winter = standard_offset(zone, stamps[0].year)
     return (
         f"{where}: {zone_name(zone)} {verb} the local stamps {shown}{more} ({when}), so the time of "
-        "these rows is "
-        "not known. If the clock of the file kept winter time all year, state timezone: "
-        f"{_offset_name(winter)}; "
-        "otherwise write the stamps with their offset, as in 2024-10-27T02:00+01:00."
+        "these rows is not known. If the clock of the file has winter time all year, state timezone: "
+        f"{_offset_name(winter)}; otherwise write the stamps with their offset, as in 2024-10-27T02:00+01:00."
     )
 
 
@@ -196,12 +194,12 @@ def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:
     Raises
     ------
     InputError
-        No date can be read, or clocks skip or double it.
+        No date can be read, or the local time does not exist or exists twice.
     """
     import pandas as pd
 
     if isinstance(value, str) and not _ISO_DATE.match(value.strip()):
-        # pandas would guess: 01/02/2023 as 2 January, 13/02/2023 as 13 February.
+        # pandas reads 01/02/2023 as 2 January, but 13/02/2023 as 13 February.
         raise InputError(f"{what}: {value!r} is not a date; write it as 2012-09-20 or 2012-09-20 06:30.")
     try:
         stamp = pd.Timestamp(value)  # type: ignore[arg-type]
@@ -218,6 +216,5 @@ def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:
     except InputError as error:
         raise InputError(
             f"{what}: {stamp:%Y-%m-%d %H:%M} does not exist or exists twice in {zone_name(zone)}, where "
-            "clocks change "
-            "then; write it with its offset, as in 2024-10-27T02:00+01:00."
+            "clocks change then; write it with its offset, as in 2024-10-27T02:00+01:00."
         ) from error

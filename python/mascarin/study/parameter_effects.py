@@ -1,4 +1,4 @@
-"""What each parameter does to the sensors, near the fitted model."""
+"""Effects of all parameters on the sensors, linearized at the fitted model."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: Part of its range by which a parameter is moved.
+#: Step of the differences, as a part of the range.
 STEP: Final = 0.05
 _CHUNK: Final = 32
 
 
 class Effects:
-    """Runs in which one parameter each is a little off, taken through to the whole range.
+    """Differences of runs in which one parameter is changed, extrapolated to its whole range.
 
     Parameters
     ----------
     simulation : Simulation
-        What is run.
+        The model.
     results : Results
-        The run that they start from, by the same simulation.
+        The unchanged run of the same simulation.
     values : ndarray, shape (P,)
         Its parameter vector. [unit of each]
     """
@@ -45,7 +45,7 @@ class Effects:
 
     @property
     def count(self) -> int:
-        """How many parameters there are."""
+        """Number of parameters."""
         return len(self._factors)
 
     def found(
@@ -54,34 +54,34 @@ class Effects:
         use: npt.NDArray[np.bool_],
         progress: Callable[[int, int], object],
     ) -> dict[str, Array]:
-        """Change of the simulated series when a parameter goes through its range.
+        """Change of the simulated series for a change of the parameter by its range.
 
         Parameters
         ----------
         observation : Observation
             Gives the instants.
         use : ndarray of bool, shape (n,)
-            Those that are wanted.
+            Instants to keep.
         progress : callable
             Called with the number of runs done and their total.
 
         Returns
         -------
         dict of str to ndarray, shape (instants, S)
-            By path; a parameter whose run failed is left out. `room` holds for each how far down and up it
-            can be changed, in ranges. [unit of each sensor]
+            By path; parameters whose run failed are left out. `room` contains for each the largest change
+            down and up, in ranges. [unit of each sensor]
         """
         sensors = len(observation.names)
 
-        def seen(records: Array) -> Array:
+        def sampled(records: Array) -> Array:
             return observation.simulated(self._results.index, records[..., :sensors])[use]
 
-        base, done = seen(self._results.records), 0
+        base, done = sampled(self._results.records), 0
         effects: dict[str, Array] = {}
         for paths, steps, samples in self._chunks():
             records, _, _ = self._simulation.ensemble(samples)
             for path, step, record in zip(paths, steps, records, strict=True):
-                effect = (seen(record) - base) / step
+                effect = (sampled(record) - base) / step
                 if np.isfinite(record).all() and np.abs(effect).max() > 0.0:
                     effects[path] = effect
             done += len(paths)
@@ -89,7 +89,7 @@ class Effects:
         return effects
 
     def _chunks(self) -> Iterator[tuple[list[str], list[float], Array]]:
-        """Paths, signed steps [ranges] and parameter vectors, a few at a time."""
+        """Paths, signed steps [ranges] and parameter vectors, in chunks."""
         for first in range(0, len(self._factors), _CHUNK):
             chosen = self._factors[first : first + _CHUNK]
             samples, steps = np.tile(self._values, (len(chosen), 1)), []

@@ -1,4 +1,4 @@
-"""Figures of series over local time."""
+"""Figures of series over local time, on axes for each unit."""
 
 from __future__ import annotations
 
@@ -16,35 +16,46 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    from mascarin.building import Output
-
     Array = npt.NDArray[np.float64]
 
 
 def draw(
-    series: Sequence[tuple[Output, Array]], index: pd.DatetimeIndex, ax: Axes | Sequence[Axes] | None
+    series: Sequence[tuple[str, str, Array]], index: pd.DatetimeIndex, ax: Axes | Sequence[Axes] | None
 ) -> Figure:
     """Draw series over local time.
 
     Parameters
     ----------
-    series : sequence of (Output, ndarray)
-        What to draw, arrays of shape (rows,). [unit of each]
+    series : sequence of (str, str, ndarray)
+        Name, unit and values of each series, shape (rows,). [its unit]
     index : pandas.DatetimeIndex, shape (rows,)
         Local times with their zone.
     ax : matplotlib.axes.Axes or sequence of them, or None
         One for each unit, or one for all; None makes a new figure.
 
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure of the axes.
+
     Raises
     ------
     InputError
         Another number of axes.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> index = pd.date_range("2001-07-01", periods=3, freq="1h", tz="UTC")
+    >>> draw([("room", "degC", np.array([20.0, 21.0, 20.5]))], index, None).axes[0].get_xlabel()
+    'local time (UTC)'
     """
-    units = list(dict.fromkeys(output.unit for output, _ in series))
+    units = list(dict.fromkeys(unit for _, unit, _ in series))
     axes = _axes(ax, units)
     local = index.tz_localize(None)
-    for output, values in series:
-        axes[units.index(output.unit)].plot(local, values, label=output.name, lw=1.1)
+    for name, unit, values in series:
+        axes[units.index(unit)].plot(local, values, label=name, lw=1.1)
     for axis in dict.fromkeys(axes):
         here = [unit for unit, other in zip(units, axes, strict=True) if other is axis]
         axis.set_ylabel(", ".join(here))

@@ -1,0 +1,346 @@
+"""Keys of ``study.json`` that a report reads.
+
+Every key but ``title`` may be missing: its part of the report is then left out. Dictionaries are shown in the
+order in which they are given.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypedDict
+
+
+class Metrics(TypedDict, total=False):
+    """How far a model is from one sensor over one period; differences are model less sensor."""
+
+    n: int
+    bias: float
+    """Mean difference, in the unit of the sensor."""
+    sd: float
+    """Standard deviation of the difference, in the unit of the sensor."""
+    rmse: float
+    mean_error: float
+    """Mean absolute difference."""
+    max_error: float
+    """Difference of largest size, with its sign."""
+    mean_error_percent: float
+    """In percent of the measured range of the period."""
+    max_error_percent: float
+
+
+class SensorInfo(TypedDict, total=False):
+    """What a sensor is."""
+
+    label: str
+    output: str
+    """Name of the model output it is compared with."""
+    unit: str
+    uncertainty: float
+    """Half-width of the sensor's band, in its unit."""
+
+
+class Period(TypedDict, total=False):
+    """A named part of the record."""
+
+    label: str
+    spans: list[list[str]]
+    """Pairs of local times, start and end, ISO 8601 without offset."""
+    note: str
+
+
+class Model(TypedDict, total=False):
+    """A variant whose results are compared: nominal, fitted, and whatever else the study ran."""
+
+    label: str
+    note: str
+
+
+class ParameterEntry(TypedDict, total=False):
+    """A parameter that was identified (or only declared, without ``fitted``)."""
+
+    nominal: float
+    fitted: float
+    low: float
+    high: float
+    """Ends of the 95 % interval of the fitted value."""
+    range: list[float]
+    """Lowest and highest value that was allowed."""
+    unit: str
+    label: str
+    at_bound: bool
+    reason: str
+    """Why the estimate lies on a bound, or is not identifiable."""
+    source: str
+    reference_nominal: float
+    reference_fitted: float
+    """What a publication gives for the same quantity before and after its own identification."""
+
+
+class Criterion(TypedDict, total=False):
+    """One test with its limit."""
+
+    name: str
+    sensor: str
+    period: str
+    model: str
+    value: float
+    limit: float
+    unit: str
+    passed: bool
+
+
+class Assumption(TypedDict, total=False):
+    """A number that nobody measured."""
+
+    path: str
+    value: float
+    unit: str
+    low: float
+    high: float
+    source: str
+    assumed: bool
+
+
+class QualityEntry(TypedDict, total=False):
+    """A stretch of a measured channel that is not to be trusted."""
+
+    channel: str
+    kind: str
+    start: str
+    end: str
+    count: int
+    detail: str
+    masked: bool
+
+
+class LayerEntry(TypedDict, total=False):
+    """A layer of a construction."""
+
+    name: str
+    material: str
+    kind: str
+    """``solid``, ``resistance`` or ``pcm``."""
+    thickness: float
+    """[m]"""
+    conductivity: float | list[float]
+    density: float | list[float]
+    specific_heat: float | list[float]
+    resistance: float
+    """[m2 K/W]"""
+    latent_heat: float
+    """[J/kg]"""
+    melting_temperature: float
+    """[degC]"""
+    nodes: int
+
+
+class SurfaceEntry(TypedDict, total=False):
+    """A surface of the building."""
+
+    name: str
+    construction: str
+    area: float
+    tilt: float
+    azimuth: float
+    outside: str
+    """What the outside faces: ``outdoors``, a zone, ``ground``, the measured column, ``adiabatic``."""
+    inside: str
+    vertices: list[list[float]]
+    film_outside: str
+    film_inside: str
+
+
+class BuildingEntry(TypedDict, total=False):
+    """What was modelled."""
+
+    name: str
+    site: list[list[str]]
+    """Rows of name and value, as text with units."""
+    zones: list[dict[str, Any]]
+    """Each with ``name`` and ``volume`` [m3]."""
+    constructions: list[dict[str, Any]]
+    """Each with ``name`` and ``layers`` (:class:`LayerEntry`, outside to inside)."""
+    surfaces: list[SurfaceEntry]
+    probes: list[dict[str, Any]]
+    """Thermometers in walls: ``name``, ``surface``, ``depth`` [m from outside]."""
+    choices: list[list[str]]
+    """Rows of a modelling choice and what was chosen."""
+
+
+class Share(TypedDict, total=False):
+    """Part of an output's variance owed to one parameter."""
+
+    share: float
+    low: float
+    high: float
+    effect: float
+    """Signed change of the output from the low to the high end of the range, in the output's unit."""
+
+
+class Spectrum(TypedDict, total=False):
+    """Spectrum of an output over the design's runs."""
+
+    frequencies: list[float]
+    power: list[float]
+    """Part of the variance at each frequency [-]."""
+    threshold: float
+    """Below it an ordinate is indistinguishable from chance."""
+    peaks: list[dict[str, Any]]
+    """Each with ``frequency``, ``power``, ``path``, ``harmonic``."""
+
+
+class DayShares(TypedDict, total=False):
+    """Shares over the hours of the day."""
+
+    hours: list[float]
+    paths: list[str]
+    share: list[list[float]]
+    """One row per path, one column per hour."""
+
+
+class Residuals(TypedDict, total=False):
+    """Statistics of the residual of one sensor."""
+
+    acf_lags: list[float]
+    """[h]"""
+    acf: list[float]
+    acf_band: float
+    period: str
+    periodogram_frequency: list[float]
+    """[1/day]"""
+    periodogram_cumulative: list[float]
+    """0 to 1."""
+    periodogram_band: float
+    hour_mean: list[float]
+    """24 means, in the unit of the sensor."""
+    hour_sd: list[float]
+    correlation: dict[str, float]
+    """Correlation with sun, wind, outdoor air, ... by channel label."""
+    correlation_band: float
+    correlation_lag: dict[str, float]
+    """How long the residual comes after the channel. [h]"""
+    cross_lags: list[float]
+    """[h]"""
+    cross_correlation: dict[str, list[float | None]]
+    """Correlation with each channel at each lag."""
+    daily_cycle: dict[str, float] | None
+    """``measured_amplitude``, ``measured_peak`` [h], the same ``simulated_``, ``delay_minutes``."""
+    hour_share: float
+    """Part of the variance that the hour of the day explains."""
+    effective_n: float
+
+
+class Shortfall(TypedDict, total=False):
+    """What would take the rest of the error away, parameter by parameter; ``sd`` is by sensor."""
+
+    sd: dict[str, float]
+    """As it is."""
+    period: str
+    steps: list[dict[str, Any]]
+    """Each with ``path`` (what is changed besides those before), ``changes`` by path [ranges], and ``sd``."""
+    every: dict[str, Any]
+    """``parameters``, their number, and ``sd`` with all of them changed."""
+
+
+class LedgerTerm(TypedDict, total=False):
+    """One entry of the energy ledger."""
+
+    label: str
+    value: float
+    """[MJ], positive into the building."""
+
+
+class Ledger(TypedDict, total=False):
+    """Where the heat went."""
+
+    closure: float
+    """Largest imbalance over the heat turned over [-]."""
+    terms: list[LedgerTerm]
+    model: str
+
+
+class PhaseChange(TypedDict, total=False):
+    """What a phase-change layer did."""
+
+    label: str
+    temperature: list[float]
+    """Path followed: mean of the layer's two faces [degC]."""
+    enthalpy: list[float]
+    """Path followed: enthalpy [kJ/kg]."""
+    days: list[dict[str, Any]]
+    """Single days of it: ``label``, ``temperature``, ``enthalpy``."""
+    law_temperature: list[float]
+    law_enthalpy: list[float]
+    column: str
+    """Series column with the liquid fraction over time."""
+    rows: list[list[str]]
+    """Facts as rows of name and value."""
+
+
+class Table(TypedDict, total=False):
+    """Any further table."""
+
+    title: str
+    caption: str
+    columns: list[str]
+    rows: list[list[Any]]
+    section: str
+    """Identifier of the section it belongs to; ``comparison`` by default."""
+
+
+class Study(TypedDict, total=False):
+    """The keys of ``study.json`` that a report reads."""
+
+    title: str
+    intro: list[str]
+    """Paragraphs for somebody who never saw the tool."""
+    observed: dict[str, str]
+    """``label`` (what the data are called, e.g. "virtual experiment") and ``note``."""
+    mascarin_version: str
+    created: str
+    seed: int
+    timezone: str
+    command: list[str]
+    """Lines to type to get the same result."""
+    inputs: list[dict[str, str]]
+    """Each with ``name``, ``sha256`` and perhaps ``note``."""
+    versions: dict[str, str]
+    run_time: float
+    """[s]"""
+    sources: list[dict[str, str]]
+    """Each with ``text`` and perhaps ``doi``."""
+    sensor_info: dict[str, SensorInfo]
+    periods: dict[str, Period]
+    models: dict[str, Model]
+    sensors: dict[str, dict[str, dict[str, Metrics]]]
+    """sensor -> period -> model -> metrics; other keys beside the models are left alone."""
+    reference: dict[str, Any]
+    """A publication to read the numbers by: ``label``, ``note``, ``sensors`` (as above, without models), its
+    ``tables`` by what they hold, and its ``influential`` parameters with ``symbol`` and ``frequency``."""
+    building: BuildingEntry
+    assumptions: list[Assumption]
+    quality: list[QualityEntry]
+    parameters: dict[str, ParameterEntry]
+    variant_parameters: dict[str, dict[str, ParameterEntry]]
+    """The same of other models that were identified."""
+    correlation: dict[str, Any]
+    """``paths`` and ``matrix`` of the correlation between the estimates."""
+    identification: list[list[str]]
+    """Rows of name and value about how the fit was found."""
+    criteria: list[Criterion]
+    aims: list[Criterion]
+    """Limits that one would have liked to reach; missing one fails nothing."""
+    shortfall: Shortfall
+    sensitivity: dict[str, dict[str, Share]]
+    sensitivity_design: list[list[str]]
+    frequencies: dict[str, int]
+    """At which frequency each parameter swings in the spectra."""
+    spectra: dict[str, Spectrum]
+    day_shares: dict[str, DayShares]
+    residuals: dict[str, Residuals]
+    start: str
+    """How the state at the start of the run was found."""
+    ledger: Ledger
+    phase_change: list[PhaseChange]
+    tables: list[Table]
+    notes: list[dict[str, str]]
+    """Each with ``title`` and ``text``: what the numbers say, which physics differs."""

@@ -1,0 +1,69 @@
+"""Error by date and hour."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mascarin.report import text
+from mascarin.report.carpet import Carpet, carpet, legend, round_limit
+from mascarin.report.labels import label_of, main_model, unit_of
+from mascarin.report.series import Array, Series
+
+TITLE = "Error by date and hour"
+
+
+def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
+    """Values of the template."""
+    found = carpets(study, series)
+    if not found:
+        return None
+    return {"sensors": found, "scale": legend()}
+
+
+@dataclass(frozen=True)
+class SensorCarpet:
+    """Carpets of one sensor's error: of the main model, and of the nominal one."""
+
+    sensor: str
+    label: str
+    unit: str
+    pictures: list[tuple[str, str, Carpet]]
+    """Model key, model label, picture."""
+
+
+def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
+    """Errors of every sensor over days and hours.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.report.schema.Study`.
+    series : Series
+        Curves.
+    """
+    found = []
+    model = main_model(study)
+    for sensor in study.get("sensor_info", {}):
+        observed = series.columns.get(f"observed/{sensor}")
+        main = series.columns.get(f"{model}/{sensor}")
+        if observed is None or main is None or len(series) * series.step < 1.5 * 86400.0:
+            continue
+        pictures = []
+        # Each on its own scale: on that of a good model a bad one is a single colour.
+        for key in dict.fromkeys((model, "nominal")):
+            column = series.columns.get(f"{key}/{sensor}")
+            if key is not None and column is not None:
+                label = str(study.get("models", {}).get(key, {}).get("label", key))
+                pictures.append((key, label, _own_carpet(series, column.values - observed.values)))
+        unit = text.difference_unit(unit_of(study, sensor))
+        found.append(SensorCarpet(sensor, label_of(study, sensor), unit, pictures))
+    return found
+
+
+def _own_carpet(series: Series, error: Array) -> Carpet:
+    finite = np.abs(error[np.isfinite(error)])
+    return carpet(series, error, round_limit(float(np.quantile(finite, 0.98))) if finite.size else 1.0)

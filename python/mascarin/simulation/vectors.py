@@ -1,0 +1,249 @@
+"""Runs of a compiled building by parameter vectors, for the package's own use: checked arrays in and out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mascarin.errors import InputError
+from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
+from mascarin.simulation.limits import Limits, require_set_points_apart
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.building import Building
+    from mascarin.progress import Report
+
+    Array = npt.NDArray[np.float64]
+
+
+class VectorRuns:
+    """Runs by parameter vectors; `Simulation` adds compilation, and runs by values with their paths.
+
+    Attributes
+    ----------
+    building : Building
+        The building.
+    compiled : CompiledRun
+        What the engine gets.
+    channels : tuple of str
+        Channels of the forcing after those of the climate.
+    start, end : pandas.Timestamp
+        The period, in local time of the climate.
+    step_seconds : float
+        Time step. [s]
+    """
+
+    building: Building
+    compiled: CompiledRun
+    channels: tuple[str, ...]
+    start: pd.Timestamp
+    end: pd.Timestamp
+    step_seconds: float
+
+    @cached_property
+    def index(self) -> pd.DatetimeIndex:
+        """Times of the records in local time, shape (rows,): the start, then the end of every step."""
+        import pandas as pd
+
+        step = pd.Timedelta(seconds=self.step_seconds)
+        return pd.date_range(self.start, periods=round((self.end - self.start) / step) + 1, freq=step)
+
+    @property
+    def paths(self) -> list[str]:
+        """Path of each parameter, in the order of a parameter vector."""
+        return list(self.compiled.paths)
+
+    @property
+    def values(self) -> Array:
+        """Parameter vector of the building, shape (P,). [unit of each]"""
+        return self.compiled.values  # noqa: PD011 (no pandas object)
+
+    def vector(self, parameters: Mapping[str, float]) -> Array:
+        """The parameter vector with some values replaced.
+
+        Parameters
+        ----------
+        parameters : mapping of str to float
+            Values by path. [unit of each]
+
+        Returns
+        -------
+        ndarray, shape (P,)
+            Values in the order of `paths`. [unit of each]
+
+        Raises
+        ------
+        InputError
+            Unknown path; the text names the nearest ones.
+        """
+        vector = self.values.copy()
+        for path, value in parameters.items():
+            vector[self.position(path)] = value
+        return vector
+
+    def position(self, path: str) -> int:
+        """Position of a path in a parameter vector.
+
+        Raises
+        ------
+        InputError
+            Unknown path, or a structural one, which needs another compiled building.
+        """
+        parameter = self.building.parameter(path)
+        if parameter.path not in self._positions:
+            raise InputError(
+                f"{path}: is structural ({parameter.reason}); give it in the building, for example with "
+                "replace()"
+            )
+        return self._positions[parameter.path]
+
+    def ensemble(
+        self,
+        vectors: Array,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        progress: Report | None = None,
+    ) -> tuple[Array, Array, list[Failure]]:
+        """Run many parameter vectors, several at a time in lanes and threads.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (M, P)
+            One parameter vector a row. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        progress : callable, optional
+            Called with the number of members done and their total.
+
+        Returns
+        -------
+        records : ndarray, shape (M, rows, outputs)
+            NaN for a member that failed.
+        residuals : ndarray, shape (M,)
+            Relative energy-balance residual of each member. [-]
+        failures : list of Failure
+            Members that failed, and why.
+
+        Raises
+        ------
+        InputError
+            The vectors do not have a column for each parameter, or hold an impossible value.
+        """
+        members: Array = np.ascontiguousarray(vectors, dtype=np.float64)
+        self._require_possible(members)
+        return self.compiled.ensemble(
+            members, record_from=record_from, record_every=record_every, progress=progress
+        )
+
+    def jacobian_vector(
+        self,
+        vary: Sequence[str],
+        vector: Array | None = None,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        progress: Report | None = None,
+    ) -> tuple[Array, Array]:
+        """Run once with the derivatives of every output by some parameters, in forward mode.
+
+        What comes back is the derivative of the discrete solution, the repeated first period included, not a
+        difference quotient. At a switch (the end of a melting range, a wind that changes sides) it is the
+        derivative of the branch that the run took.
+
+        Parameters
+        ----------
+        vary : sequence of str
+            Paths of the parameters to derive by.
+        vector : ndarray, shape (P,), optional
+            Parameter vector; default that of the building. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        progress : callable, optional
+            Called with the number of parameters done and their total.
+
+        Returns
+        -------
+        records : ndarray, shape (rows, outputs)
+            As of `run_vector`.
+        slopes : ndarray, shape (vary, rows, outputs)
+            Derivative of each record by each parameter. [unit of the output / unit of the parameter]
+
+        Raises
+        ------
+        InputError
+            A path that is unknown or structural, or no path.
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        if not vary:
+            raise InputError(
+                "derivatives: no parameters; give at least one path, as `mascarin parameters` lists"
+            )
+        return self.compiled.jacobian(
+            [self.position(path) for path in vary],
+            self._checked(vector),
+            record_from=record_from,
+            record_every=record_every,
+            progress=progress,
+        )
+
+    def trajectory(
+        self,
+        vector: Array | None = None,
+        *,
+        record_from: int = 0,
+        record_every: int = 1,
+        memory: int = MEMORY,
+    ) -> Trajectory:
+        """Run once and keep what the derivatives in reverse mode need.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,), optional
+            Parameter vector; default that of the building. [unit of each]
+        record_from, record_every : int
+            First recorded row and spacing of the recorded rows, in steps.
+        memory : int
+            About how much may be kept: beyond it parts of the run are calculated again. [B]
+
+        Returns
+        -------
+        Trajectory
+            Its records, and the derivatives of quantities made of them by all parameters.
+
+        Raises
+        ------
+        SolverError
+            A step or the repeated first period did not converge.
+        """
+        return self.compiled.trajectory(
+            self._checked(vector), record_from=record_from, record_every=record_every, memory=memory
+        )
+
+    @cached_property
+    def _positions(self) -> dict[str, int]:
+        return {path: index for index, path in enumerate(self.compiled.paths)}
+
+    def _checked(self, vector: Array | None) -> Array:
+        found: Array = np.array(self.values if vector is None else vector, dtype=np.float64)
+        self._require_possible(found[None, :])
+        return found
+
+    def _require_possible(self, vectors: Array) -> None:
+        """Refuse parameter vectors of the wrong length, or with a value that its parameter cannot have."""
+        self._limits.require(vectors)
+        require_set_points_apart(
+            self.building, vectors, self.compiled.forcing, positions=self._positions,
+            channels=self.channels, times=self.index,
+        )  # fmt: skip
+
+    @cached_property
+    def _limits(self) -> Limits:
+        return Limits([self.building.parameter(path) for path in self.compiled.paths])

@@ -1,0 +1,168 @@
+"""The models of a study: the building as described, calibrated, and its variants."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from mascarin.calibration import profiles
+from mascarin.progress import Progress, reporting
+from mascarin.study.calibration_step import identify
+from mascarin.study.findings import ModelRun
+from mascarin.study.sensitivity_step import analyze, factors
+from mascarin.validation.criteria import judge
+
+if TYPE_CHECKING:
+    from mascarin.calibration import Fit, Profile
+    from mascarin.progress import ProgressOption, Report
+    from mascarin.sensitivity import Sensitivity
+    from mascarin.simulation.simulation import Simulation
+    from mascarin.study.description import SensitivityPlan, Variant
+    from mascarin.study.setup import Setup
+    from mascarin.study.storage import Workspace
+    from mascarin.validation.criteria import Verdict
+
+
+class ModelRuns:
+    """Runs and calibrations of the models of a study; each is done once.
+
+    Parameters
+    ----------
+    setup : Setup
+        The study.
+    workspace : Workspace
+        Folder of the intermediate results.
+    progress : bool, callable or None
+        Where progress is shown.
+    """
+
+    def __init__(self, setup: Setup, workspace: Workspace, progress: ProgressOption = None) -> None:
+        self._setup = setup
+        self._workspace = workspace
+        self._progress = progress
+        self._calibrated: dict[str | None, tuple[ModelRun, Fit]] = {}
+
+    def sensitivity(self, plan: SensitivityPlan) -> Sensitivity:
+        """The sensitivity analysis in the identification period.
+
+        Parameters
+        ----------
+        plan : SensitivityPlan
+            What is varied, and how often.
+        """
+        setup = self._setup
+        with reporting(self._progress, "sensitivity analysis") as report:
+            return analyze(
+                setup.short(),
+                plan,
+                factors(setup.building, plan),
+                setup.lead_seconds,
+                setup.observation.names,
+                self._workspace,
+                report,
+            )
+
+    def fitted(self) -> tuple[ModelRun, Fit]:
+        """The calibrated model and its calibration.
+
+        If the study names candidates, the one with the lowest cost in the identification period is taken.
+        """
+        runs = {name: self.candidate(name) for name in self._setup.candidates}
+        chosen = min(runs, key=lambda name: runs[name][1].cost)
+        run, fit = runs[chosen]
+        note = "after the calibration; its parameters are the same on all other days"
+        if len(runs) > 1:
+            what = "the building as described" if chosen is None else f"'{chosen}'"
+            note += f"; of {len(runs)} candidates {what} has the lowest cost in the identification period"
+        return replace(run, label="fitted", note=note), fit
+
+    def profiled(self, fit: Fit) -> list[Profile]:
+        """Profile likelihoods, if the study asks for them."""
+        if not self._setup.sought.profiles:
+            return []
+        with reporting(self._progress, "profile likelihoods") as report:
+            found = profiles(fit)
+            report(len(found), len(found))
+        return found
+
+    def candidate(self, name: str | None) -> tuple[ModelRun, Fit]:
+        """A calibrated variant, or the calibrated building as described for None."""
+        if name not in self._calibrated:
+            note = "the building as described" if name is None else self._note(name)
+            label = "as described" if name is None else name
+            self._calibrated[name] = self._identified(label, name, note)
+        return self._calibrated[name]
+
+    def variants(self) -> dict[str, ModelRun]:
+        """Other choices of model; also the building as described, if a candidate has a lower cost."""
+        found, candidates = {}, self._setup.candidates
+        if len(candidates) > 1:
+            base, fit = self.candidate(None)
+            if any(self.candidate(name)[1].cost < fit.cost for name in candidates[1:]):
+                found[base.label] = base
+        for name, variant in self._setup.plan.variants.items():
+            found[name] = self._variant(name, variant)
+        return found
+
+    def _note(self, name: str) -> str:
+        variant = self._setup.plan.variants[name]
+        return variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
+
+    def _identified(self, label: str, variant: str | None, note: str) -> tuple[ModelRun, Fit]:
+        setup = self._setup
+        with reporting(self._progress, f"calibration ({label})") as report:
+            fit = identify(
+                setup.short(variant),
+                setup.problem(variant),
+                setup.sought,
+                record=self._workspace.path(f"evaluations-{_safe(label)}.jsonl"),
+                progress=_searching(report),
+            )
+        whole = setup.whole(variant)
+        return compared(setup, label, whole, whole.vector(fit.values), fit, note), fit
+
+    def _variant(self, name: str, variant: Variant) -> ModelRun:
+        if variant.identify:
+            return self.candidate(name)[0]
+        simulation = self._setup.whole(name)
+        return compared(self._setup, name, simulation, simulation.values, None, self._note(name))
+
+
+def nominal(setup: Setup) -> ModelRun:
+    """The model as described, over the whole record."""
+    return compared(setup, "nominal", setup.simulation, setup.simulation.values, None, "as described")
+
+
+def compared(
+    setup: Setup, label: str, simulation: Simulation, values: Any, fit: Fit | None, note: str
+) -> ModelRun:
+    """Run a model over the whole record and compare it with the measurements."""
+    results = simulation.run_vector(values)
+    return ModelRun(label, simulation, results, setup.scores(results), fit, note)
+
+
+def judged(setup: Setup, *runs: ModelRun) -> dict[str, list[Verdict]]:
+    """The criteria, model by model."""
+    where = f"{setup.places.file}: criteria"
+    return {run.label: judge(setup.criteria, run.scores, where=where) for run in runs}
+
+
+def _searching(report: Report) -> Callable[[int, float], object]:
+    """Progress of a search, whose number of evaluations is not known before."""
+    shown: object = report
+    progress = shown if isinstance(shown, Progress) else None
+
+    def searching(done: int, lowest: float) -> None:
+        if progress is None:
+            report(done, 0)
+        else:
+            progress.update(done, 0, f"{done} evaluations, lowest cost {lowest:.6g}")
+
+    return searching
+
+
+def _safe(name: str) -> str:
+    """A short file name that differs for different labels."""
+    return hashlib.sha256(name.encode()).hexdigest()[:12]

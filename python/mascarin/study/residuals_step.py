@@ -1,0 +1,112 @@
+"""Analysis of the residuals of the calibrated model: their structure, and the sources of remaining error."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.progress import reporting
+from mascarin.study.calibration_step import independent_weight
+from mascarin.study.parameter_effects import Effects
+from mascarin.validation.error_sources import Shortfall, shortfall
+from mascarin.validation.residuals import Examination, examine
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.calibration import Fit
+    from mascarin.progress import ProgressOption
+    from mascarin.study.findings import ModelRun
+    from mascarin.study.setup import Setup
+
+#: Weather channels that residuals are correlated with, by words.
+DRIVERS: Final = {
+    "outdoor air": "air_temperature",
+    "sun": "global_horizontal",
+    "wind": "wind_speed",
+}
+#: Sensors with fewer values on the blind days are not analyzed.
+FEWEST_EXAMINED: Final = 24
+#: Largest number of values for which effects of parameters are kept.
+MOST_EFFECTS: Final = 20_000_000
+#: Half-width of the 95 % interval of a normal distribution, in standard deviations.
+NORMAL_95: Final = 1.96
+
+
+def drivers(setup: Setup) -> dict[str, npt.NDArray[np.float64]]:
+    """Weather that acts on the building, at the instants of the comparison, by words for the report."""
+    run = setup.simulation
+    return {
+        word: setup.observation.sampled(run.index, run.weather(channel))
+        for word, channel in DRIVERS.items()
+        if np.ptp(run.weather(channel)) > 0.0
+    }
+
+
+def too_few(setup: Setup) -> list[str]:
+    """Sensors with too few values on the blind days, in words."""
+    return [
+        f"{name}: {count} values on the blind days are too few for an analysis of the residuals; at least "
+        f"{FEWEST_EXAMINED} are needed."
+        for name, count in _blind_values(setup).items()
+        if count < FEWEST_EXAMINED
+    ]
+
+
+def examined(setup: Setup, run: ModelRun) -> dict[str, Examination]:
+    """Structure of the residuals of each sensor on the blind days."""
+    observation, local = setup.observation, setup.observation.times.tz_localize(None)
+    simulated = observation.simulated(run.results.index, run.results.records)
+    hour = np.asarray(local.hour + local.minute / 60.0, dtype=np.float64)
+    channels = drivers(setup)
+    return {
+        name: examine(
+            observation.measured[:, s],
+            simulated[:, s],
+            step=observation.interval,
+            hour=hour,
+            drivers=channels,
+            use=setup.during["blind"],
+            sensor=name,
+            unit=run.results.outputs[s].unit,
+        )
+        for name, s in _analyzed(setup).items()
+    }
+
+
+def error_sources(setup: Setup, run: ModelRun, fit: Fit, progress: ProgressOption = None) -> Shortfall | None:
+    """Parameters whose change would explain the remaining error on the blind days."""
+    observation, blind, analyzed = setup.observation, setup.during["blind"].copy(), _analyzed(setup)
+    if not analyzed:
+        return None
+    error = observation.simulated(run.results.index, run.results.records) - observation.measured
+    effects = Effects(run.simulation, run.results, run.simulation.vector(fit.values))
+    # In a long record every second or third instant contains the same information.
+    values = int(blind.sum()) * len(observation.names) * effects.count
+    blind &= np.arange(blind.size) % max(1, math.ceil(values / MOST_EFFECTS)) == 0
+    with reporting(progress, "sources of remaining error") as report:
+        found = effects.found(observation, blind, report)
+    local = observation.times.tz_localize(None)
+    columns = list(analyzed.values())
+    return shortfall(
+        {name: error[blind, s] for name, s in analyzed.items()},
+        {path: effect[:, columns] for path, effect in found.items()},
+        uncertainty=[setup.plan.sensors[name].uncertainty / NORMAL_95 for name in analyzed],
+        room=effects.room,
+        days=np.asarray((local[blind] - local[0]).days),
+        weight=independent_weight(setup.sought, observation.interval),
+    )
+
+
+def _blind_values(setup: Setup) -> dict[str, int]:
+    """Number of values of each sensor on the blind days."""
+    count = np.isfinite(setup.observation.measured[setup.during["blind"]]).sum(axis=0)
+    return dict(zip(setup.observation.names, count.tolist(), strict=True))
+
+
+def _analyzed(setup: Setup) -> dict[str, int]:
+    """Sensors with enough values on the blind days, and their columns."""
+    enough = (count >= FEWEST_EXAMINED for count in _blind_values(setup).values())
+    return {name: s for s, (name, use) in enumerate(zip(_blind_values(setup), enough, strict=True)) if use}

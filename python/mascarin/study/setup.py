@@ -1,0 +1,356 @@
+"""The parts of a study that its steps share: periods, models and measured series."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mascarin import __version__
+from mascarin.errors import InputError
+from mascarin.simulation.initial import Initial, MeasuredStart
+from mascarin.simulation.simulation import Simulation
+from mascarin.study.calibration_step import fit_parameters, problem
+from mascarin.study.description import IdentificationPlan, StudyFile
+from mascarin.study.phase_change import melting_layers
+from mascarin.validation.metrics import Metrics, compare
+from mascarin.validation.observation import PERIODS, Observation, observe
+from mascarin.weather.times import seconds_of
+from mascarin.weather.timezones import moment
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas as pd
+
+    from mascarin.building import Building
+    from mascarin.calibration import CalibrationProblem
+    from mascarin.simulation.options import TimeLike
+    from mascarin.simulation.results import Results
+    from mascarin.study.description import StudyPlan
+    from mascarin.study.locations import Places
+    from mascarin.study.opening import Inputs
+    from mascarin.validation.criteria import Criterion
+    from mascarin.weather import Climate, Measurements
+    from mascarin.weather.grid import Grid
+    from mascarin.weather.quality import Stretch
+
+    Flags = npt.NDArray[np.bool_]
+
+Scores = dict[str, dict[str, Metrics]]
+"""Metrics by sensor and period."""
+
+
+class Setup:
+    """Inputs of a study with its periods, its models and its measured series.
+
+    Models are compiled when they are first used, and only once.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        What was read.
+    """
+
+    def __init__(self, inputs: Inputs) -> None:
+        self.sources: Inputs = inputs
+        self.plan: StudyPlan = inputs.plan
+        self.building: Building = inputs.building
+        self.climate: Climate = inputs.climate
+        self.measurements: Measurements = inputs.measurements
+        self.quality: list[Stretch] = inputs.quality
+        self.places: Places = inputs.places
+        self.criteria: tuple[Criterion, ...] = inputs.plan.criteria
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The inputs; models and series are made again where they are needed."""
+        return {"sources": self.sources}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        Setup.__init__(self, state["sources"])
+
+    @property
+    def path(self) -> Path:
+        """The study file.
+
+        Raises
+        ------
+        InputError
+            The study was made of objects.
+        """
+        if self.sources.path is None:
+            raise InputError(
+                f"study '{self.plan.name}': made of objects, expected one of a file; write it with "
+                "to_yaml('study.yaml') and open it with Study.from_yaml('study.yaml')"
+            )
+        return self.sources.path
+
+    @property
+    def file(self) -> StudyFile:
+        """What the study file says.
+
+        Raises
+        ------
+        InputError
+            The study was made of objects.
+        """
+        _ = self.path
+        assert isinstance(self.plan, StudyFile)  # noqa: S101 (what comes from a file is one)
+        return self.plan
+
+    # --- periods ----------------------------------------------------------------------------------------
+
+    def _moment(self, text: str, what: str) -> pd.Timestamp:
+        with self.places.blame("periods", what):
+            return moment(text, self.climate.grid.zone, what)
+
+    def span(self, name: str) -> tuple[pd.Timestamp, pd.Timestamp] | None:
+        """Start and end of a period as the study gives it."""
+        span = getattr(self.plan.periods, name)
+        return None if span is None else self._moments(span, name)
+
+    def _moments(self, span: tuple[str, str], name: str) -> tuple[pd.Timestamp, pd.Timestamp]:
+        return self._moment(span[0], name), self._moment(span[1], name)
+
+    @cached_property
+    def identification(self) -> tuple[pd.Timestamp, pd.Timestamp]:
+        """Start and end of the identification period."""
+        return self._moments(self.plan.periods.identification, "identification")
+
+    @cached_property
+    def start(self) -> pd.Timestamp:
+        """Start of the run: that of the warm-up, else of the record."""
+        span = self.span("warm_up")
+        return span[0] if span is not None else self.record[0]
+
+    @cached_property
+    def compared_from(self) -> pd.Timestamp:
+        """First instant that is compared."""
+        span = self.span("warm_up")
+        return span[1] if span is not None else self.start
+
+    @cached_property
+    def record(self) -> tuple[pd.Timestamp, pd.Timestamp]:
+        """Start and end of the time that weather and measurements both cover."""
+        import pandas as pd
+
+        first, last = max(grid.start for grid in self._grids), min(grid.end for grid in self._grids)
+        zone = self.climate.grid.zone
+        return (
+            pd.Timestamp(first, unit="s", tz="UTC").tz_convert(zone),
+            pd.Timestamp(last, unit="s", tz="UTC").tz_convert(zone),
+        )
+
+    @property
+    def _grids(self) -> list[Grid]:
+        return [self.measurements.grid] + ([] if self.climate.grid.periodic else [self.climate.grid])
+
+    @cached_property
+    def moment_of_end(self) -> pd.Timestamp | None:
+        """End of the record to use, as the study gives it."""
+        given = self.plan.periods.end
+        return None if given is None else self._moment(given, "end")
+
+    @cached_property
+    def end(self) -> pd.Timestamp:
+        """End of the run: that of the study, else of the record, a whole number of steps after the start."""
+        import pandas as pd
+
+        # Instants at the very end of a table have no value to interpolate to.
+        interval = max(grid.interval for grid in self._grids)
+        last = self.record[1] - pd.Timedelta(seconds=interval)
+        if self.moment_of_end is not None:
+            last = min(last, self.moment_of_end)
+        return self.start + self._whole_steps((last - self.start).total_seconds())
+
+    def _whole_steps(self, seconds: float) -> pd.Timedelta:
+        """The longest whole number of steps in so much time."""
+        import pandas as pd
+
+        step = seconds_of(self.plan.step)
+        return pd.Timedelta(seconds=step * math.floor(seconds / step + 1e-9))
+
+    @cached_property
+    def during(self) -> dict[str, Flags]:
+        """Instants of each period, shape (n,).
+
+        `blind` contains every instant that is neither in the identification period nor in the corroboration
+        period; if there is none, it is the corroboration period itself.
+        """
+        seen = self.observation.during(*self.identification)
+        held = self.span("corroboration")
+        named = ~seen & (
+            self.observation.during(*held)
+            if held is not None
+            else np.asarray(self.observation.times >= self.identification[1])
+        )
+        rest = ~seen & ~named
+        return dict(zip(PERIODS, (seen, named, rest if rest.any() else named), strict=True))
+
+    def _simulate(
+        self, building: Building, start: TimeLike, end: TimeLike, further: Sequence[str] = ()
+    ) -> Simulation:
+        """A model that records the outputs of the sensors, then further outputs."""
+        return Simulation(
+            building,
+            self.climate,
+            step=self.plan.step,
+            start=start,
+            end=end,
+            outputs=[*(sensor.output for sensor in self.plan.sensors.values()), *further],
+            scheme=self.plan.scheme,
+            initial=self.initial,
+            measurements=self.measurements,
+            ranges=self._ranges(building),
+        )
+
+    @cached_property
+    def initial(self) -> Initial:
+        """Initial state of the runs; sensors with `use: false` are not used for it."""
+        if self.plan.initial != "measured":
+            return self.plan.initial
+        columns: dict[str, list[str]] = {}
+        for sensor in self.plan.sensors.values():
+            if sensor.use:
+                columns.setdefault(self.building.output(sensor.output).name, []).extend(sensor.columns)
+        return MeasuredStart(self.measurements, columns)
+
+    def building_of(self, variant: str | None) -> Building:
+        """The building of a variant; the study's own for None."""
+        if variant is None:
+            return self.building
+        with self.places.blame("variants", variant, "changes"):
+            return self.building.replace(self.plan.variants[variant].changes)
+
+    def whole(self, variant: str | None = None) -> Simulation:
+        """A model over the whole record, with the state of its phase-change layers."""
+        building = self.building_of(variant)
+        seen = {building.output(sensor.output).name for sensor in self.plan.sensors.values()}
+        states = [name for layer in melting_layers(building) for name in layer.outputs if name not in seen]
+        return self._once(("whole", variant), lambda: self._simulate(building, self.start, self.end, states))
+
+    def short(self, variant: str | None = None) -> Simulation:
+        """A model over the warm-up and the identification period."""
+        import pandas as pd
+
+        building, (first, last) = self.building_of(variant), self.identification
+        start = first - pd.Timedelta(seconds=self.lead_seconds)
+        end = start + self._whole_steps((min(last, self.end) - start).total_seconds())
+        return self._once(("short", variant), lambda: self._simulate(building, start, end))
+
+    def _once(self, key: tuple[str, str | None], make: Callable[[], Simulation]) -> Simulation:
+        if key not in self._simulations:
+            self._simulations[key] = make()
+        return self._simulations[key]
+
+    @cached_property
+    def _simulations(self) -> dict[tuple[str, str | None], Simulation]:
+        return {}
+
+    def _ranges(self, building: Building) -> dict[str, tuple[float, float]]:
+        """Ranges of the parameters; the mesh is chosen once, for the whole ranges."""
+        ranges = {p.path: (p.low, p.high) for p in building.parameters() if not p.structural}
+        if self.plan.sensitivity is not None:
+            for path, span in self.plan.sensitivity.ranges.items():
+                known = self.building.parameter(path).path
+                if known in ranges:
+                    low, high = ranges[known]
+                    ranges[known] = (min(low, span[0]), max(high, span[1]))
+        sought = self.plan.identification
+        for free in [] if sought is None else fit_parameters(self.building, sought):
+            if free.path in ranges:
+                ranges[free.path] = (free.lower, free.upper)
+        return ranges
+
+    @cached_property
+    def simulation(self) -> Simulation:
+        """The nominal model over the whole record."""
+        return self.whole()
+
+    def problem(self, variant: str | None = None) -> CalibrationProblem:
+        """The calibration problem of the building as described or of a variant."""
+        return problem(
+            self.short(variant),
+            self.observation,
+            self.during["identification"],
+            self.plan.sensors,
+            self.plan_of(variant),
+        )
+
+    @property
+    def sought(self) -> IdentificationPlan:
+        """The identification of the study.
+
+        Raises
+        ------
+        InputError
+            The study has none.
+        """
+        if self.plan.identification is None:
+            raise InputError(
+                f"{self.places.at('identification')}: found nothing, expected parameters to identify: "
+                "add identification: {parameters: {...}}, or use 'mascarin validate' for the comparison "
+                "alone, or 'mascarin sensitivity' for the sensitivity analysis"
+            )
+        return self.plan.identification
+
+    @property
+    def candidates(self) -> list[str | None]:
+        """What may become the fitted model; None is the building as described."""
+        return [None, *(name for name, variant in self.plan.variants.items() if variant.candidate)]
+
+    def plan_of(self, variant: str | None) -> IdentificationPlan:
+        """What is identified in a variant: the study's parameters that it has, and its own."""
+        plan = self.sought
+        if variant is None:
+            return plan
+        known = {parameter.path for parameter in self.building_of(variant).parameters()}
+        own = self.plan.variants[variant]
+        shared = {
+            path: free
+            for path, free in plan.parameters.items()
+            if not own.alone and self.building.parameter(path).path in known
+        }
+        return plan.model_copy(update={"parameters": shared | own.parameters})
+
+    @cached_property
+    def observation(self) -> Observation:
+        """Measured series on the instants of the comparison."""
+        return observe(self.simulation, self.measurements, self.plan.sensors, self.compared_from)
+
+    @cached_property
+    def lead_seconds(self) -> float:
+        """Length of the warm-up before the identification period, limited by the record. [s]"""
+        available = (self.identification[0] - self.start).total_seconds()
+        plan = self.plan.identification
+        wanted = IdentificationPlan.model_fields["lead"].default if plan is None else plan.lead
+        lead = min(seconds_of(wanted, "lead"), available)
+        return self._whole_steps(lead).total_seconds()
+
+    def scores(self, results: Results) -> Scores:
+        """Metrics of a run by sensor and period."""
+        simulated = self.observation.simulated(results.index, results.records)
+        return {
+            name: {
+                period: compare(
+                    self.observation.measured[:, s], simulated[:, s], use=use, unit=results.outputs[s].unit
+                )
+                for period, use in self.during.items()
+            }
+            for s, name in enumerate(self.observation.names)
+        }
+
+    def inputs(self) -> dict[str, Any]:
+        """Version and hashes that identify this study; work on others is not continued."""
+        found = self.sources.hashes
+        return {
+            "mascarin_version": __version__,
+            "study": found["study"],
+            "building": found["building"],
+            "model": self.simulation.identity,
+            "measurements": found["measurements"],
+            "climate": found["climate"],
+        }

@@ -1,0 +1,278 @@
+"""A study: a building compared with measurements, calibrated, and validated on other days."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from mascarin import report
+from mascarin._io import display
+from mascarin.errors import InputError
+from mascarin.report.folder import read_folder
+from mascarin.study import opening
+from mascarin.study.checking import check
+from mascarin.study.model_runs import ModelRuns, judged, nominal
+from mascarin.study.outputs import write_all
+from mascarin.study.prediction_intervals import interval_words, prediction_intervals, slopes
+from mascarin.study.residuals_step import error_sources, examined, too_few
+from mascarin.study.results import StudyResults
+from mascarin.study.setup import Setup
+from mascarin.study.storage import Workspace
+from mascarin.study.writing import study_text, write_study
+from mascarin.validation.criteria import judge
+from mascarin.validation.residuals import diagnose
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+    from mascarin.progress import ProgressOption
+    from mascarin.study.description import Periods, SensitivityPlan, Sensor, Variant
+    from mascarin.validation.criteria import Criterion
+    from mascarin.weather import Climate, Measurements
+
+#: Arguments that only a study of objects needs.
+_OBJECTS = ("building", "climate", "measurements", "sensors", "periods")
+
+
+class Study(Setup):
+    """A study of a building: comparison, sensitivity analysis, calibration and validation.
+
+    All inputs are checked when the study is made, before anything is run.
+
+    Parameters
+    ----------
+    path : str or Path, optional
+        A study file, instead of all other arguments; `from_yaml` is the preferred form.
+    building : Building
+        The building as described.
+    climate : Climate
+        The weather.
+    measurements : Measurements
+        The measured columns of the sensors and of measured boundaries.
+    sensors : mapping of str to Sensor or mapping
+        Name -> ``column`` of the measurements, ``output`` of the model, and uncertainty.
+    periods : Periods or mapping
+        ``identification`` and perhaps ``warm_up``, ``corroboration``, ``end``: pairs of local times.
+    parameters : sequence of str or mapping, optional
+        Paths of the parameters to calibrate, or path -> (low, high), or path -> mapping with ``low``,
+        ``high``, ``prior``, ``start``, ``scale``. Without any the study cannot be calibrated.
+    criteria, aims : sequence of Criterion or mapping
+        Required and desired limits on metrics.
+    sensitivity : SensitivityPlan, mapping or True, optional
+        Options of the sensitivity analysis; True takes the defaults.
+    identification : mapping, optional
+        Other options of the calibration, such as ``method``, ``starts`` and ``lead``.
+    variants : mapping, optional
+        Other choices of model: name -> ``changes`` and more.
+    **options
+        Further keys of a study file: ``name``, ``about``, ``observed``, ``step``, ``scheme``, ``initial``,
+        ``quality``, ``reference``.
+
+    Raises
+    ------
+    InputError
+        Something cannot be used.
+
+    Examples
+    --------
+    >>> from mascarin import Study
+    >>> from mascarin.examples import synthetic_wall
+    >>> wall = synthetic_wall()
+    >>> study = Study(
+    ...     building=wall.building,
+    ...     climate=wall.climate,
+    ...     measurements=wall.measurements,
+    ...     sensors={"joint": {"column": "joint", "output": "wall.interface_1_temperature"}},
+    ...     periods={"identification": ("2023-03-03", "2023-03-06")},
+    ...     parameters={"materials.insulation.conductivity": (0.02, 0.06)},
+    ...     step="1h",
+    ... )
+    >>> study
+    Study 'study'
+      building        Synthetic wall
+      sensors         joint
+      parameters      materials.insulation.conductivity
+      identification  2023-03-03 00:00 to 2023-03-06 00:00 (UTC+1)
+      record          2023-03-01 00:00 to 2023-03-09 23:00
+      step            1h
+    """
+
+    def __init__(
+        self,
+        path: str | Path | None = None,
+        *,
+        building: Building | None = None,
+        climate: Climate | None = None,
+        measurements: Measurements | None = None,
+        sensors: Mapping[str, Sensor | Mapping[str, Any]] | None = None,
+        periods: Periods | Mapping[str, Any] | None = None,
+        parameters: Sequence[str] | Mapping[str, Any] = (),
+        criteria: Sequence[Criterion | Mapping[str, Any]] = (),
+        aims: Sequence[Criterion | Mapping[str, Any]] = (),
+        sensitivity: SensitivityPlan | Mapping[str, Any] | bool | None = None,
+        identification: Mapping[str, Any] | None = None,
+        variants: Mapping[str, Variant | Mapping[str, Any]] | None = None,
+        **options: Any,
+    ) -> None:
+        given = dict(zip(_OBJECTS, (building, climate, measurements, sensors, periods), strict=True))
+        if path is not None:
+            unused = [*(key for key, value in given.items() if value is not None), *options]
+            if unused:
+                raise InputError(
+                    f"study: found a file and {', '.join(unused)}, expected one of the two; leave out the "
+                    "file, or write these keys into it"
+                )
+            super().__init__(opening.from_file(Path(path)))
+        else:
+            plan = {"sensors": sensors, "periods": periods, "criteria": criteria, "aims": aims, **options}
+            if parameters or identification:
+                plan["identification"] = opening.identified(parameters, identification or {})
+            if sensitivity:
+                plan["sensitivity"] = {} if sensitivity is True else sensitivity
+            if variants:
+                plan["variants"] = variants
+            if building is None or climate is None or measurements is None:
+                missing = [key for key, value in given.items() if value is None]
+                raise InputError(
+                    f"study: found no {', '.join(missing)}, expected {', '.join(_OBJECTS)}, or the path of a "
+                    "study file; add what is missing"
+                )
+            super().__init__(opening.from_objects(building, climate, measurements, plan))
+        check(self)
+
+    @classmethod
+    def from_yaml(cls, path: str | Path) -> Self:
+        """Read a study file with the files that it names.
+
+        Parameters
+        ----------
+        path : str or Path
+            The study file.
+
+        Returns
+        -------
+        Study
+            Checked.
+
+        Raises
+        ------
+        InputError
+            Something cannot be used; file, line and entry are named.
+
+        Examples
+        --------
+        >>> from mascarin import Study
+        >>> from mascarin.examples import STUDIES
+        >>> Study.from_yaml(STUDIES["lgi"]).building.name
+        'LGI cell'
+        """
+        return cls(path)
+
+    def to_yaml(self, path: str | Path | None = None) -> str:
+        """Write the study as a file, which `from_yaml` reads.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            File to write. For a study of objects the building, the weather and the measurements are written
+            beside it as ``building.yaml``, ``climate.csv`` and ``measurements.csv``. Default: nothing is
+            written.
+
+        Returns
+        -------
+        str
+            The text of the study file.
+
+        Raises
+        ------
+        InputError
+            The weather is a year of a weather file, which a table cannot represent.
+        """
+        return study_text(self.sources) if path is None else write_study(self.sources, Path(path))
+
+    def run(self, out: str | Path | None = None, *, progress: ProgressOption = None) -> StudyResults:
+        """Carry out all steps of the study.
+
+        Parameters
+        ----------
+        out : str or Path, optional
+            Folder for study.json, the tables, figures and the report, and for intermediate results: an
+            interrupted study continues from them. Default: nothing is kept on disk.
+        progress : bool, callable or None
+            True shows progress, None only in notebooks; a callable gets the number of units done and their
+            total.
+
+        Returns
+        -------
+        StudyResults
+            The results.
+
+        Raises
+        ------
+        InputError
+            The study has no parameters to calibrate, or the folder cannot be used.
+        SolverError
+            A run failed.
+        """
+        _ = self.sought
+        if out is None:
+            with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), self.inputs()) as workspace:
+                return self._carried_out(workspace, progress)
+        with Workspace(Path(out), self.inputs()) as workspace:
+            results = self._carried_out(workspace, progress)
+            write_all(results, workspace)
+            report.write(workspace.out / "report.html", *read_folder(workspace.out))
+            workspace.drop("sensitivity")
+        return results
+
+    def _carried_out(self, workspace: Workspace, progress: ProgressOption) -> StudyResults:
+        """All steps, one after the other."""
+        began = time.monotonic()
+        runs = ModelRuns(self, workspace, progress)
+        before = nominal(self)
+        sensitivity = None if self.plan.sensitivity is None else runs.sensitivity(self.plan.sensitivity)
+        fitted, fit = runs.fitted()
+        variants = runs.variants()
+        residuals = examined(self, fitted)
+        sources = error_sources(self, fitted, fit, progress)
+        intervals = prediction_intervals(self, fitted, fit, slopes(self, fitted, fit))
+        return StudyResults(
+            setup=self,
+            nominal=before,
+            fitted=fitted,
+            variants=variants,
+            sensitivity=sensitivity,
+            calibration=fit,
+            criteria=judged(self, before, fitted),
+            aims=judge(self.plan.aims, fitted.scores, where=f"{self.places.file}: aims"),
+            residuals=residuals,
+            error_sources=sources,
+            prediction_intervals=intervals,
+            profiles=runs.profiled(fit),
+            notes=[*too_few(self), *interval_words(self, intervals), *diagnose(residuals.values())],
+            quality=self.quality,
+            seconds=time.monotonic() - began,
+        )
+
+    def __repr__(self) -> str:
+        return display.text(f"Study '{self.plan.name}'", self._rows())
+
+    def _repr_html_(self) -> str:
+        return display.page(f"Study '{self.plan.name}'", self._rows())
+
+    def _rows(self) -> list[tuple[str, str]]:
+        first, last = self.identification
+        rows = [
+            ("building", self.building.name),
+            ("sensors", ", ".join(self.plan.sensors)),
+            ("identification", f"{first:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M} ({self.climate.timezone})"),
+            ("record", f"{self.start:%Y-%m-%d %H:%M} to {self.end:%Y-%m-%d %H:%M}"),
+            ("step", self.plan.step),
+        ]
+        if self.plan.identification is not None:
+            rows.insert(2, ("parameters", ", ".join(self.plan.identification.parameters)))
+        if self.plan.variants:
+            rows.append(("variants", ", ".join(self.plan.variants)))
+        return rows

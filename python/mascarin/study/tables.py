@@ -1,0 +1,126 @@
+"""Results of a study as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mascarin._io import atomic
+from mascarin.study.residuals_step import DRIVERS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.study.findings import Findings, ModelRun
+    from mascarin.validation.criteria import Verdict
+    from mascarin.weather.quality import Stretch
+
+
+def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:
+    """All tables by name.
+
+    Parameters
+    ----------
+    findings : Findings
+        The results.
+
+    Returns
+    -------
+    dict of str to DataFrame
+        ``metrics``, ``parameters``, ``evaluations``, ``criteria``, ``quality``, ``series``, and
+        ``sensitivity`` if the study has one.
+    """
+    tables = {
+        "metrics": metrics_table(list(findings.runs())),
+        "parameters": findings.calibration.table(),
+        "evaluations": findings.calibration.evaluations(),
+        "criteria": criteria_table(findings.criteria),
+        "quality": quality_table(findings.quality),
+        "series": series_table(findings),
+    }
+    if findings.sensitivity is not None:
+        tables["sensitivity"] = findings.sensitivity.table()
+    return tables
+
+
+def write_tables(folder: Path, tables: Mapping[str, pd.DataFrame]) -> list[Path]:
+    """Write tables as CSV files.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder; it is created if it does not exist.
+    tables : mapping of str to DataFrame
+        By name without ending.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, table in tables.items():
+        atomic.write(folder / f"{name}.csv", table.to_csv(index=False, lineterminator="\n"))
+    return [folder / f"{name}.csv" for name in tables]
+
+
+def metrics_table(runs: Sequence[ModelRun]) -> pd.DataFrame:
+    """One row for each model, sensor and period."""
+    import pandas as pd
+
+    return pd.DataFrame(
+        [
+            {"sensor": sensor, "period": period, "model": run.label, **metrics.to_dict()}
+            for run in runs
+            for sensor, periods in run.scores.items()
+            for period, metrics in periods.items()
+        ]
+    )
+
+
+def criteria_table(verdicts: Mapping[str, Sequence[Verdict]]) -> pd.DataFrame:
+    """One row for each model, criterion, sensor and period."""
+    import pandas as pd
+
+    columns = ["model", "name", "sensor", "period", "metric", "value", "limit", "unit", "passed"]
+    rows = [{"model": model, **verdict.to_dict()} for model, found in verdicts.items() for verdict in found]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def quality_table(stretches: Sequence[Stretch]) -> pd.DataFrame:
+    """One row for each sequence of suspicious values."""
+    import pandas as pd
+
+    return pd.DataFrame(
+        [(s.channel, s.kind, s.start, s.end, s.count, s.detail) for s in stretches],
+        columns=["channel", "kind", "start", "end", "count", "detail"],
+    )
+
+
+def series_table(findings: Findings) -> pd.DataFrame:
+    """Measured and simulated series, weather and states at the instants of the comparison."""
+    import pandas as pd
+
+    observation = findings.setup.observation
+    table = pd.DataFrame({"time": observation.times.map(lambda stamp: stamp.isoformat())})
+    for s, name in enumerate(observation.names):
+        table[f"{name}.measured"] = observation.measured[:, s]
+    for run in findings.runs():
+        simulated = observation.simulated(run.results.index, run.results.records)
+        for s, name in enumerate(observation.names):
+            table[f"{name}.{run.label}"] = np.round(simulated[:, s], 6)
+    for s, name in enumerate(observation.names):
+        table[f"{name}.band"] = np.round(findings.prediction_intervals.half_width[:, s], 6)
+    fitted = findings.fitted
+    for channel in DRIVERS.values():
+        values = observation.sampled(fitted.results.index, fitted.simulation.weather(channel))
+        if np.ptp(values) > 0.0:
+            table[f"weather.{channel}"] = np.round(values, 4)
+    for k, output in enumerate(fitted.results.outputs):
+        if output.kind == "liquid_fraction":
+            values = observation.sampled(fitted.results.index, fitted.results.records[:, k])
+            table[f"state.{output.name}"] = np.round(values, 6)
+    return table
