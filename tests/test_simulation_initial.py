@@ -113,7 +113,7 @@ def test_a_steady_profile_stays() -> None:
     whole = 0.15 / 1.5 + 0.18 + 0.06 / 0.03
     line = [41.0 - 28.0 * r / whole for r in (0.07 / 1.5, 0.28 + 0.04 / 0.03, 0.1)]
     assert np.abs(run.records - [*line, 28.0 / whole]).max() < 1e-9
-    assert run.provenance.start.startswith("given: wall 41 to 13 degC; all else")
+    assert run.provenance.start.startswith("given: wall 41 to 13 degC; all others")
     assert "from below" not in run.provenance.start
 
 
