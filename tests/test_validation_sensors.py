@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from mascarin.errors import InputError
+from mascarin.study.description import Sensor as StudySensor
 from mascarin.validation import Sensor, SensorUncertainty
 
 
@@ -44,3 +45,31 @@ def test_other_units_need_an_uncertainty() -> None:
 def test_contradictory_uncertainties_are_refused(given: dict[str, Any], text: str) -> None:
     with pytest.raises(InputError, match=text):
         Sensor("t", **given)
+
+
+# --- the keys of a study file ---------------------------------------------------------------------------
+
+
+def test_the_older_key_of_a_study_is_the_expanded_uncertainty() -> None:
+    given = {"column": "T", "output": "room.air_temperature"}
+    older, newer, standard = (
+        StudySensor.model_validate(given | {key: value})
+        for key, value in (
+            ("uncertainty", 0.3),
+            ("expanded_uncertainty", 0.3),
+            ("standard_uncertainty", 0.3 / 1.96),
+        )
+    )
+    assert older == newer
+    for sensor in (older, standard):
+        assert sensor.uncertainty == pytest.approx(0.3, rel=1e-15)
+        assert sensor.stated_uncertainty("degC", "room").absolute == pytest.approx(0.3 / 1.96, rel=1e-15)
+    assert StudySensor.model_validate(given).uncertainty == 0.5
+    with pytest.raises(InputError, match=r"sensors.flux: found no uncertainty"):
+        StudySensor.model_validate(given).stated_uncertainty("W/m2", "flux")
+
+
+def test_both_keys_of_a_study_are_refused() -> None:
+    given = {"column": "T", "output": "room.air_temperature", "uncertainty": 0.3, "standard_uncertainty": 0.1}
+    with pytest.raises(InputError, match="expected one of them; leave one out"):
+        StudySensor.model_validate(given).stated_uncertainty("degC", "room")

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, AliasChoices, BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from mascarin.building.initial_state import Degrees, GivenStart
 from mascarin.building.names import Name
@@ -17,8 +17,8 @@ from mascarin.calibration.rules import MethodName as FitMethod
 from mascarin.errors import InputError, did_you_mean
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
+from mascarin.study.sensor import Sensor as Sensor
 from mascarin.validation.criteria import Criterion
-from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
 
 if TYPE_CHECKING:
     from typing import Self
@@ -173,65 +173,6 @@ class ClimateSource(Part):
         if len(given) != 1:
             insist(fault((), ", ".join(given) or "nothing", "one of epw, tmy, measured", "Keep exactly one."))
         return self
-
-
-class Sensor(Part):
-    """A measured series and the model output that it is compared with."""
-
-    column: str | tuple[str, ...] = Field(description="Column, or several columns, of which the mean is used")
-    output: str = Field(description="Output of the model")
-    expanded_uncertainty: float | None = Field(
-        None,
-        gt=0,
-        validation_alias=AliasChoices("expanded_uncertainty", "uncertainty"),
-        description="Half-width of the 95 % interval of a measured value (GUM, coverage factor 1.96); the "
-        "older name uncertainty works as well; 0.5 for a sensor in degC when absent, required for other "
-        "units [unit of the output]",
-    )
-    standard_uncertainty: float | None = Field(
-        None,
-        gt=0,
-        description="Standard deviation of the error of a measured value (GUM), in place of "
-        "expanded_uncertainty [unit of the output]",
-    )
-    relative: float = Field(
-        0.0,
-        ge=0,
-        lt=1,
-        description="Further expanded uncertainty in proportion to the measured value, such as 0.05 [-]",
-    )
-    label: str | None = Field(None, description="Name in the report")
-    use: bool = Field(True, description="Whether it is used in the identification")
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """The columns it is made of."""
-        return (self.column,) if isinstance(self.column, str) else self.column
-
-    def stated_uncertainty(self, unit: str, name: str) -> SensorUncertainty:
-        """Standard uncertainty of the measured values.
-
-        Raises
-        ------
-        InputError
-            Standard and expanded uncertainty together, or none although the unit is not degC.
-        """
-        return SensorUncertainty.stated(
-            unit,
-            standard=self.standard_uncertainty,
-            expanded=self.expanded_uncertainty,
-            relative_expanded=self.relative or None,
-            where=f"sensors.{name}",
-        )
-
-    @property
-    def uncertainty(self) -> float:
-        """Expanded uncertainty (95 %), without the relative part. [unit of the output]"""
-        if self.expanded_uncertainty is not None:
-            return self.expanded_uncertainty
-        if self.standard_uncertainty is not None:
-            return COVERAGE_FACTOR * self.standard_uncertainty
-        return DEFAULT_EXPANDED["degC"]
 
 
 class Periods(Part):
