@@ -23,7 +23,10 @@ def test_notebook(path: Path, tmp_path: Path) -> None:
     assert all(not cell.get("outputs") for cell in notebook.cells), "commit notebooks without outputs"
     NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
     shown = [
-        output.get("data", {}) for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs
+        output.get("data", {})
+        for cell in notebook.cells
+        if cell.cell_type == "code"
+        for output in cell.outputs
     ]
     assert any("text/html" in data for data in shown)
     assert not [data for data in shown if "Traceback" in data.get("text/plain", "")]
