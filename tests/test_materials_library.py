@@ -130,7 +130,7 @@ def test_unknown_values_stay_empty() -> None:
     assert bare.pair("density") is None
     assert (bare.melting_temperature, bare.melting_range) == (None, None)
     assert list(enthalpy_curves(bare)) == []
-    with pytest.raises(ValueError, match="more than is known"):
+    with pytest.raises(ValueError, match="a property that the enthalpy needs is not known"):
         bare.enthalpies([0.0, 1.0], [0.0, 1.0])
 
 

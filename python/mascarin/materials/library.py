@@ -82,7 +82,7 @@ class Product:
     --------
     >>> one = product("RT25HC")
     >>> one.melting_temperature, one.pair("density")
-    (24.89, (880.0, 770.0))
+    (24.3, (880.0, 770.0))
     """
 
     name: str
