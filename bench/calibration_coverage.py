@@ -1,7 +1,7 @@
-"""How often the 95 % intervals of a calibration hold the truth, for white and autocorrelated errors.
+"""How often the 95 % intervals of a calibration contain the true values, for white and autocorrelated errors.
 
 A linear model with slow responses, three sensors and four parameters over five days of quarter hours; errors
-of 0.3 K, white or with a correlation time of 1 h and 5 h, their own or shared by the sensors, with gaps.
+of 0.3 K, white or with a correlation time of 1 h and 5 h, independent or shared by the sensors, with gaps.
 Run ``python bench/calibration_coverage.py [repetitions]``; a thousand take about a minute on one core.
 """
 

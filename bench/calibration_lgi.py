@@ -1,13 +1,12 @@
-"""Do seven parameters of the LGI cell come back from our own data, and do their intervals hold them?
+"""Seven parameters of the LGI cell estimated from simulated data: are the true values found and covered?
 
-``python bench/calibration_lgi.py recover``: noise-free data, five starts; largest error of any parameter.
-``python bench/calibration_lgi.py cover KIND [repetitions]``: 95 % intervals for errors of 0.3 K, KIND being
-``white`` or ``1h`` (correlation time). Each repetition draws new errors and fits them, by default with the
-model replaced by its first-order expansion about the truth, which every fit shares: 1000 fits then cost
-minutes. ``cover KIND N full`` fits with the model itself, from the truth. Repetitions are kept in a file and
-never made twice; a run that was stopped goes on.
-``python bench/calibration_lgi.py speed [starts]``: what a start costs with either kind of slopes, 6 starts
-when absent, on data with white errors, and what its parts cost.
+``python bench/calibration_lgi.py recover``: data without noise, five starts; largest error. ``python
+bench/calibration_lgi.py cover KIND [repetitions]``: 95 % intervals for errors of 0.3 K, KIND being ``white``
+or ``1h`` (correlation time). Each repetition draws new errors and fits them, by default with the model
+replaced by its first-order expansion about the true values: 1000 fits then take minutes. ``cover KIND N
+full`` fits with the model itself, from the true values. Repetitions are kept in a file and not repeated; a
+run that was stopped is continued. ``python bench/calibration_lgi.py speed [starts]``: computing time of a
+start with either kind of derivatives, 6 starts when absent, on data with white errors, and of its parts.
 """
 
 from __future__ import annotations
@@ -38,17 +37,19 @@ KEPT = Path("calibration_lgi_kept")
 
 
 def recover() -> None:
-    """Print each parameter, what was found and the error in percent of the truth."""
+    """Print each parameter, its true value, its estimate and the error in percent."""
     case = seven()
     fit = solve(case.measured(), rules=Rules(starts=5), seed=1)
     error = 100.0 * np.abs(fit.x / case.truth - 1.0)
     for path, truth, found, e in zip(case.problem.paths, case.truth, fit.x, error, strict=True):
-        say(f"| {path} | {truth:.6g} | {found:.6g} | {e:.2g} % |")
-    say(f"largest error {error.max():.2g} %, {fit.trace.cost.size} evaluations, {len(fit.minima)} starts")
+        print_line(f"| {path} | {truth:.6g} | {found:.6g} | {e:.2g} % |")
+    print_line(
+        f"largest error {error.max():.2g} %, {fit.trace.cost.size} evaluations, {len(fit.minima)} starts"
+    )
 
 
 def cover(kind: str, repetitions: int, full: bool) -> None:
-    """Make the repetitions that are missing and print how often the intervals held."""
+    """Run the missing repetitions and print how often the intervals contain the true values."""
     case = seven()
     model = case.measured() if full else linear(case)
     KEPT.mkdir(exist_ok=True)
@@ -66,19 +67,19 @@ def cover(kind: str, repetitions: int, full: bool) -> None:
     done = [entry for entry in done if entry["seed"] < repetitions]
     inside = np.array([entry["inside"] for entry in done])
     width = np.array([entry["width"] for entry in done])
-    say(f"{kind}, {'the model itself' if full else 'first-order expansion'}: {len(done)} repetitions")
-    say(
+    print_line(f"{kind}, {'the model itself' if full else 'first-order expansion'}: {len(done)} repetitions")
+    print_line(
         f"all parameters {100 * inside.mean():.1f} % "
         f"({100 * inside.mean(axis=0).min():.1f}-{100 * inside.mean(axis=0).max():.1f})"
     )
     for p, path_, held, w in zip(
         range(inside.shape[1]), case.problem.paths, inside.mean(axis=0), width.mean(axis=0), strict=True
     ):
-        say(f"| {p + 1} | {path_} | {100 * held:.1f} % | {100 * w:.2f} % of its range |")
+        print_line(f"| {p + 1} | {path_} | {100 * held:.1f} % | {100 * w:.2f} % of its range |")
 
 
 def linear(case: Seven) -> CalibrationProblem:
-    """The same with the model's first-order expansion about the truth."""
+    """The same with the first-order expansion of the model about the true values."""
     problem = case.measured()
     z = problem.positions(case.truth)
     _, slope = derivative(problem, z, 1e-3)
@@ -91,7 +92,7 @@ def linear(case: Seven) -> CalibrationProblem:
 
 
 def one(case: Seven, problem: CalibrationProblem, kind: str, seed: int) -> dict[str, list[float]]:
-    """Whether each interval holds the truth, and its width in ranges."""
+    """Whether each interval contains the true value, and its width in ranges."""
     noise = errors(np.random.default_rng([seed, 7]), case.clean.shape, KINDS[kind])
     drawn = case.measured(noise)
     starts = tuple(
@@ -108,7 +109,7 @@ def one(case: Seven, problem: CalibrationProblem, kind: str, seed: int) -> dict[
 
 
 def speed(starts: int) -> None:
-    """Print what a start costs by the clock and of a processor, and what it is made of."""
+    """Print the wall-clock and processor time of a start and of its parts."""
     case = seven()
     problem = case.measured(errors(np.random.default_rng(0), case.clean.shape, KINDS["white"]))
     first = np.array([p.first for p in problem.parameters])
@@ -121,18 +122,18 @@ def speed(starts: int) -> None:
     for name, part in parts.items():
         part()
         clock, processor = timed(part, 10)
-        say(f"| {name} | {1e3 * clock:.0f} ms | {1e3 * processor:.0f} ms of a processor |")
+        print_line(f"| {name} | {1e3 * clock:.0f} ms | {1e3 * processor:.0f} ms of a processor |")
     for kind in SLOPES:
         search = Search(problem, Rules(starts=starts, slopes=kind))
         clock, processor = timed(search)
-        say(
+        print_line(
             f"| a start, {kind} | {clock / starts:.2f} s | {processor / starts:.2f} s of a processor | "
             f"{search.runs / starts:.0f} runs, {search.jacobians / starts:.0f} times exact slopes |"
         )
     one = Rules(starts=1)
     searched = timed(Search(problem, one))
     whole = timed(lambda: solve(problem, rules=one))
-    say(
+    print_line(
         f"| intervals, once a fit | {whole[0] - searched[0]:.2f} s | "
         f"{whole[1] - searched[1]:.2f} s of a processor |"
     )
@@ -158,7 +159,7 @@ class Search:
 
 
 def timed(work: Callable[[], object], times: int = 1) -> tuple[float, float]:
-    """Seconds by the clock and of processors that a piece of work takes."""
+    """Wall-clock and processor time of a piece of work. [s]"""
     clock, used = time.perf_counter(), _processor()
     for _ in range(times):
         work()
@@ -180,14 +181,14 @@ def errors(rng: np.random.Generator, shape: tuple[int, ...], hours: float) -> Fl
     )
 
 
-def say(line: str) -> None:
-    """One line, at once."""
+def print_line(line: str) -> None:
+    """Print one line."""
     sys.stdout.write(line + "\n")
     sys.stdout.flush()
 
 
 def main() -> None:
-    """Do what the command line asks for."""
+    """Run the part that the command line names."""
     if sys.argv[1:2] == ["recover"]:
         recover()
     elif sys.argv[1:2] == ["cover"] and sys.argv[2:3] and sys.argv[2] in KINDS:
@@ -195,7 +196,7 @@ def main() -> None:
     elif sys.argv[1:2] == ["speed"]:
         speed(int(sys.argv[2]) if len(sys.argv) > 2 else 6)
     else:
-        say(__doc__ or "")
+        print_line(__doc__ or "")
 
 
 if __name__ == "__main__":

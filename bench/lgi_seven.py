@@ -35,7 +35,12 @@ class Seven:
         """The problem with data (T, S) made of the truth, with errors on top. [K]"""
         data = self.clean if errors is None else self.clean + errors
         sensors = tuple(
-            replace(s, measured=np.where(s.mask, data[:, k], np.nan), uncertainty=SENSOR_SD, weight=1.0)
+            replace(
+                s,
+                measured=np.where(s.mask, data[:, k], np.nan),
+                standard_uncertainty=SENSOR_SD,
+                weight=1.0,
+            )
             for k, s in enumerate(self.problem.sensors)
         )
         return replace(self.problem, sensors=sensors, identity=f"{self.problem.identity} own data")

@@ -1,14 +1,14 @@
-"""1500 pattern searches on the LGI cell: how many different minima does the paper's cost have?
+"""1500 pattern searches on the LGI cell: how many minima does the cost of the paper have?
 
-Each sequence is a Hooke-Jeeves search over seven parameters, the first from the building's values and the
-others from random starts, on the data of the shipped study's identification and with the paper's cost, the
-sum over the sensors of the standard deviation of the error.
+Each sequence is a Hooke-Jeeves search over seven parameters, the first from the values of the building and
+the others from random starts, with the data of the identification of the shipped study and the cost of the
+paper, the sum over the sensors of the standard deviation of the error.
 
-``python bench/pattern_sequences.py [sequences] [folder]`` makes them, 1500 when absent, and prints how many
-minima there are and a histogram of their costs; the folder gets both as figures. From the lowest end of each
-of the largest groups an evolution strategy goes on with small steps: ends that are true minima stay apart,
-those of searches that gave up in a flat valley run together. Every evaluation is kept in the folder as it is
-made: a run that was stopped goes on, and so does a larger number of sequences.
+``python bench/pattern_sequences.py [sequences] [folder]`` runs them, 1500 when absent, and prints the number
+of minima and a histogram of their costs; the folder gets both as figures. From the lowest end of each of the
+largest groups an evolution strategy continues with small steps: ends that are true minima remain apart, those
+of searches that stopped in a flat valley come together. Every evaluation is kept in the folder: a run that
+was stopped is continued, and so is one with a larger number of sequences.
 """
 
 from __future__ import annotations
@@ -22,22 +22,27 @@ from pathlib import Path
 
 import numpy as np
 from lgi_seven import VARIANT
+from matplotlib.figure import Figure
 
-from mascarin.calibration import CalibrationProblem, Fit, Rules, plots, solve
+from mascarin.calibration import Calibration, CalibrationProblem, Rules, solve
+from mascarin.calibration.result import PlotKind
 from mascarin.examples import FOLDER
 from mascarin.figures.files import save
 from mascarin.progress import Progress
 from mascarin.study import Study
 
 TOGETHER = 64
+KINDS: tuple[PlotKind, ...] = ("minima", "convergence")
 #: The mesh ends at 0.1 / 2^6 of each range, 0.16 %.
 REDUCTIONS = 6
-#: Groups of ends that are looked at more closely.
+#: Groups of ends from which the evolution strategy continues.
 POLISHED = 6
 
 
-def searched(problem: CalibrationProblem, sequences: int, folder: Path, reductions: int = REDUCTIONS) -> Fit:
-    """All sequences; those in the folder are replayed, not run again."""
+def searched(
+    problem: CalibrationProblem, sequences: int, folder: Path, reductions: int = REDUCTIONS
+) -> Calibration:
+    """Run all sequences; evaluations in the folder are read, not run again."""
     rules = Rules(agree=sequences + 1, sequences=sequences, reductions=reductions, together=TOGETHER)
     with Progress("sequences") as progress:
         return solve(
@@ -48,12 +53,12 @@ def searched(problem: CalibrationProblem, sequences: int, folder: Path, reductio
             rules=rules,
             record=folder / "evaluations.jsonl",
             batch=TOGETHER,
-            progress=lambda count, lowest: progress.update(count, 0, f"{count}, lowest {lowest:.6g}"),
+            on_batch=lambda count, lowest: progress.update(count, 0, f"{count}, lowest {lowest:.6g}"),
         )
 
 
-def polished(fit: Fit, folder: Path) -> list[Fit]:
-    """The lowest ends, brought to the bottom by steps along the valley."""
+def polished(fit: Calibration, folder: Path) -> list[Calibration]:
+    """Continue from the lowest ends by an evolution strategy with small steps."""
     groups = fit.distinct_minima()[:POLISHED]
     found = []
     for k, group in enumerate(groups):
@@ -77,57 +82,57 @@ def polished(fit: Fit, folder: Path) -> list[Fit]:
     return found
 
 
-def tell_polished(found: list[Fit]) -> None:
-    """Whether the ends run together."""
+def print_polished(found: list[Calibration]) -> None:
+    """Print whether the ends come together."""
     problem = found[0].problem
     z = np.array([problem.positions(fit.x) for fit in found])
     costs = np.array([fit.cost for fit in found])
     apart = 100.0 * np.abs(z - z[costs.argmin()]).max(axis=1)
     together = int(np.sum((apart <= 2.0) & (costs <= 1.001 * costs.min())))
-    say(f"{len(found)} lowest ends brought to the bottom: {together} are one minimum, cost {costs.min():.6g}")
+    print_line(f"{len(found)} lowest ends continued: {together} are one minimum, cost {costs.min():.6g}")
     for cost, distance in zip(costs, apart, strict=True):
-        say(f"| {cost:.6f} | {distance:.2f} % of a range from the lowest |")
+        print_line(f"| {cost:.6f} | {distance:.2f} % of a range from the lowest |")
 
 
-def say(line: str = "") -> None:
-    """One line, at once."""
+def print_line(line: str = "") -> None:
+    """Print one line."""
     sys.stdout.write(line + "\n")
     sys.stdout.flush()
 
 
-def tell(fit: Fit, seconds: float, processor: float) -> None:
-    """How many minima, where they are, and how long it took."""
+def print_minima(fit: Calibration, seconds: float, processor: float) -> None:
+    """Print how many minima there are, where they are, and the computing time."""
     made = fit.trace.cost.size - fit.trace.replayed
     asked = sum(minimum.evaluations for minimum in fit.minima)
-    say(f"{len(fit.minima)} sequences, {asked} evaluations ({asked / len(fit.minima):.0f} each)")
+    print_line(f"{len(fit.minima)} sequences, {asked} evaluations ({asked / len(fit.minima):.0f} each)")
     if made:
-        say(
+        print_line(
             f"{made} made now in {seconds:.0f} s ({processor:.0f} s of processors): "
             f"{1e3 * seconds / made:.2f} ms each, {1e3 * processor / made:.2f} ms of a processor"
         )
     for within in (1e-3, 1e-2):
         groups = fit.distinct_minima(within=within)
         sizes = [len(group) for group in groups]
-        say(
+        print_line(
             f"different minima (cost within {100 * within:g} %, parameters within 2 % of their range): "
             f"{len(groups)}; the largest hold {sorted(sizes, reverse=True)[:5]}"
         )
     costs = [minimum.cost for minimum in fit.minima]
     near = [m for m in fit.minima if m.cost <= 1.001 * min(costs)]
-    say(
+    print_line(
         f"lowest cost {min(costs):.6g}; within 0.1 % of it {len(near)} sequences, "
         f"all within {100 * (max(costs) / min(costs) - 1):.2f} %"
     )
     z = np.array([fit.problem.positions(minimum.x) for minimum in near])
     for path, low, high in zip(fit.problem.paths, z.min(axis=0), z.max(axis=0), strict=True):
-        say(f"| {path} | {100 * (high - low):.1f} % of its range between them |")
+        print_line(f"| {path} | {100 * (high - low):.1f} % of its range between them |")
     counts, edges = fit.histogram(20)
     for count, low, high in zip(counts, edges[:-1], edges[1:], strict=True):
-        say(f"| {low:.4f} to {high:.4f} | {count} |")
+        print_line(f"| {low:.4f} to {high:.4f} | {count} |")
 
 
 def main() -> None:
-    """Search, tell and draw."""
+    """Search, print and draw."""
     sequences = int(sys.argv[1]) if len(sys.argv) > 1 else 1500
     folder = Path(sys.argv[2] if len(sys.argv) > 2 else "pattern_sequences")
     folder.mkdir(parents=True, exist_ok=True)
@@ -135,10 +140,12 @@ def main() -> None:
     problem = Study(FOLDER / "lgi" / "study.yaml").problem(VARIANT)
     fit = searched(problem, sequences, folder)
     used = resource.getrusage(resource.RUSAGE_SELF)
-    tell(fit, time.perf_counter() - began, used.ru_utime + used.ru_stime)
-    tell_polished(polished(fit, folder))
-    save(plots.minima(fit), folder / "minima.svg")
-    save(plots.course(fit), folder / "course.svg")
+    print_minima(fit, time.perf_counter() - began, used.ru_utime + used.ru_stime)
+    print_polished(polished(fit, folder))
+    for kind in KINDS:
+        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
+        fit.plot(kind, ax=figure.subplots())
+        save(figure, folder / f"{kind}.svg")
 
 
 if __name__ == "__main__":

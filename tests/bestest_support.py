@@ -1,4 +1,4 @@
-"""Years of the cases of Standard 140 that nobody simulated: exact numbers to count with."""
+"""Invented years of the cases of Standard 140, with exact numbers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mascarin.verification.bestest.quantities import (
     ORIENTATIONS,
     THROUGH_GLASS,
     Year,
-    asked_about_sun,
+    has_solar_quantities,
 )
 
 if TYPE_CHECKING:
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 
 def wave(low: float, high: float) -> Array:
-    """A day like any other: lowest at midnight, highest at noon."""
+    """Equal days: lowest at midnight, highest at noon. [any]"""
     hours = np.arange(HOURS, dtype=np.float64) % 24
     shape: Array = low + (high - low) * 0.5 * (1.0 - np.cos(2.0 * np.pi * (hours + 0.5) / 24.0))
     return shape
 
 
 def year(case: Case) -> Year:
-    """A year with every series that the case is asked for."""
+    """A year with every series of the case."""
     series = {f"{zone}.air_temperature": wave(10.0, 30.0) for zone in {case.zone, case.floating or case.zone}}
     if case.conditioned:
         series[f"{case.zone}.cooling_load"] = wave(0.0, 2000.0)
@@ -37,7 +37,7 @@ def year(case: Case) -> Year:
     if case.name == "600":
         series |= {output: wave(0.0, 300.0 + k) for k, output in enumerate(ORIENTATIONS.values())}
         series["sky_temperature"] = wave(-10.0, 0.0)
-    if asked_about_sun(case):
+    if has_solar_quantities(case):
         series |= {ONTO_GLASS: wave(0.0, 300.0), THROUGH_GLASS: wave(0.0, 100.0 if case.shaded else 150.0)}
     return Year(case, series, 1e-14)
 

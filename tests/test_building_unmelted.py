@@ -18,7 +18,7 @@ WAX = (
 
 def led(face: float, wax: str = WAX, initial: float = 15.0) -> Results:
     return setup.run(
-        slab(wax, 0.005, 4), 24 * setup.HOUR, {"face": setup.steady(face)}, step=900.0, initial=initial,
+        slab(wax, 0.005, 4), 24 * setup.HOUR, {"surface": setup.steady(face)}, step=900.0, initial=initial,
         outputs=["slab.outside_temperature"],
     )  # fmt: skip
 

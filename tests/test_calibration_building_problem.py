@@ -1,7 +1,8 @@
-"""Calibration of a building against a table that it made itself."""
+"""Calibration of a building with simulated measurements of known parameters."""
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,10 +10,20 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from mascarin.building import Building, load
-from mascarin.calibration import CalibrationProblem, FitParameter, Rules, solve
-from mascarin.calibration.building_problem import Sensor, calibrate, fit_parameter, problem_of
+from mascarin.calibration import (
+    Calibration,
+    CalibrationProblem,
+    FitParameter,
+    Rules,
+    Sensor,
+    calibrate,
+    fit_parameter,
+    solve,
+)
+from mascarin.calibration.building_problem import problem_of
 from mascarin.calibration.least_squares import derivative
 from mascarin.errors import InputError
 from mascarin.examples import FOLDER
@@ -23,10 +34,10 @@ from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, FINE, NOISE, TRUTH, logger_table, open_climate
 
 SENSORS = {
-    "joint": Sensor("wall.interface_1_temperature", "joint", 0.06),
-    "core": Sensor("core.temperature", "core", 0.06),
+    "joint": Sensor("joint", 0.06, output="wall.interface_1_temperature"),
+    "core.temperature": Sensor("core", 0.06),
 }
-SPAN: dict[str, Any] = {"start": "2023-03-02", "end": "2023-03-06", "step": "10min", "lead": "1d"}
+SPAN: dict[str, Any] = {"start": "2023-03-02", "end": "2023-03-06", "step": "10min", "warm_up": "1d"}
 
 
 @pytest.fixture(scope="module")
@@ -53,37 +64,37 @@ def measured(table: pd.DataFrame) -> Measurements:
     return Measurements.from_table(table, timezone="UTC+1")
 
 
-def test_the_truth_lies_in_the_interval(building: Building, climate: Climate, measured: Measurements) -> None:
+def test_the_true_values_are_in_the_intervals(
+    building: Building, climate: Climate, measured: Measurements
+) -> None:
     # The conductivities go together (correlation 0.97): only on the mesh of the wall that made the table are
     # they as good as their intervals. A bound that is far away asks for that mesh.
     free = {path: FINE.get(path, (0.2, 12.0)) for path in TRUTH} | {
         "surfaces.wall.outside.absorptance": (0.2, 0.8)
     }
-    fit = calibrate(
-        building, climate, measured, parameters=free, sensors=SENSORS, rules=Rules(starts=1), **SPAN
-    )
+    fit = calibrate(building, climate, measured, vary=free, sensors=SENSORS, rules=Rules(starts=1), **SPAN)
     assert fit.reason == "1 start searched"
     for k, parameter in enumerate(fit.problem.parameters):
         half = (fit.high[k] - fit.low[k]) / 2.0
         assert abs(fit.x[k] - TRUTH[parameter.path]) < 1.5 * half, parameter.path
-    # What is left is the noise of the logger.
+    # The residuals are the noise of the logger.
     assert np.nanstd(fit.residuals, axis=0) == pytest.approx([NOISE, NOISE], rel=0.1)
     assert fit.residuals.shape == (4 * 144, 2)
 
 
-def test_a_record_is_continued_and_bounds_hold(
+def test_a_record_is_continued_and_an_estimate_ends_on_its_bound(
     building: Building, climate: Climate, measured: Measurements, tmp_path: Path
 ) -> None:
-    # The true absorptance, 0.62, lies outside: the estimate ends on the bound, and it is said.
+    # The true absorptance, 0.62, lies outside: the estimate ends on the bound, which is reported.
     told: list[int] = []
     record = tmp_path / "record.jsonl"
 
     def fit() -> Any:
         return calibrate(
             building, climate, measured,
-            parameters={"surfaces.wall.outside.absorptance": (0.3, 0.55)},
+            vary={"surfaces.wall.outside.absorptance": (0.3, 0.55)},
             sensors=SENSORS, rules=Rules(starts=1), record=record,
-            progress=lambda done, lowest: told.append(done), **SPAN | {"step": "1h"},
+            progress=lambda done, total: told.append(done), **SPAN | {"step": "1h"},
         )  # fmt: skip
 
     first = fit()
@@ -101,11 +112,11 @@ def test_output_and_column_are_enough_for_a_sensor(
 ) -> None:
     fit = calibrate(
         building, climate, measured,
-        parameters=["surfaces.wall.outside.absorptance"], sensors={"core.temperature": "core"},
+        vary=["surfaces.wall.outside.absorptance"], sensors={"core.temperature": "core"},
         rules=Rules(starts=1), **SPAN | {"step": "1h"},
     )  # fmt: skip
     assert [sensor.name for sensor in fit.problem.sensors] == ["core.temperature"]
-    assert fit.problem.sensors[0].uncertainty == pytest.approx(0.5 / 1.96)
+    assert fit.problem.sensors[0].standard_uncertainty == pytest.approx(0.5 / 1.96)
 
 
 def test_bounds_come_from_the_building_where_none_are_given(building: Building) -> None:
@@ -119,7 +130,7 @@ def test_bounds_come_from_the_building_where_none_are_given(building: Building) 
     assert short.path == "materials.brick.conductivity"
 
 
-def test_several_columns_are_averaged_and_stand_for_each_other(
+def test_several_columns_are_averaged_where_they_have_values(
     building: Building, climate: Climate, table: pd.DataFrame
 ) -> None:
     more = table.assign(twin=table["core"] + 0.2)
@@ -127,8 +138,8 @@ def test_several_columns_are_averaged_and_stand_for_each_other(
     measured = Measurements.from_table(more, timezone="UTC+1")
     fit = calibrate(
         building, climate, measured,
-        parameters=["surfaces.wall.outside.absorptance"],
-        sensors={"core": Sensor("core.temperature", ["core", "twin"])},
+        vary=["surfaces.wall.outside.absorptance"],
+        sensors={"core.temperature": Sensor(["core", "twin"])},
         rules=Rules(starts=1), **SPAN | {"step": "1h"},
     )  # fmt: skip
     shown = fit.problem.sensors[0].measured
@@ -141,9 +152,9 @@ def test_several_columns_are_averaged_and_stand_for_each_other(
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"parameters": ["materials.brick.condctivity"]}, "Did you mean 'materials.brick.conductivity'"),
-        ({"parameters": ["site.latitude"]}, "structural .* cannot be fitted; choose another"),
-        ({"parameters": {"materials.brick.conductivity": (-1.0, 1.0)}}, "reaches beyond what the parameter"),
+        ({"vary": ["materials.brick.condctivity"]}, "Did you mean 'materials.brick.conductivity'"),
+        ({"vary": ["site.latitude"]}, "structural .* cannot be estimated; choose another"),
+        ({"vary": {"materials.brick.conductivity": (-1.0, 1.0)}}, "is not within the possible values"),
         ({"sensors": {"core.temprature": "core"}}, "Did you mean 'core.temperature'"),
         ({"sensors": {"core.temperature": "cor"}}, "no measured column 'cor'. Did you mean 'core'"),
         ({"start": "2023-04-02", "end": "2023-04-06"}, "outside the data"),
@@ -153,22 +164,22 @@ def test_several_columns_are_averaged_and_stand_for_each_other(
 def test_what_cannot_be_used_is_refused(
     change: dict[str, Any], says: str, building: Building, climate: Climate, measured: Measurements
 ) -> None:
-    given: dict[str, Any] = {"parameters": ["materials.brick.conductivity"], "sensors": SENSORS, **SPAN}
+    given: dict[str, Any] = {"vary": ["materials.brick.conductivity"], "sensors": SENSORS, **SPAN}
     with pytest.raises(InputError, match=says):
         calibrate(building, climate, measured, **(given | change))
 
 
-def test_a_sensor_that_repeats_itself_is_refused_before_anything_is_run(
+def test_a_constant_sensor_is_refused_before_the_first_run(
     building: Building, climate: Climate, table: pd.DataFrame
 ) -> None:
     dead = table.copy()
     dead.loc["2023-03-02 06:00":"2023-03-05 18:00", "core"] = 17.3
     measured = Measurements.from_table(dead, timezone="UTC+1")
-    with pytest.raises(InputError, match=r"sensor 'core', column core: stuck from 2023-03-02 06:") as found:
-        calibrate(
-            building, climate, measured, parameters=["materials.brick.conductivity"], sensors=SENSORS, **SPAN
-        )
-    assert "leave it out, mask the stretch, or choose another period" in str(found.value)
+    with pytest.raises(
+        InputError, match=r"sensor 'core.temperature', column core: stuck from 2023-03-02 06:"
+    ) as found:
+        calibrate(building, climate, measured, vary=["materials.brick.conductivity"], sensors=SENSORS, **SPAN)
+    assert "leave it out, mask these values, or choose another period" in str(found.value)
 
 
 def test_start_scale_and_a_relative_uncertainty_reach_the_problem(
@@ -177,8 +188,8 @@ def test_start_scale_and_a_relative_uncertainty_reach_the_problem(
     free = fit_parameter(building, "materials.brick.conductivity", (0.2, 2.0), start=1.5, scale="log")
     fit = calibrate(
         building, climate, measured,
-        parameters=[free],
-        sensors={"core": Sensor("core.temperature", "core", 0.06, relative=0.05)},
+        vary=[free],
+        sensors={"core.temperature": Sensor("core", 0.06, relative_expanded_uncertainty=0.05)},
         rules=Rules(starts=1), **SPAN | {"step": "1h"},
     )  # fmt: skip
     assert fit.minima[0].start[0] == pytest.approx(1.5)
@@ -186,7 +197,7 @@ def test_start_scale_and_a_relative_uncertainty_reach_the_problem(
     core = fit.problem.sensors[0]
     want = np.hypot(0.06 / 1.96, 0.05 / 1.96 * np.abs(core.measured))
     np.testing.assert_allclose(core.sigma, want)
-    with pytest.raises(InputError, match=r"range \[0.2, 2\] W/\(m K\) does not hold the start 3"):
+    with pytest.raises(InputError, match=r"range \[0.2, 2\] W/\(m K\) does not contain the start 3"):
         fit_parameter(building, "materials.brick.conductivity", (0.2, 2.0), start=3.0)
 
 
@@ -207,11 +218,11 @@ def seven() -> CalibrationProblem:
     building = study.building_of(variant)
     free = [fit_parameter(building, path) for path in study.plan_of(variant).parameters]
     sensors = {
-        "operative": Sensor("room.operative_temperature", "room_air", 0.3),
-        "interface": Sensor("ceiling.energain_plasterboard_temperature", "pcm_plasterboard", 0.3),
-        "top": Sensor("ceiling.outside_temperature", "pcm_top", 0.3),
-        "gap": Sensor("air_gap.air_temperature", "gap_air", 0.3),
-        "steel": Sensor("roof.inside_temperature", "steel_sheet", 0.3),
+        "room.operative_temperature": Sensor("room_air", 0.3),
+        "ceiling.energain_plasterboard_temperature": Sensor("pcm_plasterboard", 0.3),
+        "ceiling.outside_temperature": Sensor("pcm_top", 0.3),
+        "air_gap.air_temperature": Sensor("gap_air", 0.3),
+        "roof.inside_temperature": Sensor("steel_sheet", 0.3),
     }
     simulation = Simulation(
         building,
@@ -219,7 +230,7 @@ def seven() -> CalibrationProblem:
         step="15min",
         start="2010-09-20",
         end="2010-09-23",
-        outputs=[sensor.output for sensor in sensors.values()],
+        outputs=list(sensors),
         measurements=study.measurements,
         ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
     )
@@ -229,7 +240,9 @@ def seven() -> CalibrationProblem:
     # Two stretches, of which one night between them takes no part.
     use = np.ones(len(observation.times), dtype=np.bool_)
     use[80:112] = False
-    posed = problem_of(simulation, observation, use, free, sensors)
+    posed = problem_of(
+        simulation, observation, use, free, {name: s.uncertainty("degC") for name, s in sensors.items()}
+    )
     truth = posed.values(PLACES[None])
     made = np.asarray(posed.model(truth))[0]
     data = (replace(s, measured=made[:, k]) for k, s in enumerate(posed.sensors))
@@ -273,7 +286,7 @@ def test_exact_slopes_hold_at_bounds(
     found, near = (
         calibrate(
             building, climate, measured,
-            parameters={
+            vary={
                 "surfaces.wall.outside.absorptance": (0.3, 0.55),
                 "surfaces.wall.inside.convection.coefficient": (4.0, 12.0),
             },
@@ -291,8 +304,73 @@ def test_what_has_no_slope_is_refused(building: Building, climate: Climate, meas
     given: dict[str, Any] = {"sensors": SENSORS, "rules": exact, **SPAN}
     by_hand = FitParameter("site.latitude", 40.0, 50.0)
     with pytest.raises(InputError, match=r"site\.latitude: is structural"):
-        calibrate(building, climate, measured, parameters=[by_hand], **given)
-    with pytest.raises(InputError, match="least-squares minimises 'nll'; for the cost 'sd'"):
-        calibrate(
-            building, climate, measured, parameters=["materials.brick.conductivity"], cost="sd", **given
+        calibrate(building, climate, measured, vary=[by_hand], **given)
+    with pytest.raises(InputError, match="least-squares minimizes 'nll'; for the cost 'sd'"):
+        calibrate(building, climate, measured, vary=["materials.brick.conductivity"], cost="sd", **given)
+
+
+# --- the result -----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def calibration(building: Building, climate: Climate, measured: Measurements) -> Calibration:
+    """The absorptance alone, with another conductivity than that of the building."""
+    return calibrate(
+        building, climate, measured,
+        vary=["surfaces.wall.outside.absorptance"], parameters={"materials.brick.conductivity": 0.6},
+        sensors={"core.temperature": "core"}, rules=Rules(starts=1), progress=False, **SPAN | {"step": "1h"},
+    )  # fmt: skip
+
+
+def test_the_calibrated_building_has_the_estimates_and_can_be_simulated(
+    calibration: Calibration, climate: Climate, measured: Measurements
+) -> None:
+    found = calibration.building
+    assert found.parameter("surfaces.wall.outside.absorptance").value == calibration.x[0]
+    assert found.parameter("materials.brick.conductivity").value == 0.6
+    run = Simulation(
+        found, climate, step="1h", start="2023-03-01", end="2023-03-06", outputs=["core.temperature"],
+        measurements=measured,
+    ).run()  # fmt: skip
+    compared = run.records[24 : 24 + 96, 0] - calibration.problem.sensors[0].measured
+    np.testing.assert_allclose(compared, calibration.residuals[:, 0], atol=1e-9)
+
+
+def test_a_calibration_of_a_building_is_pickled(calibration: Calibration) -> None:
+    again = pickle.loads(pickle.dumps(calibration))  # noqa: S301 (our own bytes)
+    assert again.building.to_yaml() == calibration.building.to_yaml()
+    x = calibration.x[None]
+    np.testing.assert_array_equal(again.problem.residuals(x), calibration.problem.residuals(x))
+    np.testing.assert_array_equal(again.problem.jacobian(x[0]), calibration.problem.jacobian(x[0]))
+
+
+def test_residuals_have_local_times(calibration: Calibration) -> None:
+    assert calibration.times is not None
+    assert calibration.times[0].isoformat() == "2023-03-02T00:00:00+01:00"
+    axes = calibration.plot("residuals", ax=Figure().subplots())
+    assert "local time" in axes.get_xlabel()
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), calibration.residuals[:, 0])
+
+
+@pytest.mark.parametrize("unit_given", [False, True])
+def test_a_heat_flux_needs_an_uncertainty(
+    unit_given: bool, building: Building, climate: Climate, table: pd.DataFrame
+) -> None:
+    flux = "wall.inside_flux"
+    logger = Measurements.from_table(table.assign(flux=10.0 * table["core"]), timezone="UTC+1")
+    given: dict[str, Any] = {
+        "vary": ["surfaces.wall.outside.absorptance"],
+        "rules": Rules(starts=1),
+        **SPAN,
+        "step": "1h",
+    }
+    if unit_given:
+        fit = calibrate(
+            building, climate, logger, sensors={flux: Sensor("flux", standard_uncertainty=2.0)}, **given
         )
+        assert fit.problem.sensors[0].standard_uncertainty == 2.0
+    else:
+        with pytest.raises(
+            InputError, match=r"sensors: wall.inside_flux: found no uncertainty, expected one"
+        ):
+            calibrate(building, climate, logger, sensors={flux: "flux"}, **given)

@@ -1,4 +1,4 @@
-"""Least squares: exact slopes beside differences, and what a search is handed of them."""
+"""Least squares: exact derivatives and differences, and the reduced normal equations."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def posed(noise: float = 0.0, given: Callable[[Floats], Floats] | None = slopes)
         FitParameter("offset", 1.0, 9.0, start=2.0, prior=(5.0, 3.0)),
     )
     sensors = (
-        FitSensor("a", measured[:, 0], 0.1, relative=0.02, weight=0.25),
+        FitSensor("a", measured[:, 0], 0.1, relative_standard_uncertainty=0.02, weight=0.25),
         FitSensor("b", measured[:, 1], 0.2, use=TIME < 3.0),
     )
     return CalibrationProblem(parameters, sensors, model, slopes=given)
@@ -73,7 +73,7 @@ def test_exact_slopes_go_through_scales_weights_priors_and_gaps() -> None:
     np.testing.assert_allclose(by_position, central, atol=1e-7 * np.abs(central).max())
 
 
-def test_what_a_search_is_handed_has_the_same_normal_equations() -> None:
+def test_the_reduced_jacobian_has_the_same_normal_equations() -> None:
     problem = posed(0.1)
     z = np.array([0.3, 0.6, 0.45])
     with Evaluator(Cost(problem, "nll"), keep_residuals=True) as evaluator:
@@ -127,7 +127,7 @@ class Killed(BaseException):
     """Stands for the process being killed."""
 
 
-def test_killed_between_slopes_it_goes_on_and_ends_the_same(tmp_path: Path) -> None:
+def test_interrupted_between_slopes_it_continues_and_ends_the_same(tmp_path: Path) -> None:
     whole = solve(posed(0.2), rules=EXACT)
     path = tmp_path / "record.jsonl"
     taken: list[bytes] = []

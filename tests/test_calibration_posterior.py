@@ -1,4 +1,4 @@
-"""The posterior sample against closed answers: normal, truncated, stretched for autocorrelated errors."""
+"""The posterior sample compared with analytical solutions: normal, truncated, autocorrelated errors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.signal import lfilter
 
-from mascarin.calibration import CalibrationProblem, Fit, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, FitSensor, Rules, solve
 from mascarin.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -36,7 +36,7 @@ def posed(phi: float, bounds: tuple[float, float] = (-10.0, 10.0), **keywords: A
     )
 
 
-def sample_of(problem: CalibrationProblem) -> tuple[Fit, Floats]:
+def sample_of(problem: CalibrationProblem) -> tuple[Calibration, Floats]:
     fit = solve(problem, method="emcee", rules=RULES, seed=3)
     assert fit.samples is not None
     return fit, fit.samples
@@ -57,7 +57,7 @@ def test_a_linear_model_has_the_normal_distribution_of_its_covariance(phi: float
         assert sample[:, 0].std() > 2.5 * independent
 
 
-def test_a_bound_cuts_the_distribution() -> None:
+def test_a_bound_truncates_the_distribution() -> None:
     _, sample = sample_of(posed(0.0, (3.01, 10.0)))
     free = solve(posed(0.0), rules=RULES)
     sd = 20.0 * free.uncertainty.sd[1]
@@ -68,8 +68,8 @@ def test_a_bound_cuts_the_distribution() -> None:
     assert np.quantile(sample[:, 1], 0.9) == pytest.approx(cut.ppf(0.9), abs=0.15 * sd)
 
 
-def test_a_prior_is_weighed_against_the_data() -> None:
-    """With a prior as certain as the data, the middle between both and a root of two less scatter."""
+def test_a_prior_and_data_of_equal_uncertainty_have_equal_weight() -> None:
+    """The mean is the middle of both, the standard deviation smaller by the root of two."""
     sd = 20.0 * solve(posed(0.0), rules=RULES).uncertainty.sd[1]
     free = solve(posed(0.0), rules=RULES).x[1]
     _, sample = sample_of(posed(0.0, prior=(free + 2.0 * sd, sd)))
@@ -77,12 +77,12 @@ def test_a_prior_is_weighed_against_the_data() -> None:
     assert sample[:, 1].std() == pytest.approx(sd / math.sqrt(2.0), rel=0.07)
 
 
-def test_a_short_sample_is_said_to_be_short() -> None:
+def test_a_short_sample_is_reported() -> None:
     fit = solve(posed(0.0), method="emcee", rules=Rules(starts=1, moves=50))
     assert any("the posterior sample is short" in text for text in fit.warnings)
 
 
-def test_without_the_package_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = builtins.__import__
 
     def absent(name: str, *rest: Any, **keywords: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Profiles against closed answers: a parabola, a product that cannot be told apart, a bound."""
+"""Profiles compared with analytical solutions: a parabola, a curved valley, a bound."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ def test_a_linear_model_has_parabolas_and_the_interval_of_the_fit(prior: tuple[f
         )
         assert (profile.low, profile.high) == pytest.approx((fit.low[i], fit.high[i]), abs=0.02 * sd)
         assert not profile.words
-    # Where one is held, the one that acts alike makes up for it.
+    # Where one is fixed, the one with the similar effect compensates.
     second = profiles(fit, ["b"])[0]
     assert np.corrcoef(second.values, second.others[:, 2])[0, 1] < -0.99
 
 
-def test_it_minimises_over_the_others_where_the_valley_is_curved() -> None:
-    """exp(-a t) b: each point of the profile against a search of its own."""
+def test_it_minimizes_over_the_others_in_a_curved_valley() -> None:
+    """exp(-a t) b: each point of the profile compared with a separate search."""
     x = np.linspace(0.0, 3.0, 60)
 
     def model(p: Floats) -> Floats:
@@ -67,8 +67,8 @@ def test_it_minimises_over_the_others_where_the_valley_is_curved() -> None:
     np.testing.assert_allclose(ratio, ratio.mean(), rtol=0.02)
 
 
-def test_what_the_data_do_not_bound_is_said() -> None:
-    """A film that matters only while it is small: above, the sheet is at the air's temperature anyway."""
+def test_a_side_that_the_data_do_not_bound_is_reported() -> None:
+    """A coefficient without effect when large: then the sheet has the temperature of the air."""
     sun = np.maximum(0.0, np.sin(HOUR * np.pi / 12.0))
 
     def model(p: Floats) -> Floats:
@@ -100,7 +100,7 @@ def test_values_that_cannot_be_run_are_outside() -> None:
 
 def test_refusals() -> None:
     fit = solve(linear(), rules=Rules(starts=1))
-    with pytest.raises(InputError, match="'d' was not fitted"):
+    with pytest.raises(InputError, match="'d' was not estimated"):
         profiles(fit, ["d"])
     with pytest.raises(InputError, match="points: found 3"):
         profiles(fit, points=3)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mascarin.calibration import CalibrationProblem, Fit, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, FitSensor, Rules, solve
 from mascarin.errors import InputError, SolverError
 from mascarin.optimization import NelderMead
 
@@ -23,7 +23,7 @@ TRUTH = np.array([4.0, 0.76, 30.0, 2.5])
 
 
 class Cell:
-    """A sheet without mass under the sun and a heavy room behind it; counts what it is asked."""
+    """A sheet without mass in the sun and a heavy room behind it; counts its evaluations."""
 
     def __init__(self) -> None:
         hour = np.arange(192) * STEP
@@ -82,22 +82,28 @@ def test_intervals_hold_the_truth_and_the_table_says_so() -> None:
     assert list(entry) == ["nominal", "fitted", "low", "high", "unit"]
     assert (entry["nominal"], entry["unit"]) == (10.0, "W/m2K")
     assert fit.to_dict()["inner"]["nominal"] is None
-    table = fit.table()
-    assert table["parameter"].tolist() == ["film", "absorptance", "mass", "inner"]
+    table = fit.to_dataframe()
+    assert table.index.tolist() == ["film", "absorptance", "mass", "inner"]
+    # Student's quantile or the simulated one, both about two, between interval and standard error.
+    np.testing.assert_allclose(
+        table["high"] - table["low"], 2.0 * fit.uncertainty.quantile * table["standard_error"], rtol=0.02
+    )
+    assert table.loc["film", "correlated_with"] == "absorptance"
+    assert table.loc["film", "correlation"] == fit.correlation[0, 1]
     assert fit.values["mass"] == fit.x[2]
     np.testing.assert_allclose(np.diag(fit.correlation), 1.0)
     assert np.isnan(fit.residuals[40:60, 1]).all()
     assert "autoregressive" in fit.uncertainty_method
 
 
-@pytest.mark.parametrize("cost", ["sd", "rmse", "cv_rmse", "nll"])
+@pytest.mark.parametrize("cost", ["sd", "rmse", "rmse_over_range", "nll"])
 def test_pattern_search_finds_the_minimum_of_every_cost(cost: Any) -> None:
     rules = Rules(agree=1, reductions=12, together=1)
     fit = solve(_problem(noise=0.05), method="hooke-jeeves", cost=cost, rules=rules, seed=3)
     if cost == "sd":
-        # Blind to bias, it sees the room's swing alone and that only tells the ratio of mass and inner film.
+        # Without the bias only the amplitude of the room counts: it depends on the ratio of mass and inner.
         assert fit.x[2] / fit.x[3] == pytest.approx(TRUTH[2] / TRUTH[3], rel=0.01)
-        assert any("mass and inner cannot be told apart" in text for text in fit.warnings)
+        assert any("mass and inner cannot be distinguished" in text for text in fit.warnings)
     else:
         np.testing.assert_allclose(fit.x, TRUTH, rtol=0.02)
         # Film and absorptance are correlated by 0.99, but both are known to a part in a hundred.
@@ -176,12 +182,12 @@ def test_budget_of_evaluations_stops_every_sequence() -> None:
     assert fit.cost == fit.trace.cost.min()
 
 
-def test_an_optimiser_of_ones_own() -> None:
+def test_an_own_optimizer_is_used() -> None:
     fit = solve(
         _problem(noise=0.05),
         method="hooke-jeeves",
         cost="rmse",
-        optimiser=lambda space: NelderMead(space, accuracy=1e-6),
+        optimizer=lambda space: NelderMead(space, accuracy=1e-6),
         rules=Rules(agree=1, together=1),
     )
     assert np.isfinite(fit.cost)
@@ -194,21 +200,24 @@ def test_estimate_on_a_bound_is_named_with_a_reason() -> None:
     fit = solve(CalibrationProblem(tuple(parameters), problem.sensors, Cell()))
     assert fit.x[1] == 0.8
     assert (
-        "on its lower bound 0.8: the data ask for less than the range allows" in fit.on_bound["absorptance"]
+        "on its lower bound 0.8: the minimum lies beyond, at less than the range allows"
+        in fit.on_bound["absorptance"]
     )
     assert list(fit.on_bound) == ["absorptance"]
-    assert fit.table()["remark"].tolist()[1] == fit.on_bound["absorptance"]
+    assert fit.to_dataframe().loc["absorptance", "remark"] == fit.on_bound["absorptance"]
     assert fit.low[1] == 0.8
 
 
-def test_parameters_that_act_only_together_are_told() -> None:
+def test_parameters_that_cannot_be_distinguished_are_named() -> None:
     rng = np.random.default_rng(2)
     wave = np.sin(np.arange(200) / 10.0)
 
     def model(x: Floats) -> Floats:
         ratio = x[:, 0] / x[:, 1]
-        idle = 0.0 * x[:, 3]
-        return (np.tanh(ratio[:, None] * wave) + x[:, 2:3] * np.roll(wave, 15) + idle[:, None])[:, :, None]
+        inactive = 0.0 * x[:, 3]
+        return (np.tanh(ratio[:, None] * wave) + x[:, 2:3] * np.roll(wave, 15) + inactive[:, None])[
+            :, :, None
+        ]
 
     truth = np.array([[0.04, 0.01, 1.0, 0.5]])
     measured = model(truth)[0, :, 0] + 0.02 * rng.normal(size=200)
@@ -217,21 +226,21 @@ def test_parameters_that_act_only_together_are_told() -> None:
             FitParameter("gamma", 0.005, 0.06),
             FitParameter("delta_t", 0.005, 0.05),
             FitParameter("gain", 0.0, 2.0),
-            FitParameter("colour", 0.0, 1.0),
+            FitParameter("color", 0.0, 1.0),
         ),
         (FitSensor("interface", measured, 0.02),),
         model,
     )
     fit = solve(problem)
-    assert any("gamma and delta_t cannot be told apart" in w and "fix one" in w for w in fit.warnings)
-    assert "colour changes none of the compared sensors: fix it" in fit.warnings
+    assert any("gamma and delta_t cannot be distinguished" in w and "fix one" in w for w in fit.warnings)
+    assert "color has no effect on the compared sensors: fix it" in fit.warnings
     assert not any(w.startswith("gain") for w in fit.warnings)
-    # What the data do not tell is as wide as the range; what they tell is not.
+    # An undetermined parameter has an interval as wide as its range.
     assert (fit.low[3], fit.high[3]) == (0.0, 1.0)
     assert fit.high[2] - fit.low[2] < 0.05
 
 
-def test_a_prior_settles_what_the_data_leave_open() -> None:
+def test_a_prior_determines_what_the_data_do_not() -> None:
     def model(x: Floats) -> Floats:
         return (x[:, :1] + x[:, 1:] + np.zeros(50))[:, :, None]
 
@@ -244,10 +253,12 @@ def test_a_prior_settles_what_the_data_leave_open() -> None:
 
 
 def test_bias_costs_without_intervals() -> None:
-    fit = solve(_problem(noise=0.1), method="hooke-jeeves", cost="nmbe", rules=Rules(agree=2, sequences=3))
+    fit = solve(
+        _problem(noise=0.1), method="hooke-jeeves", cost="bias_over_range", rules=Rules(agree=2, sequences=3)
+    )
     assert np.isnan(fit.low).all()
     assert fit.to_dict()["film"]["low"] is None
-    assert fit.warnings[0].startswith("the cost 'nmbe' compares means only")
+    assert fit.warnings[0].startswith("the cost 'bias_over_range' compares means only")
 
 
 # --- record and interruption --------------------------------------------------------------------------
@@ -258,7 +269,7 @@ class Killed(BaseException):
 
 
 @pytest.mark.parametrize("method", ["least-squares", "hooke-jeeves"])
-def test_an_interrupted_calibration_goes_on_and_ends_the_same(method: Any, tmp_path: Path) -> None:
+def test_an_interrupted_calibration_continues_and_ends_the_same(method: Any, tmp_path: Path) -> None:
     keywords: dict[str, Any] = {
         "method": method,
         "cost": "nll" if method == "least-squares" else "rmse",
@@ -267,14 +278,14 @@ def test_an_interrupted_calibration_goes_on_and_ends_the_same(method: Any, tmp_p
     whole = solve(_problem(noise=0.2), **keywords)
     path = tmp_path / "deep" / "record.jsonl"
 
-    class Mortal(Cell):
+    class Interrupted(Cell):
         def __call__(self, x: Floats) -> Floats:
             if self.members > 60:
                 raise Killed
             return super().__call__(x)
 
     with pytest.raises(Killed):
-        solve(_problem(Mortal(), noise=0.2), record=path, **keywords)
+        solve(_problem(Interrupted(), noise=0.2), record=path, **keywords)
     kept = path.read_bytes()
     path.write_bytes(kept + b'{"x": [1.0, 0.5')  # the line that was being written
     cell = Cell()
@@ -291,7 +302,7 @@ def test_an_interrupted_calibration_goes_on_and_ends_the_same(method: Any, tmp_p
     assert len({tuple(line["x"]) for line in lines}) == len(lines) == whole.trace.x.shape[0]
 
 
-def test_a_larger_budget_goes_on_from_the_record(tmp_path: Path) -> None:
+def test_a_larger_budget_continues_from_the_record(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
     keywords: dict[str, Any] = {"method": "hooke-jeeves", "cost": "rmse", "record": path}
     solve(_problem(noise=0.2), rules=Rules(agree=9, sequences=2, reductions=4), **keywords)
@@ -324,7 +335,7 @@ def test_members_that_fail_are_recorded_and_avoided(tmp_path: Path) -> None:
     assert "null" in path.read_text()
 
 
-def test_foreign_and_damaged_records_are_refused(tmp_path: Path) -> None:
+def test_records_of_another_problem_and_damaged_ones_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "record.jsonl"
     rules = Rules(agree=1, sequences=1, reductions=2)
     keywords: dict[str, Any] = {"method": "hooke-jeeves", "rules": rules, "record": path}
@@ -344,7 +355,7 @@ def test_foreign_and_damaged_records_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="not a line of JSON"):
         solve(_problem(), cost="rmse", **keywords)
     path.write_text('{"something": "else"}\n')
-    with pytest.raises(InputError, match="not a record of a calibration"):
+    with pytest.raises(InputError, match="not that of a record of a calibration"):
         solve(_problem(), cost="rmse", **keywords)
 
 
@@ -390,7 +401,7 @@ def test_no_derivative_next_to_the_minimum_is_said() -> None:
         return out
 
     problem = CalibrationProblem((FitParameter("p", 0.0, 1.0),), (FitSensor("s", np.arange(4.0)),), model)
-    with pytest.raises(SolverError, match=r"neighbourhood of p = 0\.5"):
+    with pytest.raises(SolverError, match=r"near p = 0\.5"):
         solve(problem, rules=Rules(starts=1))
 
 
@@ -400,7 +411,7 @@ def test_progress_counts_evaluations_and_shows_the_lowest_cost() -> None:
     def progress(count: int, lowest: float) -> None:
         seen.append((count, lowest))
 
-    fit: Fit = solve(_problem(noise=0.2), rules=Rules(starts=1), progress=progress)
+    fit: Calibration = solve(_problem(noise=0.2), rules=Rules(starts=1), on_batch=progress)
     assert seen[-1][0] == fit.trace.x.shape[0]
     assert seen[-1][1] == fit.trace.cost.min()
     assert all(b[1] <= a[1] for a, b in itertools.pairwise(seen))

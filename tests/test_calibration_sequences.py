@@ -1,4 +1,4 @@
-"""Every method behind one call: the same minimum, an interruption that leaves no mark, a user's own."""
+"""All search methods: the same minimum, the same result after an interruption, and an own optimizer."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ RULES = Rules(starts=2, agree=2, sequences=6, reductions=12, particles=9, genera
 
 
 class Sheet:
-    """Two sensors that answer nonlinearly to two parameters; dies after so many members."""
+    """Two sensors that depend nonlinearly on two parameters; stops with an error after some evaluations."""
 
-    def __init__(self, dies_after: int | None = None) -> None:
+    def __init__(self, stops_after: int | None = None) -> None:
         self.members = 0
-        self._dies_after = dies_after
+        self._stops_after = stops_after
         self.hour = np.arange(96) / 4.0
 
     def __call__(self, x: Floats) -> Floats:
-        if self._dies_after is not None and self.members >= self._dies_after:
+        if self._stops_after is not None and self.members >= self._stops_after:
             raise KeyboardInterrupt
         self.members += len(x)
         day = np.sin(self.hour * np.pi / 12.0)
@@ -56,19 +56,19 @@ def test_every_method_finds_the_minimum_that_least_squares_finds(method: Any) ->
     np.testing.assert_allclose(fit.x, best.x, atol=2e-3)
     assert np.all((fit.low < TRUTH) & (fit.high > TRUTH))
     assert fit.method == method
-    # However the minimum was found, its uncertainty is the same.
+    # The uncertainty does not depend on the search method.
     np.testing.assert_allclose(
         fit.high - fit.low, best.high - best.low, rtol=0.3 if method == "emcee" else 0.02
     )
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_killed_and_continued_gives_the_same_bytes(method: Any, tmp_path: Path) -> None:
+def test_an_interrupted_search_continues_and_gives_the_same_bytes(method: Any, tmp_path: Path) -> None:
     whole, broken = tmp_path / "whole.jsonl", tmp_path / "broken.jsonl"
     fit = solve(problem(), method=method, rules=RULES, seed=5, record=whole)
-    for dies_after in (10, 20):
+    for stops_after in (10, 20):
         with pytest.raises(KeyboardInterrupt):
-            solve(problem(Sheet(dies_after)), method=method, rules=RULES, seed=5, record=broken)
+            solve(problem(Sheet(stops_after)), method=method, rules=RULES, seed=5, record=broken)
     again = solve(problem(), method=method, rules=RULES, seed=5, record=broken)
     assert broken.read_bytes() == whole.read_bytes()
     for name in ("x", "low", "high", "correlation"):
@@ -89,7 +89,7 @@ def test_sequences_differ_by_their_seed_and_agree_in_the_end() -> None:
 
 
 class Bisecting(Optimizer):
-    """A user's own: halves a box about the better of random points."""
+    """An own optimizer: shrinks a box about the best of random points."""
 
     def _search(self) -> Steps:
         rng = np.random.default_rng(1)
@@ -102,14 +102,14 @@ class Bisecting(Optimizer):
         return "the box is small"
 
 
-def test_a_user_brings_an_optimiser() -> None:
-    fit = solve(problem(), cost="rmse", optimiser=Bisecting, rules=Rules(agree=2, sequences=4))
+def test_an_own_optimizer_is_used() -> None:
+    fit = solve(problem(), cost="rmse", optimizer=Bisecting, rules=Rules(agree=2, sequences=4))
     np.testing.assert_allclose(fit.x, TRUTH, atol=0.03)
-    assert fit.method == "your optimiser"
+    assert fit.method == "your optimizer"
     assert fit.minima[0].reason == "the box is small"
 
 
-def test_an_optimiser_that_never_asks_is_stopped() -> None:
+def test_an_optimizer_that_never_asks_is_stopped() -> None:
     class Silent(Optimizer):
         def _search(self) -> Steps:
             while True:
@@ -122,10 +122,10 @@ def test_an_optimiser_that_never_asks_is_stopped() -> None:
         return Silent(space, remember=False)
 
     with pytest.raises(SolverError, match="Silent of sequence 0 asks for no point and is not done"):
-        solve(problem(), optimiser=make)
+        solve(problem(), optimizer=make)
 
 
-def test_rules_that_cannot_be_are_named() -> None:
+def test_impossible_rules_are_refused() -> None:
     wrong: tuple[tuple[dict[str, Any], str], ...] = (
         ({"walkers": 7}, "walkers: found 7, expected an even number"),
         ({"moves": 3}, "moves: found 3, expected at least 50"),

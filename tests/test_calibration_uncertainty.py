@@ -1,4 +1,4 @@
-"""Intervals against closed formulas and against how often they hold the truth."""
+"""Intervals compared with formulas, and how often they contain the true value."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.signal import lfilter
 
-from mascarin.calibration import CalibrationProblem, Fit, FitParameter, FitSensor, Rules, solve
+from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, FitSensor, Rules, solve
 
 Floats = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ def _design(times: int, sensors: int) -> Floats:
     return np.asarray(size[0] * np.cos(angle + shift[0]) + size[1] * np.cos(2 * angle + shift[1]) + drift)
 
 
-def _fit(noise: Floats, design: Floats, cost: str = "nll") -> Fit:
+def _fit(noise: Floats, design: Floats, cost: str = "nll") -> Calibration:
     measured = 20.0 + design @ TRUTH + noise
     parameters = tuple(FitParameter(f"p{k}", -1.0, 2.0) for k in range(3))
     sensors = tuple(FitSensor(f"s{k}", measured[:, k], 0.3) for k in range(measured.shape[1]))
@@ -108,11 +108,11 @@ def test_other_costs_have_intervals_of_the_same_size(cost: str) -> None:
     np.testing.assert_allclose(fit.high - fit.low, reference.high - reference.low, rtol=0.3)
 
 
-def test_a_bias_that_stays_is_named() -> None:
+def test_a_remaining_bias_is_named() -> None:
     design = _design(384, 2)
     noise = 0.1 * np.random.default_rng(7).normal(size=(384, 2)) + np.array([0.0, 3.0])
     fit = _fit(noise, design)
-    assert any("'s1' keeps a bias of -" in text for text in fit.warnings)
+    assert any("'s1' has a bias of -" in text for text in fit.warnings)
 
 
 def test_few_independent_residuals_are_named() -> None:
@@ -123,4 +123,4 @@ def test_few_independent_residuals_are_named() -> None:
         lambda x: np.asarray(20.0 + x @ np.stack([np.cos(time / (k + 3.0)) for k in range(3)]))[:, :, None],
     )
     fit = solve(problem, rules=Rules(starts=1))
-    assert any("independent samples: fit fewer" in text for text in fit.warnings)
+    assert any("independent samples: estimate fewer" in text for text in fit.warnings)

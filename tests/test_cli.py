@@ -195,3 +195,13 @@ def test_output_without_a_file_behind_it(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(sys, "stdout", Gone())
     monkeypatch.setattr(cli, "build_app", lambda chosen: lambda words: sys.stdout.write("x") and 0)
     assert cli.main([]) == 0
+
+
+def test_a_command_in_the_background_can_be_interrupted() -> None:
+    code = (
+        "import signal, sys; from mascarin import cli\n"
+        "signal.signal(signal.SIGINT, signal.SIG_IGN)  # as a shell does for background jobs\n"
+        "sys.argv = ['mascarin', '--version']; cli.main()\n"
+        "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

@@ -94,10 +94,15 @@ def lines(kind: type[BaseModel]) -> Iterator[str]:
         yield f"| `{name}` | {words(field.annotation)} | {default(field)} | {meaning} |"
 
 
+def summary(kind: type[BaseModel]) -> str:
+    """The docstring without its list of parameters."""
+    return re.split(r"\n\s*Parameters\n\s*---", kind.__doc__ or "")[0].strip()
+
+
 def rendered() -> str:
     parts = []
     for title, kind in SECTIONS:
-        parts.append(f"### {title}\n\n{(kind.__doc__ or '').strip()}\n\n" + "\n".join(lines(kind)))
+        parts.append(f"### {title}\n\n{summary(kind)}\n\n" + "\n".join(lines(kind)))
     return "\n\n".join(parts)
 
 

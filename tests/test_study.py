@@ -463,6 +463,8 @@ from mascarin.calibration.evaluations import Evaluator
 from mascarin._io import atomic
 from mascarin.study import sensitivity_step as screening
 
+# Background jobs of a shell inherit that the signal is ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 where, count = sys.argv[1], int(sys.argv[2])
 screening.CHUNK_SECONDS = 0.02  # many pieces, also on a fast machine
 pieces, write, run = 0, atomic.write, Evaluator._run

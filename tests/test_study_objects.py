@@ -20,6 +20,7 @@ from mascarin.study import Sensor, Study, StudyResults
 from mascarin.study.document.comparison import FLOW_LABELS
 from mascarin.weather import Climate, Measurements
 
+SENSOR = Sensor(column="joint", output="wall.interface_1_temperature", expanded_uncertainty=0.1)
 PARAMETERS = ["materials.insulation.conductivity", "surfaces.wall.outside.absorptance"]
 TRUE = {"materials.insulation.conductivity": 0.033, "surfaces.wall.outside.absorptance": 0.62}
 
@@ -34,7 +35,9 @@ def options(wall: SyntheticWall, **changed: Any) -> dict[str, Any]:
         "building": wall.building,
         "climate": wall.climate,
         "measurements": wall.measurements,
-        "sensors": {"joint": Sensor(column="joint", output="wall.interface_1_temperature", uncertainty=0.1)},
+        "sensors": {
+            "joint": Sensor(column="joint", output="wall.interface_1_temperature", expanded_uncertainty=0.1)
+        },
         "periods": {"identification": (pd.Timestamp("2023-03-03"), "2023-03-06")},
         "parameters": PARAMETERS,
         "criteria": [{"metric": "rmse", "limit": 0.2}],
@@ -216,7 +219,7 @@ def test_a_windowed_building_with_heating_and_cooling_is_studied(tmp_path: Path)
         building=building,
         climate=climate,
         measurements=Measurements.from_table(logged, timezone="UTC+1"),
-        sensors={"roof": {"column": "roof", "output": "roof.inside_temperature", "uncertainty": 0.05}},
+        sensors={"roof": {"column": "roof", "output": "roof.inside_temperature"}},
         periods={"identification": ("2023-04-02", "2023-04-04")},
         parameters=["materials.insulation.conductivity"],
         step="1h",

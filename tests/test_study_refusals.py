@@ -39,7 +39,7 @@ CASES = {
         "start: 1.4",
         (
             "identification.parameters.materials.brick.conductivity",
-            "range [0.4, 1] W/(m K) does not hold the start 1.4: move the start",
+            "range [0.4, 1] W/(m K) does not contain the start 1.4: move the start",
         ),
     ),
     "unknown method of fitting": Refused(
@@ -239,7 +239,7 @@ CASES = {
         "materials.brick.conductivity:",
         "materials.brick.conductivity: {low: -1}",
         "{low: -1}",
-        ("range [-1, 1.2] W/(m K)", "can be, [0,", "narrow it"),
+        ("range [-1, 1.2] W/(m K)", "possible values, [0,", "narrow it"),
     ),
     "bounds backwards": Refused(
         "materials.brick.conductivity:",
@@ -433,7 +433,7 @@ CASES = {
         IDENTIFIED,
         '["2023-03-02 00:00", "2023-03-02 00:20"]',
         "identification:\n",
-        ("4 parameters cannot be found from 2 measured values", "a longer period"),
+        ("4 parameters cannot be estimated from 2 measured values", "a longer period"),
     ),
     # --- the building, through the study
     "negative thickness": Refused(

@@ -4,8 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from mascarin.errors import InputError
+from mascarin.validation.comparison import Metrics, compare
 from mascarin.validation.criteria import Criterion, judge, parse_criteria
-from mascarin.validation.metrics import Metrics, compare
 
 MEASURED = [20.0, 25.0, 30.0]
 
@@ -82,3 +82,30 @@ def test_unknown_sensors_and_periods_are_named() -> None:
         judge(parse_criteria([{"metric": "sd", "limit": 1, "sensors": "rooom"}]), _metrics())
     with pytest.raises(InputError, match=r"period 'blnd'.*'blind'"):
         judge(parse_criteria([{"metric": "sd", "limit": 1, "periods": "blnd"}]), _metrics())
+
+
+def test_criteria_of_the_guideline_apply_to_energy() -> None:
+    found = {
+        "heating": {"july": compare([300.0, 500.0, 400.0], [310.0, 520.0, 390.0], unit="W")},
+        "room": {"july": compare([20.0, 25.0, 30.0], [20.0, 24.0, 30.0])},
+    }
+    criteria = parse_criteria(
+        [
+            {"metric": "cv_rmse", "limit": 30, "sensors": "heating"},
+            {"metric": "nmbe", "limit": 2, "sensors": "heating"},
+            {"metric": "rmse_over_range", "limit": 10},
+            {"metric": "bias_over_range", "limit": 3, "sensors": "room"},
+        ]
+    )
+    verdicts = judge(criteria, found)
+    assert [v.passed for v in verdicts] == [True, False, True, True, False]
+    assert [v.name for v in verdicts[:2]] == ["CV(RMSE) <= 30 %", "|NMBE| <= 2 %"]
+    assert verdicts[2].name == "rmse <= 10 % of the measured range"
+    assert {v.unit for v in verdicts} == {"%"}
+
+
+def test_a_criterion_over_the_mean_of_a_temperature_is_refused() -> None:
+    with pytest.raises(
+        InputError, match=r"criteria\[0\]: found cv_rmse for sensor 'room' in degC.*rmse_over_range"
+    ):
+        judge(parse_criteria([{"metric": "cv_rmse", "limit": 30}]), _metrics())

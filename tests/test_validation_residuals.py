@@ -1,4 +1,4 @@
-"""Each fault is put into a residual on purpose and must be found, and nothing else."""
+"""Residuals with one known error: this error must be found, and nothing else."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ import json
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from mascarin.errors import InputError
-from mascarin.validation.residuals import Examination, diagnose, examine
+from mascarin.validation.diagnosis import diagnose
+from mascarin.validation.residuals import ResidualAnalysis, analyze_residuals
 
 Floats = NDArray[np.float64]
 
@@ -35,8 +37,8 @@ MEASURED = 26.0 + 5.0 * np.cos((HOUR - 15.0) / 12.0 * np.pi)
 NOISE = 0.2 * np.random.default_rng(3).normal(size=HOUR.size)
 
 
-def _examined(error: Floats, measured: Floats = MEASURED, **keywords: object) -> Examination:
-    return examine(
+def _analyzed(error: Floats, measured: Floats = MEASURED, **keywords: object) -> ResidualAnalysis:
+    return analyze_residuals(
         measured,
         measured + NOISE + error,
         step=STEP,
@@ -47,55 +49,56 @@ def _examined(error: Floats, measured: Floats = MEASURED, **keywords: object) ->
     )
 
 
-def test_noise_is_called_noise() -> None:
-    e = _examined(np.zeros(HOUR.size))
+def test_white_noise_is_recognized() -> None:
+    e = _analyzed(np.zeros(HOUR.size))
     assert e.white
-    assert not any(link.real for link in e.links)
-    assert e.effective == e.n == HOUR.size
+    assert not any(one.significant for one in e.correlations)
+    assert e.effective_samples == e.n == HOUR.size
     assert abs(e.delay) < 1.0
-    assert diagnose([e]) == ["room: what is left is noise: nothing points to an error of the model."]
+    assert diagnose([e]) == ["room: the residuals are white noise: they show no error of the model."]
 
 
 def test_error_that_follows_the_sun() -> None:
-    e = _examined(0.002 * np.roll(SUN, 4))
-    first = e.links[0]
-    assert (first.driver, first.real) == ("sun", True)
+    e = _analyzed(0.002 * np.roll(SUN, 4))
+    first = e.correlations[0]
+    assert (first.driver, first.significant) == ("sun", True)
     assert first.lag == pytest.approx(1.0)
     assert first.slope == pytest.approx(0.002, rel=0.1)
     text = " ".join(diagnose([e]))
-    assert "goes with the sun 1 h later" in text
-    assert "too much of the sun's heat gets in" in text
+    assert "correlated with the sun (" in text
+    assert ", delay 1 h)" in text
+    assert "too much solar heat is absorbed" in text
     assert "with the wind" not in text
 
 
 def test_error_that_follows_the_wind() -> None:
-    e = _examined(-0.3 * (WIND - WIND.mean()))
-    assert e.links[0].driver == "wind"
-    assert e.links[0].correlation < -0.8
+    e = _analyzed(-0.3 * (WIND - WIND.mean()))
+    assert e.correlations[0].driver == "wind"
+    assert e.correlations[0].correlation < -0.8
     text = " ".join(diagnose([e]))
-    assert "goes with the wind (correlation -0." in text
-    assert "takes too much heat away when it blows" in text
+    assert "correlated with the wind (-0." in text
+    assert "removes too much heat in wind" in text
 
 
-def test_a_slow_error_of_unknown_origin_is_not_put_down_to_a_driver() -> None:
-    put_down = 0
+def test_a_slow_error_of_unknown_cause_is_not_attributed_to_a_driver() -> None:
+    attributed = 0
     for seed in range(20):
-        e = _examined(0.5 * _red(100 + seed))
+        e = _analyzed(0.5 * _red(100 + seed))
         assert not e.white
-        put_down += any(link.real for link in e.links)
-    assert put_down <= 4
+        attributed += any(one.significant for one in e.correlations)
+    assert attributed <= 4
 
 
-def test_memory_without_a_cause_is_said() -> None:
-    e = _examined(0.5 * _red(104))
+def test_autocorrelation_without_a_cause_is_reported() -> None:
+    e = _analyzed(0.5 * _red(104))
     (sentence,) = diagnose([e])
-    assert "what is left is not noise, errors last for about" in sentence
-    assert e.effective < 0.2 * e.n
+    assert "the residuals are autocorrelated, with a correlation time of about" in sentence
+    assert e.effective_samples < 0.2 * e.n
 
 
 def test_hours_of_the_day() -> None:
     burst = np.where((HOUR % 24.0 >= 14.0) & (HOUR % 24.0 < 15.0), 1.5, 0.0)
-    e = _examined(burst)
+    e = _analyzed(burst)
     assert e.hour_mean[14] == pytest.approx(1.5, abs=0.1)
     assert e.hour_mean[3] == pytest.approx(0.0, abs=0.1)
     assert e.hour_sd[3] == pytest.approx(0.2, abs=0.05)
@@ -105,28 +108,30 @@ def test_hours_of_the_day() -> None:
 
 def test_daily_amplitude_and_phase() -> None:
     late = 26.0 + 4.0 * np.cos((HOUR - 16.0) / 12.0 * np.pi) + 0.05 * HOUR
-    e = examine(MEASURED, late, step=STEP, hour=HOUR % 24.0, sensor="gap")
+    e = analyze_residuals(MEASURED, late, step=STEP, hour=HOUR % 24.0, sensor="gap")
     assert e.measured is not None
     assert e.simulated is not None
     assert (e.measured.amplitude, e.measured.peak) == pytest.approx((5.0, 15.0))
     assert (e.simulated.amplitude, e.simulated.peak) == pytest.approx((4.0, 16.0))
     assert e.delay == pytest.approx(60.0)
-    early = examine(late, MEASURED, step=STEP, hour=HOUR % 24.0, sensor="gap")
+    early = analyze_residuals(late, MEASURED, step=STEP, hour=HOUR % 24.0, sensor="gap")
     assert early.delay == pytest.approx(-60.0)
-    wrapped = examine(np.roll(MEASURED, 34), np.roll(MEASURED, 38), step=STEP, hour=HOUR % 24.0)
+    wrapped = analyze_residuals(np.roll(MEASURED, 34), np.roll(MEASURED, 38), step=STEP, hour=HOUR % 24.0)
     assert wrapped.delay == pytest.approx(60.0)
 
 
-def test_swing_and_delay_in_words() -> None:
+def test_amplitude_and_phase_lag_in_words() -> None:
     swing = 26.0 + 6.5 * np.cos((HOUR - 16.0) / 12.0 * np.pi)
-    text = " ".join(diagnose([_examined(swing - MEASURED)]))
-    assert "swings more than measured, by 6.5 against 5 K: too little storage" in text
-    assert "daily peak comes 60 min late" in text
+    text = " ".join(diagnose([_analyzed(swing - MEASURED)]))
+    assert (
+        "daily amplitude is larger than the measured one, 6.5 instead of 5 K: too little heat storage" in text
+    )
+    assert "daily peak is 60 min late" in text
 
 
 def test_bias_in_words() -> None:
     assert "the model is 0.99 K below the measurement on average" in " ".join(
-        diagnose([_examined(np.full(HOUR.size, -1.0))])
+        diagnose([_analyzed(np.full(HOUR.size, -1.0))])
     )
 
 
@@ -135,17 +140,17 @@ def test_gaps_change_little() -> None:
     gappy = MEASURED.copy()
     gappy[200:260] = np.nan
     gappy[::9] = np.nan
-    whole, holed = _examined(error), _examined(error, measured=gappy)
+    whole, holed = _analyzed(error), _analyzed(error, measured=gappy)
     assert holed.n < whole.n
-    assert holed.links[0].correlation == pytest.approx(whole.links[0].correlation, abs=0.02)
+    assert holed.correlations[0].correlation == pytest.approx(whole.correlations[0].correlation, abs=0.02)
     assert holed.delay == pytest.approx(whole.delay, abs=3.0)
-    used = _examined(error, use=np.arange(HOUR.size) < 480)
+    used = _analyzed(error, use=np.arange(HOUR.size) < 480)
     assert used.n == 480
 
 
 def test_cumulative_periodogram_of_one_oscillation() -> None:
     wave = np.cos(HOUR / 12.0 * np.pi)
-    e = examine(MEASURED, MEASURED + wave, step=STEP, hour=HOUR % 24.0)
+    e = analyze_residuals(MEASURED, MEASURED + wave, step=STEP, hour=HOUR % 24.0)
     at = np.searchsorted(e.frequency, 1.0)
     assert e.frequency[at] == pytest.approx(1.0)
     assert e.cumulative[at - 1] == pytest.approx(0.0, abs=1e-9)
@@ -154,40 +159,64 @@ def test_cumulative_periodogram_of_one_oscillation() -> None:
 
 
 def test_dictionary_is_json() -> None:
-    e = _examined(0.002 * SUN)
+    e = _analyzed(0.002 * SUN)
     data = json.loads(json.dumps(e.to_dict(), allow_nan=False))
     assert len(data["hour_mean"]) == 24
     assert data["acf"][0] == 1.0
     assert data["acf_lags"][1] == 0.25
     assert set(data["correlation"]) == {"sun", "wind", "outdoor air"}
     assert data["daily_cycle"]["delay_minutes"] == pytest.approx(e.delay)
-    short = examine(MEASURED[:48], MEASURED[:48] + NOISE[:48], step=STEP, hour=HOUR[:48])
+    short = analyze_residuals(MEASURED[:48], MEASURED[:48] + NOISE[:48], step=STEP, hour=HOUR[:48])
     assert json.loads(json.dumps(short.to_dict(), allow_nan=False))["hour_mean"][20] is None
     assert short.measured is None
     assert math.isnan(short.delay)
 
 
-def test_a_driver_that_never_changes_is_no_link() -> None:
-    e = examine(MEASURED, MEASURED + NOISE, step=STEP, hour=HOUR % 24, drivers={"fan": np.ones(HOUR.size)})
-    assert math.isnan(e.links[0].correlation)
-    assert not e.links[0].real
+def test_a_constant_driver_has_no_correlation() -> None:
+    e = analyze_residuals(
+        MEASURED, MEASURED + NOISE, step=STEP, hour=HOUR % 24, drivers={"fan": np.ones(HOUR.size)}
+    )
+    assert math.isnan(e.correlations[0].correlation)
+    assert not e.correlations[0].significant
 
 
-def test_series_that_cannot_be_examined_are_refused() -> None:
-    with pytest.raises(InputError, match="23 samples to examine"):
-        examine(MEASURED[:23], MEASURED[:23], step=STEP, hour=HOUR[:23])
+def test_series_that_cannot_be_analyzed_are_refused() -> None:
+    with pytest.raises(InputError, match="23 samples to analyze"):
+        analyze_residuals(MEASURED[:23], MEASURED[:23], step=STEP, hour=HOUR[:23])
     with pytest.raises(InputError, match=r"sun \(5,\)"):
-        examine(MEASURED, MEASURED, step=STEP, hour=HOUR, drivers={"sun": np.ones(5)})
+        analyze_residuals(MEASURED, MEASURED, step=STEP, hour=HOUR, drivers={"sun": np.ones(5)})
     with pytest.raises(InputError, match="must be positive"):
-        examine(MEASURED, MEASURED, step=0.0, hour=HOUR)
+        analyze_residuals(MEASURED, MEASURED, step=0.0, hour=HOUR)
 
 
-def test_the_cross_correlation_is_told_at_every_lag() -> None:
+def test_the_cross_correlation_is_given_at_every_lag() -> None:
     """A residual that is the sun two hours later goes with it most at two hours."""
     late = np.roll(SUN, 8) / 900.0
-    found = examine(np.zeros(HOUR.size), late, step=STEP, hour=HOUR, drivers={"sun": SUN}).to_dict()
+    found = analyze_residuals(np.zeros(HOUR.size), late, step=STEP, hour=HOUR, drivers={"sun": SUN}).to_dict()
     values = found["cross_correlation"]["sun"]
     assert found["cross_lags"][:3] == [0.0, 0.25, 0.5]
     assert found["cross_lags"][int(np.argmax(values))] == 2.0
     assert max(values) == pytest.approx(1.0, abs=1e-9)
     assert values[0] < 0.95
+
+
+def test_series_with_times_need_neither_step_nor_hour() -> None:
+    times = pd.date_range("2024-07-01", periods=HOUR.size, freq="15min", tz="Indian/Reunion")
+    error = 0.002 * SUN
+    expected = _analyzed(error)
+    found = analyze_residuals(
+        pd.Series(MEASURED, index=times),
+        pd.Series(MEASURED + NOISE + error, index=times),
+        drivers={"sun": SUN, "wind": WIND, "outdoor air": AIR},
+        sensor="room",
+    )
+    assert found.to_dict() == expected.to_dict()
+    with pytest.raises(InputError, match="found no times"):
+        analyze_residuals(MEASURED, MEASURED)
+
+
+def test_an_analysis_is_shown_shortly() -> None:
+    text = repr(_analyzed(0.002 * SUN))
+    assert len(text.splitlines()) <= 15
+    assert "correlation with sun" in text
+    assert "<table>" in _analyzed(0.002 * SUN)._repr_html_()

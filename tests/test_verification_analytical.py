@@ -38,16 +38,16 @@ def test_case(name: str, rows: dict[str, list[Check]]) -> None:
         assert row.passed, row.to_dict()
 
 
-def test_every_case_demands_something_or_says_that_it_informs(rows: dict[str, list[Check]]) -> None:
+def test_only_one_case_is_without_bounds(rows: dict[str, list[Check]]) -> None:
     informing = [name for name, found in rows.items() if all(row.informs for row in found)]
     assert informing == ["apparent capacity"]
-    # The paper's scheme loses heat, and in proportion to the step.
+    # The scheme of the paper loses heat in proportion to the step.
     loss, *orders = rows["apparent capacity"]
     assert 1e-4 < loss.value < 1e-1
     assert all(0.9 < order.value < 1.1 for order in orders)
 
 
-# --- what a row means ---
+# --- checks ---
 
 
 def test_bounds() -> None:
@@ -62,9 +62,16 @@ def test_bounds() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["semi-infinite sinusoid", "Stefan, two phases", "lumped zone", "enclosures", "films"]
+    "name",
+    [
+        "semi-infinite sinusoid",
+        "Stefan, two phases",
+        "lumped zone",
+        "enclosures",
+        "surface heat transfer coefficients",
+    ],
 )
-def test_an_error_of_one_percent_is_seen(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_error_of_one_percent_is_found(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     true_run = setup.run
 
     def wrong(*args: Any, **options: Any) -> Results:
@@ -88,7 +95,7 @@ def test_a_case_that_cannot_be_run_fails(monkeypatch: pytest.MonkeyPatch) -> Non
     assert "step 3 did not converge" in row.quantity
 
 
-# --- the closed forms themselves ---
+# --- the analytical solutions ---
 
 
 def test_neumann_constant_of_the_published_cases() -> None:
@@ -107,13 +114,13 @@ def test_transfer_matrix_conserves_and_tends_to_the_resistance() -> None:
 
 
 def test_radiosity_of_two_plates_is_the_textbook_formula() -> None:
-    faces = [radiation.Face(2.0, 0.9, 0.0), radiation.Face(2.0, 0.25, 0.0)]
-    matrix = radiation.exchange(faces, np.array([[0.0, 1.0], [1.0, 0.0]]))
+    surfaces = [radiation.EnclosureSurface(2.0, 0.9, 0.0), radiation.EnclosureSurface(2.0, 0.25, 0.0)]
+    matrix = radiation.exchange(surfaces, np.array([[0.0, 1.0], [1.0, 0.0]]))
     conductance = 2.0 / (1.0 / 0.9 + 1.0 / 0.25 - 1.0)
     assert matrix == pytest.approx(conductance * np.array([[1.0, -1.0], [-1.0, 1.0]]))
 
 
-def test_harmonic_reads_amplitude_and_phase_past_a_drift() -> None:
+def test_harmonic_gives_amplitude_and_phase_of_a_series_with_drift() -> None:
     t = 60.0 * np.arange(2881)
     series = 3.0 + 1e-5 * t + 4.0 * np.sin(2.0 * np.pi * t / 86400.0 - 0.7)
     found = setup.harmonic(series, 60.0, 86400.0)
@@ -146,7 +153,7 @@ def test_verify_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixt
     assert err == "1 of 1 numbers within their bounds\n"
 
 
-def test_verify_ends_with_1_when_a_number_leaves_its_bounds(
+def test_verify_ends_with_1_when_a_number_is_outside_its_bounds(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     quick(monkeypatch, GOOD, BAD)
@@ -157,7 +164,7 @@ def test_verify_ends_with_1_when_a_number_leaves_its_bounds(
     assert err == "1 of 2 numbers within their bounds\n"
 
 
-def test_the_page_shows_what_verify_prints(rows: dict[str, list[Check]], repository: Path) -> None:
+def test_the_page_agrees_with_the_command(rows: dict[str, list[Check]], repository: Path) -> None:
     text = (repository / "docs" / "verification.md").read_text(encoding="utf-8")
     shown = [
         tuple(cell.strip() for cell in line.split("|")[1:-1])
@@ -173,4 +180,6 @@ def test_the_page_shows_what_verify_prints(rows: dict[str, list[Check]], reposit
     ]
     assert [(*row[:3], row[-1]) for row in shown if row[0] != "case"] == printed
     for case in cases():
-        assert page.section(case) in text, f"{case.name}: write the page anew, see validation/cases/page.py"
+        assert page.section(case) in text, (
+            f"{case.name}: write the page again, see verification/analytical/page.py"
+        )

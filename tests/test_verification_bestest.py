@@ -84,7 +84,7 @@ def test_cases_are_chosen_by_name_in_their_order() -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_building_file_is_what_the_table_says(name: str) -> None:
+def test_the_building_file_agrees_with_the_catalogue(name: str) -> None:
     assert CASES[name].file.read_text(encoding="utf-8") == writing.text(CASES[name])
 
 
@@ -92,11 +92,11 @@ def test_there_is_a_file_for_each_case_and_no_other() -> None:
     assert {path.stem for path in FOLDER.iterdir()} == set(CASES)
 
 
-# --- what six programs found ---
+# --- results of six programs ---
 
 
 def test_the_ranges_are_those_of_the_published_table(data_dir: Path) -> None:
-    """Every number of the recorded table but those of three cases that are not among ours."""
+    """Every number of the published table, without three cases that are not in the catalogue."""
     with (data_dir / "bestest" / "std140_2020_reference.csv").open(encoding="utf-8", newline="") as file:
         rows = [row for row in csv.DictReader(file) if row["case"] not in ("450", "460", "470")]
     published = sorted(
@@ -131,7 +131,7 @@ def test_a_range_by_hand() -> None:
 # --- quantities from hours ---
 
 
-def test_hours_have_the_name_of_the_one_they_end() -> None:
+def test_hours_are_named_by_their_end() -> None:
     assert [when(hour) for hour in (0, 23, 24, 31 * 24, 8759)] == [
         "Jan 1 1", "Jan 1 24", "Jan 2 1", "Feb 1 1", "Dec 31 24",
     ]  # fmt: skip
@@ -186,7 +186,7 @@ def test_free_floating_extremes_are_those_of_the_right_zone() -> None:
     }  # fmt: skip
 
 
-def test_sun_per_area_and_what_shades_keep_off() -> None:
+def test_solar_radiation_per_area_and_the_shading_coefficient() -> None:
     assert partners(CASES["610"]) == ("600",)
     assert partners(CASES["600"]) == partners(CASES["910"]) == ()
     found = {row.quantity: row for row in quantities(years(), CASES["610"])}
@@ -197,13 +197,13 @@ def test_sun_per_area_and_what_shades_keep_off() -> None:
     assert base["incident_solar_east"].value == pytest.approx(0.5 * 0.302 * 8760)
 
 
-def test_every_published_number_of_every_case_is_given() -> None:
+def test_every_published_quantity_is_computed() -> None:
     every = years()
     given = {(row.case, row.quantity) for case in CASES.values() for row in quantities(every, case)}
     assert given == set(ranges())
 
 
-def test_bins_take_the_whole_kelvin_from_their_label() -> None:
+def test_a_bin_begins_at_its_label() -> None:
     counts = bins(np.array([-60.0, -49.5, -49.0, -0.5, 0.0, 0.999, 1.0, 25.4, 98.7, 120.0]))
     assert counts.sum() == 10
     found = {int(index) - 50: int(counts[index]) for index in np.flatnonzero(counts)}
@@ -239,7 +239,7 @@ def test_half_a_year_is_refused() -> None:
 # --- the weather ---
 
 
-def test_the_weather_is_known_by_its_numbers(data_dir: Path, tmp_path: Path) -> None:
+def test_the_weather_is_recognized_by_its_numbers(data_dir: Path, tmp_path: Path) -> None:
     file = data_dir / "bestest" / "725650TYCST.epw"
     assert fingerprint(file) == FINGERPRINT
     lines = file.read_text(encoding="latin-1").splitlines()
@@ -255,7 +255,7 @@ def test_the_weather_is_known_by_its_numbers(data_dir: Path, tmp_path: Path) -> 
         read(renamed)
 
 
-def test_without_weather_it_is_said_where_to_get_it(tmp_path: Path) -> None:
+def test_without_weather_the_message_names_the_source(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="725650TYCST"):
         read(None)
     with pytest.raises(InputError, match="found no file"):
@@ -265,8 +265,8 @@ def test_without_weather_it_is_said_where_to_get_it(tmp_path: Path) -> None:
 # --- cases run ---
 
 
-def test_sun_and_loads_of_a_shaded_case_and_its_base(data_dir: Path) -> None:
-    """Hours as steps: sums over the year are inside, and the books close."""
+def test_solar_radiation_and_loads_of_a_shaded_case_and_its_base(data_dir: Path) -> None:
+    """With steps of one hour annual sums are inside, and energy is conserved."""
     climate = read(data_dir / "bestest" / "725650TYCST.epw")
     seen: list[tuple[float, float]] = []
     found, own = run(
@@ -279,7 +279,7 @@ def test_sun_and_loads_of_a_shaded_case_and_its_base(data_dir: Path) -> None:
         assert year_.closure < 1e-10
     rows = {(r.case, r.quantity): r for name in found for r in quantities(found, CASES[name])}
     level = rows.pop(("600", "incident_solar_horizontal"))
-    # What the weather file says of a level plane; the upper end of the range is the same, rounded.
+    # The sum of the weather file for a horizontal plane; the upper end of the range is the same, rounded.
     assert level.value == pytest.approx(1e-3 * climate.data["global_horizontal"].sum(), rel=5e-4)
     assert len(rows) == 2 * 4 + 6 + 2
     outside = [key for key, row in rows.items() if not row.passed]

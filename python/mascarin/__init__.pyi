@@ -9,6 +9,7 @@ from . import validation as validation
 from . import weather as weather
 from .building import Building as Building
 from .building import load as load
+from .calibration import Calibration as Calibration
 from .calibration import calibrate as calibrate
 from .ensemble import sweep as sweep
 from .errors import InputError as InputError

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
+import signal
 import sys
 import traceback
 import warnings
@@ -161,6 +162,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         # Imported modules stay in memory: collecting garbage among them often would free nothing.
         gc.set_threshold(100_000)
+        # A shell starts background jobs with the signal ignored; a command must still be possible to stop.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = _take_debug(words)
     out, err = (cast("TextIO", _Output(stream)) for stream in (sys.stdout, sys.stderr))

@@ -3,16 +3,16 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mascarin_engine::derivatives::jacobian::jacobian;
-use mascarin_engine::derivatives::trajectory::Trajectory;
+use mascarin_engine::derivatives::Trajectory;
+use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::Description;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
+use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Options, Watch, march};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
 use mascarin_engine::state::Initial;
-use mascarin_engine::march::Scheme;
 use mascarin_engine::{batch, dispatch};
 use serde::Deserialize;
 
@@ -153,9 +153,9 @@ impl Case {
     /// When a slope is not finite.
     pub fn gradient(&self, steps: Option<usize>) -> Result<(), EngineError> {
         let (forcing, watch) = (self.forcing(steps), Watch::default());
-        let way = Trajectory::new(&self.plan, &self.values, &forcing, &self.options, &watch, MEMORY)?;
-        let weights = vec![1.0; way.run.records.len()];
-        let slopes = way.pull(&self.plan, &self.values, &forcing, &self.options, &watch, &weights)?;
+        let trajectory = Trajectory::new(&self.plan, &self.values, &forcing, &self.options, &watch, MEMORY)?;
+        let weights = vec![1.0; trajectory.run.records.len()];
+        let slopes = trajectory.pull(&self.plan, &self.values, &forcing, &self.options, &watch, &weights)?;
         assert!(slopes.iter().all(|slope| slope.is_finite()), "slopes are finite");
         Ok(())
     }

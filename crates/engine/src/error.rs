@@ -28,12 +28,12 @@ pub enum EngineError {
         /// Iterations spent.
         iterations: usize,
     },
-    /// The repeated first period did not settle.
+    /// The warm-up did not converge.
     #[error(
-        "the first period was repeated {cycles} times and the state still changes by {residual:.3} K (asked: \
+        "the first period was repeated {cycles} times and the state still changes by {residual:.3} K (allowed: \
          {tolerance} K). Give a longer first period, an initial temperature or a larger tolerance."
     )]
-    NotSettled {
+    WarmUpNotConverged {
         /// Repetitions made.
         cycles: usize,
         /// Largest change between the last two repetitions [K].
@@ -41,7 +41,7 @@ pub enum EngineError {
         /// Largest change accepted [K].
         tolerance: f64,
     },
-    /// The caller asked to stop.
+    /// The caller stopped the run.
     #[error("interrupted")]
     Interrupted,
 }

@@ -1,8 +1,7 @@
 //! Mascarin's engine: transient physics of buildings with phase-change materials.
 //!
-//! One way through: a [`description::Description`] is compiled to a [`plan::Plan`], marched with
-//! [`march::march`] (or [`batch::ensemble`]) under a [`forcing::Forcing`], and leaves records and an energy ledger. The
-//! engine knows no file, no date and no Python.
+//! A [`description::Description`] is compiled to a [`plan::Plan`]. [`march::march`] (or [`batch::ensemble`]) runs the plan with
+//! a [`forcing::Forcing`] and returns records and an energy ledger. The engine reads no files, and has no dates and no Python.
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in square brackets: [m] is no link")]
 

@@ -34,7 +34,9 @@ pub fn to_python(error: &EngineError) -> PyErr {
     let text = error.to_string();
     match error {
         EngineError::Description(_) | EngineError::Input(_) => EngineInputError::new_err(text),
-        EngineError::NotConverged { .. } | EngineError::NotSettled { .. } => EngineSolverError::new_err(text),
+        EngineError::NotConverged { .. } | EngineError::WarmUpNotConverged { .. } => {
+            EngineSolverError::new_err(text)
+        }
         EngineError::Interrupted => PyKeyboardInterrupt::new_err(text),
     }
 }

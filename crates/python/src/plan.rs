@@ -1,6 +1,6 @@
 //! A compiled building and its runs.
 
-use mascarin_engine::derivatives::jacobian::jacobian;
+use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
@@ -161,7 +161,7 @@ pub fn describe_run<'py>(
     result.set_item("turnover", run.ledger.total_exchanged)?;
     result.set_item("closure", run.ledger.closure())?;
     result.set_item("cycles", run.cycles)?;
-    result.set_item("settled", run.settled)?;
+    result.set_item("settled", run.warm_up_change)?;
     result.set_item("iterations", run.counters.iterations)?;
     result.set_item("nested", run.counters.nested)?;
     result.set_item("halvings", run.counters.halvings)?;

@@ -1,6 +1,6 @@
 //! A run with the derivatives of its records, in reverse.
 
-use mascarin_engine::derivatives::trajectory;
+use mascarin_engine::derivatives;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::Options;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
@@ -20,7 +20,7 @@ pub struct Trajectory {
     stages: usize,
     channels: usize,
     options: Options,
-    kept: trajectory::Trajectory,
+    kept: derivatives::Trajectory,
 }
 
 #[pymethods]
@@ -43,7 +43,7 @@ impl Trajectory {
         let drive = Forcing::new(&forcing, stages, channels).map_err(|e| to_python(&e))?;
         let model = &plan.get().plan;
         let kept = attended(py, None, |watch| {
-            trajectory::Trajectory::new(model, &values, &drive, &options, watch, memory)
+            derivatives::Trajectory::new(model, &values, &drive, &options, watch, memory)
         })?;
         Ok(Self { plan, values, forcing, stages, channels, options, kept })
     }

@@ -1,9 +1,9 @@
-"""Every evaluation of a calibration, on disk as it happens, so that nothing is run twice.
+"""The record of a calibration: every evaluation, written to a file as it is made, so that none is run twice.
 
-A record is a text file of JSON lines. The first says which problem it belongs to; each further line holds one
-evaluation: the parameter values, the cost of each sensor and, where the method needs them, the residuals; or
-the exact slopes at parameter values, where they were taken. A
-line that was cut short when the program was killed is dropped, and the file goes on from there.
+A record is a text file of JSON lines. The first line says which problem it belongs to; each further line
+holds one evaluation: the parameter values, the cost of each sensor and, where the method needs them, the
+residuals; or the exact derivatives at parameter values, where they were computed. A line that is incomplete
+because the program was killed is removed, and the file is continued from there.
 """
 
 from __future__ import annotations
@@ -36,11 +36,17 @@ class Trace:
     x : ndarray, shape (n, P)
         Parameter values. [unit of each parameter]
     cost : ndarray, shape (n,)
-        Total cost; infinite for members that could not be simulated.
+        Total cost; infinite where the model could not be simulated.
     of_sensors : ndarray, shape (n, S)
         Cost of each sensor.
     replayed : int
         How many of them came from the record. [-]
+
+    Examples
+    --------
+    >>> trace = Trace(np.array([[1.0], [2.0]]), np.array([3.0, 2.0]), np.array([[3.0], [2.0]]), 0)
+    >>> trace.x[trace.cost.argmin()]
+    array([2.])
     """
 
     x: Floats
@@ -50,7 +56,7 @@ class Trace:
 
 
 class Evaluator:
-    """Evaluates members in batches, each only once, and keeps the record.
+    """Evaluates parameter vectors in batches, each only once, and keeps the record.
 
     Parameters
     ----------
@@ -61,14 +67,28 @@ class Evaluator:
     keep_residuals : bool
         Whether residuals are kept and recorded too; least squares needs them. `costs` never keeps them.
     batch : int
-        Largest number of members handed to the model at once. [-]
-    progress : callable, optional
+        Largest number of parameter vectors in one call of the model. [-]
+    on_batch : callable, optional
         Called after each batch with the number of evaluations and the lowest cost so far.
 
     Raises
     ------
     InputError
         When the record belongs to another problem.
+
+    Examples
+    --------
+    >>> from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor
+    >>> problem = CalibrationProblem(
+    ...     (FitParameter("level", 0.0, 10.0),),
+    ...     (FitSensor("room", np.array([4.0, 6.0]), 0.1),),
+    ...     lambda x: np.tile(x[:, :, None], (1, 2, 1)),
+    ... )
+    >>> with Evaluator(Cost(problem, "rmse")) as evaluator:
+    ...     evaluator.costs(np.array([[5.0], [5.0], [6.0]])).round(3)
+    ...     evaluator.count
+    array([1.   , 1.   , 1.414])
+    2
     """
 
     def __init__(
@@ -78,13 +98,13 @@ class Evaluator:
         *,
         keep_residuals: bool = False,
         batch: int = 64,
-        progress: Callable[[int, float], object] | None = None,
+        on_batch: Callable[[int, float], object] | None = None,
     ) -> None:
         self.cost = cost
         self._path = path
         self._keep = keep_residuals
         self._batch = batch
-        self._progress = progress
+        self._on_batch = on_batch
         self._rows: dict[bytes, int] = {}
         # Flat, because a multi-start search makes a million evaluations.
         self._x = array("d")
@@ -109,31 +129,31 @@ class Evaluator:
 
     @property
     def count(self) -> int:
-        """Number of different members evaluated, those from the record included. [-]"""
+        """Number of different parameter vectors evaluated, those from the record included. [-]"""
         return len(self._rows)
 
     def costs(self, x: Floats) -> Floats:
-        """Total costs of members (M, P), shape (M,)."""
+        """Compute total costs of parameter vectors (M, P), shape (M,)."""
         return self.cost.total(x, self.of_sensors(x))
 
     def prepare(self, x: Floats) -> None:
-        """Evaluate members (M, P), with residuals where they are kept."""
+        """Evaluate parameter vectors (M, P), with residuals where they are kept."""
         self._evaluated(x, keep=self._keep)
 
     def of_sensors(self, x: Floats) -> Floats:
-        """Cost of each sensor of members (M, P), shape (M, S)."""
+        """Compute the cost of each sensor at parameter vectors (M, P), shape (M, S)."""
         n = len(self.cost.problem.sensors)
         rows = self._evaluated(x, keep=False)
         return np.array([self._of_sensors[k * n : (k + 1) * n] for k in rows])
 
     def residuals(self, x: Floats) -> Floats:
-        """Residuals of members (M, P), shape (M, T, S); NaN for those that could not be simulated. [unit]"""
+        """Compute residuals at parameter vectors (M, P), shape (M, T, S); NaN where a run failed. [unit]"""
         if not self._keep:
             return self.cost.problem.residuals(x)
         return np.stack([self._residuals[k] for k in self._evaluated(x, keep=True)])
 
     def slopes(self, x: Floats) -> Floats:
-        """Exact derivatives of the residuals of one member (P,), shape (T, S, P), taken once and kept.
+        """Compute exact derivatives of the residuals at one parameter vector (P,), shape (T, S, P), once.
 
         [unit of the sensor / unit of the parameter]
         """
@@ -147,18 +167,18 @@ class Evaluator:
         return self._slopes[key]
 
     def trace(self) -> Trace:
-        """Everything evaluated so far."""
+        """Return all evaluations so far."""
         problem = self.cost.problem
         x = np.array(self._x, dtype=np.float64).reshape(-1, len(problem.parameters))
         of_sensors = np.array(self._of_sensors, dtype=np.float64).reshape(-1, len(problem.sensors))
         return Trace(x, self.cost.total(x, of_sensors), of_sensors, self.replayed)
 
     def _evaluated(self, x: Floats, *, keep: bool) -> list[int]:
-        """Row of each member, evaluated where it is new, or where residuals are wanted that were not kept."""
+        """Row of each parameter vector; evaluates the new ones, and those whose residuals are missing."""
         keys = [row.tobytes() for row in np.ascontiguousarray(x, dtype=np.float64)]
-        fresh = list(dict.fromkeys(k for k in keys if self._lacks(k, keep)))
-        members = np.array([np.frombuffer(k) for k in fresh]).reshape(len(fresh), x.shape[1])
-        for first in range(0, len(fresh), self._batch):
+        new = list(dict.fromkeys(k for k in keys if self._lacks(k, keep)))
+        members = np.array([np.frombuffer(k) for k in new]).reshape(len(new), x.shape[1])
+        for first in range(0, len(new), self._batch):
             self._run(members[first : first + self._batch], keep)
         return [self._rows[k] for k in keys]
 
@@ -175,11 +195,11 @@ class Evaluator:
             if self._path is not None:
                 lines.append(self._line(x[k], of_sensors[k], kept))
         if self._path is not None:
-            # One write per batch; the system keeps it even if the program is killed the moment after.
+            # One write per batch; it is complete even if the program is killed right after it.
             self._file.write("".join(lines).encode())
             self._file.flush()
-        if self._progress is not None:
-            self._progress(self.count, float(self._lowest))
+        if self._on_batch is not None:
+            self._on_batch(self.count, float(self._lowest))
 
     def _remember(self, x: Floats, of_sensors: Floats, residuals: Floats | None) -> None:
         key = x.tobytes()
@@ -190,8 +210,6 @@ class Evaluator:
             self._lowest = min(self._lowest, float(self.cost.total(x[None], of_sensors[None])[0]))
         if residuals is not None:
             self._residuals[self._rows[key]] = residuals
-
-    # --- the file -------------------------------------------------------------------------------------
 
     def _header(self) -> dict[str, Any]:
         problem = self.cost.problem
@@ -216,7 +234,7 @@ class Evaluator:
         return json.dumps(entry, allow_nan=False) + "\n"
 
     def _open(self, path: Path) -> None:
-        """Read what is there, cut off a half-written line, and stand ready to append."""
+        """Read the record, remove an incomplete last line, and open the file to append."""
         whole = 0
         if path.exists():
             whole = self._read(path)
@@ -229,7 +247,7 @@ class Evaluator:
             self._file.flush()
 
     def _read(self, path: Path) -> int:
-        """Number of bytes that are complete lines, after taking them in."""
+        """Read complete lines and return their number of bytes."""
         whole = 0
         with path.open("rb") as file:
             for number, line in enumerate(file, start=1):
@@ -246,13 +264,14 @@ class Evaluator:
     def _check_header(self, path: Path, found: dict[str, Any]) -> None:
         expected = self._header()
         if found.get("mascarin_record") != _FORMAT:
-            msg = f"{path}: not a record of a calibration (its first line does not say so); name another file"
-            raise InputError(msg)
+            raise InputError(
+                f"{path}: the first line is not that of a record of a calibration; name another file"
+            )
         differing = [key for key in expected if found.get(key) != expected[key]]
         if differing:
             msg = (
                 f"{path}: this record belongs to another calibration (differing: {', '.join(differing)}); "
-                f"name another file, or remove this one to begin anew"
+                f"name another file, or remove this one to start again"
             )
             raise InputError(msg)
 

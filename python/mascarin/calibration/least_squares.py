@@ -1,4 +1,4 @@
-"""Least squares from several starts, with derivatives by differences made in one batch, or exact ones."""
+"""Least squares from several starts, with derivatives by differences (one batch of runs) or exact ones."""
 
 from __future__ import annotations
 
@@ -9,21 +9,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.fit import Minimum
 from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.result import Minimum
 from mascarin.calibration.rules import Rules
 from mascarin.errors import SolverError
 
 Floats = NDArray[np.float64]
 
-#: Rows that are worked on at a time.
+#: Rows of one block of the QR decomposition.
 _BLOCK: Final = 256
 
 
 def least_squares(
     problem: CalibrationProblem, evaluator: Evaluator, rules: Rules, seed: int
 ) -> tuple[list[Minimum], str]:
-    """One trust-region search from each start: where they ended, and why the searching ended."""
+    """Run one trust-region search from each start.
+
+    Parameters
+    ----------
+    problem : CalibrationProblem
+        Parameters, measured series and model.
+    evaluator : Evaluator
+        Evaluates and keeps the record.
+    rules : Rules
+        Number of starts, kind of derivatives and tolerance.
+    seed : int
+        Of the Latin hypercube of starts.
+
+    Returns
+    -------
+    list of Minimum
+        Where the searches ended.
+    str
+        Why the calibration ended.
+    """
     from scipy import optimize
 
     minima = []
@@ -45,17 +64,18 @@ def least_squares(
             gtol=tight,
             max_nfev=100,
         )
-        # The method stays a hair's breadth inside its bounds; what it means is the bound.
+        # The method stays a little inside its bounds: an end that near to a bound is the bound.
         end = np.where(found.x < 1e-6, 0.0, np.where(found.x > 1.0 - 1e-6, 1.0, found.x))
         x = problem.values(end[None])[0]
         cost = float(evaluator.costs(x[None])[0])
-        minima.append(Minimum(k, problem.values(z[None])[0], x, cost, squares.asked, str(found.message)))
+        start = problem.values(z[None])[0]
+        minima.append(Minimum(k, start, x, cost, squares.evaluations, str(found.message)))
     text = f"{len(minima)} start{'s' * (len(minima) != 1)} searched"
     return minima, text + (f", {skipped} skipped because the model fails there" if skipped else "")
 
 
 def scale_of(problem: CalibrationProblem) -> Floats:
-    """Factors that turn compared residuals (n,) into those of the likelihood. [1/unit]"""
+    """Return factors that turn compared residuals (n,) into those of the likelihood. [1/unit]"""
     weight = np.array([s.weight for s in problem.sensors])
     return np.asarray(np.where(problem.mask, np.sqrt(weight) / problem.sigma, 0.0)[problem.mask])
 
@@ -63,9 +83,9 @@ def scale_of(problem: CalibrationProblem) -> Floats:
 class Squares:
     """Weighted residuals and their derivative by the positions z.
 
-    A search is handed no more of the residuals r (n,) than their size, and of their Jacobian J no more than
-    P + 1 rows that have the same J'J and J'r: all that it needs, whatever the number of samples. With a long
-    matrix the libraries below share the work among threads, which wait for one another on a busy machine.
+    The search gets only the norm of the residuals r (n,), and of their Jacobian J only P + 1 rows with the
+    same J'J and J'r: all that it needs, whatever the number of samples. With a long matrix the linear algebra
+    libraries would use several threads, which wait for each other on a busy machine.
     """
 
     def __init__(self, problem: CalibrationProblem, evaluator: Evaluator, rules: Rules) -> None:
@@ -74,14 +94,14 @@ class Squares:
         self._exact = rules.slopes == "exact"
         self._difference = rules.difference
         self._scale = scale_of(problem)
-        self.asked = 0
+        self.evaluations = 0
 
     def size(self, z: Floats) -> Floats:
-        """The norm of the residuals, then P zeros."""
+        """Return the norm of the residuals, then P zeros."""
         return np.concatenate([[np.linalg.norm(self.residuals(z))], np.zeros(z.size)])
 
     def condensed(self, z: Floats) -> Floats:
-        """The Jacobian (P + 1, P) that goes with `size`: of R in [r J] = Q R all but the first column."""
+        """Return the Jacobian (P + 1, P) for `size`: of R in [r J] = Q R all but the first column."""
         long = np.column_stack([self.weighted(z[None])[0], self.jacobian(z)])
         rows = max(_BLOCK, long.shape[1])
         count = -(-len(long) // rows)
@@ -92,42 +112,42 @@ class Squares:
         return np.asarray(np.copysign(1.0, found[0, 0]) * found[:, 1:])
 
     def residuals(self, z: Floats) -> Floats:
-        """Residuals over their uncertainty, then those of the priors."""
-        # The neighbours are wanted next, unless the step is refused; together they fill a batch.
-        points = z[None] if self._exact else np.concatenate([z[None], self._neighbours(z)])
-        self.asked += points.shape[0]
+        """Return residuals over their uncertainty, then those of the priors."""
+        # The neighbors are needed next, unless the step is rejected; together they fill a batch.
+        points = z[None] if self._exact else np.concatenate([z[None], self._neighbors(z)])
+        self.evaluations += points.shape[0]
         values: Floats = self.weighted(points)[0]
         return values
 
     def jacobian(self, z: Floats) -> Floats:
-        """Exact, or forward differences, backward at the upper bound or where the model fails ahead."""
+        """Return exact derivatives, or forward differences (backward at a bound or after a failure)."""
         if self._exact:
-            # Counted as differences are: a run for each parameter.
-            self.asked += z.size
+            # Counted like differences: one run for each parameter.
+            self.evaluations += z.size
             data = exact(self._problem, self._evaluator, z)[self._problem.mask] * self._scale[:, None]
             return np.concatenate([data, self._evaluator.cost.prior_slopes(z)])
-        points = np.concatenate([z[None], self._neighbours(z)])
+        points = np.concatenate([z[None], self._neighbors(z)])
         values = self.weighted(points)
         for i in np.flatnonzero(~np.isfinite(values[1:]).all(axis=1)):
             points[1 + i, i] = 2.0 * z[i] - points[1 + i, i]
             if not 0.0 <= points[1 + i, i] <= 1.0:
                 points[1 + i, i] = z[i]
             values[1 + i] = self.weighted(points[1 + i : 2 + i])[0]
-            self.asked += 1
+            self.evaluations += 1
         steps = np.diagonal(points[1:]) - z
         if not np.isfinite(values).all() or np.any(steps == 0.0):
             where = self._problem.values(z[None])[0]
             text = ", ".join(f"{p} = {v:g}" for p, v in zip(self._problem.paths, where, strict=True))
-            msg = f"the model cannot be evaluated in the neighbourhood of {text}: no derivative there"
+            msg = f"the model cannot be evaluated near {text}: no derivative there"
             raise SolverError(msg)
         return np.asarray(((values[1:] - values[0]) / steps[:, None]).T)
 
-    def _neighbours(self, z: Floats) -> Floats:
+    def _neighbors(self, z: Floats) -> Floats:
         step = np.where(z + self._difference <= 1.0, self._difference, -self._difference)
         return np.asarray(z + np.diag(step))
 
     def weighted(self, z: Floats) -> Floats:
-        """Residuals over their uncertainty, then those of the priors, of members (M, P)."""
+        """Return residuals over their uncertainty, then those of the priors, for positions (M, P)."""
         x = self._problem.values(z)
         residuals = self._evaluator.residuals(x)[:, self._problem.mask] * self._scale
         priors = self._evaluator.cost.prior_residuals(x)
@@ -135,7 +155,7 @@ class Squares:
 
 
 def _triangles(rows: Floats) -> Floats:
-    """R of Q R of each matrix (..., m, n), shape (..., n, n)."""
+    """Return R of the QR decomposition of each matrix (..., m, n), shape (..., n, n)."""
     return np.asarray(np.linalg.qr(rows, mode="r"), dtype=np.float64)
 
 
@@ -151,21 +171,21 @@ def _hypercube(problem: CalibrationProblem, count: int, seed: int) -> Iterator[F
 
 
 def exact(problem: CalibrationProblem, evaluator: Evaluator, z: Floats) -> Floats:
-    """Exact derivatives of the residuals by the positions z (P,), shape (T, S, P). [unit of the sensor]"""
+    """Compute exact derivatives of residuals by positions z (P,), shape (T, S, P). [unit of the sensor]"""
     return np.asarray(evaluator.slopes(problem.values(z[None])[0]) * problem.rates(z))
 
 
-def sensed(
+def residuals_and_derivatives(
     problem: CalibrationProblem, evaluator: Evaluator, z: Floats, rules: Rules
 ) -> tuple[Floats, Floats]:
-    """Residuals (T, S) at a minimum and their derivatives by z (T, S, P), as the rules take slopes."""
+    """Compute residuals (T, S) at a minimum and their derivatives by z (T, S, P), as the rules say."""
     if rules.slopes == "exact":
         return evaluator.residuals(problem.values(z[None]))[0], exact(problem, evaluator, z)
     return derivative(problem, z, rules.difference)
 
 
 def derivative(problem: CalibrationProblem, z: Floats, difference: float) -> tuple[Floats, Floats]:
-    """Residuals (T, S) and their central differences by z (T, S, P), one-sided at a bound, in one batch."""
+    """Compute residuals (T, S) and central differences by z (T, S, P), one-sided at a bound, in one batch."""
     n = z.size
     ahead = np.minimum(z + difference, 1.0)
     behind = np.maximum(z - difference, 0.0)
@@ -175,7 +195,7 @@ def derivative(problem: CalibrationProblem, z: Floats, difference: float) -> tup
         points[1 + n + i, i] = behind[i]
     values = problem.residuals(problem.values(points))
     if not np.isfinite(values).all():
-        msg = "the model cannot be evaluated in the neighbourhood of the minimum: no uncertainty can be given"
+        msg = "the model cannot be evaluated near the minimum: the uncertainty cannot be estimated"
         raise SolverError(msg)
     jacobian = (values[1 : 1 + n] - values[1 + n :]) / (ahead - behind)[:, None, None]
     return values[0], np.moveaxis(jacobian, 0, -1)

@@ -1,10 +1,10 @@
-"""A sample of the posterior distribution of the parameters, by emcee.
+"""Sample of the posterior distribution of the parameters, by emcee.
 
-The likelihood of independent errors is far too sure of itself where errors are autocorrelated. It keeps its
-shape here, curved valleys and bounds included, but is stretched about its maximum so that its curvature there
-is that of the covariance which the autocorrelated residuals give: at a position z it is evaluated at
-``z0 + C (z - z0)``, with the symmetric C for which ``C H C`` is the inverse of that covariance, H being the
-curvature of independent errors. Priors and the flat one over the range are not stretched.
+The likelihood of independent errors gives intervals that are much too narrow where errors are autocorrelated.
+Its shape is kept here, curved valleys and bounds included, but it is stretched about its maximum, so that its
+curvature there gives the covariance estimated from the autocorrelated residuals: at a position z it is
+evaluated at ``z0 + C (z - z0)``, with the symmetric C for which ``C H C`` is the inverse of that covariance,
+H being the curvature for independent errors. Priors, and the uniform one over the range, are not stretched.
 
 References
 ----------
@@ -27,35 +27,39 @@ from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.calibration.evaluations import Evaluator
-    from mascarin.calibration.fit import Fit
     from mascarin.calibration.problem import CalibrationProblem
+    from mascarin.calibration.result import Calibration
     from mascarin.calibration.rules import Rules
 
 Floats = NDArray[np.float64]
 
 METHOD: Final = (
-    "quantiles of a posterior sample (emcee), its likelihood stretched to the covariance that the residuals' "
-    "own autocorrelation gives; the estimates are the most likely values"
+    "quantiles of a posterior sample (emcee), its likelihood stretched to the covariance estimated from the "
+    "autocorrelated residuals; the estimates are the most probable values"
 )
-"""How the intervals are made, for reports."""
+"""How the intervals are computed, for reports."""
 
-_THROWN: Final = 0.2  # share of the moves before the walkers have forgotten where they began
+_BURN_IN: Final = 0.2  # part of the moves that is discarded
 _LONG_ENOUGH: Final = 50.0  # autocorrelation times
 _FEWEST_WALKERS: Final = 32
-_WIDEST: Final = 0.2  # of the range, where walkers begin
+_WIDEST: Final = 0.2  # of the range, standard deviation of the first positions
 
 
-def sampled(fit: Fit, evaluator: Evaluator, rules: Rules) -> Fit:
-    """A fit by least squares with the intervals and correlations of a posterior sample.
+def sampled(fit: Calibration, evaluator: Evaluator, rules: Rules) -> Calibration:
+    """Replace the intervals and correlations of a calibration by those of a posterior sample.
 
     Parameters
     ----------
-    fit : Fit
-        At the most likely values.
+    fit : Calibration
+        By least squares, at the most probable values.
     evaluator : Evaluator
         Evaluates and keeps the record.
     rules : Rules
-        Walkers and moves.
+        Number of walkers and moves.
+
+    Returns
+    -------
+    Calibration
 
     Raises
     ------
@@ -71,12 +75,12 @@ def sampled(fit: Fit, evaluator: Evaluator, rules: Rules) -> Fit:
         raise InputError(msg)
     target = _Posterior(fit, evaluator)
     sampler = emcee.EnsembleSampler(walkers, count, target, vectorize=True)
-    begin = emcee.State(
-        target.beginnings(walkers, fit.seed),
+    first = emcee.State(
+        target.first_positions(walkers, fit.seed),
         random_state=np.random.RandomState(fit.seed % 2**32).get_state(),
     )
-    sampler.run_mcmc(begin, rules.moves)
-    discard = int(_THROWN * rules.moves)
+    sampler.run_mcmc(first, rules.moves)
+    discard = int(_BURN_IN * rules.moves)
     chain = np.asarray(sampler.get_chain(discard=discard, flat=True), dtype=np.float64)
     times = np.asarray(sampler.get_autocorr_time(discard=discard, quiet=True, tol=0.0), dtype=np.float64)
     return _with_sample(fit, evaluator, problem, chain, times, rules.moves - discard)
@@ -85,41 +89,46 @@ def sampled(fit: Fit, evaluator: Evaluator, rules: Rules) -> Fit:
 class _Posterior:
     """Logarithm of the density at positions between 0 and 1."""
 
-    def __init__(self, fit: Fit, evaluator: Evaluator) -> None:
+    def __init__(self, fit: Calibration, evaluator: Evaluator) -> None:
         self._problem = fit.problem
         self._evaluator = evaluator
         self._covariance = fit.uncertainty.covariance
-        self._centre = fit.problem.positions(fit.x)
+        self._center = fit.problem.positions(fit.x)
         self._stretch = fit.uncertainty.stretch
         self._highest = float(evaluator.of_sensors(fit.x[None]).sum())
 
     def __call__(self, z: Floats) -> Floats:
-        """Of walkers (M, P), shape (M,)."""
+        """Return the log density at positions (M, P), shape (M,)."""
         density = np.full(len(z), -np.inf)
         inside = np.all((z >= 0.0) & (z <= 1.0), axis=1)
         if inside.any():
             there = z[inside]
-            at = np.clip(self._centre + (there - self._centre) @ self._stretch, 0.0, 1.0)
+            at = np.clip(self._center + (there - self._center) @ self._stretch, 0.0, 1.0)
             data = self._evaluator.of_sensors(self._problem.values(at)).sum(axis=1) - self._highest
             prior = self._evaluator.cost.prior_residuals(self._problem.values(there))
             found = -data - 0.5 * np.sum(prior**2, axis=1)
             density[inside] = np.where(np.isfinite(found), found, -np.inf)
         return density
 
-    def beginnings(self, walkers: int, seed: int) -> Floats:
-        """Where the walkers begin: about the maximum, within the range."""
+    def first_positions(self, walkers: int, seed: int) -> Floats:
+        """Draw the first positions of the walkers: about the maximum, within the range."""
         sd = np.sqrt(np.diag(self._covariance))
         shrink = np.minimum(1.0, _WIDEST / np.maximum(sd, 1e-300))
         root = symmetric_power(self._covariance * np.outer(shrink, shrink), 0.5)
-        normal = np.random.default_rng([seed, walkers]).standard_normal((walkers, self._centre.size))
-        z = self._centre + normal @ root
-        # Reflected at the bounds: no two walkers lie on one of them.
+        normal = np.random.default_rng([seed, walkers]).standard_normal((walkers, self._center.size))
+        z = self._center + normal @ root
+        # Reflected at the bounds, so that no two walkers are on the same bound.
         return np.asarray(np.clip(1.0 - np.abs(1.0 - np.abs(z)), 1e-6, 1.0 - 1e-6))
 
 
 def _with_sample(
-    fit: Fit, evaluator: Evaluator, problem: CalibrationProblem, chain: Floats, times: Floats, moves: int
-) -> Fit:
+    fit: Calibration,
+    evaluator: Evaluator,
+    problem: CalibrationProblem,
+    chain: Floats,
+    times: Floats,
+    moves: int,
+) -> Calibration:
     tail = 0.5 * (1.0 - fit.confidence)
     low, high = np.quantile(chain, [tail, 1.0 - tail], axis=0)
     correlation = np.atleast_2d(np.corrcoef(chain, rowvar=False))
@@ -127,8 +136,8 @@ def _with_sample(
     notes = list(fit.warnings)
     if moves < _LONG_ENOUGH * longest:
         notes.append(
-            f"the posterior sample is short: {moves} moves are {moves / longest:.0f} times as long as the "
-            f"walkers remember, expected {_LONG_ENOUGH:.0f} times at least; raise moves"
+            f"the posterior sample is short: {moves} moves are {moves / longest:.0f} autocorrelation times, "
+            f"expected {_LONG_ENOUGH:.0f} at least; increase moves"
         )
     walkers = len(chain) // moves
     return replace(

@@ -1,4 +1,4 @@
-"""What is to be fitted: parameters, measured series, and the model that ties them."""
+"""A calibration problem: parameters, measured series, and the model that computes the series."""
 
 from __future__ import annotations
 
@@ -12,19 +12,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mascarin.errors import InputError, SolverError, did_you_mean
+from mascarin.validation.sensors import SensorUncertainty
 
 Floats = NDArray[np.float64]
 Model = Callable[[Floats], ArrayLike]
-"""``(M, P) -> (M, T, S)``: simulated series of a batch of members, in the units of the parameters and the
-sensors. A member that could not be simulated is a row of NaN."""
+"""``(M, P) -> (M, T, S)``: simulated series of a batch of parameter vectors, in the units of the parameters
+and
+the sensors. A parameter vector that could not be simulated gives a row of NaN."""
 Slopes = Callable[[Floats], ArrayLike]
-"""``(P,) -> (T, S, P)``: exact derivatives of the simulated series of one member by each parameter, in the
-units of the sensors and the parameters."""
+"""``(P,) -> (T, S, P)``: exact derivatives of the simulated series at one parameter vector by each parameter,
+in
+the units of the sensors and the parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class FitParameter:
-    """A parameter to be found.
+    """A parameter to estimate.
 
     Attributes
     ----------
@@ -35,15 +38,25 @@ class FitParameter:
     start : float, optional
         Where the search begins: the nominal value when absent, else the middle of the range. [unit]
     nominal : float, optional
-        Value before the fit, shown beside the result. [unit]
+        Value before the calibration, shown beside the estimate. [unit]
     unit : str
         Unit of the parameter.
     limits : tuple of float
-        What the parameter can be at all; the range must lie within. [unit]
+        Values that the parameter can have at all; the range must lie within. [unit]
     scale : str
-        ``linear`` or ``log``: how distances are measured when the search moves.
+        ``linear`` or ``log``: how distances are measured in the search.
     prior : tuple of float, optional
-        Mean and standard deviation of what is known beforehand. [unit]
+        Mean and standard deviation of a normal prior. [unit]
+
+    Raises
+    ------
+    InputError
+        A range, start or prior that cannot be used.
+
+    Examples
+    --------
+    >>> FitParameter("zones.room.infiltration", 0.1, 2.0, scale="log").first
+    0.447213595499958
     """
 
     path: str
@@ -58,14 +71,15 @@ class FitParameter:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.lower) and math.isfinite(self.upper) and self.lower < self.upper):
-            raise InputError(f"{self._range}: a fit needs a finite lower bound below a finite upper bound")
+            raise InputError(f"{self._range}: expected a finite lower bound below a finite upper bound")
         if self.lower < self.limits[0] or self.upper > self.limits[1]:
             low, high = self.limits
-            msg = f"{self._range} reaches beyond what the parameter can be, [{low:g}, {high:g}]: narrow it"
+            msg = f"{self._range} is not within the possible values, [{low:g}, {high:g}]: narrow it"
             raise InputError(msg)
         if self.start is not None and not self.lower <= self.start <= self.upper:
-            msg = f"{self._range} does not hold the start {self.start:g}: move the start or widen the range"
-            raise InputError(msg)
+            raise InputError(
+                f"{self._range} does not contain the start {self.start:g}: move the start or widen the range"
+            )
         if self.scale == "log" and self.lower <= 0.0:
             msg = f"{self._range} on a log scale must be positive"
             raise InputError(msg)
@@ -83,7 +97,7 @@ class FitParameter:
         return self.value(0.5)
 
     def value(self, z: float) -> float:
-        """Value at a position between 0 (lower) and 1 (upper). [unit]"""
+        """Convert a position between 0 (lower) and 1 (upper) to a value. [unit]"""
         if z <= 0.0:
             return self.lower
         if z >= 1.0:
@@ -93,13 +107,13 @@ class FitParameter:
         return min(self.lower + z * (self.upper - self.lower), self.upper)
 
     def position(self, value: float) -> float:
-        """Position of a value between 0 (lower) and 1 (upper). [-]"""
+        """Convert a value to a position between 0 (lower) and 1 (upper). [-]"""
         if self.scale == "log":
             return math.log(value / self.lower) / math.log(self.upper / self.lower)
         return (value - self.lower) / (self.upper - self.lower)
 
     def rate(self, z: float) -> float:
-        """Change of the value with its position, at a position between 0 and 1. [unit]"""
+        """Differentiate the value by its position, at a position between 0 and 1. [unit]"""
         if self.scale == "log":
             return self.value(z) * math.log(self.upper / self.lower)
         return self.upper - self.lower
@@ -111,7 +125,7 @@ class FitParameter:
 
 @dataclass(frozen=True, eq=False)
 class FitSensor:
-    """A measured series to be met.
+    """A measured series that the model is compared with.
 
     Attributes
     ----------
@@ -119,22 +133,34 @@ class FitSensor:
         Name of the sensor.
     measured : ndarray, shape (T,)
         Measured values, NaN where nothing was measured. [unit]
-    uncertainty : float
-        Standard deviation of one measured value. [unit]
-    relative : float
-        Further standard deviation as a share of the measured value. [-]
+    standard_uncertainty : float, optional
+        Standard deviation of the error of a measured value (GUM). For a sensor in degC 0.5 / 1.96 when
+        absent; every other unit needs one. [unit]
+    relative_standard_uncertainty : float, optional
+        Further standard deviation in proportion to the measured value. [-]
     unit : str
         Unit of the sensor.
     use : ndarray of bool, shape (T,), optional
         Samples to compare; all that were measured when absent.
     weight : float
-        Importance beside that which the uncertainty gives; the number of times that it counts. [-]
+        How many times each sample counts, beside the weight by its uncertainty. [-]
+
+    Raises
+    ------
+    InputError
+        A series without samples or with one constant value, or an uncertainty that is missing or zero.
+
+    Examples
+    --------
+    >>> sensor = FitSensor("flux", np.array([10.0, 20.0]), 1.0, 0.05, unit="W/m2")
+    >>> sensor.sigma
+    array([1.11803399, 1.41421356])
     """
 
     name: str
     measured: Floats
-    uncertainty: float = 1.0
-    relative: float = 0.0
+    standard_uncertainty: float | None = None
+    relative_standard_uncertainty: float = 0.0
     unit: str = "degC"
     use: NDArray[np.bool_] | None = None
     weight: float = 1.0
@@ -150,23 +176,29 @@ class FitSensor:
             raise InputError(msg)
         kept = measured[self.mask]
         if kept.size == 0:
-            msg = f"sensor '{self.name}' has no sample in the period (dead or masked): leave it out"
+            msg = f"sensor '{self.name}' has no value in the period (missing or masked): leave it out"
             raise InputError(msg)
         if kept.size > 1 and np.ptp(kept) == 0.0:
             msg = (
-                f"sensor '{self.name}' shows {kept[0]:g} {self.unit} in all {kept.size} samples and looks "
-                f"dead: mask it or leave it out"
+                f"sensor '{self.name}' shows {kept[0]:g} {self.unit} in all {kept.size} samples and does not "
+                f"measure: mask it or leave it out"
             )
             raise InputError(msg)
-        if not (self.uncertainty >= 0.0 and self.relative >= 0.0 and self.weight > 0.0):
-            msg = (
-                f"sensor '{self.name}': uncertainty {self.uncertainty:g}, relative {self.relative:g} and "
-                f"weight {self.weight:g} must not be negative, nor the weight zero"
+        uncertainty = SensorUncertainty.stated(
+            self.unit,
+            standard=self.standard_uncertainty,
+            relative_standard=self.relative_standard_uncertainty or None,
+            where=f"sensor '{self.name}'",
+        )
+        object.__setattr__(self, "standard_uncertainty", uncertainty.absolute)
+        if not self.weight > 0.0:
+            raise InputError(
+                f"sensor '{self.name}': found weight {self.weight:g}, expected a positive number"
             )
-            raise InputError(msg)
         if np.any(self.sigma[self.mask] <= 0.0):
-            msg = f"sensor '{self.name}': its uncertainty is zero somewhere; give an absolute part"
-            raise InputError(msg)
+            raise InputError(
+                f"sensor '{self.name}': its uncertainty is zero somewhere; give standard_uncertainty as well"
+            )
 
     @property
     def mask(self) -> NDArray[np.bool_]:
@@ -176,8 +208,9 @@ class FitSensor:
 
     @property
     def sigma(self) -> Floats:
-        """Standard deviation of each measured value, shape (T,). [unit]"""
-        return np.asarray(np.hypot(self.uncertainty, self.relative * np.abs(self.measured)))
+        """Standard uncertainty of each measured value, shape (T,). [unit]"""
+        relative = self.relative_standard_uncertainty * np.abs(self.measured)
+        return np.asarray(np.hypot(self.standard_uncertainty or 0.0, relative))
 
     @property
     def span(self) -> float:
@@ -187,23 +220,39 @@ class FitSensor:
 
 @dataclass(frozen=True, eq=False)
 class CalibrationProblem:
-    """Parameters, measurements and the model between them.
+    """Parameters, measured series and the model that computes the series from the parameters.
 
     Attributes
     ----------
     parameters : tuple of FitParameter, length P
-        What is found.
+        Parameters to estimate.
     sensors : tuple of FitSensor, length S
-        What is met; all on the same T regular instants.
+        Measured series; all at the same T regular instants.
     model : callable
         See `Model`. The order of parameters and sensors is that of this problem.
     identity : str
-        Names everything the model depends on beside the parameters (building, climate, period, step), such
-        as a hash: a record of evaluations is only continued by a problem of the same identity.
+        Identifies everything that the model depends on beside the parameters (building, climate, period,
+        step), such as a hash: a record of evaluations is only continued by a problem of the same identity.
     step : float, optional
-        Time between samples, for texts. [s]
+        Time between samples. [s]
     slopes : callable, optional
         Exact derivatives of the model, see `Slopes`; raises `SolverError` where there are none.
+
+    Raises
+    ------
+    InputError
+        No parameter or sensor, a name twice, series of different lengths, fewer samples than parameters.
+
+    Examples
+    --------
+    >>> time = np.arange(24.0)
+    >>> problem = CalibrationProblem(
+    ...     (FitParameter("level", 10.0, 30.0, nominal=18.0),),
+    ...     (FitSensor("room", 20.0 + 0.1 * np.sin(time), 0.1),),
+    ...     lambda x: np.tile(x[:, :, None], (1, 24, 1)),
+    ... )
+    >>> problem.residuals(np.array([[20.0]])).shape
+    (1, 24, 1)
     """
 
     parameters: tuple[FitParameter, ...]
@@ -232,8 +281,8 @@ class CalibrationProblem:
         samples = int(self.mask.sum())
         if samples < len(self.parameters):
             msg = (
-                f"{len(self.parameters)} parameters cannot be found from {samples} measured values: fit "
-                f"fewer, or compare a longer period"
+                f"{len(self.parameters)} parameters cannot be estimated from {samples} measured values: "
+                f"estimate fewer, or compare a longer period"
             )
             raise InputError(msg)
 
@@ -243,25 +292,25 @@ class CalibrationProblem:
         return tuple(p.path for p in self.parameters)
 
     def values(self, z: Floats) -> Floats:
-        """Values at positions between 0 and 1, both (M, P). [unit of each parameter]"""
+        """Convert positions between 0 and 1 to values, both (M, P). [unit of each parameter]"""
         return np.array([[p.value(float(v)) for p, v in zip(self.parameters, row, strict=True)] for row in z])
 
     def positions(self, x: Floats) -> Floats:
-        """Positions between 0 and 1 of values, both (P,). [-]"""
+        """Convert values to positions between 0 and 1, both (P,). [-]"""
         return np.array([p.position(float(v)) for p, v in zip(self.parameters, x, strict=True)])
 
     def residuals(self, x: Floats) -> Floats:
-        """Simulated minus measured series of a batch.
+        """Compute simulated minus measured series of a batch.
 
         Parameters
         ----------
         x : ndarray, shape (M, P)
-            Members. [unit of each parameter]
+            Parameter vectors. [unit of each parameter]
 
         Returns
         -------
         ndarray, shape (M, T, S)
-            0 where nothing is compared; a whole member is NaN when it could not be simulated. [unit]
+            0 where nothing is compared; all NaN for a parameter vector that could not be simulated. [unit]
 
         Raises
         ------
@@ -271,8 +320,8 @@ class CalibrationProblem:
         simulated = np.asarray(self.model(x), dtype=np.float64)
         if simulated.shape != (x.shape[0], *self.measured.shape):
             msg = (
-                f"the model returned an array of shape {simulated.shape} for {x.shape[0]} members, expected "
-                f"{(x.shape[0], *self.measured.shape)}: members, times, sensors"
+                f"the model returned an array of shape {simulated.shape} for {x.shape[0]} parameter "
+                f"vectors, expected {(x.shape[0], *self.measured.shape)}: parameter vectors, times, sensors"
             )
             raise InputError(msg)
         residuals = np.where(self.mask, simulated - np.where(self.mask, self.measured, 0.0), 0.0)
@@ -281,7 +330,7 @@ class CalibrationProblem:
         return residuals
 
     def require_slopes(self) -> Slopes:
-        """The derivatives of the model.
+        """Return the derivatives of the model.
 
         Raises
         ------
@@ -297,12 +346,12 @@ class CalibrationProblem:
         return self.slopes
 
     def jacobian(self, x: Floats) -> Floats:
-        """Exact derivatives of the residuals of one member by the parameters.
+        """Compute exact derivatives of the residuals by the parameters.
 
         Parameters
         ----------
         x : ndarray, shape (P,)
-            The member. [unit of each parameter]
+            Parameter vector. [unit of each parameter]
 
         Returns
         -------
@@ -314,7 +363,7 @@ class CalibrationProblem:
         InputError
             When the model has no derivatives, or returns another shape.
         SolverError
-            When it has none at this place.
+            When it has none at this parameter vector.
         """
         given = self.require_slopes()
         where = ", ".join(f"{p} = {v:g}" for p, v in zip(self.paths, x.tolist(), strict=True))
@@ -336,11 +385,11 @@ class CalibrationProblem:
         return slopes
 
     def rates(self, z: Floats) -> Floats:
-        """Change of each value with its position, both (P,). [unit of each parameter]"""
+        """Differentiate each value by its position, both (P,). [unit of each parameter]"""
         return np.array([p.rate(float(v)) for p, v in zip(self.parameters, z, strict=True)])
 
     def fingerprint(self) -> str:
-        """Hash of everything that an evaluation depends on."""
+        """Return a hash of everything that an evaluation depends on."""
         digest = hashlib.sha256()
         digest.update(repr((self.identity, self.paths, [s.name for s in self.sensors])).encode())
         for array in (
@@ -358,7 +407,7 @@ def require_known(paths: Iterable[str], known: Sequence[str]) -> None:
     Parameters
     ----------
     paths : iterable of str
-        Paths to be fitted.
+        Paths of parameters to estimate.
     known : sequence of str
         Paths of the building.
 
@@ -366,6 +415,10 @@ def require_known(paths: Iterable[str], known: Sequence[str]) -> None:
     ------
     InputError
         Naming every unknown path and the nearest known ones.
+
+    Examples
+    --------
+    >>> require_known(["zones.room.volume"], ["zones.room.volume", "site.altitude"])
     """
     there = set(known)
     lines = [

@@ -1,12 +1,12 @@
-"""Profile likelihood: how much worse the fit becomes when one parameter is held.
+"""Profile likelihood: how much worse the fit becomes when one parameter is fixed.
 
-Where a profile is a parabola the interval from the covariance is the whole truth; where it is flat to one
-side the data bound the parameter on the other side only. The likelihood is that of independent errors,
-weakened parameter by parameter so that its curvature at the minimum is that of the covariance which the
-autocorrelated residuals give; the limit is the square of the same quantile as for the intervals of the fit.
+Where a profile is a parabola, the interval from the covariance is right; where it is flat on one side, the
+data bound the parameter on the other side only. The likelihood is that of independent errors, scaled
+parameter by parameter so that its curvature at the minimum gives the covariance estimated from the
+autocorrelated residuals; the limit is the square of the quantile of the intervals.
 
-All points of all profiles are minimised side by side, each with a Jacobian of its own that begins as that of
-the minimum and learns from every step (Broyden).
+All points of all profiles are minimized side by side, each with its own Jacobian, which is first that at the
+minimum and is updated at every step (Broyden).
 
 References
 ----------
@@ -27,22 +27,26 @@ from numpy.typing import NDArray
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.least_squares import derivative, scale_of
 from mascarin.errors import InputError, did_you_mean
+from mascarin.figures import calibration as figures
 
 if TYPE_CHECKING:
-    from mascarin.calibration.fit import Fit
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from mascarin.calibration.result import Calibration
 
 Floats = NDArray[np.float64]
 
 _REACH: Final = 1.6  # intervals to each side
-_WIDER: Final = 8  # times that a grid is made wider
+_EXTENSIONS: Final = 8  # of a grid whose profile stays below the limit
 _STEPS: Final = 25
-_SETTLED: Final = 1e-3  # change of the deviance from which a point goes on, in squared quantiles
+_CONVERGED: Final = 1e-3  # change of the deviance below which a point ends, in squared quantiles
 _DIFFERENCE: Final = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """The profile of one parameter.
+    """Profile likelihood of one parameter.
 
     Attributes
     ----------
@@ -51,17 +55,30 @@ class Profile:
     estimate : float
         Its estimate. [unit]
     values : ndarray, shape (K,)
-        Where it was held, rising. [unit]
+        Where it was fixed, ascending. [unit]
     rise : ndarray, shape (K,)
-        Twice the loss of log-likelihood there, weakened for the autocorrelation. [-]
+        Twice the decrease of the log-likelihood there, scaled for the autocorrelation. [-]
     others : ndarray, shape (K, P)
         All parameters there. [unit of each]
     limit : float
-        What the rise stays below within the interval. [-]
+        Of the rise within the interval. [-]
     low, high : float
         Interval; the end of the range where the profile stays below the limit up to it. [unit]
     open_low, open_high : bool
         Whether the interval ends only because the range does.
+
+    Examples
+    --------
+    >>> from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, profiles, solve
+    >>> measured = 20.0 + 0.1 * np.random.default_rng(1).normal(size=48)
+    >>> problem = CalibrationProblem(
+    ...     (FitParameter("level", 10.0, 30.0),),
+    ...     (FitSensor("room", measured, 0.1),),
+    ...     lambda x: np.tile(x[:, :, None], (1, 48, 1)),
+    ... )
+    >>> one = profiles(solve(problem))[0]
+    >>> one.open_low, one.open_high
+    (False, False)
     """
 
     path: str
@@ -78,7 +95,7 @@ class Profile:
 
     @property
     def words(self) -> str:
-        """What the profile says. Empty when it bounds the parameter on both sides."""
+        """Statement of the profile; empty when the data bound the parameter on both sides."""
         if self.open_low and self.open_high:
             return f"{self.path}: the data bound it on neither side"
         if self.open_low or self.open_high:
@@ -89,31 +106,116 @@ class Profile:
             )
         return ""
 
+    def plot(self, *, ax: Axes) -> Axes:
+        """Draw the profile with its limit and interval.
 
-def profiles(
-    fit: Fit, paths: Sequence[str] | None = None, *, points: int = 11, batch: int = 64
-) -> list[Profile]:
-    """Profiles about the minimum of a fit.
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes
+            Where to draw.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        figures.profile(
+            ax,
+            self.values,
+            self.rise,
+            limit=self.limit,
+            low=self.low,
+            high=self.high,
+            estimate=self.estimate,
+        )
+        ax.set_title(self.path, fontsize=8, loc="left")
+        ax.set_xlabel(f"[{self.unit or '-'}]", fontsize=8)
+        return ax
+
+
+def plot_profiles(found: Sequence[Profile], *, columns: int = 3) -> Figure:
+    """Draw several profiles in one figure.
 
     Parameters
     ----------
-    fit : Fit
-        By least squares or any other method; its cost is ``nll``.
+    found : sequence of Profile
+        From `profiles`.
+    columns : int
+        Panels side by side. [-]
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel for each profile.
+
+    Raises
+    ------
+    InputError
+        There is no profile.
+
+    Examples
+    --------
+    >>> one = Profile(
+    ...     "level", "m", 2.0, np.array([1.0, 2.0, 3.0]), np.array([4.0, 0.0, 4.0]), np.zeros((3, 1)),
+    ...     limit=3.84, low=1.02, high=2.98, open_low=False, open_high=False,
+    ... )
+    >>> len(plot_profiles([one]).axes)
+    1
+    """
+    from matplotlib.figure import Figure
+
+    if not found:
+        raise InputError("found no profile to draw, expected at least one")
+    columns = min(columns, len(found))
+    rows = math.ceil(len(found) / columns)
+    figure = Figure(figsize=(3.2 * columns, 2.4 * rows), layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes, one in zip(panels, found, strict=False):
+        one.plot(ax=axes)
+    for axes in panels[len(found) :]:
+        axes.set_visible(False)
+    for k in range(0, len(found), columns):
+        panels[k].set_ylabel("increase of the deviance", fontsize=8)
+    return figure
+
+
+def profiles(
+    fit: Calibration, paths: Sequence[str] | None = None, *, points: int = 11, batch: int = 64
+) -> list[Profile]:
+    """Compute profile likelihoods about the minimum of a calibration.
+
+    Parameters
+    ----------
+    fit : Calibration
+        By any method with the cost ``nll``.
     paths : sequence of str, optional
-        Parameters wanted; all when absent.
+        Parameters; all when absent.
     points : int
-        Number of values each is held at. [-]
+        Number of values at which each is fixed. [-]
     batch : int
-        Largest number of members handed to the model at once. [-]
+        Largest number of parameter vectors in one call of the model. [-]
 
     Returns
     -------
     list of Profile
+        In the order of the paths.
 
     Raises
     ------
     InputError
         Another cost than ``nll``, an unknown parameter, or fewer than 5 points.
+
+    Examples
+    --------
+    >>> from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor, solve
+    >>> measured = 20.0 + 0.1 * np.random.default_rng(1).normal(size=48)
+    >>> problem = CalibrationProblem(
+    ...     (FitParameter("level", 10.0, 30.0),),
+    ...     (FitSensor("room", measured, 0.1),),
+    ...     lambda x: np.tile(x[:, :, None], (1, 48, 1)),
+    ... )
+    >>> found = profiles(solve(problem))[0]
+    >>> bool(found.low < 20.0 < found.high), found.words
+    (True, '')
     """
     if fit.cost_name != "nll":
         msg = f"a profile needs a likelihood: found the cost '{fit.cost_name}', expected 'nll'"
@@ -125,122 +227,123 @@ def profiles(
     wanted = known if paths is None else tuple(paths)
     for path in wanted:
         if path not in known:
-            raise InputError(f"profile: '{path}' was not fitted. {did_you_mean(path, known)}")
+            raise InputError(f"profile: '{path}' was not estimated. {did_you_mean(path, known)}")
     search = _Search(fit, batch)
-    held = [known.index(path) for path in wanted]
-    grids = [_grid(fit, i, points) for i in held]
-    found = [(np.empty(0), np.empty((0, len(known))), np.empty(0))] * len(held)
-    for _ in range(_WIDER):
-        z, rise = search.minima(np.repeat(held, [grid.size for grid in grids]), np.concatenate(grids))
+    fixed = [known.index(path) for path in wanted]
+    grids = [_grid(fit, i, points) for i in fixed]
+    found = [(np.empty(0), np.empty((0, len(known))), np.empty(0))] * len(fixed)
+    for _ in range(_EXTENSIONS):
+        z, rise = search.minima(np.repeat(fixed, [grid.size for grid in grids]), np.concatenate(grids))
         ends = np.cumsum([grid.size for grid in grids])[:-1]
         parts = zip(grids, np.split(z, ends), np.split(rise, ends), strict=True)
         found = [_joined(old, new) for old, new in zip(found, parts, strict=True)]
-        grids = [_further(fit, i, *piece) for i, piece in zip(held, found, strict=True)]
+        grids = [_further(fit, i, *piece) for i, piece in zip(fixed, found, strict=True)]
         if not any(grid.size for grid in grids):
             break
-    return [_profile(fit, i, *piece) for i, piece in zip(held, found, strict=True)]
+    return [_profile(fit, i, *piece) for i, piece in zip(fixed, found, strict=True)]
 
 
 _Piece = tuple[Floats, Floats, Floats]
-"""Where a parameter was held (K,), all positions there (K, P), and the rise (K,)."""
+"""Fixed positions of a parameter (K,), all positions there (K, P), and the rise (K,)."""
 
 
 def _joined(old: _Piece, new: _Piece) -> _Piece:
-    """Both in rising order of where the parameter was held."""
+    """Join both in ascending order of the fixed position."""
     order = np.argsort(np.concatenate([old[0], new[0]]), kind="stable")
     a, b, c = (np.concatenate(pair)[order] for pair in zip(old, new, strict=True))
     return a, b, c
 
 
-def _further(fit: Fit, i: int, grid: Floats, _: Floats, rise: Floats) -> Floats:
-    """Points twice as far out, where a profile has not left the limit and the range has not ended."""
-    centre = float(fit.problem.positions(fit.x)[i])
+def _further(fit: Calibration, i: int, grid: Floats, _: Floats, rise: Floats) -> Floats:
+    """Points at twice the distance, where a profile is below the limit and the range has not ended."""
+    center = float(fit.problem.positions(fit.x)[i])
     limit = float(fit.uncertainty.quantile[i] ** 2)
     return np.array(
         [
-            min(max(centre + 2.0 * (grid[end] - centre), 0.0), 1.0)
+            min(max(center + 2.0 * (grid[end] - center), 0.0), 1.0)
             for end in (0, -1)
             if rise[end] <= limit and 0.0 < grid[end] < 1.0
         ]
     )
 
 
-def _grid(fit: Fit, i: int, points: int) -> Floats:
-    """Where a parameter is held: about the estimate, as far as its interval reaches and further."""
-    centre = float(fit.problem.positions(fit.x)[i])
+def _grid(fit: Calibration, i: int, points: int) -> Floats:
+    """Fixed positions of a parameter: about the estimate, to beyond its interval."""
+    center = float(fit.problem.positions(fit.x)[i])
     found = fit.uncertainty
     reach = _REACH * float(found.quantile[i]) * math.sqrt(max(found.covariance[i, i], 0.0))
     reach = min(max(reach, 1e-9), 1.0)
     side = np.linspace(0.0, 1.0, points // 2 + 1)[1:]
-    grid = np.concatenate([centre - reach * side[::-1], [centre], centre + reach * side])
+    grid = np.concatenate([center - reach * side[::-1], [center], center + reach * side])
     return np.unique(np.clip(grid, 0.0, 1.0))
 
 
 class _Search:
-    """Minimises over the others at many points at once."""
+    """Minimizes over the other parameters at many points at once."""
 
-    def __init__(self, fit: Fit, batch: int) -> None:
+    def __init__(self, fit: Calibration, batch: int) -> None:
         problem = fit.problem
         self._problem, self._batch = problem, batch
         self._cost = Cost(problem, "nll")
         self._scale = scale_of(problem)
-        self._centre = problem.positions(fit.x)
+        self._center = problem.positions(fit.x)
         self._limit = fit.uncertainty.quantile**2
-        _, jacobian = derivative(problem, self._centre, _DIFFERENCE)
-        self._r = self._weighted(self._centre[None])[0]
+        _, jacobian = derivative(problem, self._center, _DIFFERENCE)
+        self._r = self._weighted(self._center[None])[0]
         data = jacobian[problem.mask] * self._scale[:, None]
-        priors = self._cost.prior_slopes(self._centre)
+        priors = self._cost.prior_slopes(self._center)
         self._j = np.concatenate([data, priors])
         information = self._j.T @ self._j
         variance = np.diag(np.linalg.pinv(information))
-        # By how much the autocorrelation weakens what the likelihood says of each parameter.
+        # By how much the autocorrelation reduces the information on each parameter.
         self._weight = variance / np.maximum(np.diag(fit.uncertainty.covariance), 1e-300)
         self._lowest = float(self._r @ self._r)
 
-    def minima(self, held: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
-        """Positions (N, P) of the lowest cost with one parameter held, and the weakened rise (N,)."""
-        count = len(held)
-        z = np.tile(self._centre, (count, 1))
+    def minima(self, fixed: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
+        """Return positions (N, P) of the lowest cost with one parameter fixed, and the scaled rise (N,)."""
+        count = len(fixed)
+        z = np.tile(self._center, (count, 1))
         jacobians = np.tile(self._j, (count, 1, 1))
         rows = np.arange(count)
         moved = np.zeros_like(z)
-        moved[rows, held] = at - self._centre[held]
+        moved[rows, fixed] = at - self._center[fixed]
         for k in range(count):
-            free = self._others(int(held[k]))
-            follow = -np.linalg.lstsq(self._j[:, free], self._j[:, held[k]])[0] * moved[k, held[k]]
+            free = self._others(int(fixed[k]))
+            follow = -np.linalg.lstsq(self._j[:, free], self._j[:, fixed[k]])[0] * moved[k, fixed[k]]
             moved[k, free] = np.clip(z[k, free] + follow, 0.0, 1.0) - z[k, free]
         z = z + moved
-        z[rows, held] = at
+        z[rows, fixed] = at
         r = self._weighted(z)
         for k in range(count):
-            _learn(jacobians[k], r[k] - self._r, moved[k])
+            _update(jacobians[k], r[k] - self._r, moved[k])
         damping = np.zeros(count)
         active = np.ones(count, dtype=np.bool_)
         for _ in range(_STEPS):
             todo = np.flatnonzero(active)
             if not todo.size:
                 break
-            trial = np.array([self._step(z[k], r[k], jacobians[k], int(held[k]), damping[k]) for k in todo])
-            answer = self._weighted(trial)
+            trial = np.array([self._step(z[k], r[k], jacobians[k], int(fixed[k]), damping[k]) for k in todo])
+            found = self._weighted(trial)
             for n, k in enumerate(todo.tolist()):
                 step = trial[n] - z[k]
-                if np.any(step != 0.0) and np.isfinite(answer[n]).all():
-                    _learn(jacobians[k], answer[n] - r[k], step)
-                gain = float(r[k] @ r[k] - answer[n] @ answer[n]) * self._weight[held[k]]
+                if np.any(step != 0.0) and np.isfinite(found[n]).all():
+                    _update(jacobians[k], found[n] - r[k], step)
+                gain = float(r[k] @ r[k] - found[n] @ found[n]) * self._weight[fixed[k]]
                 if gain > 0.0:
-                    z[k], r[k] = trial[n], answer[n]
+                    z[k], r[k] = trial[n], found[n]
                     damping[k] /= 10.0
                 else:
                     damping[k] = max(10.0 * damping[k], 1e-3)
-                active[k] = gain > _SETTLED * self._limit[held[k]] or (gain <= 0.0 and 0.0 < damping[k] < 1.0)
-        risen = (np.einsum("ni,ni->n", r, r) - self._lowest) * self._weight[held]
-        # Where the model cannot be run, nothing speaks for the value.
+                improved = gain > _CONVERGED * self._limit[fixed[k]]
+                active[k] = improved or (gain <= 0.0 and 0.0 < damping[k] < 1.0)
+        risen = (np.einsum("ni,ni->n", r, r) - self._lowest) * self._weight[fixed]
+        # A value at which the model cannot be run is outside.
         return z, np.where(np.isnan(risen), np.inf, np.maximum(risen, 0.0))
 
-    def _step(self, z: Floats, r: Floats, jacobian: Floats, held: int, damping: float) -> Floats:
-        """A damped Gauss-Newton step within the range; what is at a bound and pulled outward stays."""
+    def _step(self, z: Floats, r: Floats, jacobian: Floats, fixed: int, damping: float) -> Floats:
+        """Take a damped Gauss-Newton step within the range; what would leave it at a bound stays."""
         slope = jacobian.T @ r
-        free = self._others(held)
+        free = self._others(fixed)
         stuck = ((z <= 0.0) & (slope > 0.0)) | ((z >= 1.0) & (slope < 0.0))
         free = free[~stuck[free]]
         square = jacobian[:, free].T @ jacobian[:, free]
@@ -249,11 +352,11 @@ class _Search:
         new[free] = np.clip(z[free] - np.linalg.pinv(damped, hermitian=True) @ slope[free], 0.0, 1.0)
         return new
 
-    def _others(self, held: int) -> NDArray[np.int64]:
-        return np.delete(np.arange(self._centre.size), held)
+    def _others(self, fixed: int) -> NDArray[np.int64]:
+        return np.delete(np.arange(self._center.size), fixed)
 
     def _weighted(self, z: Floats) -> Floats:
-        """Residuals over their uncertainty, then those of the priors, of members (N, P)."""
+        """Return residuals over their uncertainty, then those of the priors, for positions (N, P)."""
         found = []
         for first in range(0, len(z), self._batch):
             x = self._problem.values(z[first : first + self._batch])
@@ -262,14 +365,14 @@ class _Search:
         return np.concatenate(found)
 
 
-def _learn(jacobian: Floats, change: Floats, step: Floats) -> None:
-    """Broyden's update in place: the Jacobian explains the change that the step made."""
+def _update(jacobian: Floats, change: Floats, step: Floats) -> None:
+    """Update the Jacobian in place by Broyden's formula."""
     square = float(step @ step)
     if square > 0.0:
         jacobian += np.outer((change - jacobian @ step) / square, step)
 
 
-def _profile(fit: Fit, i: int, grid: Floats, z: Floats, rise: Floats) -> Profile:
+def _profile(fit: Calibration, i: int, grid: Floats, z: Floats, rise: Floats) -> Profile:
     parameter = fit.problem.parameters[i]
     limit = float(fit.uncertainty.quantile[i] ** 2)
     middle = int(np.argmin(rise))
@@ -291,7 +394,7 @@ def _profile(fit: Fit, i: int, grid: Floats, z: Floats, rise: Floats) -> Profile
 
 
 def _crossing(grid: Floats, rise: Floats, limit: float) -> tuple[float, bool]:
-    """Where the profile leaves the limit, going outward; the root of the rise is nearly straight."""
+    """Where the profile crosses the limit, going outward; the root of the rise is nearly linear."""
     above = np.flatnonzero(rise > limit)
     if not above.size:
         return float(grid[-1]), True

@@ -1,4 +1,4 @@
-"""The methods by name, and how long and how finely they search."""
+"""Search methods by name, and the options of a search."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ METHODS: Final[tuple[MethodName, ...]] = (
 )  # fmt: skip
 
 WITH_SQUARES: Final = ("least-squares", "emcee")
-"""Methods that know sums of squares, and so the cost ``nll`` only."""
+"""Methods that minimize a sum of squares, and so know the cost ``nll`` only."""
 
 FINEST: Final = 24
-"""Halvings after which a mesh on the binary grid of the sequences is still exact."""
+"""Largest number of halvings with which the points of a pattern search are exact binary numbers."""
 
 SlopesName = Literal["differences", "exact"]
 SLOPES: Final[tuple[SlopesName, ...]] = ("differences", "exact")
@@ -28,45 +28,54 @@ _AGREE_OTHERS: Final = 2
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """How long and how finely to search.
+    """Options of a search: number of starts, resolution, and when it ends.
 
-    *Sequences* are those of every method that asks and tells: pattern search, swarm, hybrid, evolution
-    strategy, and a user's own.
+    A *sequence* is one search of a method other than least squares: pattern search, swarm, hybrid, evolution
+    strategy, or an optimizer of your own.
 
     Attributes
     ----------
     starts : int
-        Least squares: number of starts, the given one and others spread over the ranges by a Latin
-        hypercube. [-]
+        Least squares: number of starts, the given one and others from a Latin hypercube over the ranges. [-]
     slopes : str
-        Least squares and uncertainty: ``differences`` of members in the lanes of one batch, or ``exact``, the
-        derivatives that the engine gives.
+        Derivatives for least squares and uncertainty: ``differences`` of runs in one batch, or ``exact``,
+        from the engine.
     difference : float
-        Where slopes are differences: their step, in ranges. [-]
+        Step of the differences. [ranges]
     tolerance : float
         Least squares: relative change of cost or position at which a search ends. [-]
     agree : int, optional
-        Number of sequences that must have reached the same minimum; 10 for Hooke-Jeeves as in the reference
-        study, 2 for methods that search the whole range in each. [-]
+        Number of sequences that must reach the same minimum; 10 for Hooke-Jeeves as in the reference study, 2
+        for methods that search the whole range in each sequence. [-]
     within : float
-        Costs within this share of the lowest are the same minimum, see `Cost.tolerance`. [-]
+        Costs within this part of the lowest are the same minimum, see `Cost.tolerance`. [-]
     sequences : int
         Largest number of sequences. [-]
     evaluations : int, optional
-        Number of evaluations at which every sequence is stopped where it stands. [-]
+        Number of evaluations at which every sequence is stopped. [-]
     step : float
-        Pattern search: first step, in ranges; evolution strategy: first standard deviation. [-]
+        Pattern search: first step; evolution strategy: first standard deviation. [ranges]
     reductions : int
-        Pattern search: how often the step is halved before a sequence ends. [-]
+        Pattern search: number of halvings of the step before a sequence ends. [-]
     together : int
         Number of sequences that run side by side; unless `evaluations` ends the search, it changes only the
-        time it takes. [-]
+        computing time. [-]
     particles, generations : int
-        Swarm: its size and how long it flies. [-]
+        Swarm: number of particles and of generations. [-]
     walkers : int, optional
         emcee: number of walkers, an even number; twice the parameters, at least 32, when absent. [-]
     moves : int
-        emcee: how often each walker moves; the first fifth is thrown away. [-]
+        emcee: number of moves of each walker; the first fifth is discarded. [-]
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used.
+
+    Examples
+    --------
+    >>> Rules(starts=2, slopes="exact").agreeing("hooke-jeeves")
+    10
     """
 
     starts: int = 5
@@ -104,9 +113,9 @@ class Rules:
             raise InputError(msg)
         for name in ("difference", "step"):
             if not 0.0 < getattr(self, name) <= 0.5:
-                msg = f"{name}: found {getattr(self, name):g}, expected a share of the range, 0 to 0.5"
+                msg = f"{name}: found {getattr(self, name):g}, expected a part of the range, 0 to 0.5"
                 raise InputError(msg)
 
     def agreeing(self, method: str) -> int:
-        """Number of sequences of a method that must have reached the same minimum. [-]"""
+        """Return the number of sequences of a method that must reach the same minimum. [-]"""
         return self.agree if self.agree is not None else _AGREE.get(method, _AGREE_OTHERS)

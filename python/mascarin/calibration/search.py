@@ -1,4 +1,4 @@
-"""One call for all methods: search, then say how certain the result is."""
+"""One function for all search methods: find the minimum, then estimate the uncertainty."""
 
 from __future__ import annotations
 
@@ -9,17 +9,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.cost import Cost, CostName
+from mascarin.calibration.cost import ONE_NUMBER, Cost, CostName
 from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.fit import Fit, Minimum
-from mascarin.calibration.least_squares import least_squares, sensed
+from mascarin.calibration.least_squares import least_squares, residuals_and_derivatives
 from mascarin.calibration.posterior import sampled
 from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.result import Calibration, Minimum
 from mascarin.calibration.rules import METHODS, WITH_SQUARES, MethodName, Rules
 from mascarin.calibration.sequences import Make, maker, multi_start
-from mascarin.calibration.uncertainty import estimate, on_bounds, warnings
+from mascarin.calibration.uncertainty import estimate
+from mascarin.calibration.warnings import on_bounds, warnings
 from mascarin.errors import InputError, SolverError, did_you_mean
 from mascarin.optimization import Optimizer, Space
+from mascarin.progress import ProgressOption, reporting
 
 Floats = NDArray[np.float64]
 
@@ -31,65 +33,107 @@ def solve(
     cost: CostName = "nll",
     seed: int = 0,
     rules: Rules | None = None,
-    optimiser: Callable[[Space], Optimizer] | None = None,
+    optimizer: Callable[[Space], Optimizer] | None = None,
     record: Path | None = None,
     batch: int = 64,
     confidence: float = 0.95,
-    progress: Callable[[int, float], object] | None = None,
-) -> Fit:
-    """Find the parameters that bring the model closest to the measurements.
+    progress: ProgressOption = None,
+    on_batch: Callable[[int, float], object] | None = None,
+) -> Calibration:
+    """Estimate the parameters of a calibration problem.
 
     Parameters
     ----------
     problem : CalibrationProblem
-        Parameters, measurements and model.
+        Parameters, measured series and model.
     method : str
-        ``least-squares``: the sum of squared residuals over the sensors' uncertainty (and priors), by a
-        trust-region method within the bounds from several starts, derivatives by differences made in one
-        batch or exact ones (`Rules.slopes`).
-        ``hooke-jeeves``: any cost, by pattern search from random starts until the same minimum was reached
-        by several.
+        ``least-squares``: the sum of squared residuals over the uncertainty of the sensors (and priors), by a
+        trust-region method within the bounds from several starts, with derivatives by differences (one batch
+        of runs) or exact ones (`Rules.slopes`).
+        ``hooke-jeeves``: any cost, by pattern search from random starts until several sequences have reached
+        the same minimum.
         ``particle-swarm``, ``hybrid`` (a swarm, then a pattern search from its best point), ``cma-es`` (an
-        evolution strategy): any cost, repeated until the same minimum was reached twice.
+        evolution strategy): any cost, repeated until two sequences have reached the same minimum.
         ``emcee``: least squares, then a sample of the posterior distribution about its minimum.
     cost : str
-        What is minimised, see `mascarin.calibration.cost`; least squares and emcee know ``nll`` only.
+        What is minimized, see `mascarin.calibration.cost`; least squares and emcee know ``nll`` only.
     seed : int
-        Of all random numbers. Same problem, seed and rules: same fit.
+        Of all random numbers. The same problem, seed and rules give the same result.
     rules : Rules, optional
-        How long and how finely to search.
-    optimiser : callable, optional
-        Makes the optimiser of one sequence from its space (positions between 0 and 1, the start included),
-        in the place of the method's.
+        Options of the search.
+    optimizer : callable, optional
+        Makes the optimizer of one sequence from its space (positions between 0 and 1, with the start);
+        replaces that of the method.
     record : Path, optional
         File in which every evaluation is kept. If it exists, nothing in it is evaluated again: a calibration
-        that was interrupted, or whose budget is raised, goes on from there and ends with the same result.
+        that was interrupted, or whose budget is increased, continues from there and ends with the same
+        result.
     batch : int
-        Largest number of members handed to the model at once. [-]
+        Largest number of parameter vectors in one call of the model. [-]
     confidence : float
         Of the intervals. [-]
-    progress : callable, optional
+    progress : bool or callable, optional
+        Shows progress; a function is called with the number of evaluations and 0, because their total is not
+        known in advance.
+    on_batch : callable, optional
         Called after each batch with the number of evaluations and the lowest cost so far.
 
     Returns
     -------
-    Fit
+    Calibration
+        Estimates with their uncertainty.
 
     Raises
     ------
     InputError
-        For an unknown method or cost, a cost that is not a number at the start, or a foreign record.
+        For an unknown method or cost, a cost that is not a number at the start, or a record of another
+        problem.
     SolverError
         When no search ended at a point that can be evaluated.
+
+    Examples
+    --------
+    >>> from mascarin.calibration import FitParameter, FitSensor
+    >>> hour = np.arange(48.0)
+    >>> measured = 5.0 * np.exp(-hour / 10.0)
+    >>> problem = CalibrationProblem(
+    ...     (FitParameter("time_constant", 1.0, 50.0, unit="h"),),
+    ...     (FitSensor("heat", measured, 0.1, unit="W"),),
+    ...     lambda x: (5.0 * np.exp(-hour / x))[:, :, None],
+    ... )
+    >>> round(solve(problem).values["time_constant"], 3)
+    10.0
     """
-    _require(method, cost, confidence, optimiser is not None)
+    with reporting(progress, "evaluations") as report:
+
+        def report_batch(count: int, lowest: float) -> None:
+            report(count, 0)
+            if on_batch is not None:
+                on_batch(count, lowest)
+
+        return _solved(problem, method, cost, seed, rules, optimizer, record, batch, confidence, report_batch)
+
+
+def _solved(
+    problem: CalibrationProblem,
+    method: MethodName,
+    cost: CostName,
+    seed: int,
+    rules: Rules | None,
+    optimizer: Callable[[Space], Optimizer] | None,
+    record: Path | None,
+    batch: int,
+    confidence: float,
+    on_batch: Callable[[int, float], object],
+) -> Calibration:
+    _require(method, cost, confidence, optimizer is not None)
     chosen = rules or Rules()
     if chosen.slopes == "exact":
         problem.require_slopes()
     function = Cost(problem, cost)
-    make = None if optimiser is None else _own(optimiser)
+    make = None if optimizer is None else _own(optimizer)
     squares = method in WITH_SQUARES and make is None
-    with Evaluator(function, record, keep_residuals=squares, batch=batch, progress=progress) as evaluator:
+    with Evaluator(function, record, keep_residuals=squares, batch=batch, on_batch=on_batch) as evaluator:
         _require_start(problem, evaluator)
         if squares:
             minima, reason = least_squares(problem, evaluator, chosen, seed)
@@ -102,7 +146,7 @@ def solve(
         if not math.isfinite(best.cost):
             msg = f"none of {len(minima)} searches ended where the model could be evaluated; check the ranges"
             raise SolverError(msg)
-        name = method if optimiser is None else "your optimiser"
+        name = method if optimizer is None else "your optimizer"
         fit = _report(problem, evaluator, chosen, minima, reason, name, best, confidence, seed)
         if method == "emcee" and make is None:
             return sampled(fit, evaluator, chosen)
@@ -114,19 +158,19 @@ def _require(method: str, cost: str, confidence: float, own: bool) -> None:
         msg = f"method '{method}' is not known. {did_you_mean(method, METHODS)} Known: {', '.join(METHODS)}."
         raise InputError(msg)
     if method in WITH_SQUARES and cost != "nll" and not own:
-        msg = f"{method} minimises 'nll'; for the cost '{cost}' use a method such as 'hooke-jeeves'"
+        msg = f"{method} minimizes 'nll'; for the cost '{cost}' use a method such as 'hooke-jeeves'"
         raise InputError(msg)
     if not 0.0 < confidence < 1.0:
         msg = f"confidence: found {confidence:g}, expected a number between 0 and 1, such as 0.95"
         raise InputError(msg)
 
 
-def _own(optimiser: Callable[[Space], Optimizer]) -> Make:
-    return lambda space, _: optimiser(space)
+def _own(optimizer: Callable[[Space], Optimizer]) -> Make:
+    return lambda space, _: optimizer(space)
 
 
 def _require_start(problem: CalibrationProblem, evaluator: Evaluator) -> None:
-    """Refuse a start at which the cost is not a number, before anything else is evaluated."""
+    """Refuse a start at which the cost is not a number, before the search."""
     x = np.array([[p.first for p in problem.parameters]])
     evaluator.prepare(x)
     if math.isfinite(evaluator.costs(x)[0]):
@@ -152,11 +196,11 @@ def _report(
     best: Minimum,
     confidence: float,
     seed: int,
-) -> Fit:
-    """The fit at the best minimum with its uncertainty."""
+) -> Calibration:
+    """The result at the best minimum, with its uncertainty."""
     cost = evaluator.cost
     z = problem.positions(best.x)
-    residuals, jacobian = sensed(problem, evaluator, z, rules)
+    residuals, jacobian = residuals_and_derivatives(problem, evaluator, z, rules)
     weights = cost.weights(residuals)
     found = estimate(
         problem,
@@ -165,20 +209,23 @@ def _report(
         jacobian,
         weights,
         priors=_prior_information(problem, z),
-        blind_to_bias=cost.blind_to_bias,
+        ignores_bias=cost.ignores_bias,
         confidence=confidence,
     )
-    centred = residuals
-    if cost.blind_to_bias:
-        centred = np.where(problem.mask, residuals - residuals.sum(axis=0) / problem.mask.sum(axis=0), 0.0)
-    slope = np.einsum("ts,tsp->p", weights * centred, jacobian)
+    centered = residuals
+    if cost.ignores_bias:
+        centered = np.where(problem.mask, residuals - residuals.sum(axis=0) / problem.mask.sum(axis=0), 0.0)
+    slope = np.einsum("ts,tsp->p", weights * centered, jacobian)
     notes = warnings(problem, z, found, residuals, jacobian)
     low, high = problem.values(found.low[None])[0], problem.values(found.high[None])[0]
-    if cost.name == "nmbe":
+    if cost.name in ONE_NUMBER:
         low, high = np.full_like(low, np.nan), np.full_like(high, np.nan)
-        notes = ["the cost 'nmbe' compares means only: there are no intervals; use it as a criterion", *notes]
+        text = f"the cost '{cost.name}' compares means only: there are no intervals; use it as a criterion"
+        notes = [text, *notes]
+    if cost.note:
+        notes = [cost.note, *notes]
     of_sensors = cost.of_sensors(residuals[None])[0]
-    return Fit(
+    return Calibration(
         problem=problem,
         method=method,
         cost_name=cost.name,
@@ -201,5 +248,5 @@ def _report(
 
 
 def _prior_information(problem: CalibrationProblem, z: Floats) -> Floats:
-    """Inverse variance of each parameter's prior in positions, 0 without one; shape (P,). [-]"""
+    """Inverse variance of the prior of each parameter in positions, 0 without one; shape (P,). [-]"""
     return np.asarray(np.sum(Cost(problem, "nll").prior_slopes(z) ** 2, axis=0))

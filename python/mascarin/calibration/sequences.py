@@ -1,4 +1,4 @@
-"""Sequences of an ask and tell optimiser, side by side, until enough of them agree."""
+"""Sequences: searches of one optimizer side by side, until enough of them reach the same minimum."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.fit import Minimum
 from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.result import Minimum
 from mascarin.calibration.rules import Rules
 from mascarin.errors import SolverError
 from mascarin.optimization import (
@@ -32,7 +32,7 @@ from mascarin.optimization import (
 Floats = NDArray[np.float64]
 
 Make = Callable[[Space, int], Optimizer]
-"""Makes the optimiser of one sequence from its space and a seed of its own."""
+"""Makes the optimizer of one sequence from its space and its seed."""
 
 _GRID: Final = 2.0**26
 _LONGEST: Final = 5000  # evaluations of one evolution strategy
@@ -40,14 +40,19 @@ _FINE: Final = 1e-6  # of the range, where an evolution strategy ends
 
 
 def maker(method: str, rules: Rules) -> Make:
-    """What makes the optimisers of a method.
+    """Return the function that makes the optimizers of a method.
 
     Parameters
     ----------
     method : str
         ``hooke-jeeves``, ``particle-swarm``, ``hybrid`` or ``cma-es``.
     rules : Rules
-        How finely they search.
+        Options of the search.
+
+    Returns
+    -------
+    callable
+        See `Make`.
     """
     return {
         "hooke-jeeves": lambda space, _: HookeJeeves(space, reductions=rules.reductions, rounding=_exact),
@@ -62,7 +67,7 @@ def maker(method: str, rules: Rules) -> Make:
 
 
 def _exact(value: float, _: int) -> float:
-    """No rounding: the binary grid keeps every point of a mesh exact."""
+    """Round nothing: on the binary grid every point of a mesh is exact."""
     return value
 
 
@@ -76,14 +81,19 @@ class _Sequence:
 
     number: int
     start: Floats
-    optimiser: Optimizer
-    asked: int = 0
+    optimizer: Optimizer
+    evaluations: int = 0
 
     def minimum(self, problem: CalibrationProblem) -> Minimum:
-        best = self.optimiser.best
+        best = self.optimizer.best
         x = problem.values(np.array([best.point.x]))[0]
         return Minimum(
-            self.number, problem.values(self.start[None])[0], x, best.cost, self.asked, self.optimiser.reason
+            self.number,
+            problem.values(self.start[None])[0],
+            x,
+            best.cost,
+            self.evaluations,
+            self.optimizer.reason,
         )
 
 
@@ -95,53 +105,75 @@ def multi_start(
     make: Make,
     agree: int,
 ) -> tuple[list[Minimum], str]:
-    """Sequences side by side until enough of them, counted from the first, agree on the lowest cost.
+    """Run sequences side by side until enough of them, counted from the first, reach the lowest cost.
 
-    Gives where they ended, and why the searching ended. Which sequences count depends on their numbers alone
-    and not on which ended first, so the number that runs side by side does not change the result.
+    Which sequences count depends on their numbers alone and not on which ended first, so that the number that
+    runs side by side does not change the result.
+
+    Parameters
+    ----------
+    problem : CalibrationProblem
+        Parameters, measured series and model.
+    evaluator : Evaluator
+        Evaluates and keeps the record.
+    rules : Rules
+        Options of the search.
+    seed : int
+        Of all random numbers.
+    make : callable
+        Makes the optimizer of a sequence.
+    agree : int
+        Number of sequences that must reach the same minimum. [-]
+
+    Returns
+    -------
+    list of Minimum
+        Where the sequences ended.
+    str
+        Why the calibration ended.
     """
     running: list[_Sequence] = []
     ended: dict[int, Minimum] = {}
     agreement = _Agreement(agree, rules.within, evaluator.cost)
-    begun = asked_in_all = 0
+    started = evaluations = 0
     while True:
-        while begun < rules.sequences and len(running) < rules.together:
-            running.append(_begin(problem, rules, begun, seed, make))
-            begun += 1
-        batch = [(s, s.optimiser.ask()) for s in running]
+        while started < rules.sequences and len(running) < rules.together:
+            running.append(_start(problem, rules, started, seed, make))
+            started += 1
+        batch = [(s, s.optimizer.ask()) for s in running]
         _require_points(batch)
-        points = [point.x for _, asked in batch for point in asked]
+        points = [point.x for _, requested in batch for point in requested]
         costs = iter(evaluator.costs(problem.values(np.array(points)))) if points else iter(())
-        for sequence, asked in batch:
-            sequence.asked += len(asked)
-            asked_in_all += len(asked)
-            sequence.optimiser.tell([Evaluation(point, float(next(costs))) for point in asked])
-            if sequence.optimiser.done:
+        for sequence, requested in batch:
+            sequence.evaluations += len(requested)
+            evaluations += len(requested)
+            sequence.optimizer.tell([Evaluation(point, float(next(costs))) for point in requested])
+            if sequence.optimizer.done:
                 ended[sequence.number] = sequence.minimum(problem)
-        running = [s for s in running if not s.optimiser.done]
+        running = [s for s in running if not s.optimizer.done]
         counted = agreement.counted(ended)
         if counted is not None:
             return counted, f"{agree} of {len(counted)} sequences reached the same minimum"
         first = _leading(ended)
         if len(first) == rules.sequences:
             return first, f"all {rules.sequences} sequences searched, without agreement of {agree}"
-        if rules.evaluations is not None and asked_in_all >= rules.evaluations:
-            unfinished = [s.minimum(problem) for s in running if s.asked]
+        if rules.evaluations is not None and evaluations >= rules.evaluations:
+            unfinished = [s.minimum(problem) for s in running if s.evaluations]
             minima = sorted([*ended.values(), *unfinished], key=lambda m: m.sequence)
             return minima, f"budget of {rules.evaluations} evaluations used"
 
 
 def _require_points(batch: list[tuple[_Sequence, list[Point]]]) -> None:
-    """Refuse an optimiser that goes on without asking for anything: it would never end."""
-    for sequence, asked in batch:
-        if not asked and not sequence.optimiser.done:
-            kind = type(sequence.optimiser).__name__
-            msg = f"the optimiser {kind} of sequence {sequence.number} asks for no point and is not done"
+    """Refuse an optimizer that asks for no point and is not done: it would never end."""
+    for sequence, requested in batch:
+        if not requested and not sequence.optimizer.done:
+            kind = type(sequence.optimizer).__name__
+            msg = f"the optimizer {kind} of sequence {sequence.number} asks for no point and is not done"
             raise SolverError(msg)
 
 
 class _Agreement:
-    """Looks at the sequences in their order until enough of them agree."""
+    """Counts the sequences in their order until enough of them agree."""
 
     def __init__(self, agree: int, within: float, cost: Cost) -> None:
         self._agree = agree
@@ -150,7 +182,7 @@ class _Agreement:
         self._minima: list[Minimum] = []
 
     def counted(self, ended: dict[int, Minimum]) -> list[Minimum] | None:
-        """The sequences up to the one that brought the agreement, None while there is none."""
+        """Return the sequences up to the one that completes the agreement, None while there is none."""
         while len(self._minima) in ended:
             self._minima.append(ended[len(self._minima)])
             costs = np.array([m.cost for m in self._minima])
@@ -163,15 +195,15 @@ class _Agreement:
 
 
 def _leading(ended: dict[int, Minimum]) -> list[Minimum]:
-    """The sequences from the first on without a gap."""
+    """Return the sequences from the first on without a gap."""
     minima: list[Minimum] = []
     while len(minima) in ended:
         minima.append(ended[len(minima)])
     return minima
 
 
-def _begin(problem: CalibrationProblem, rules: Rules, number: int, seed: int, make: Make) -> _Sequence:
-    """The given start for the first sequence, for the others one drawn from its number alone."""
+def _start(problem: CalibrationProblem, rules: Rules, number: int, seed: int, make: Make) -> _Sequence:
+    """Start a sequence: at the given start for the first one, at one drawn from its number for the others."""
     drawn = np.random.default_rng([seed, number])
     if number == 0:
         start = problem.positions(np.array([p.first for p in problem.parameters]))

@@ -38,7 +38,7 @@ def _construction_class(building: Mapping[str, Any], name: str) -> str:
 
 
 def view(building: Mapping[str, Any]) -> Markup | None:
-    """Parallel projection from above of the outside faces, hidden edges dashed.
+    """Parallel projection of the outer surfaces from above, hidden edges dashed.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def view(building: Mapping[str, Any]) -> Markup | None:
     Returns
     -------
     Markup or None
-        Nothing if no surface has vertices.
+        None if no surface has vertices.
     """
     polygons = _polygons(building)
     if len(polygons) < 4:
@@ -84,14 +84,14 @@ def view(building: Mapping[str, Any]) -> Markup | None:
     for surface, vertices in hidden:
         inner = surface.get("outside") != "outdoors"
         svg.polygon(place(vertices), "hidden-edge inner" if inner else "hidden-edge")
-    _name_faces(svg, [(surface, place(vertices)) for surface, vertices in visible])
+    _name_surfaces(svg, [(surface, place(vertices)) for surface, vertices in visible])
     _compass(svg, frame)
     _scale_bar(svg, scale, width, height)
     return svg.markup(f"Drawing of {building.get('name', 'the building')} seen from the north-east and above")
 
 
-def _name_faces(svg: Svg, faces: Sequence[tuple[Mapping[str, Any], Array]]) -> None:
-    """Write names on faces where they fit without covering another name or a smaller face."""
+def _name_surfaces(svg: Svg, faces: Sequence[tuple[Mapping[str, Any], Array]]) -> None:
+    """Write names on surfaces where they do not cover another name or a smaller surface."""
     taken: list[tuple[float, float, float]] = []
     boxes = [(outline.min(axis=0), outline.max(axis=0)) for _, outline in faces]
     for (surface, outline), (low, high) in zip(faces, boxes, strict=True):
@@ -140,19 +140,19 @@ def _scale_bar(svg: Svg, scale: float, width: float, height: float) -> None:
 
 
 def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]]) -> Markup | None:
-    """Cut through the middle from south to north, with zones named and sensors marked.
+    """Section through the middle from south to north, with zones and sensors.
 
     Parameters
     ----------
     building : mapping
         As in :class:`~mascarin.report.schema.BuildingEntry`.
     sensors : mapping
-        As in :class:`~mascarin.report.schema.SensorInfo`; the output's name says where a sensor sits.
+        As in :class:`~mascarin.report.schema.SensorInfo`; the output gives the position of a sensor.
 
     Returns
     -------
     Markup or None
-        Nothing if the plane cuts less than three surfaces.
+        None if the plane cuts less than three surfaces.
     """
     polygons = _polygons(building)
     if not polygons:
@@ -164,7 +164,7 @@ def section(building: Mapping[str, Any], sensors: Mapping[str, Mapping[str, Any]
         return None
     low, high = every[:, 1:].min(axis=0), every[:, 1:].max(axis=0)
     longest = max((len(str(info.get("label", ""))) for info in sensors.values()), default=0)
-    # So wide that the longest name fits beside the section, about 6.4 px a letter.
+    # Wide enough for the longest name beside the section, about 6.4 px for each letter.
     room = max(150.0, 46.0 + 6.4 * longest) if sensors else 46.0
     width, height, margin = 270.0 + room, 360.0, 46.0
     scale = min((width - margin - room) / (high[0] - low[0]), (height - 2 * margin) / (high[1] - low[1]))
@@ -219,7 +219,7 @@ def _zone_fills(
         svg.polygon(outline, f"zone zone-{number % 4}")
         x = 0.72 * float(outline[:, 0].min()) + 0.28 * float(outline[:, 0].max())
         y = _height_at(outline, x)
-        # A name in a thin slanted zone lies along it.
+        # The name of a thin inclined zone is parallel to it.
         slope = math.degrees(math.atan2(_height_at(outline, x + 10.0) - y, 10.0))
         turned = f"rotate({slope:.1f} {x:.1f} {y:.1f})"
         svg.add(
@@ -274,7 +274,7 @@ def _sensor_marks(
 def _spot(
     output: str, cuts: Sequence[tuple[Mapping[str, Any], Array]], place: Any
 ) -> tuple[float, float] | None:
-    """Where an output is in the section: middle of a zone or a place across a wall."""
+    """Position of an output in the section: the middle of a zone, or a position across a wall."""
     owner, _, what = output.partition(".")
     for surface, cut in cuts:
         if surface.get("name") == owner:
@@ -302,7 +302,7 @@ def _spot(
 def layers(
     building: Mapping[str, Any], construction: Mapping[str, Any], sensors: Mapping[str, Any]
 ) -> Markup:
-    """Layers of a construction from outside (left) to inside, drawn about as wide as they are thick.
+    """Layers of a construction from outside (left) to inside; widths increase with the thickness.
 
     Parameters
     ----------
@@ -317,7 +317,7 @@ def layers(
     thick = _thickness(entries)
     widths = _widths(thick)
     every = [_widths(_thickness(c.get("layers", []))).sum() for c in building.get("constructions", [])]
-    # One scale for all constructions, so that a sheet looks thinner than a slab.
+    # One scale for all constructions, so that thickness can be compared.
     widths = np.maximum(300.0 * widths / max([widths.sum(), *every]), 15.0) if len(widths) else widths
     svg = Svg(420.0, 132.0 + 17.0 * len(entries))
     edges = 60.0 + np.concatenate([[0.0], np.cumsum(widths)])
@@ -331,11 +331,11 @@ def layers(
             _hatch(svg, float(x0), float(x1), top, bottom)
         svg.label(0.5 * float(x0 + x1), bottom + 14.0, str(number), "tick", "middle")
         svg.label(60.0, bottom + 17.0 * number + 16.0, _layer_text(number, layer), "layer-name")
-    faces = _faces(building, str(construction.get("name")))
+    sides = _neighbors(building, str(construction.get("name")))
     svg.label(0.0, top + 34.0, "outside", "small")
-    svg.label(0.0, 12.0, f"outside: {faces[0]}" if faces[0] else "", "tick")
+    svg.label(0.0, 12.0, f"outside: {sides[0]}" if sides[0] else "", "tick")
     svg.label(float(edges[-1]) + 8.0, top + 34.0, "inside", "small")
-    svg.label(416.0, 12.0, f"inside: {faces[1]}" if faces[1] else "", "tick", "end")
+    svg.label(416.0, 12.0, f"inside: {sides[1]}" if sides[1] else "", "tick", "end")
     _layer_sensors(svg, building, construction, sensors, edges, thick, top)
     return svg.markup(f"Layers of {construction.get('name')} from outside to inside")
 
@@ -345,13 +345,13 @@ def _thickness(entries: Sequence[Mapping[str, Any]]) -> Array:
 
 
 def _widths(thick: Array) -> Array:
-    """Drawn widths before scaling: a power below one keeps thin sheets visible beside thick slabs."""
+    """Drawn widths before scaling: a power below one keeps thin layers visible beside thick ones."""
     widths: Array = np.maximum(thick, 2e-3) ** 0.45
     return widths
 
 
 def _look(layer: Mapping[str, Any]) -> str:
-    """How a layer is drawn: by its kind, else by how it conducts and how heavy it is."""
+    """Style of a layer: by its kind, else by its conductivity and density."""
     kind = str(layer.get("kind", "solid"))
     conductivity, density = layer.get("conductivity"), layer.get("density")
     if kind != "solid" or not isinstance(conductivity, int | float):
@@ -388,7 +388,7 @@ def _layer_text(number: int, layer: Mapping[str, Any]) -> str:
     return f"{number}  {name}{size}" + (f", {shown}\u00a0{text.unit('W/(m K)')}" if shown else "")
 
 
-def _faces(building: Mapping[str, Any], construction: str) -> tuple[str, str]:
+def _neighbors(building: Mapping[str, Any], construction: str) -> tuple[str, str]:
     sides: tuple[list[str], list[str]] = ([], [])
     for surface in building.get("surfaces", []):
         if surface.get("construction") == construction:

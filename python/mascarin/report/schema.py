@@ -10,7 +10,7 @@ from typing import Any, TypedDict
 
 
 class Metrics(TypedDict, total=False):
-    """How far a model is from one sensor over one period; differences are model less sensor."""
+    """Errors of a model for one sensor and period: simulated minus measured."""
 
     n: int
     bias: float
@@ -89,7 +89,7 @@ class Criterion(TypedDict, total=False):
 
 
 class Assumption(TypedDict, total=False):
-    """A number that nobody measured."""
+    """An assumed value."""
 
     path: str
     value: float
@@ -101,7 +101,7 @@ class Assumption(TypedDict, total=False):
 
 
 class QualityEntry(TypedDict, total=False):
-    """A stretch of a measured channel that is not to be trusted."""
+    """Suspicious values of a measured column."""
 
     channel: str
     kind: str
@@ -142,7 +142,7 @@ class SurfaceEntry(TypedDict, total=False):
     tilt: float
     azimuth: float
     outside: str
-    """What the outside faces: ``outdoors``, a zone, ``ground``, the measured column, ``adiabatic``."""
+    """What is on the outside: ``outdoors``, a zone, ``ground``, the measured column, ``adiabatic``."""
     inside: str
     vertices: list[list[float]]
     film_outside: str
@@ -150,7 +150,7 @@ class SurfaceEntry(TypedDict, total=False):
 
 
 class BuildingEntry(TypedDict, total=False):
-    """What was modelled."""
+    """The building."""
 
     name: str
     site: list[list[str]]
@@ -163,11 +163,11 @@ class BuildingEntry(TypedDict, total=False):
     probes: list[dict[str, Any]]
     """Thermometers in walls: ``name``, ``surface``, ``depth`` [m from outside]."""
     choices: list[list[str]]
-    """Rows of a modelling choice and what was chosen."""
+    """Rows of name and value of modeling choices."""
 
 
 class Share(TypedDict, total=False):
-    """Part of an output's variance owed to one parameter."""
+    """First-order index of a parameter for an output: the part of the variance that it causes."""
 
     share: float
     low: float
@@ -183,7 +183,7 @@ class Spectrum(TypedDict, total=False):
     power: list[float]
     """Part of the variance at each frequency [-]."""
     threshold: float
-    """Below it an ordinate is indistinguishable from chance."""
+    """Values below it are not significant."""
     peaks: list[dict[str, Any]]
     """Each with ``frequency``, ``power``, ``path``, ``harmonic``."""
 
@@ -230,10 +230,10 @@ class Residuals(TypedDict, total=False):
 
 
 class Shortfall(TypedDict, total=False):
-    """What would take the rest of the error away, parameter by parameter; ``sd`` is by sensor."""
+    """Sources of remaining error, parameter by parameter; ``sd`` is by sensor."""
 
     sd: dict[str, float]
-    """As it is."""
+    """Of the fitted model."""
     period: str
     steps: list[dict[str, Any]]
     """Each with ``path`` (what is changed besides those before), ``changes`` by path [ranges], and ``sd``."""
@@ -250,22 +250,22 @@ class LedgerTerm(TypedDict, total=False):
 
 
 class Ledger(TypedDict, total=False):
-    """Where the heat went."""
+    """Energy balance of a run."""
 
     closure: float
-    """Largest imbalance over the heat turned over [-]."""
+    """Relative energy-balance residual [-]."""
     terms: list[LedgerTerm]
     model: str
 
 
 class PhaseChange(TypedDict, total=False):
-    """What a phase-change layer did."""
+    """States of a phase-change layer."""
 
     label: str
     temperature: list[float]
-    """Path followed: mean of the layer's two faces [degC]."""
+    """Mean temperature of the two surfaces of the layer at each time [degC]."""
     enthalpy: list[float]
-    """Path followed: enthalpy [kJ/kg]."""
+    """Mean enthalpy of the layer at each time [kJ/kg]."""
     days: list[dict[str, Any]]
     """Single days of it: ``label``, ``temperature``, ``enthalpy``."""
     law_temperature: list[float]
@@ -292,7 +292,7 @@ class Study(TypedDict, total=False):
 
     title: str
     intro: list[str]
-    """Paragraphs for somebody who never saw the tool."""
+    """Introduction, in paragraphs."""
     observed: dict[str, str]
     """``label`` (what the data are called, e.g. "virtual experiment") and ``note``."""
     mascarin_version: str
@@ -300,7 +300,7 @@ class Study(TypedDict, total=False):
     seed: int
     timezone: str
     command: list[str]
-    """Lines to type to get the same result."""
+    """Commands that give the same results."""
     inputs: list[dict[str, str]]
     """Each with ``name``, ``sha256`` and perhaps ``note``."""
     versions: dict[str, str]
@@ -314,7 +314,7 @@ class Study(TypedDict, total=False):
     sensors: dict[str, dict[str, dict[str, Metrics]]]
     """sensor -> period -> model -> metrics; other keys beside the models are left alone."""
     reference: dict[str, Any]
-    """A publication to read the numbers by: ``label``, ``note``, ``sensors`` (as above, without models), its
+    """A publication for comparison: ``label``, ``note``, ``sensors`` (as above, without models), its
     ``tables`` by what they hold, and its ``influential`` parameters with ``symbol`` and ``frequency``."""
     building: BuildingEntry
     assumptions: list[Assumption]
@@ -325,22 +325,22 @@ class Study(TypedDict, total=False):
     correlation: dict[str, Any]
     """``paths`` and ``matrix`` of the correlation between the estimates."""
     identification: list[list[str]]
-    """Rows of name and value about how the fit was found."""
+    """Rows of name and value about the calibration."""
     criteria: list[Criterion]
     aims: list[Criterion]
-    """Limits that one would have liked to reach; missing one fails nothing."""
+    """Desired limits, which are not required."""
     shortfall: Shortfall
     sensitivity: dict[str, dict[str, Share]]
     sensitivity_design: list[list[str]]
     frequencies: dict[str, int]
-    """At which frequency each parameter swings in the spectra."""
+    """Frequency of each parameter in the spectra."""
     spectra: dict[str, Spectrum]
     day_shares: dict[str, DayShares]
     residuals: dict[str, Residuals]
     start: str
-    """How the state at the start of the run was found."""
+    """Initial state of the run."""
     ledger: Ledger
     phase_change: list[PhaseChange]
     tables: list[Table]
     notes: list[dict[str, str]]
-    """Each with ``title`` and ``text``: what the numbers say, which physics differs."""
+    """Each with ``title`` and ``text``: remarks of the analysis."""

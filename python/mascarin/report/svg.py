@@ -1,7 +1,7 @@
 """A small writer of SVG and a small chart on top of it.
 
-Colours are never written here: elements carry classes, and the style sheet gives them their colour in light,
-dark and print. All text is escaped.
+Elements have classes instead of colors; the style sheet of the page gives them their color in light and dark
+mode and in print. All text is escaped. Figures that exist outside of the report are in `mascarin.figures`.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class Svg:
         Parameters
         ----------
         title : str
-            What is to be seen, for those who do not see it.
+            Description for readers who do not see the drawing.
         class_ : str
             Further classes of the element.
         """

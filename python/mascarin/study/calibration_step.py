@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.calibration import CalibrationProblem, Fit, FitParameter, Rules, solve
+from mascarin.calibration import Calibration, CalibrationProblem, FitParameter, Rules, solve
 from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.weather.times import seconds_of
 
@@ -86,7 +86,11 @@ def problem(
         observation,
         use,
         fit_parameters(simulation.building, plan),
-        {name: sensor for name, sensor in sensors.items() if sensor.use},
+        {
+            name: sensor.stated_uncertainty(simulation.building.output(sensor.output).unit, name)
+            for name, sensor in sensors.items()
+            if sensor.use
+        },
         independent_weight(plan, observation.interval),
     )
 
@@ -113,7 +117,7 @@ def identify(
     *,
     record: Path | None,
     progress: Callable[[int, float], object] | None = None,
-) -> Fit:
+) -> Calibration:
     """Carry out the calibration of a plan.
 
     Parameters
@@ -144,7 +148,7 @@ def identify(
         ),
         record=record,
         batch=_batch(simulation),
-        progress=progress,
+        on_batch=progress,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Final
 
-from mascarin.calibration.building_problem import DEAD, MOST_DEAD
+from mascarin.calibration.building_calibration import CONSTANT, MOST_CONSTANT
 from mascarin.errors import InputError
 from mascarin.validation.observation import require_comparable
 
@@ -88,12 +88,12 @@ def _working(study: Setup) -> None:
     """Refuse to calibrate with a sensor that repeats its value and is not masked."""
     start, end = study.identification
     for name, sensor in study.plan.sensors.items():
-        kinds = [kind for kind in DEAD if kind not in study.plan.quality.mask]
+        kinds = [kind for kind in CONSTANT if kind not in study.plan.quality.mask]
         for stretch in study.quality:
             if not sensor.use or stretch.channel not in sensor.columns or stretch.kind not in kinds:
                 continue
             shared = (min(end, stretch.end) - max(start, stretch.start)).total_seconds()
-            if shared > MOST_DEAD * (end - start).total_seconds():
+            if shared > MOST_CONSTANT * (end - start).total_seconds():
                 with study.places.blame("sensors", name, "column"):
                     raise InputError(
                         f"found column {stretch.channel} {stretch.kind.replace('_', '-')} from "

@@ -17,6 +17,7 @@ from mascarin.calibration.rules import MethodName as FitMethod
 from mascarin.errors import InputError, did_you_mean
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
+from mascarin.study.sensor import Sensor as Sensor
 from mascarin.validation.criteria import Criterion
 
 if TYPE_CHECKING:
@@ -93,7 +94,8 @@ Columns = str | tuple[str, ...] | dict[str, Any]
 #: Names of models, metrics and series in the results; variants need other names.
 TAKEN: Final = (
     "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
-    "max_error_percent", "measured_range", "measured", "band", "as described", "observed", "weather", "state",
+    "max_error_percent", "cv_rmse", "nmbe", "rmse_over_range", "bias_over_range", "measured_range",
+    "measured", "band", "as described", "observed", "weather", "state",
 )  # fmt: skip
 
 
@@ -171,26 +173,6 @@ class ClimateSource(Part):
         if len(given) != 1:
             insist(fault((), ", ".join(given) or "nothing", "one of epw, tmy, measured", "Keep exactly one."))
         return self
-
-
-class Sensor(Part):
-    """A measured series and the model output that it is compared with."""
-
-    column: str | tuple[str, ...] = Field(description="Column, or several columns, of which the mean is used")
-    output: str = Field(description="Output of the model")
-    uncertainty: float = Field(
-        0.5, gt=0, description="Half-width of the 95 % band of the sensor [unit of the output]"
-    )
-    relative: float = Field(
-        0.0, ge=0, lt=1, description="Further half-width as a share of the measured value, such as 0.05 [-]"
-    )
-    label: str | None = Field(None, description="Name in the report")
-    use: bool = Field(True, description="Whether it is used in the identification")
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """The columns it is made of."""
-        return (self.column,) if isinstance(self.column, str) else self.column
 
 
 class Periods(Part):
@@ -303,8 +285,10 @@ class IdentificationPlan(Part):
     seed: int = Field(1, description="Seed of all random numbers")
     lead: Duration = Field("3d", description="Length of the warm-up before the identification period")
     budget: int | None = Field(None, ge=1, description="Largest number of evaluations of all searches")
-    cost: Literal["nll", "sd", "rmse", "cv_rmse"] = Field(
-        "nll", description="Cost function; least-squares, emcee and priors need nll"
+    cost: Literal["nll", "sd", "rmse", "rmse_over_range", "cv_rmse"] = Field(
+        "nll",
+        description="Cost function; least-squares, emcee and priors need nll; cv_rmse is that of ASHRAE "
+        "Guideline 14, and stands for rmse_over_range where a sensor is in degC",
     )
     independent: Duration | None = Field(
         None,

@@ -10,15 +10,15 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from mascarin.calibration import Fit, Profile
+    from mascarin.calibration import Calibration, Profile
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.setup import Scores, Setup
+    from mascarin.validation.comparison import Metrics
     from mascarin.validation.criteria import Verdict
-    from mascarin.validation.error_sources import Shortfall
-    from mascarin.validation.metrics import Metrics
-    from mascarin.validation.residuals import Examination
+    from mascarin.validation.error_sources import ErrorSources
+    from mascarin.validation.residuals import ResidualAnalysis
     from mascarin.weather.quality import Stretch
 
     Array = npt.NDArray[np.float64]
@@ -38,7 +38,7 @@ class ModelRun:
         Its series and energy balance.
     scores : dict
         Metrics by sensor and period.
-    fit : Fit or None
+    fit : Calibration or None
         Its calibration, if it was calibrated.
     note : str
         What it is.
@@ -48,7 +48,7 @@ class ModelRun:
     simulation: Simulation
     results: Results
     scores: Scores
-    fit: Fit | None = None
+    fit: Calibration | None = None
     note: str = ""
 
 
@@ -90,15 +90,15 @@ class Findings:
         Other choices of model.
     sensitivity : Sensitivity or None
         The sensitivity analysis, if the study has one.
-    calibration : Fit
+    calibration : Calibration
         The calibration.
     criteria : dict of str to list of Verdict
         Criteria of the nominal and of the fitted model.
     aims : list of Verdict
         Desired limits, and whether the fitted model meets them.
-    residuals : dict of str to Examination
+    residuals : dict of str to ResidualAnalysis
         Analysis of the residuals of each sensor on the blind days.
-    error_sources : Shortfall or None
+    error_sources : ErrorSources or None
         Parameters that would explain the remaining error on the blind days; None where too few values exist.
     prediction_intervals : PredictionIntervals
         Prediction intervals of the fitted model, with their coverage.
@@ -117,11 +117,11 @@ class Findings:
     fitted: ModelRun
     variants: dict[str, ModelRun]
     sensitivity: Sensitivity | None
-    calibration: Fit
+    calibration: Calibration
     criteria: dict[str, list[Verdict]]
     aims: list[Verdict]
-    residuals: dict[str, Examination]
-    error_sources: Shortfall | None
+    residuals: dict[str, ResidualAnalysis]
+    error_sources: ErrorSources | None
     prediction_intervals: PredictionIntervals
     profiles: list[Profile]
     notes: list[str]

@@ -15,7 +15,7 @@ from mascarin.study.sensitivity_step import analyze, factors
 from mascarin.validation.criteria import judge
 
 if TYPE_CHECKING:
-    from mascarin.calibration import Fit, Profile
+    from mascarin.calibration import Calibration, Profile
     from mascarin.progress import ProgressOption, Report
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.simulation import Simulation
@@ -42,7 +42,7 @@ class ModelRuns:
         self._setup = setup
         self._workspace = workspace
         self._progress = progress
-        self._calibrated: dict[str | None, tuple[ModelRun, Fit]] = {}
+        self._calibrated: dict[str | None, tuple[ModelRun, Calibration]] = {}
 
     def sensitivity(self, plan: SensitivityPlan) -> Sensitivity:
         """The sensitivity analysis in the identification period.
@@ -64,7 +64,7 @@ class ModelRuns:
                 report,
             )
 
-    def fitted(self) -> tuple[ModelRun, Fit]:
+    def fitted(self) -> tuple[ModelRun, Calibration]:
         """The calibrated model and its calibration.
 
         If the study names candidates, the one with the lowest cost in the identification period is taken.
@@ -78,7 +78,7 @@ class ModelRuns:
             note += f"; of {len(runs)} candidates {what} has the lowest cost in the identification period"
         return replace(run, label="fitted", note=note), fit
 
-    def profiled(self, fit: Fit) -> list[Profile]:
+    def profiled(self, fit: Calibration) -> list[Profile]:
         """Profile likelihoods, if the study asks for them."""
         if not self._setup.sought.profiles:
             return []
@@ -87,7 +87,7 @@ class ModelRuns:
             report(len(found), len(found))
         return found
 
-    def candidate(self, name: str | None) -> tuple[ModelRun, Fit]:
+    def candidate(self, name: str | None) -> tuple[ModelRun, Calibration]:
         """A calibrated variant, or the calibrated building as described for None."""
         if name not in self._calibrated:
             note = "the building as described" if name is None else self._note(name)
@@ -110,7 +110,7 @@ class ModelRuns:
         variant = self._setup.plan.variants[name]
         return variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
 
-    def _identified(self, label: str, variant: str | None, note: str) -> tuple[ModelRun, Fit]:
+    def _identified(self, label: str, variant: str | None, note: str) -> tuple[ModelRun, Calibration]:
         setup = self._setup
         with reporting(self._progress, f"calibration ({label})") as report:
             fit = identify(
@@ -136,7 +136,7 @@ def nominal(setup: Setup) -> ModelRun:
 
 
 def compared(
-    setup: Setup, label: str, simulation: Simulation, values: Any, fit: Fit | None, note: str
+    setup: Setup, label: str, simulation: Simulation, values: Any, fit: Calibration | None, note: str
 ) -> ModelRun:
     """Run a model over the whole record and compare it with the measurements."""
     results = simulation.run_vector(values)

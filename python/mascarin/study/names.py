@@ -32,7 +32,7 @@ def check_names(plan: StudyPlan, building: Building, places: Places, faults: Fau
     """
     for name, sensor in plan.sensors.items():
         with places.noting(faults, "sensors", name, "output"):
-            building.output(sensor.output)
+            sensor.stated_uncertainty(building.output(sensor.output).unit, name)
     with places.noting(faults, "sensors"):
         if not any(sensor.use for sensor in plan.sensors.values()):
             raise InputError("found use: false on every sensor, expected at least one that is used")

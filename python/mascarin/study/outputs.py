@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io import atomic
-from mascarin.calibration import plots
+from mascarin.calibration import plot_profiles
+from mascarin.figures import comparison
 from mascarin.figures.files import save
 from mascarin.sensitivity.files import save_all
 from mascarin.study.document.sensitivity import analyzed_hours
@@ -20,7 +21,8 @@ from mascarin.study.tables import tables_of, write_tables
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from mascarin.calibration import Fit, Profile
+    from mascarin.calibration import Calibration, Profile
+    from mascarin.calibration.result import PlotKind
     from mascarin.study.findings import Findings
     from mascarin.study.setup import Setup
     from mascarin.study.storage import Workspace
@@ -63,23 +65,31 @@ def run_facts(findings: Findings) -> dict[str, Any]:
     }
 
 
-def fit_figures(fit: Fit, profiles: Sequence[Profile], folder: Path) -> list[Path]:
+def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> list[Path]:
     """Write the figures of a calibration: cost of the evaluations, minima and profiles.
 
     Parameters
     ----------
-    fit : Fit
+    fit : Calibration
         The calibration.
     profiles : sequence of Profile
         May be empty.
     folder : Path
         Where to write.
     """
-    figures = {"identification-course": plots.course(fit)}
+
+    def drawn(kind: PlotKind) -> Figure:
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
+        fit.plot(kind, ax=figure.subplots())
+        return figure
+
+    figures = {"identification-course": drawn("convergence")}
     if len(fit.minima) > 1:
-        figures["identification-minima"] = plots.minima(fit)
+        figures["identification-minima"] = drawn("minima")
     if profiles:
-        figures["identification-profiles"] = plots.profiles(profiles)
+        figures["identification-profiles"] = plot_profiles(profiles)
     return [save(figure, folder / f"{name}.svg") for name, figure in figures.items()]
 
 
@@ -101,35 +111,27 @@ def _figures(findings: Findings, folder: Path) -> list[Path]:
 
 
 def _comparison(study: Setup, s: int, models: dict[str, Any]) -> Figure:
-    """Measured and simulated curves with the sensor's band; the error below."""
+    """Measured and simulated series with the uncertainty of the sensor; the error below."""
     from matplotlib.figure import Figure
 
     observation = study.observation
     name = observation.names[s]
     sensor, measured = study.plan.sensors[name], observation.measured[:, s]
     local = observation.times.tz_localize(None)
+    unit = study.building.output(sensor.output).unit
+    difference = unit.replace("degC", "K")
     figure = Figure(figsize=(9.0, 5.0), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    upper.fill_between(
-        local,
-        measured - sensor.uncertainty,
-        measured + sensor.uncertainty,
-        color="0.85",
-        lw=0,
-        label="sensor band",
+    comparison.series(
+        upper, local, measured, models, uncertainty=sensor.uncertainty, label=study.plan.observed
     )
-    upper.plot(local, measured, color="0.2", lw=1.0, label=study.plan.observed)
-    for (label, values), color in zip(models.items(), ("#0072b2", "#d55e00"), strict=True):
-        upper.plot(local, values, lw=1.0, color=color, label=label)
-        lower.plot(local, values - measured, lw=0.9, color=color)
+    comparison.errors(lower, local, {label: values - measured for label, values in models.items()})
     first, last = (stamp.tz_localize(None) for stamp in study.identification)
     for axes in (upper, lower):
         axes.axvspan(first, last, color="#009e73", alpha=0.08, lw=0, label="identification")
-        axes.grid(alpha=0.3)
     upper.set_title(sensor.label or name, loc="left", fontsize=11)
-    upper.set_ylabel("degC")
+    upper.set_ylabel(unit)
     upper.legend(fontsize="small", ncols=5, loc="upper left", bbox_to_anchor=(0.0, -0.02), frameon=False)
-    lower.axhline(0.0, color="0.2", lw=0.8)
-    lower.set_ylabel("simulated - observed [K]")
+    lower.set_ylabel(f"simulated minus measured [{difference}]")
     lower.set_xlabel(f"local time ({study.climate.timezone})")
     return figure

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from mascarin.calibration.series import effective_samples
 from mascarin.study.findings import PredictionIntervals
+from mascarin.validation.series import effective_samples
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from mascarin.calibration import Fit
+    from mascarin.calibration import Calibration
     from mascarin.study.findings import ModelRun
     from mascarin.study.setup import Setup
 
@@ -26,7 +26,7 @@ _BATCH: Final = 64
 _LOW_COVERAGE: Final = 0.85
 
 
-def slopes(study: Setup, run: ModelRun, fit: Fit) -> Array:
+def slopes(study: Setup, run: ModelRun, fit: Calibration) -> Array:
     """Derivatives of the sensors with respect to the calibrated parameters.
 
     Parameters
@@ -35,7 +35,7 @@ def slopes(study: Setup, run: ModelRun, fit: Fit) -> Array:
         Gives the instants of the comparison.
     run : ModelRun
         The fitted model.
-    fit : Fit
+    fit : Calibration
         The calibration, with the ranges of its parameters.
 
     Returns
@@ -57,7 +57,7 @@ def slopes(study: Setup, run: ModelRun, fit: Fit) -> Array:
     return np.asarray((series[1:] - series[0]) / np.array(steps)[:, None, None])
 
 
-def prediction_intervals(study: Setup, run: ModelRun, fit: Fit, slope: Array) -> PredictionIntervals:
+def prediction_intervals(study: Setup, run: ModelRun, fit: Calibration, slope: Array) -> PredictionIntervals:
     """Intervals in which new measurements are expected.
 
     Parameters
@@ -66,7 +66,7 @@ def prediction_intervals(study: Setup, run: ModelRun, fit: Fit, slope: Array) ->
         Gives periods and measurements.
     run : ModelRun
         The fitted model.
-    fit : Fit
+    fit : Calibration
         Gives the covariance of the estimates and the model error in the identification period.
     slope : ndarray, shape (P, n, S)
         From `slopes`. [unit of each sensor]

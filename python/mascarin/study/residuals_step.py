@@ -10,13 +10,13 @@ import numpy as np
 from mascarin.progress import reporting
 from mascarin.study.calibration_step import independent_weight
 from mascarin.study.parameter_effects import Effects
-from mascarin.validation.error_sources import Shortfall, shortfall
-from mascarin.validation.residuals import Examination, examine
+from mascarin.validation.error_sources import ErrorSources, find_error_sources
+from mascarin.validation.residuals import ResidualAnalysis, analyze_residuals
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from mascarin.calibration import Fit
+    from mascarin.calibration import Calibration
     from mascarin.progress import ProgressOption
     from mascarin.study.findings import ModelRun
     from mascarin.study.setup import Setup
@@ -55,14 +55,14 @@ def too_few(setup: Setup) -> list[str]:
     ]
 
 
-def examined(setup: Setup, run: ModelRun) -> dict[str, Examination]:
+def examined(setup: Setup, run: ModelRun) -> dict[str, ResidualAnalysis]:
     """Structure of the residuals of each sensor on the blind days."""
     observation, local = setup.observation, setup.observation.times.tz_localize(None)
     simulated = observation.simulated(run.results.index, run.results.records)
     hour = np.asarray(local.hour + local.minute / 60.0, dtype=np.float64)
     channels = drivers(setup)
     return {
-        name: examine(
+        name: analyze_residuals(
             observation.measured[:, s],
             simulated[:, s],
             step=observation.interval,
@@ -76,7 +76,9 @@ def examined(setup: Setup, run: ModelRun) -> dict[str, Examination]:
     }
 
 
-def error_sources(setup: Setup, run: ModelRun, fit: Fit, progress: ProgressOption = None) -> Shortfall | None:
+def error_sources(
+    setup: Setup, run: ModelRun, fit: Calibration, progress: ProgressOption = None
+) -> ErrorSources | None:
     """Parameters whose change would explain the remaining error on the blind days."""
     observation, blind, analyzed = setup.observation, setup.during["blind"].copy(), _analyzed(setup)
     if not analyzed:
@@ -90,11 +92,11 @@ def error_sources(setup: Setup, run: ModelRun, fit: Fit, progress: ProgressOptio
         found = effects.found(observation, blind, report)
     local = observation.times.tz_localize(None)
     columns = list(analyzed.values())
-    return shortfall(
+    return find_error_sources(
         {name: error[blind, s] for name, s in analyzed.items()},
         {path: effect[:, columns] for path, effect in found.items()},
-        uncertainty=[setup.plan.sensors[name].uncertainty / NORMAL_95 for name in analyzed],
-        room=effects.room,
+        standard_uncertainty=[setup.plan.sensors[name].uncertainty / NORMAL_95 for name in analyzed],
+        allowed=effects.room,
         days=np.asarray((local[blind] - local[0]).days),
         weight=independent_weight(setup.sought, observation.interval),
     )

@@ -38,9 +38,9 @@ class StudyResults(Findings):
         Criteria of the nominal and of the fitted model.
     aims : list of Verdict
         Desired limits, and whether the fitted model meets them.
-    residuals : dict of str to Examination
+    residuals : dict of str to ResidualAnalysis
         Analysis of the residuals of each sensor on the blind days.
-    error_sources : Shortfall or None
+    error_sources : ErrorSources or None
         Parameters that would explain the remaining error on the blind days.
     prediction_intervals : PredictionIntervals
         Prediction intervals of the fitted model, with their coverage.
@@ -65,7 +65,11 @@ class StudyResults(Findings):
     ...     climate=wall.climate,
     ...     measurements=wall.measurements,
     ...     sensors={
-    ...         "joint": {"column": "joint", "output": "wall.interface_1_temperature", "uncertainty": 0.1}
+    ...         "joint": {
+    ...             "column": "joint",
+    ...             "output": "wall.interface_1_temperature",
+    ...             "expanded_uncertainty": 0.1,
+    ...         }
     ...     },
     ...     periods={"identification": ("2023-03-03", "2023-03-06")},
     ...     parameters=["materials.insulation.conductivity", "surfaces.wall.outside.absorptance"],
@@ -145,7 +149,7 @@ class StudyResults(Findings):
     def _repr_html_(self) -> str:
         tables = {
             "Metrics": metrics_table([self.nominal, self.fitted]),
-            "Calibrated parameters": self.calibration.table(),
+            "Calibrated parameters": self.calibration.to_dataframe(),
         }
         return display.page(self._title(), self._rows(), tables=tables)
 

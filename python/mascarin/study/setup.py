@@ -17,7 +17,7 @@ from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, problem
 from mascarin.study.description import IdentificationPlan, StudyFile
 from mascarin.study.phase_change import melting_layers
-from mascarin.validation.metrics import Metrics, compare
+from mascarin.validation.comparison import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
 from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import moment

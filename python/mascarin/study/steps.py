@@ -22,7 +22,13 @@ from mascarin.study.model_runs import ModelRuns, judged, nominal
 from mascarin.study.outputs import fit_figures
 from mascarin.study.prediction_intervals import interval_words, prediction_intervals, slopes
 from mascarin.study.storage import Workspace
-from mascarin.study.tables import criteria_table, metrics_table, quality_table, write_tables
+from mascarin.study.tables import (
+    criteria_table,
+    estimates_table,
+    metrics_table,
+    quality_table,
+    write_tables,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -114,7 +120,7 @@ def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> 
             ],
         }
         tables = {
-            "parameters": fit.table(),
+            "parameters": estimates_table(fit),
             "evaluations": fit.evaluations(),
             "calibration_metrics": metrics_table([before, fitted]),
             "calibration_criteria": criteria_table(verdicts),

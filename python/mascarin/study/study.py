@@ -23,7 +23,7 @@ from mascarin.study.setup import Setup
 from mascarin.study.storage import Workspace
 from mascarin.study.writing import study_text, write_study
 from mascarin.validation.criteria import judge
-from mascarin.validation.residuals import diagnose
+from mascarin.validation.diagnosis import diagnose
 
 if TYPE_CHECKING:
     from mascarin.building import Building

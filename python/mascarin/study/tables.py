@@ -14,6 +14,7 @@ from mascarin.study.residuals_step import DRIVERS
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.calibration import Calibration
     from mascarin.study.findings import Findings, ModelRun
     from mascarin.validation.criteria import Verdict
     from mascarin.weather.quality import Stretch
@@ -35,7 +36,7 @@ def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:
     """
     tables = {
         "metrics": metrics_table(list(findings.runs())),
-        "parameters": findings.calibration.table(),
+        "parameters": estimates_table(findings.calibration),
         "evaluations": findings.calibration.evaluations(),
         "criteria": criteria_table(findings.criteria),
         "quality": quality_table(findings.quality),
@@ -44,6 +45,12 @@ def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:
     if findings.sensitivity is not None:
         tables["sensitivity"] = findings.sensitivity.table()
     return tables
+
+
+def estimates_table(found: Calibration) -> pd.DataFrame:
+    """One row per parameter: nominal and calibrated value, interval, unit, remark."""
+    table = found.to_dataframe().reset_index().rename(columns={"estimate": "fitted"})
+    return table[["parameter", "nominal", "fitted", "low", "high", "unit", "remark"]]
 
 
 def write_tables(folder: Path, tables: Mapping[str, pd.DataFrame]) -> list[Path]:

@@ -1,12 +1,16 @@
-"""Limits that a comparison must keep, and whether it does.
+"""Criteria: limits on metrics, and whether a comparison meets them.
 
 A criterion is written as a plain mapping, for example::
 
     {metric: max_error_percent, limit: 10}
     {metric: max_error, limit: 1, sensors: room, name: "room air within 1 degC"}
     {metric: rmse, limit: 0.15, sensors: [interface], periods: blind}
+    {metric: cv_rmse, limit: 30, sensors: heating}
 
-The size of the metric is compared, so that a bias of -3 does not pass a limit of 2.
+The size of the metric is compared, so that a bias of -3 does not meet a limit of 2. ``cv_rmse`` and ``nmbe``
+are those of ASHRAE Guideline 14, over the mean of the measurements; a sensor in degC is refused for them. The
+Guideline accepts a model by hourly data with NMBE within 10 % and CV(RMSE) up to 30 %, by monthly data with
+5 % and 15 %.
 """
 
 from __future__ import annotations
@@ -14,24 +18,50 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from mascarin.errors import InputError, did_you_mean
-from mascarin.validation.metrics import Metrics
+from mascarin.validation.comparison import OVER_MEAN, PERCENT, Metrics
 
 MetricName = Literal[
-    "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent", "max_error_percent"
+    "bias",
+    "sd",
+    "rmse",
+    "mean_error",
+    "max_error",
+    "mean_error_percent",
+    "max_error_percent",
+    "cv_rmse",
+    "nmbe",
+    "rmse_over_range",
+    "bias_over_range",
 ]
+
+_WORDS: Final = {
+    "cv_rmse": "CV(RMSE)",
+    "nmbe": "|NMBE|",
+    "rmse_over_range": "rmse",
+    "bias_over_range": "|bias|",
+}
 
 
 class Criterion(BaseModel):
-    """One limit on one metric, for some or all sensors and periods."""
+    """One limit on one metric, for some or all sensors and periods.
+
+    Examples
+    --------
+    >>> Criterion(metric="rmse", limit=0.5, sensors=("room",)).describe("degC")
+    '|rmse| <= 0.5 degC'
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    metric: MetricName = Field(description="What is limited; percentages refer to the measured range.")
+    metric: MetricName = Field(
+        description="What is limited; cv_rmse and nmbe (ASHRAE Guideline 14) are over the mean of the "
+        "measurements, all other percentages over the measured range."
+    )
     limit: float = Field(
         gt=0.0,
         allow_inf_nan=False,
@@ -52,30 +82,36 @@ class Criterion(BaseModel):
         return [value] if isinstance(value, str) else value
 
     def describe(self, unit: str) -> str:
-        """The criterion in words.
+        """Describe the criterion in words.
 
         Parameters
         ----------
         unit : str
             Unit of the sensor; percentages keep their own.
+
+        Returns
+        -------
+        str
+            Its name, or such as ``|max error| <= 2 degC``.
         """
         if self.name is not None:
             return self.name
-        words = self.metric.removesuffix("_percent").replace("_", " ")
-        of_range = " of the measured range" if self.metric.endswith("_percent") else ""
-        return f"|{words}| <= {self.limit:g} {metric_unit(self.metric, unit)}{of_range}"
+        words = _WORDS.get(self.metric, f"|{self.metric.removesuffix('_percent').replace('_', ' ')}|")
+        over_range = self.metric in PERCENT and self.metric not in OVER_MEAN
+        suffix = " of the measured range" if over_range else ""
+        return f"{words} <= {self.limit:g} {metric_unit(self.metric, unit)}{suffix}"
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether one sensor kept one criterion over one period.
+    """Whether one sensor meets one criterion over one period.
 
     Attributes
     ----------
     name : str
         The criterion in words.
     sensor, period, metric : str
-        What was looked at.
+        What was compared.
     value : float
         The metric, with its sign; NaN when there was nothing to compare. [unit]
     limit : float
@@ -84,6 +120,11 @@ class Verdict:
         Unit of value and limit.
     passed : bool
         Whether the size of the value is at most the limit; False when there was nothing to compare.
+
+    Examples
+    --------
+    >>> Verdict("|bias| <= 1 degC", "room", "july", "bias", 0.5, 1.0, "degC", passed=True).to_dict()["value"]
+    0.5
     """
 
     name: str
@@ -96,7 +137,7 @@ class Verdict:
     passed: bool
 
     def to_dict(self) -> dict[str, str | float | bool | None]:
-        """The verdict for a JSON file; a value that could not be computed is None."""
+        """Return the verdict for a JSON file; a value that could not be computed is None."""
         return {
             "name": self.name,
             "sensor": self.sensor,
@@ -110,7 +151,7 @@ class Verdict:
 
 
 def parse_criteria(items: Iterable[Mapping[str, Any]], *, where: str = "criteria") -> tuple[Criterion, ...]:
-    """Criteria from plain mappings.
+    """Read criteria from plain mappings.
 
     Parameters
     ----------
@@ -127,6 +168,11 @@ def parse_criteria(items: Iterable[Mapping[str, Any]], *, where: str = "criteria
     ------
     InputError
         For an unknown key or metric, a missing or non-positive limit.
+
+    Examples
+    --------
+    >>> parse_criteria([{"metric": "max_error", "limit": 1.0, "sensors": "room"}])[0].sensors
+    ('room',)
     """
     found = []
     for k, item in enumerate(items):
@@ -147,7 +193,7 @@ def judge(
     criteria : sequence of Criterion
         The limits.
     metrics : mapping of sensor to mapping of period to Metrics
-        What `mascarin.validation.metrics.compare` found.
+        What `metrics` found.
     where : str
         Place named in errors.
 
@@ -159,13 +205,22 @@ def judge(
     Raises
     ------
     InputError
-        When a criterion names a sensor or period that was not compared.
+        A criterion names a sensor or period that was not compared, or limits a metric over the mean of a
+        sensor in degC.
+
+    Examples
+    --------
+    >>> from mascarin.validation.comparison import metrics
+    >>> found = {"room": {"july": metrics([20.0, 22.0, 24.0], [20.5, 22.5, 24.5])}}
+    >>> judge([Criterion(metric="bias", limit=1.0)], found)[0].passed
+    True
     """
     verdicts: list[Verdict] = []
     # A sensor may lack a period that another has; a name that none has is a mistake.
     every = {period: None for periods in metrics.values() for period in periods}
     for k, criterion in enumerate(criteria):
         sensors = _selected(criterion.sensors, metrics, f"{where}[{k}]: sensor")
+        _require_true_zero(criterion, sensors, metrics, f"{where}[{k}]")
         periods = _selected(criterion.periods, every, f"{where}[{k}]: period")
         verdicts += [
             _verdict(criterion, sensor, period, metrics[sensor][period])
@@ -177,8 +232,24 @@ def judge(
 
 
 def metric_unit(metric: str, unit: str) -> str:
-    """Unit of a metric of a sensor that measures in `unit`."""
-    return "%" if metric.endswith("_percent") else unit
+    """Return the unit of a metric of a sensor that measures in `unit`."""
+    return "%" if metric in PERCENT else unit
+
+
+def _require_true_zero(
+    criterion: Criterion, sensors: Sequence[str], metrics: Mapping[str, Mapping[str, Metrics]], where: str
+) -> None:
+    """Refuse a metric over the mean of the measurements for temperatures in degC."""
+    if criterion.metric not in OVER_MEAN:
+        return
+    for sensor in sensors:
+        if any(found.unit == "degC" for found in metrics[sensor].values()):
+            other = "rmse_over_range" if criterion.metric == "cv_rmse" else "bias_over_range"
+            raise InputError(
+                f"{where}: found {criterion.metric} for sensor '{sensor}' in degC, expected a sensor whose "
+                "zero has a physical meaning, such as energy or power: the mean of a temperature depends on "
+                f"the zero of its scale. Name the sensors it applies to, or use {other}"
+            )
 
 
 def _verdict(criterion: Criterion, sensor: str, period: str, found: Metrics) -> Verdict:
@@ -196,7 +267,7 @@ def _verdict(criterion: Criterion, sensor: str, period: str, found: Metrics) -> 
 
 
 def _selected(wanted: tuple[str, ...] | None, known: Mapping[str, object], where: str) -> list[str]:
-    """The names a criterion applies to, each known."""
+    """Return the names a criterion applies to; each is known."""
     if wanted is None:
         return list(known)
     for name in wanted:
@@ -207,7 +278,7 @@ def _selected(wanted: tuple[str, ...] | None, known: Mapping[str, object], where
 
 
 def _explain(error: ValidationError, where: str) -> str:
-    """What is wrong with a mapping, one line per fault."""
+    """Describe what is wrong with a mapping, one line per error."""
     lines = []
     for fault in error.errors():
         path = ".".join(str(part) for part in fault["loc"])

@@ -1,13 +1,15 @@
-"""What would take the rest of the error away: a parameter that is off, or an equation that is missing.
+"""Sources of the remaining error: parameters that are off, or equations that are missing.
 
-The error that a fitted model leaves on days that it has not seen is laid over the effects of its parameters,
-all sensors at once. Where a few parameters take it away, the identification did not show them; where all of
-them together do not, no value helps, and the equations differ. Everything is linear about the fitted model,
-and nothing of it goes back into the fit: the days stay blind.
+The error of a fitted model on days that were not used in the fit is explained by the effects of its
+parameters, for all sensors together. Where a few parameters explain it, the data of the identification did
+not determine them; where all parameters together do not explain it, no values of parameters help, and the
+cause is in the equations or in the weather. Everything is linear about the fitted model, and the fit is not
+changed: the days remain blind.
 
-A change has a normal prior about the fitted value, a quarter of its range wide, and stays inside the range.
-What it leaves is always told on days that the change was not found on: the record is cut into weeks, and
-every other week judges the rest. Where no change makes the error smaller there, none is named.
+A change of a parameter has a normal prior about the fitted value, with a standard deviation of a quarter of
+its range, and stays inside the range. The error that remains is always computed on days that were not used to
+find the change: the record is divided into weeks, and every other week tests what was found on the rest.
+Where no change makes the error smaller there, no parameter is named.
 """
 
 from __future__ import annotations
@@ -27,23 +29,23 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-#: Standard deviation of the prior of a change. [ranges]
 PRIOR: Final = 0.25
-#: Parameters that are named one after the other, at most.
+"""Standard deviation of the prior of a change. [ranges]"""
 MOST: Final = 6
-#: A parameter is named when it takes away this part at least of what all of them take away, and any at all
-#: when some of them take this part of the squared error away where they were not found.
-_WORTH: Final = 0.05
-#: The search for the best changes ends when none moves by more [ranges], or after so many sweeps.
-_STILL: Final = 1e-6
+"""Largest number of parameters that are named."""
+#: A parameter is named when it reduces the cost by at least this part of what all of them do, and parameters
+#: are named at all when some reduce the squared error by this part on weeks that were not used to find them.
+_SIGNIFICANT: Final = 0.05
+#: The coordinate descent ends when no change moves by more [ranges], or after so many sweeps.
+_CONVERGED: Final = 1e-6
 _SWEEPS: Final = 500
-#: Length of a piece of the record that is judged by the others. [d]
+#: Length of the pieces that the record is divided into. [d]
 _PIECE: Final = 7
 
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """Parameters that are changed together, and what they leave.
+    """Parameters that are changed together, and the error that remains.
 
     Attributes
     ----------
@@ -52,8 +54,8 @@ class Correction:
     changes : tuple of float
         By how much each is changed, in ranges: 0.5 is half the way from the low to the high end. [-]
     sd : tuple of float
-        Standard deviation of what is left of each sensor, on weeks that the changes were not found on.
-        [unit of each]
+        Standard deviation of the remaining error of each sensor, on weeks that were not used to find the
+        changes. [unit of each]
     """
 
     paths: tuple[str, ...]
@@ -62,8 +64,8 @@ class Correction:
 
 
 @dataclass(frozen=True, slots=True)
-class Shortfall:
-    """What is left, and what would take it away.
+class ErrorSources:
+    """The remaining error of each sensor, and the parameters that explain it.
 
     Attributes
     ----------
@@ -72,9 +74,14 @@ class Shortfall:
     sd : tuple of float
         Standard deviation of the error as it is. [unit of each]
     steps : tuple of Correction
-        The most telling parameter, then with it the next, and so on; empty where none helps.
+        The parameter that explains most, then together with the next, and so on; empty where none does.
     every : Correction
-        All parameters together: what the equations can do.
+        All parameters together: the best that these equations can do.
+
+    Examples
+    --------
+    >>> ErrorSources(("air",), (0.3,), (), Correction(("absorptance",), (0.1,), (0.05,))).floor("air")
+    0.05
     """
 
     sensors: tuple[str, ...]
@@ -83,11 +90,11 @@ class Shortfall:
     every: Correction
 
     def floor(self, sensor: str) -> float:
-        """Standard deviation that no change of parameters goes below. [unit of the sensor]"""
+        """Return the standard deviation that remains with all parameters changed. [unit of the sensor]"""
         return self.every.sd[self.sensors.index(sensor)]
 
     def to_dict(self) -> dict[str, Any]:
-        """For a JSON file; six digits, which no order of summation changes."""
+        """Return plain values for a JSON file, with six digits, which no order of summation changes."""
 
         def by_sensor(values: Sequence[float]) -> dict[str, float]:
             return {name: float(f"{v:.6g}") for name, v in zip(self.sensors, values, strict=True)}
@@ -106,78 +113,102 @@ class Shortfall:
         }
 
 
-def shortfall(
+def find_error_sources(
     residuals: Mapping[str, ArrayLike],
     effects: Mapping[str, ArrayLike],
     *,
-    uncertainty: Sequence[float],
-    room: Mapping[str, tuple[float, float]],
+    standard_uncertainty: Sequence[float],
+    allowed: Mapping[str, tuple[float, float]],
     days: ArrayLike,
     weight: float = 1.0,
-) -> Shortfall:
-    """Find the parameters that account for what is left.
+) -> ErrorSources:
+    """Find the parameters that explain the remaining error of a model.
 
     Parameters
     ----------
     residuals : mapping of str to array_like, shape (n,)
         Simulated minus measured by sensor, NaN where there is none. [unit of each]
     effects : mapping of str to array_like, shape (n, S)
-        Change of the simulated series when a parameter goes through its whole range. [unit of each]
-    uncertainty : sequence of float, length S
-        Standard deviation of each sensor, which makes them comparable. [unit of each]
-    room : mapping of str to (float, float)
-        How far down and up each parameter can be changed, in ranges. [-]
+        Change of the simulated series from the low to the high end of the range of a parameter. [unit of
+        each]
+    standard_uncertainty : sequence of float, length S
+        Of each sensor; makes the sensors comparable. [unit of each]
+    allowed : mapping of str to (float, float)
+        Lowest and highest change of each parameter, in ranges. [-]
     days : array_like, shape (n,)
         Number of the day of each instant.
     weight : float
-        What a sample counts against the prior; below one where errors last for many samples. [-]
+        Weight of a sample relative to the prior; below one where errors are autocorrelated. [-]
 
     Returns
     -------
-    Shortfall
+    ErrorSources
 
     Raises
     ------
     InputError
-        Shapes that do not fit.
+        The shapes do not match.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> day = np.repeat(np.arange(28), 24)
+    >>> effect = np.sin(np.arange(day.size) / 12.0 * np.pi)[:, None]
+    >>> found = find_error_sources(
+    ...     {"air": 0.3 * effect[:, 0]},
+    ...     {"absorptance": effect},
+    ...     standard_uncertainty=[0.1],
+    ...     allowed={"absorptance": (-0.5, 0.5)},
+    ...     days=day,
+    ... )
+    >>> found.steps[0].paths, round(found.steps[0].changes[0], 2)
+    (('absorptance',), -0.3)
     """
-    fault = _Fault(residuals, effects, uncertainty, room, days, weight)
-    everything = list(range(len(fault.paths)))
-    gain_of_all = fault.gain(everything)
+    equations = _NormalEquations(residuals, effects, standard_uncertainty, allowed, days, weight)
+    everything = list(range(len(equations.paths)))
+    gain_of_all = equations.gain(everything)
     chosen: list[int] = []
     steps: list[Correction] = []
     gained = 0.0
     while len(chosen) < min(MOST, len(everything)):
-        gains = {k: fault.gain([*chosen, k]) for k in everything if k not in chosen}
+        gains = {k: equations.gain([*chosen, k]) for k in everything if k not in chosen}
         best = max(gains, key=lambda k: gains[k])
-        if gains[best] - gained < _WORTH * gain_of_all or gains[best] <= gained:
+        if gains[best] - gained < _SIGNIFICANT * gain_of_all or gains[best] <= gained:
             break
         gained = gains[best]
         chosen.append(best)
-        steps.append(fault.correction(chosen))
-    as_it_is, every = tuple(fault.scatter(fault.error)), fault.correction(everything)
-    least = min(fault.weighed(found.sd) for found in (*steps, every))
-    if least > (1.0 - _WORTH) * fault.weighed(as_it_is):
+        steps.append(equations.correction(chosen))
+    as_it_is, every = tuple(equations.scatter(equations.error)), equations.correction(everything)
+    least = min(equations.weighted(found.sd) for found in (*steps, every))
+    if least > (1.0 - _SIGNIFICANT) * equations.weighted(as_it_is):
         steps = []
-    return Shortfall(tuple(residuals), as_it_is, tuple(steps), every)
+    return ErrorSources(tuple(residuals), as_it_is, tuple(steps), every)
 
 
-def words(aims: Iterable[Verdict], found: Shortfall, period: str) -> list[str]:
-    """What keeps each sensor from its aim.
+def explain_missed_aims(aims: Iterable[Verdict], found: ErrorSources, period: str) -> list[str]:
+    """Say of each missed aim whether other values of parameters could reach it.
 
     Parameters
     ----------
     aims : iterable of Verdict
-        What was wanted, and what was reached.
-    found : Shortfall
-        What would take the rest away.
+        Desired limits, and the values reached.
+    found : ErrorSources
+        From `find_error_sources`.
     period : str
         The period that it was found on.
 
     Returns
     -------
     list of str
-        A sentence for each standard deviation that is larger than wished in that period.
+        A sentence for each standard deviation above its limit in that period.
+
+    Examples
+    --------
+    >>> from mascarin.validation.criteria import Verdict
+    >>> found = ErrorSources(("air",), (0.3,), (), Correction(("a",), (0.1,), (0.05,)))
+    >>> missed = Verdict("sd", "air", "blind", "sd", 0.3, 0.1, "degC", passed=False)
+    >>> explain_missed_aims([missed], found, "blind")[0][:60]
+    'air: the standard deviation is 0.300 K, the aim is 0.1 K. Wi'
     """
     sentences = []
     for aim in aims:
@@ -185,26 +216,26 @@ def words(aims: Iterable[Verdict], found: Shortfall, period: str) -> list[str]:
             continue
         floor, unit = found.floor(aim.sensor), aim.unit.replace("degC", "K")
         if floor <= aim.limit:
-            why = "the equations can do it, but the days of the identification do not show these values"
+            why = "the equations can do it, but the data of the identification do not determine these values"
         else:
-            why = "no values do it: what is missing is in the equations, or in the weather that drives them"
+            why = "no values of parameters do it: the cause is in the equations or in the weather data"
         sentences.append(
-            f"{aim.sensor}: the standard deviation is {aim.value:.3f} {unit}, aimed at {aim.limit:g}. "
-            f"With all {len(found.every.paths)} parameters adjusted to these days {floor:.3f} {unit} would "
-            f"be left: {why}."
+            f"{aim.sensor}: the standard deviation is {aim.value:.3f} {unit}, the aim is {aim.limit:g} "
+            f"{unit}. With all {len(found.every.paths)} parameters adjusted to these days {floor:.3f} {unit} "
+            f"would remain: {why}."
         )
     return sentences
 
 
-class _Fault:
-    """Residuals and effects, without their means, and their normal equations week by week."""
+class _NormalEquations:
+    """Residuals and effects without their means, and their normal equations for both halves of the weeks."""
 
     def __init__(
         self,
         residuals: Mapping[str, ArrayLike],
         effects: Mapping[str, ArrayLike],
-        uncertainty: Sequence[float],
-        room: Mapping[str, tuple[float, float]],
+        standard_uncertainty: Sequence[float],
+        allowed: Mapping[str, tuple[float, float]],
         days: ArrayLike,
         weight: float,
     ) -> None:
@@ -221,17 +252,17 @@ class _Fault:
                     "residuals"
                 )
             self.effects.append(self._centred(values))
-        self.room = np.array([room[path] for path in self.paths]).reshape(-1, 2)
+        self.allowed = np.array([allowed[path] for path in self.paths]).reshape(-1, 2)
         piece = (np.asarray(days) // _PIECE) % 2
-        # A record of less than two pieces is cut in the middle.
+        # A record shorter than two pieces is divided in the middle.
         if np.ptp(piece) == 0:
             piece = (np.arange(len(error)) >= len(error) // 2).astype(np.int64)
         self.pieces: list[Flags] = [piece == 0, piece == 1]
-        self.scale: Floats = np.sqrt(weight) / np.asarray(uncertainty, dtype=np.float64)
+        self.scale: Floats = np.sqrt(weight) / np.asarray(standard_uncertainty, dtype=np.float64)
         self.normal = [self._normal(use, self.scale) for use in self.pieces]
 
     def _centred(self, values: Floats) -> Floats:
-        """A series less its mean where something is measured, zero elsewhere, shape (n, S)."""
+        """Subtract the mean where something is measured, zero elsewhere, shape (n, S)."""
         count = np.maximum(self.known.sum(axis=0), 1)
         mean = np.where(self.known, values, 0.0).sum(axis=0) / count
         centred: Floats = np.where(self.known, values - mean, 0.0)
@@ -248,35 +279,35 @@ class _Fault:
         return first + second, right + left
 
     def _changes(self, normal: tuple[Floats, Floats], chosen: list[int]) -> Floats:
-        """The most probable changes inside the ranges, shape (chosen,)."""
+        """Return the most probable changes inside the ranges, shape (chosen,)."""
         matrix = normal[0][np.ix_(chosen, chosen)] + np.eye(len(chosen)) / PRIOR**2
-        return _lowest(matrix, normal[1][chosen], *self.room[chosen].T)
+        return _lowest(matrix, normal[1][chosen], *self.allowed[chosen].T)
 
     def gain(self, chosen: list[int]) -> float:
-        """How much the changes lower the cost. [-]"""
+        """Return by how much the changes lower the cost. [-]"""
         matrix, right = self._whole()
         c = self._changes((matrix, right), chosen)
         within = matrix[np.ix_(chosen, chosen)] + np.eye(len(chosen)) / PRIOR**2
         return float(2.0 * right[chosen] @ c - c @ within @ c)
 
     def correction(self, chosen: list[int]) -> Correction:
-        """The changes, and what they leave where they were not found."""
-        left = np.empty_like(self.error)
-        for normal, judged in zip(self.normal, reversed(self.pieces), strict=True):
-            left[judged] = self.error[judged]
+        """Return the changes, and the error that remains on weeks that were not used to find them."""
+        remaining = np.empty_like(self.error)
+        for normal, tested in zip(self.normal, reversed(self.pieces), strict=True):
+            remaining[tested] = self.error[tested]
             for k, change in zip(chosen, self._changes(normal, chosen), strict=True):
-                left[judged] += change * self.effects[k][judged]
+                remaining[tested] += change * self.effects[k][tested]
         changes = self._changes(self._whole(), chosen)
         return Correction(
-            tuple(self.paths[k] for k in chosen), tuple(map(float, changes)), tuple(self.scatter(left))
+            tuple(self.paths[k] for k in chosen), tuple(map(float, changes)), tuple(self.scatter(remaining))
         )
 
-    def weighed(self, sd: Sequence[float]) -> float:
-        """Sum of the squared standard deviations over the uncertainties of the sensors. [-]"""
+    def weighted(self, sd: Sequence[float]) -> float:
+        """Sum the squares of standard deviations over the uncertainties of the sensors. [-]"""
         return float(np.sum((np.asarray(sd) * self.scale) ** 2))
 
     def scatter(self, left: Floats) -> list[float]:
-        """Standard deviation of each sensor. [unit of each]"""
+        """Return the standard deviation of each sensor. [unit of each]"""
         count = np.maximum(self.known.sum(axis=0), 1)
         mean = np.where(self.known, left, 0.0).sum(axis=0) / count
         square = np.where(self.known, (left - mean) ** 2, 0.0).sum(axis=0) / count
@@ -284,7 +315,7 @@ class _Fault:
 
 
 def _lowest(matrix: Floats, right: Floats, low: Floats, high: Floats) -> Floats:
-    """Where c A c - 2 b c is lowest inside a box, one coordinate after the other; A is positive definite."""
+    """Minimize c A c - 2 b c inside a box by coordinate descent; A is positive definite."""
     c = np.zeros(len(right))
     slope = right.copy()  # b - A c
     for _ in range(_SWEEPS):
@@ -295,6 +326,6 @@ def _lowest(matrix: Floats, right: Floats, low: Floats, high: Floats) -> Floats:
                 c[k] += moved
                 slope -= moved * matrix[k]
                 largest = max(largest, abs(moved))
-        if largest < _STILL:
+        if largest < _CONVERGED:
             break
     return c

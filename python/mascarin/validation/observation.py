@@ -1,10 +1,10 @@
-"""Model and measurement at the same instants: the comparison that everything else rests on."""
+"""Simulated and measured series at the same instants or over the same intervals."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,40 +16,43 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.simulation.simulation import Simulation
+    from mascarin.validation.sensors import SensorLike
     from mascarin.weather import Measurements
 
     Array = npt.NDArray[np.float64]
     Flags = npt.NDArray[np.bool_]
 
 
-class SensorLike(Protocol):
-    """What is compared: columns of a table whose mean one model output stands for."""
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Columns of the measured table."""
-        ...
-
-
 PERIODS: Final = ("identification", "corroboration", "blind")
+"""Names of the periods of a study."""
 
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """Measured series on the instants of the comparison.
+    """Measured series at the instants of a comparison with a simulation.
 
     Attributes
     ----------
     times : pandas.DatetimeIndex
-        Instants, or starts of the intervals of means, shape (n,).
+        Instants, or starts of the intervals of means, shape (n,), in the time zone of the climate.
     interval : float
-        Spacing of the instants. [s]
+        Time between the instants. [s]
     measured : ndarray, shape (n, S)
         NaN where missing or masked. [unit of each sensor]
     kinds : tuple of str
-        `instant` or `mean` for each sensor.
+        ``instant`` or ``mean`` for each sensor.
     names : tuple of str
-        Sensors.
+        Names of the sensors, S of them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> times = pd.date_range("2024-01-01", periods=2, freq="30min", tz="UTC")
+    >>> observed = Observation(times, 1800.0, np.array([[20.0], [20.5]]), ("instant",), ("room",))
+    >>> run = pd.date_range("2024-01-01", periods=2, freq="1h", tz="UTC")
+    >>> observed.simulated(run, np.array([[20.0], [21.0]])).ravel()
+    array([20. , 20.5])
     """
 
     times: pd.DatetimeIndex
@@ -59,7 +62,7 @@ class Observation:
     names: tuple[str, ...]
 
     def simulated(self, index: pd.DatetimeIndex, records: Array) -> Array:
-        """Records of a run at the instants of the comparison.
+        """Interpolate the records of a run to the instants of the comparison.
 
         Parameters
         ----------
@@ -71,52 +74,89 @@ class Observation:
         Returns
         -------
         ndarray, shape (..., n, S)
-            Instants interpolated linearly, means integrated; NaN outside the run.
+            Instants by linear interpolation, means by integration; NaN outside the run. [unit of each]
         """
         seconds, at = epoch_seconds(index), epoch_seconds(self.times)
         place = (at - seconds[0]) / (seconds[1] - seconds[0])
-        reach = self.interval / (seconds[1] - seconds[0])
+        length = self.interval / (seconds[1] - seconds[0])
         columns = [
-            _instants(records[..., s], place) if kind == "instant" else _means(records[..., s], place, reach)
+            instants(records[..., s], place) if kind == "instant" else means(records[..., s], place, length)
             for s, kind in enumerate(self.kinds)
         ]
         return np.stack(columns, axis=-1)
 
     def sampled(self, index: pd.DatetimeIndex, values: Array) -> Array:
-        """A series of a run at the instants of the comparison, shape (rows,) -> (n,)."""
+        """Interpolate one series of a run to the instants of the comparison.
+
+        Parameters
+        ----------
+        index : pandas.DatetimeIndex
+            Times of the values, shape (rows,), regular.
+        values : ndarray, shape (rows,)
+            The series. [unit]
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            NaN outside the run. [unit]
+        """
         seconds, at = epoch_seconds(index), epoch_seconds(self.times)
-        return _instants(values, (at - seconds[0]) / (seconds[1] - seconds[0]))
+        return instants(values, (at - seconds[0]) / (seconds[1] - seconds[0]))
 
     def during(self, start: pd.Timestamp, end: pd.Timestamp) -> Flags:
-        """Instants from start up to but not including end, shape (n,)."""
+        """Mark the instants of a period, shape (n,); the start belongs to it and the end does not."""
         return np.asarray((self.times >= start) & (self.times < end))
 
 
 def observe(
     simulation: Simulation, measurements: Measurements, sensors: Mapping[str, SensorLike], start: pd.Timestamp
 ) -> Observation:
-    """Measured series where model and measurement can be compared.
+    r"""Collect the measured series that a simulation is compared with.
 
     Parameters
     ----------
     simulation : Simulation
-        Gives step and end.
+        Gives time step and end.
     measurements : Measurements
-        The table, masked as wished.
+        The table; values that are masked in it are left out.
     sensors : mapping of str to SensorLike
-        What to compare.
+        Sensors by name.
     start : pandas.Timestamp
         First instant.
 
     Returns
     -------
     Observation
-        On the coarser of the two grids.
+        At the longer of both time steps.
 
     Raises
     ------
     InputError
         A column is missing.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> import mascarin as mc
+    >>> from mascarin.validation import Sensor
+    >>> from mascarin.verification.analytical import setup
+    >>> simulation = setup.simulation(
+    ...     setup.building(
+    ...         "materials: {panel: {kind: resistance, resistance: 1}}\n"
+    ...         "constructions: {panel: {layers: [{material: panel}]}}\n"
+    ...         "surfaces: {w: {construction: panel, area: 1, tilt: 90, outside: {measured: air}, "
+    ...         "inside: {measured: air}}}"
+    ...     ),
+    ...     setup.climate(3600.0, {"air": np.full(25, 20.0)}),
+    ...     step=3600.0,
+    ...     outputs=["w.inside_flux"],
+    ...     initial=20.0,
+    ... )
+    >>> table = pd.DataFrame({"q": np.zeros(24)}, index=simulation.index[:24])
+    >>> logger = mc.Measurements.from_table(table, timezone="UTC")
+    >>> observe(simulation, logger, {"flux": Sensor("q", 1.0)}, simulation.start).measured.shape
+    (24, 1)
     """
     import pandas as pd
 
@@ -130,7 +170,7 @@ def observe(
 def _measured(
     measurements: Measurements, sensor: SensorLike, times: pd.DatetimeIndex, interval: float
 ) -> Array:
-    """Mean of a sensor's columns; where one is missing the others stand for it."""
+    """Mean of the columns of a sensor over those that have a value."""
     parts = np.stack([measurements.at(column, times, interval) for column in sensor.columns])
     known = np.isfinite(parts)
     count = known.sum(axis=0)
@@ -138,7 +178,27 @@ def _measured(
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def _instants(records: Array, place: Array) -> Array:
+def instants(records: Array, place: Array) -> Array:
+    """Interpolate records linearly.
+
+    Parameters
+    ----------
+    records : ndarray, shape (..., rows)
+        Values at regular times. [unit]
+    place : ndarray, shape (n,)
+        Where to interpolate, counted in rows from the first. [-]
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+        NaN outside the records. [unit]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> instants(np.array([0.0, 6.0]), np.array([0.5, 1.0, 2.0]))
+    array([ 3.,  6., nan])
+    """
     rows = records.shape[-1]
     near = np.round(place)
     place = np.where(np.abs(place - near) < 1e-6, near, place)
@@ -150,15 +210,36 @@ def _instants(records: Array, place: Array) -> Array:
     return np.where(inside, mixed, np.nan)
 
 
-def _means(records: Array, place: Array, reach: float) -> Array:
-    """Mean of the piecewise linear record over [place, place + reach]."""
+def means(records: Array, place: Array, length: float) -> Array:
+    """Average piecewise linear records over intervals of one length.
+
+    Parameters
+    ----------
+    records : ndarray, shape (..., rows)
+        Values at regular times. [unit]
+    place : ndarray, shape (n,)
+        Where the intervals start, counted in rows from the first. [-]
+    length : float
+        Length of the intervals. [rows]
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+        NaN for intervals that are not inside the records. [unit]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> means(np.array([0.0, 6.0, 12.0]), np.array([0.0, 1.0]), 1.0)
+    array([3., 9.])
+    """
     rows = records.shape[-1]
     steps = 0.5 * (records[..., 1:] + records[..., :-1])
     zero = np.zeros((*records.shape[:-1], 1))
     integral = np.concatenate([zero, np.cumsum(steps, axis=-1)], axis=-1)
-    high, low = (_integral(records, integral, p) for p in (place + reach, place))
-    inside = (place >= -1e-6) & (place + reach <= rows - 1 + 1e-6)
-    return np.where(inside, (high - low) / reach, np.nan)
+    high, low = (_integral(records, integral, p) for p in (place + length, place))
+    inside = (place >= -1e-6) & (place + length <= rows - 1 + 1e-6)
+    return np.where(inside, (high - low) / length, np.nan)
 
 
 def _integral(records: Array, integral: Array, place: Array) -> Array:
@@ -173,10 +254,21 @@ def _integral(records: Array, integral: Array, place: Array) -> Array:
 def require_comparable(observation: Observation, use: Flags, what: str, sensors: Sequence[str]) -> None:
     """Refuse a period in which a sensor has no values.
 
+    Parameters
+    ----------
+    observation : Observation
+        The measured series.
+    use : ndarray of bool, shape (n,)
+        Instants of the period.
+    what : str
+        Name of the period in the error.
+    sensors : sequence of str
+        Names of the sensors that are needed.
+
     Raises
     ------
     InputError
-        Nothing to compare.
+        A sensor has no values in the period.
     """
     for s, name in enumerate(observation.names):
         if name in sensors and not np.isfinite(observation.measured[use, s]).any():

@@ -15,7 +15,7 @@ pub enum Flow {
     Boundary,
     /// Outdoor air entering zones.
     Infiltration,
-    /// Outdoor air let in by ventilation and openings.
+    /// Outdoor air through ventilation and openings.
     Ventilation,
     /// Air exchanged between zones: zero in sum, but part of the total heat exchanged.
     Interzone,
@@ -106,14 +106,14 @@ impl<S: Real> Power<S> {
 
     /// Adds a flow.
     #[inline(always)]
-    pub fn book(&mut self, flow: Flow, power: S) {
+    pub fn add_flow(&mut self, flow: Flow, power: S) {
         self.into[flow as usize] += power;
         self.total_exchanged += power.abs();
     }
 
     /// Adds a flow through several surfaces.
     #[inline(always)]
-    pub(crate) fn book_sum(&mut self, flow: Flow, sum: &Sum<S>) {
+    pub(crate) fn add_sum(&mut self, flow: Flow, sum: &Sum<S>) {
         self.into[flow as usize] += sum.net;
         self.total_exchanged += sum.magnitude;
     }
@@ -151,7 +151,7 @@ impl<S: Real> Ledger<S> {
 
     /// Adds a step: heat into the building and its magnitude over the step [J], and the heat stored [J].
     #[inline(always)]
-    pub fn book(&mut self, energy: &Power<S>, stored: S) {
+    pub fn add_step(&mut self, energy: &Power<S>, stored: S) {
         let mut total = S::zero();
         for (sum, part) in self.into.iter_mut().zip(energy.into) {
             *sum += part;

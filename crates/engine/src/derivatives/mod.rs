@@ -1,15 +1,20 @@
-//! Exact derivatives of the discrete solution: the engine's own physics run with other numbers.
+//! Exact derivatives of the discrete solution: the same physics, computed with numbers that have derivatives.
 //!
-//! Forward ([`jacobian`]), numbers carry their slopes by a few parameters: all series by few parameters. In reverse
-//! ([`trajectory`]), numbers remember what they were made of: one quantity by all parameters.
+//! - Forward (`forward`): each number carries its slopes by a few parameters. Result: all records by few parameters.
+//! - Reverse (`reverse`): the operations of each step are recorded on a tape. Result: one quantity by all parameters.
 //!
-//! Both go along the solutions of a plain run ([`crate::number::real::Equations`]); where one is not known, Newton's iteration adds a last
-//! step, so that the slopes of a converged stage are those of its solution. At a switch (the ends of a melting range, a curve of hysteresis, windward and leeward, a load that
-//! sets in) the slope is the one-sided one of the branch taken.
+//! Both start from the known solutions of a run of plain numbers (`known_steps`): only the slopes of the equations are
+//! differentiated (`equation_slopes`), and the slopes of the solution follow by the implicit function theorem. Where no
+//! solution is known (a halved step), Newton's iteration itself is differentiated, with one more iteration, so that its
+//! slopes converge too. At a switch (the ends of a melting range, a curve of hysteresis, windward and leeward, the start of
+//! a load) the slope is the one-sided one of the branch taken.
 //!
 //! Source: Griewank & Walther (2008), Evaluating Derivatives, 2nd ed., doi:10.1137/1.9780898717761.
 
-mod along;
-mod equations;
-pub mod jacobian;
-pub mod trajectory;
+mod equation_slopes;
+mod forward;
+mod known_steps;
+mod reverse;
+
+pub use forward::{Jacobian, jacobian};
+pub use reverse::Trajectory;

@@ -143,7 +143,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         }
     }
 
-    /// Solves for what [`Self::solve`] left out, and makes laws and exterior surfaces inside the zone fronts known to
+    /// Solves for the unknowns that [`Self::solve`] does not compute, and copies laws and exterior surfaces of the zone fronts to
     /// others. False in the lanes where a wall that touches no zone is not a number.
     #[inline(always)]
     pub(crate) fn finish(
@@ -169,7 +169,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
     }
 
     /// Assembles the linear walls, and convection and radiation in zones, and eliminates the surfaces of the former; without
-    /// `matrix` only the right-hand sides. Nonlinear laws along their tangents at the iterate; without one as they stand.
+    /// `matrix` only the right-hand sides. Nonlinear laws along their tangents at the iterate; without one as they are.
     #[inline(always)]
     pub(crate) fn assemble_linear(
         &mut self,
@@ -350,7 +350,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         }
     }
 
-    /// Solves the coupled system and the zone fronts for another right-hand side, with the factors at hand.
+    /// Solves the coupled system and the zone fronts for another right-hand side, with the factors already computed.
     #[inline(always)]
     pub(crate) fn solve_again(&self, right: &mut [S]) {
         self.zone_fronts.forward(right);
@@ -359,7 +359,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
     }
 }
 
-/// Whether an exterior surface is held at a temperature.
+/// Whether an exterior surface has an imposed temperature.
 #[inline(always)]
 pub(crate) fn is_held<S: Real>(model: &Model<'_, S>, index: SurfaceId) -> bool {
     let surface = &model.coefficients.surfaces[index];

@@ -107,7 +107,7 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
         back::<S, SameKind, S>(self.reach, &self.matrix, right, 0..self.first);
     }
 
-    /// The solution for another right-hand side, with the factors at hand.
+    /// The solution for another right-hand side, with the factors already computed.
     #[inline(always)]
     pub(crate) fn solve_again(&self, right: &mut [S]) {
         self.solve_with::<SameKind, S>(right);
@@ -146,13 +146,13 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
 }
 
 impl CoupledSystem<'_, f64> {
-    /// The solution for right-hand sides of another kind of number, with the factors at hand.
+    /// The solution for right-hand sides of another kind of number, with the factors already computed.
     #[inline(always)]
     pub(crate) fn solve_values<R: Real>(&self, right: &mut [R]) {
         self.solve_with::<PlainMatrix, R>(right);
     }
 
-    /// The solution of the transposed system, with the factors at hand.
+    /// The solution of the transposed system, with the factors already computed.
     #[inline(always)]
     pub(crate) fn solve_transposed(&self, right: &mut [f64]) {
         let (right, n) = (&mut right[self.before..], self.reach.len());

@@ -1,6 +1,6 @@
 //! Products of right-hand sides and coefficients of a matrix.
 //!
-//! The factors of a matrix serve right-hand sides of its own kind of number, and those of a plain matrix also right-hand
+//! The factors of a matrix solve right-hand sides of its own kind of number, and those of a plain matrix also right-hand
 //! sides that carry derivatives. Each sweep is written once over [`Product`].
 
 use crate::number::real::Real;

@@ -1,4 +1,4 @@
-//! The plain matrix of a stage, for solutions beside a run: many right-hand sides at once, and the transposed system.
+//! The plain matrix of a stage, for derivatives: several right-hand sides at once, and the transposed system.
 //!
 //! Unknowns and equations are those of all cells, all surfaces and all airs, in this order. Heat released in cells and at
 //! surfaces outside the zones counts per square metre, at surfaces and airs of zones whole; the equation of a surface that is held
@@ -88,7 +88,7 @@ impl<'a> StageMatrix<'a> {
         exterior_balance(&self.model, &self.conditions, &self.laws, surface)
     }
 
-    /// What of the heat that a wall sends into a surface enters the equation of that surface [-], in zones [m2].
+    /// Factor of the heat from a wall in the equation of its surface [-], in zones [m2].
     #[inline(always)]
     fn takes(&self, surface: SurfaceId) -> f64 {
         match self.model.plan.surfaces[surface].role {
@@ -98,7 +98,7 @@ impl<'a> StageMatrix<'a> {
         }
     }
 
-    /// How much a local surface gives way, the other surface of its wall held.
+    /// Rise of an exterior surface by heat, at a constant temperature of the other surface of its wall.
     #[inline(always)]
     fn yields(&self, surface: SurfaceId) -> f64 {
         if is_held(&self.model, surface) { 1.0 } else { self.system.inverses[surface.wall()] }

@@ -53,7 +53,7 @@ pub(crate) struct StepMaps<S> {
     capacity: Vec<S>,
     /// `(1 - g)/g` of the scheme's diagonal coefficient.
     ratio: f64,
-    /// Whether `by_start` belongs to the step at hand.
+    /// Whether `by_start` belongs to the current step.
     started: bool,
 }
 

@@ -64,7 +64,7 @@ pub(crate) struct Tridiagonal<S> {
 }
 
 impl<S: Real> Tridiagonal<S> {
-    /// Room for a number of cells.
+    /// For a number of cells.
     pub(crate) fn new(cells: usize) -> Self {
         let zeros = || vec![S::zero(); cells];
         Self { inverse: zeros(), known: zeros(), to_outside: zeros(), next: zeros(), path: zeros() }

@@ -116,7 +116,7 @@ impl<S: Real> WallSystem<S> {
         }
     }
 
-    /// How the heat into the surfaces [W/m2] changes with the enthalpies that cells hold [J/m3]; `known` takes what
+    /// How the heat into the surfaces [W/m2] changes with the enthalpies of the cells [J/m3]; `known` takes what
     /// [`Self::temperature_changes`] needs.
     #[inline(always)]
     pub fn source_changes(&self, held: &[S], known: &mut [S]) -> [S; 2] {
@@ -128,7 +128,7 @@ impl<S: Real> WallSystem<S> {
         )
     }
 
-    /// How cell temperatures change with those of the surfaces and with the enthalpies that cells hold.
+    /// How cell temperatures change with those of the surfaces and with the enthalpies of the cells.
     #[inline(always)]
     pub fn temperature_changes(&self, known: &[S], surfaces: [S; 2], cells: &mut [S]) {
         self.elimination.back::<SameKind, _>(

@@ -77,7 +77,10 @@ fn require_linear_zones(
             );
         }
         if definition.heating.is_some() || definition.cooling.is_some() {
-            return refuse(&format!("the plant of zone {}", definition.name), "remove heating and cooling");
+            return refuse(
+                &format!("heating or cooling of zone {}", definition.name),
+                "remove heating and cooling",
+            );
         }
         let flows = zone.ventilation.iter().zip(&definition.ventilation);
         if let Some((_, flow)) = flows.into_iter().find(|(flow, _)| flow.whole().is_none()) {

@@ -24,7 +24,7 @@ fn two_capacities() {
     let solid = b.solid("solid", CONDUCTIVITY, 1200.0, HEAT / 1200.0);
     let construction = b.construction("wall", &[(solid, THICKNESS, 1)]);
     let zone = b.zone("zone", VOLUME, AIR_CHANGES, ZoneLongwave::None);
-    let (outer, inner) = (b.film(OUTER), b.film(INNER));
+    let (outer, inner) = (b.convection(OUTER), b.convection(INNER));
     let reference = b.number("reference", REFERENCE);
     let mut outside = b.outdoors(outer, EMISSIVITY, ABSORPTANCE);
     outside.longwave = OutdoorLongwave::Linearised { reference };

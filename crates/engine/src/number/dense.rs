@@ -10,7 +10,7 @@ use super::real::Real;
 
 /// Solves `matrix X = right` in place for `width` right-hand sides.
 ///
-/// The matrix is square, and both arguments stand row by row. `right` becomes the solution, `matrix` its upper triangular factor
+/// The matrix is square, and both arguments are stored row by row. `right` becomes the solution, `matrix` its upper triangular factor
 /// (with what the elimination leaves below the diagonal).
 #[inline(always)]
 pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], width: usize) {

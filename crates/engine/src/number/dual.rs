@@ -2,10 +2,10 @@
 //!
 //! Source: Griewank & Walther (2008), Evaluating Derivatives, 2nd ed., ch. 3, doi:10.1137/1.9780898717761.
 
-use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::number::elementary::{cos, exp, inverse_cbrt, ln, sin};
 use crate::number::lanes::Lanes;
+use crate::number::macros::{add_assign, chain_rule};
 use crate::number::real::{Equations, LinearSystem, Logistic, Real};
 
 /// A number with `K` forward derivatives.
@@ -83,12 +83,7 @@ impl<const K: usize> Neg for Dual<K> {
         Self { value: -self.value, slope: self.slope.map(|s| -s) }
     }
 }
-impl<const K: usize> AddAssign for Dual<K> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
+add_assign!([const K: usize] Dual<K>);
 
 impl<const K: usize> Real for Dual<K> {
     type Mask = bool;
@@ -112,60 +107,10 @@ impl<const K: usize> Real for Dual<K> {
     fn carries(self) -> bool {
         self.slope != [0.0; K]
     }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chain(root, 0.5 / root)
-    }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        let value = exp(self.value);
-        self.chain(value, value)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.chain(ln(self.value), 1.0 / self.value)
-    }
-    #[inline(always)]
-    fn logistic(self) -> Logistic<Self> {
-        let at = self.value.logistic();
-        let slopes = at.slopes(self.value);
-        Logistic {
-            rise: self.chain(at.rise, slopes.rise),
-            rest: self.chain(at.rest, slopes.rest),
-            tail: self.chain(at.tail, slopes.tail),
-        }
-    }
+    chain_rule!(always);
     #[inline(always)]
     fn vectorised<R>(work: impl FnOnce() -> R) -> R {
         if K > 1 { crate::number::simd::widened(work) } else { work() }
-    }
-    #[inline(always)]
-    fn inverse_cbrt(self) -> Self {
-        // d x^(-1/3)/dx = -1/3 x^(-4/3)
-        let y = inverse_cbrt(self.value);
-        let square = y * y;
-        self.chain(y, square * square * (-1.0 / 3.0))
-    }
-    #[inline(always)]
-    fn sin(self) -> Self {
-        self.chain(sin(self.value), cos(self.value))
-    }
-    #[inline(always)]
-    fn cos(self) -> Self {
-        self.chain(cos(self.value), -sin(self.value))
-    }
-    #[inline(always)]
-    fn scale(self, factor: f64) -> Self {
-        self.chain(self.value * factor, factor)
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> bool {
-        self.value < other.value
-    }
-    #[inline(always)]
-    fn select(mask: bool, yes: Self, no: Self) -> Self {
-        if mask { yes } else { no }
     }
 }
 

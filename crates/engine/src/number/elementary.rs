@@ -7,7 +7,7 @@
 
 use crate::number::real::{Logistic, Real};
 
-pub(crate) use libm::{acos, cos, sin};
+pub(crate) use libm::{acos, cos, sin, sincos};
 
 /// Operations on the bits of a number that elementary functions need, in each lane.
 pub(super) trait Bits: Real {
@@ -213,6 +213,7 @@ mod tests {
             for x in [x, -x] {
                 close(sin(x), x.sin(), f64::EPSILON);
                 close(cos(x), x.cos(), f64::EPSILON);
+                assert_eq!(sincos(x), (sin(x), cos(x)), "both at once at {x}");
             }
             x *= 1.0007;
         }

@@ -1,11 +1,12 @@
-//! Members of an ensemble side by side in an array, one in each lane.
+//! Members of an ensemble in an array, one in each lane.
 
-use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::number::elementary::{Bits, cos, exp, inverse_cbrt, ln, logistic, sin};
+use crate::number::elementary::{Bits, cos, logistic, sin};
+use crate::number::macros::{add_assign, elementary_functions};
 use crate::number::real::{Logistic, Mask, Real};
 
-/// `N` members side by side.
+/// `N` members.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub struct Lanes<const N: usize>(pub [f64; N]);
@@ -25,34 +26,18 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-impl<const N: usize> Add for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
+macro_rules! arithmetic {
+    ($($operator:ident $method:ident $symbol:tt;)*) => {$(
+        impl<const N: usize> $operator for Lanes<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $symbol b)
+            }
+        }
+    )*};
 }
-impl<const N: usize> Sub for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-impl<const N: usize> Mul for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
-}
-impl<const N: usize> Div for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self.zip(other, |a, b| a / b)
-    }
-}
+arithmetic! { Add add +; Sub sub -; Mul mul *; Div div /; }
 impl<const N: usize> Neg for Lanes<N> {
     type Output = Self;
     #[inline(always)]
@@ -60,26 +45,20 @@ impl<const N: usize> Neg for Lanes<N> {
         self.map(|a| -a)
     }
 }
-impl<const N: usize> AddAssign for Lanes<N> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
+add_assign!([const N: usize] Lanes<N>);
+
+macro_rules! logic {
+    ($($operator:ident $method:ident $symbol:tt;)*) => {$(
+        impl<const N: usize> $operator for LaneMask<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(core::array::from_fn(|i| self.0[i] $symbol other.0[i]))
+            }
+        }
+    )*};
 }
-impl<const N: usize> BitAnd for LaneMask<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        Self(core::array::from_fn(|i| self.0[i] & other.0[i]))
-    }
-}
-impl<const N: usize> BitOr for LaneMask<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Self(core::array::from_fn(|i| self.0[i] | other.0[i]))
-    }
-}
+logic! { BitAnd bitand &; BitOr bitor |; }
 impl<const N: usize> Not for LaneMask<N> {
     type Output = Self;
     #[inline(always)]
@@ -121,20 +100,7 @@ impl<const N: usize> Real for Lanes<N> {
         self.map(f64::sqrt)
     }
     // One copy only: inlining multiplies compile time.
-    #[inline(never)]
-    fn exp(self) -> Self {
-        exp(self)
-    }
-    // One copy only: inlining multiplies compile time.
-    #[inline(never)]
-    fn ln(self) -> Self {
-        ln(self)
-    }
-    // One copy only: inlining multiplies compile time.
-    #[inline(never)]
-    fn inverse_cbrt(self) -> Self {
-        inverse_cbrt(self)
-    }
+    elementary_functions!(never: exp, ln, inverse_cbrt);
     #[inline(always)]
     fn logistic(self) -> Logistic<Self> {
         logistic(self)

@@ -5,6 +5,7 @@ pub mod dual;
 pub(crate) mod elementary;
 pub mod lanes;
 pub(crate) mod line;
+mod macros;
 mod plain;
 pub mod real;
 pub mod simd;

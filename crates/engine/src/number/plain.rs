@@ -1,21 +1,20 @@
 //! The plain number `f64`.
 
-use crate::number::elementary::{
-    Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, cos, exp, inverse_cbrt, ln, logistic, sin,
-};
-use crate::number::real::{Logistic, Real, Task};
+use crate::number::elementary::{Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, logistic};
+use crate::number::macros::elementary_functions;
+use crate::number::real::{ChunkTask, Logistic, Real};
 
 impl Real for f64 {
     type Mask = bool;
     type Equations = ();
     const LANES: usize = 1;
     const DERIVATIVES: bool = false;
-    const SIDE: usize = crate::number::simd::WIDTH;
-    const REGISTERS: bool = true;
+    const CHUNK: usize = crate::number::simd::WIDTH;
+    const IN_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn abreast<T: Task<Self>>(task: T) -> T::Output {
-        crate::number::simd::abreast(task)
+    fn in_chunks<T: ChunkTask<Self>>(task: T) -> T::Output {
+        crate::number::simd::in_chunks(task)
     }
 
     #[inline(always)]
@@ -30,18 +29,7 @@ impl Real for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        exp(self)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        ln(self)
-    }
-    #[inline(always)]
-    fn inverse_cbrt(self) -> Self {
-        inverse_cbrt(self)
-    }
+    elementary_functions!(always: exp, ln, inverse_cbrt, sin, cos);
     #[inline(always)]
     fn logistic(self) -> Logistic<Self> {
         logistic(self)
@@ -49,14 +37,6 @@ impl Real for f64 {
     #[inline(always)]
     fn abs(self) -> Self {
         f64::abs(self)
-    }
-    #[inline(always)]
-    fn sin(self) -> Self {
-        sin(self)
-    }
-    #[inline(always)]
-    fn cos(self) -> Self {
-        cos(self)
     }
     #[inline(always)]
     fn lt(self, other: Self) -> bool {

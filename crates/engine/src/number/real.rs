@@ -1,5 +1,5 @@
-//! The number trait [`Real`] that all physics is written over, and what goes with it: masks, numbers side by side, and
-//! equations at a known solution.
+//! The number trait [`Real`] that all physics is written over, and what goes with it: truth values ([`Mask`]), neighbouring
+//! numbers of an array ([`Chunk`]), and the equations of a stage whose solution is known ([`Equations`]).
 //!
 //! The same law runs as a plain `f64` (`plain`), on several ensemble members at once, one in each lane
 //! ([`lanes`](super::lanes), [`simd`](super::simd)), with forward derivatives ([`dual`](super::dual)) and on a tape for
@@ -76,18 +76,18 @@ pub trait Real:
     type Mask: Mask;
     /// Number of ensemble members carried.
     const LANES: usize;
-    /// What the number needs to know of equations that it is solved from.
+    /// What the number keeps of the equations whose solution it is part of.
     type Equations: Equations<Self>;
     /// True when the number carries derivatives (Newton then adds one iteration, so that they converge too).
     const DERIVATIVES: bool;
-    /// Neighbouring numbers of an array that are computed with at once, see [`Abreast`].
-    const SIDE: usize = 1;
-    /// Whether [`Self::SIDE`] of them fit into a register or two, so that a row of a matrix can stay in registers.
-    const REGISTERS: bool = false;
+    /// How many neighbouring numbers of an array are computed at once, see [`Chunk`].
+    const CHUNK: usize = 1;
+    /// Whether [`Self::CHUNK`] of them fit into one or two registers, so that a row of a matrix can stay in registers.
+    const IN_REGISTERS: bool = false;
 
-    /// Does a task on neighbouring numbers of an array, as many at once as the registers of the machine hold.
+    /// Does a task on neighbouring numbers of an array, [`Self::CHUNK`] of them at once.
     #[inline(always)]
-    fn abreast<T: Task<Self>>(task: T) -> T::Output {
+    fn in_chunks<T: ChunkTask<Self>>(task: T) -> T::Output {
         task.run::<Self>()
     }
 
@@ -209,27 +209,27 @@ pub(crate) fn same<S: Real>(a: S, b: S) -> bool {
     !S::DERIVATIVES && (0..S::LANES).all(|lane| a.lane(lane).to_bits() == b.lane(lane).to_bits())
 }
 
-/// [`Real::SIDE`] neighbouring numbers of an array, computed with at once: eight plain numbers, but one of any other kind,
-/// which fills registers by itself. Each gets the bits that it would get alone.
-pub trait Abreast<S: Real>: Real {
+/// [`Real::CHUNK`] neighbouring numbers of an array that are computed at once: eight plain numbers, but only one number of any
+/// other kind, because it fills registers by itself. Each result has the bits that it would have if it was computed alone.
+pub trait Chunk<S: Real>: Real {
     /// The first numbers of a slice.
     fn load(numbers: &[S]) -> Self;
     /// Writes to the first places of a slice.
     fn store(self, numbers: &mut [S]);
     /// The same number in all places.
-    fn everywhere(number: S) -> Self;
+    fn filled(number: S) -> Self;
     /// A number in one place and zero in all others.
-    fn alone(number: S, place: usize) -> Self;
-    /// The number in one place, in all places.
+    fn single(number: S, place: usize) -> Self;
+    /// The number in one place, copied to all places.
     #[must_use]
-    fn spread(self, place: usize) -> Self;
+    fn broadcast(self, place: usize) -> Self;
     /// The number in the first place.
     fn first(self) -> S;
     /// Numbers by their places in a slice.
-    fn pick(numbers: &[S], places: &[usize]) -> Self;
+    fn gather(numbers: &[S], places: &[usize]) -> Self;
 }
 
-impl<S: Real> Abreast<S> for S {
+impl<S: Real> Chunk<S> for S {
     #[inline(always)]
     fn load(numbers: &[S]) -> Self {
         numbers[0]
@@ -239,15 +239,15 @@ impl<S: Real> Abreast<S> for S {
         numbers[0] = self;
     }
     #[inline(always)]
-    fn everywhere(number: S) -> Self {
+    fn filled(number: S) -> Self {
         number
     }
     #[inline(always)]
-    fn alone(number: S, _place: usize) -> Self {
+    fn single(number: S, _place: usize) -> Self {
         number
     }
     #[inline(always)]
-    fn spread(self, _place: usize) -> Self {
+    fn broadcast(self, _place: usize) -> Self {
         self
     }
     #[inline(always)]
@@ -255,45 +255,44 @@ impl<S: Real> Abreast<S> for S {
         self
     }
     #[inline(always)]
-    fn pick(numbers: &[S], places: &[usize]) -> Self {
+    fn gather(numbers: &[S], places: &[usize]) -> Self {
         numbers[places[0]]
     }
 }
 
 /// Work on neighbouring numbers of an array.
-pub trait Task<S: Real> {
+pub trait ChunkTask<S: Real> {
     /// Its result.
     type Output;
     /// Does the work with one kind of registers.
-    fn run<V: Abreast<S>>(self) -> Self::Output;
+    fn run<V: Chunk<S>>(self) -> Self::Output;
 }
 
 // ---------------------------------------------------------------- equations
 //
-// Where equations `r(z, p) = 0` are solved by z, a change dp of the parameters moves the solution by
-// `dz = A^-1 (dr/dp) dp`, `A = -dr/dz` (implicit function theorem). Forward derivatives need for that only the slopes of
-// r at the solution, where z is a constant, and one solve with the factors of the plain matrix A, for all slopes at once.
-// Reverse derivatives keep the terms of r, and solve with the transposed matrix in the reverse pass. No elimination is
-// computed with derivatives.
+// Let z be the solution of the equations `r(z, p) = 0`. A change dp of the parameters moves it by `dz = A^-1 (dr/dp) dp` with
+// `A = -dr/dz` (implicit function theorem). Forward derivatives therefore need only the slopes of r at the solution, where z
+// is a constant, and one solve with the factors of the plain matrix A, for all slopes at once. Reverse derivatives keep the
+// terms of r, and solve with the transposed matrix in the reverse pass. No elimination is computed with derivatives.
 //
 // Source: Griewank & Walther (2008), Evaluating Derivatives, 2nd ed., ch. 15, doi:10.1137/1.9780898717761.
 
-/// A linear system with plain coefficients, factored: the matrix A of a stage. The stepper's plain twin is one.
+/// A factored linear system with plain coefficients: the matrix A of a stage.
 pub trait LinearSystem {
     /// Replaces the right-hand sides of all equations by their solution. `scratch` is working memory of any size.
     fn solve<R: Real>(&self, rows: &mut [R], scratch: &mut Vec<R>);
 }
 
-/// What a kind of number needs to know of the equations of a stage. Plain numbers need nothing.
+/// What a kind of number keeps of the equations of a stage. Plain numbers keep nothing.
 pub trait Equations<S: Copy>: Clone + Debug + Default + Send + Sync {
-    /// Starts with so many equations, all of them empty.
+    /// Begins a system of `equations` equations without terms.
     fn begin(&mut self, equations: usize);
 
-    /// Adds `factor number` to an equation.
+    /// Adds the term `factor * number` to an equation.
     fn add(&mut self, equation: usize, number: S, factor: f64);
 
-    /// Solves the equations of a stage with its factored `system`. `at` is the known solution: the values of the unknowns
-    /// of `solution`, which are cells, surfaces and zone airs.
+    /// Solves the equations of a stage with its factored `system`. `at` is the known solution: the values of `solution`,
+    /// whose unknowns are cells, surfaces and zone airs.
     fn solve<L: LinearSystem>(&mut self, stage: usize, system: &L, at: &[f64], solution: [&mut [S]; 3]);
 }
 

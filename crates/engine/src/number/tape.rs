@@ -2,7 +2,7 @@
 //!
 //! The tape is the list of all operations in the order in which they were computed. An entry holds the places of its
 //! operands and the partial derivatives by them. Propagation goes through the list from its end and turns weights
-//! on results (the derivative of the quantity asked for by each of them) into weights on what they were computed from.
+//! on results (the derivatives of the chosen quantity by each of them) into weights on what they were computed from.
 //! Each thread has a tape of its own, which exists only while a recording does.
 //!
 //! A number that depends on nothing has no entry. Neither has one that depends on a single entry, by however many
@@ -13,8 +13,9 @@
 use core::cell::RefCell;
 use core::marker::PhantomData;
 use core::mem::ManuallyDrop;
-use core::ops::{Add, AddAssign, Div, Mul, Neg, Range, Sub};
+use core::ops::{Add, Div, Mul, Neg, Range, Sub};
 
+use crate::number::macros::{add_assign, chain_rule};
 use crate::number::real::{Equations, LinearSystem, Logistic, Real};
 
 thread_local! {
@@ -27,7 +28,7 @@ fn with_tape<R>(work: impl FnOnce(&mut Tape) -> R) -> R {
     TAPE.with(|tape| work(&mut tape.borrow_mut()))
 }
 
-/// Place of a number that depends on nothing: the first entry, which stands for no operation.
+/// Place of a number that depends on nothing: the first entry, which is no operation.
 const NOWHERE: u32 = 0;
 
 /// One operation: the places of its operands, and its partial derivatives by them.
@@ -49,7 +50,7 @@ struct Term {
 #[derive(Debug, Clone)]
 struct Solve {
     stage: usize,
-    terms: Range<usize>,
+    terms: Vec<Term>,
     unknowns: Range<usize>,
 }
 
@@ -57,13 +58,14 @@ struct Solve {
 #[derive(Debug)]
 pub(crate) struct Tape {
     entries: Vec<Entry>,
-    terms: Vec<Term>,
     solves: Vec<Solve>,
+    /// Memory of the terms of earlier solves, to be used again.
+    unused: Vec<Vec<Term>>,
 }
 
 impl Tape {
     const fn new() -> Self {
-        Self { entries: Vec::new(), terms: Vec::new(), solves: Vec::new() }
+        Self { entries: Vec::new(), solves: Vec::new(), unused: Vec::new() }
     }
 
     /// Begins a recording on the tape of this thread.
@@ -93,8 +95,7 @@ impl Tape {
     pub(crate) fn truncate(len: usize) {
         with_tape(|tape| {
             tape.entries.truncate(len);
-            tape.terms.clear();
-            tape.solves.clear();
+            tape.unused.extend(tape.solves.drain(..).map(|solve| solve.terms));
         });
     }
 
@@ -116,7 +117,7 @@ impl Tape {
                 let (before, unknowns) = weights.split_at_mut(end);
                 let unknowns = &mut unknowns[..solve.unknowns.len()];
                 transposed(solve.stage, unknowns);
-                for term in &tape.terms[solve.terms.clone()] {
+                for term in &solve.terms {
                     before[term.of as usize] += term.slope * unknowns[term.equation as usize];
                 }
                 unknowns.fill(0.0);
@@ -139,7 +140,7 @@ impl Tape {
 }
 
 /// A recording on the tape of this thread. Its end releases the memory of the tape, also after an error or a panic.
-// Not Send: it stands for the tape of one thread.
+// Not Send: it belongs to the tape of one thread.
 #[derive(Debug)]
 pub(crate) struct Recording(PhantomData<*const ()>);
 
@@ -156,9 +157,11 @@ impl Drop for Recording {
 /// Memory that the tape of this thread holds [bytes]: none outside a recording.
 pub fn memory() -> usize {
     with_tape(|tape| {
+        let terms = tape.solves.iter().map(|solve| &solve.terms).chain(&tape.unused);
         tape.entries.capacity() * size_of::<Entry>()
-            + tape.terms.capacity() * size_of::<Term>()
             + tape.solves.capacity() * size_of::<Solve>()
+            + tape.unused.capacity() * size_of::<Vec<Term>>()
+            + terms.map(|terms| terms.capacity() * size_of::<Term>()).sum::<usize>()
     })
 }
 
@@ -186,11 +189,10 @@ impl Equations<Taped> for EquationTerms {
 
     fn solve<L: LinearSystem>(&mut self, stage: usize, _system: &L, at: &[f64], solution: [&mut [Taped]; 3]) {
         with_tape(|tape| {
-            let (first, terms) = (tape.entries.len(), tape.terms.len());
+            let first = tape.entries.len();
             tape.entries.resize(first + self.equations, Entry { of: [NOWHERE; 2], slope: [0.0; 2] });
-            tape.terms.extend_from_slice(&self.terms);
-            let (terms, unknowns) = (terms..tape.terms.len(), first..tape.entries.len());
-            tape.solves.push(Solve { stage, terms, unknowns });
+            let terms = core::mem::replace(&mut self.terms, tape.unused.pop().unwrap_or_default());
+            tape.solves.push(Solve { stage, terms, unknowns: first..tape.entries.len() });
             for (k, (unknown, &value)) in solution.into_iter().flatten().zip(at).enumerate() {
                 *unknown = Taped::new(value, narrow(first + k));
             }
@@ -305,12 +307,7 @@ impl Neg for Taped {
         self.chain(-self.value, -1.0)
     }
 }
-impl AddAssign for Taped {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
+add_assign!([] Taped);
 
 impl Real for Taped {
     type Mask = bool;
@@ -334,57 +331,8 @@ impl Real for Taped {
     fn carries(self) -> bool {
         self.place != NOWHERE
     }
-    #[inline(never)]
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chain(root, 0.5 / root)
-    }
-    #[inline(never)]
-    fn exp(self) -> Self {
-        let value = Real::exp(self.value);
-        self.chain(value, value)
-    }
-    #[inline(never)]
-    fn ln(self) -> Self {
-        self.chain(Real::ln(self.value), 1.0 / self.value)
-    }
-    #[inline(never)]
-    fn logistic(self) -> Logistic<Self> {
-        let at = self.value.logistic();
-        let slopes = at.slopes(self.value);
-        Logistic {
-            rise: self.chain(at.rise, slopes.rise),
-            rest: self.chain(at.rest, slopes.rest),
-            tail: self.chain(at.tail, slopes.tail),
-        }
-    }
-    #[inline(never)]
-    fn inverse_cbrt(self) -> Self {
-        // d x^(-1/3)/dx = -1/3 x^(-4/3)
-        let y = self.value.inverse_cbrt();
-        let square = y * y;
-        self.chain(y, square * square * (-1.0 / 3.0))
-    }
-    #[inline(never)]
-    fn sin(self) -> Self {
-        self.chain(Real::sin(self.value), Real::cos(self.value))
-    }
-    #[inline(never)]
-    fn cos(self) -> Self {
-        self.chain(Real::cos(self.value), -Real::sin(self.value))
-    }
-    #[inline(always)]
-    fn scale(self, factor: f64) -> Self {
-        self.chain(self.value * factor, factor)
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> bool {
-        self.value < other.value
-    }
-    #[inline(always)]
-    fn select(mask: bool, yes: Self, no: Self) -> Self {
-        if mask { yes } else { no }
-    }
+    // One copy only: inlining multiplies compile time.
+    chain_rule!(never);
 }
 
 #[cfg(test)]

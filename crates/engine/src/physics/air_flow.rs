@@ -127,7 +127,7 @@ impl<S: Real> Opening<S> {
     }
 }
 
-/// Outdoor air let in by ventilation and openings.
+/// Outdoor air through ventilation and openings.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Intake<'a, S> {
     /// Heat carried per degree by the flows that no temperature drives [W/K].

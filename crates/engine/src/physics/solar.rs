@@ -64,6 +64,11 @@ impl<S: Real> Plane<S> {
     }
 }
 
+/// Cosines of the zenith angles 85 and 89 deg: in the ratio of cosines the sun stays at least 5 deg (Perez) or 1 deg (Hay and
+/// Davies) above the horizon.
+const COS_85: f64 = 0.08715574274765814;
+const COS_89: f64 = 0.0174524064372836;
+
 impl Sunlight {
     /// Reads a forcing row and splits the diffuse radiation by the model.
     #[must_use]
@@ -78,8 +83,7 @@ impl Sunlight {
             DiffuseSky::HayDavies => (if extra > 0.0 { (direct_normal / extra).min(1.0) } else { 0.0 }, 0.0),
             DiffuseSky::Perez => perez_fractions(up, direct_normal, diffuse, extra),
         };
-        // Both models keep the sun at least 5 deg (Perez) or 1 deg above the horizon in the ratio of cosines.
-        let lowest = Real::cos(if model == DiffuseSky::Perez { 85.0_f64 } else { 89.0 }.to_radians());
+        let lowest = if model == DiffuseSky::Perez { COS_85 } else { COS_89 };
         Self {
             direction,
             direct_normal,
@@ -230,6 +234,13 @@ mod tests {
 
     fn assert_close(found: f64, expected: f64) {
         assert!((found / expected - 1.0).abs() < 1e-4, "{found} is not {expected}");
+    }
+
+    #[test]
+    fn lowest_elevations() {
+        for (cosine, zenith) in [(COS_85, 85.0_f64), (COS_89, 89.0)] {
+            assert_eq!(cosine.to_bits(), Real::cos(zenith.to_radians()).to_bits(), "{zenith} deg");
+        }
     }
 
     /// Beam 400 0.75^1/2 = 346.410, ground 0.2 0.5 300 = 30. Diffuse: isotropic 50; Hay & Davies with A = 0.4

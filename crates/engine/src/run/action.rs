@@ -1,4 +1,4 @@
-//! What a run does to its state, one action after the other.
+//! The actions of a run: each changes the state.
 
 use crate::balance::ledger::Ledger;
 use crate::error::EngineError;
@@ -8,7 +8,7 @@ use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
 
-/// One thing that a run does to its state.
+/// One change of the state of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Action {
     /// A step of the warm-up.
@@ -20,7 +20,7 @@ pub(crate) enum Action {
 }
 
 impl Action {
-    /// Takes it.
+    /// Carries the action out.
     #[inline(always)]
     pub(crate) fn take<S: Real>(
         self,
@@ -34,7 +34,7 @@ impl Action {
             Self::WarmUp(step) | Self::Step(step) => stepper.step(state, weather, step, dt, ledger),
             Self::Balance => {
                 stepper.forget();
-                // The weather of the first stage stands for that of the start.
+                // The weather of the first stage is used for the start.
                 stepper.balance_surfaces(state, &weather.at(0, 0))
             }
         }
@@ -59,7 +59,7 @@ mod tests {
     use crate::step::scheme::Scheme;
     use crate::step::state::Initial;
 
-    /// The rows that the actions of a run lead to are those that its options promise, without gap.
+    /// The rows of the actions of a run are those that its options count, without gap.
     #[test]
     fn rows_follow_each_other() {
         for (steps, record_from, record_every) in

@@ -1,4 +1,4 @@
-//! Stopping a run from outside, and seeing how far it is.
+//! Stopping a run from outside, and its progress.
 
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -14,7 +14,7 @@ pub struct RunControl {
 }
 
 impl RunControl {
-    /// An error where the run was asked to stop.
+    /// An error where the caller has stopped the run.
     ///
     /// # Errors
     /// [`EngineError::Interrupted`].

@@ -14,7 +14,7 @@ use crate::run::march::march_in;
 use crate::run::options::Options;
 use crate::weather::conditions::Weather;
 
-/// What an ensemble leaves behind, by member.
+/// Results of an ensemble, by member.
 #[derive(Debug)]
 pub struct Ensemble {
     /// Members x rows x outputs; NaN for a member that failed.
@@ -77,7 +77,7 @@ struct Target<'a> {
     row: usize,
 }
 
-/// A pack on its way into lanes.
+/// A pack to be run in lanes.
 struct Pack<'a> {
     plan: &'a Plan,
     numbers: &'a [f64],
@@ -104,7 +104,7 @@ impl LaneTask for Pack<'_> {
     }
 }
 
-/// Runs a pack in lanes, and alone those of its members whose iteration failed there.
+/// Runs a pack in lanes; members whose iteration fails there are run again alone.
 fn run_pack(
     level: Level,
     plan: &Plan,
@@ -118,7 +118,7 @@ fn run_pack(
     let members = target.closure.len();
     let mut failures = Vec::new();
     let results = match run(level, Pack { plan, numbers, members, weather, options, control }) {
-        Err(EngineError::NotConverged { .. } | EngineError::NotSettled { .. }) => vec![None; members],
+        Err(EngineError::NotConverged { .. } | EngineError::WarmUpNotConverged { .. }) => vec![None; members],
         other => other?,
     };
     for (member, result) in results.into_iter().enumerate() {

@@ -25,18 +25,18 @@ pub struct Run<S: Real> {
     pub state: State<S>,
     /// Repetitions of the warm-up.
     pub cycles: usize,
-    /// Largest change in the last repetition [K].
-    pub settled: S,
-    /// What it was spent on, the warm-up included.
+    /// Largest change of a temperature in the last repetition of the warm-up [K].
+    pub warm_up_change: S,
+    /// Counts of iterations, nested iterations and halvings, warm-up included.
     pub counters: Counters<S>,
-    /// Lanes that failed: their numbers mean nothing.
+    /// Lanes that failed: their numbers have no meaning.
     pub failed: S::Mask,
 }
 
 /// Runs a plan at a parameter vector.
 ///
 /// # Errors
-/// [`EngineError::NotConverged`], [`EngineError::NotSettled`], [`EngineError::Interrupted`], [`EngineError::Input`].
+/// [`EngineError::NotConverged`], [`EngineError::WarmUpNotConverged`], [`EngineError::Interrupted`], [`EngineError::Input`].
 pub fn march<S: Real>(
     plan: &Plan,
     parameters: &[S],
@@ -78,7 +78,8 @@ pub(crate) fn march_observed<'a, S: Real>(
         stepper.evaluate_residuals();
     }
     let mut state = stepper.begin(&options.initial);
-    let (cycles, settled) = warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
+    let (cycles, warm_up_change) =
+        warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
     let mut ledger = Ledger::new();
     for action in core::iter::once(Action::Balance).chain((0..weather.steps()).map(Action::Step)) {
@@ -94,7 +95,7 @@ pub(crate) fn march_observed<'a, S: Real>(
         ledger,
         state,
         cycles,
-        settled,
+        warm_up_change,
         counters: stepper.counters(),
         failed: stepper.failed(),
     })

@@ -23,7 +23,7 @@ pub struct Options {
     pub probes: Vec<Output>,
     /// First step whose end is recorded; with 0 the initial state is recorded before it.
     pub record_from: usize,
-    /// Record every so many steps.
+    /// One step of this number is recorded.
     pub record_every: usize,
     /// Evaluate the residuals of all stages, see [`Counters::largest_residual`](crate::step::Counters::largest_residual):
     /// a run then takes longer.
@@ -37,7 +37,7 @@ pub struct Warmup {
     pub steps: usize,
     /// Largest change between two repetitions [K].
     pub tolerance: f64,
-    /// Repetitions after which it counts as not converged.
+    /// Largest number of repetitions.
     pub max_cycles: usize,
 }
 
@@ -48,7 +48,7 @@ impl Options {
         steps.checked_sub(self.record_from).map_or(0, |left| 1 + left / self.record_every)
     }
 
-    /// Checks that a run with these options is possible, with so many parameter values and a forcing; the lanes to use.
+    /// Checks these options with a number of parameter values and a forcing, and the lanes to use.
     ///
     /// # Errors
     /// [`EngineError::Input`].

@@ -93,12 +93,12 @@ pub enum Output {
         /// Index of the wall or window.
         surface: usize,
     },
-    /// Sun that a window lets in, mean over the step [W].
+    /// Sun that a window transmits, mean over the step [W].
     TransmittedSolar {
         /// Index of the wall or window.
         surface: usize,
     },
-    /// Sun that the windows of a zone let in, mean over the step [W].
+    /// Sun that the windows of a zone transmit, mean over the step [W].
     ZoneTransmittedSolar {
         /// Index of the zone.
         zone: usize,
@@ -118,7 +118,7 @@ pub enum Output {
 }
 
 impl Output {
-    /// Checks that what is asked for exists.
+    /// Checks that the zone, wall, layer or sensor exists.
     ///
     /// # Errors
     /// [`EngineError::Input`].

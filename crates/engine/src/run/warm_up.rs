@@ -40,5 +40,5 @@ pub(super) fn warm_up<'a, S: Real>(
         }
     }
     let residual = (0..S::LANES).map(|lane| change_left.lane(lane)).fold(0.0, f64::max);
-    Err(EngineError::NotSettled { cycles: warmup.max_cycles, residual, tolerance: warmup.tolerance })
+    Err(EngineError::WarmUpNotConverged { cycles: warmup.max_cycles, residual, tolerance: warmup.tolerance })
 }

@@ -27,7 +27,7 @@ impl<S: Real> Stepper<'_, S> {
         {
             *largest = residuals.stages.iter().fold(*largest, |largest, &residual| largest.max(residual));
         }
-        ledger.book(energy, stored);
+        ledger.add_step(energy, stored);
     }
 
     /// Cells of the nonlinear walls at the end of the last stage, and their memory; the heat stored [J].

@@ -60,11 +60,11 @@ impl<S: Real> StepParts<S> {
         self.left.pop()
     }
 
-    /// Puts two halves in the place of a part that could not be solved.
+    /// Replaces a part that could not be solved by its two halves.
     ///
     /// # Errors
-    /// The error, where halves would not help: after many halvings, or where something is not a number, which comes from
-    /// what drives the step.
+    /// The error itself, where halves would not help: after many halvings, or where a number is NaN, which comes from the
+    /// weather or the parameters of the step.
     pub(crate) fn halve(&mut self, part: Part, error: EngineError) -> Result<(), EngineError> {
         let solvable = matches!(error, EngineError::NotConverged { residual, .. } if !residual.is_nan());
         if part.halvings == MAX_HALVINGS || !solvable {

@@ -1,7 +1,7 @@
-//! Steps along known solutions: what derivatives need of a stepper beside a run of plain numbers.
+//! Steps whose solution is known from a run of plain numbers: the parts of a stepper that derivatives use.
 //!
-//! At a known solution nothing is iterated. The laws are linearised there as ever; the slopes of the solution follow from
-//! those of the equations (`derivatives`).
+//! Nothing is iterated. The laws are linearised at the solution; its slopes follow from those of the equations
+//! (`derivatives`).
 
 use crate::balance::terms::{Contents, Stage as StageContents};
 use crate::input::forcing::Forcing;
@@ -56,12 +56,12 @@ impl<S: Real> Stepper<'_, S> {
         })
     }
 
-    /// A step begins at a state.
+    /// Begins a step at a state.
     #[inline(always)]
     pub(crate) fn begin_known_step(&mut self, state: &State<S>) {
         self.forget();
         self.solver.start.load.copy_from_slice(&state.load);
-        self.solver.linearisation.expect_gaps(&self.model, 0, &state.cells);
+        self.solver.linearisation.extrapolate_gaps(&self.model, 0, &state.cells);
     }
 
     /// The weather of a stage.
@@ -77,7 +77,7 @@ impl<S: Real> Stepper<'_, S> {
         self.weather.set_instant(&self.model, now);
     }
 
-    /// Heat stored when a stage begins; after [`Self::carry_first_stage`] in the second one.
+    /// Heat stored when a stage begins; after [`Self::store_first_stage`] in the second one.
     #[inline(always)]
     pub(crate) fn stage_of<'s>(&'s self, state: &'s State<S>, place: StagePlace) -> StageContents<'s, S> {
         let StageSolver { start, solution, .. } = &self.solver;
@@ -113,7 +113,7 @@ impl<S: Real> Stepper<'_, S> {
     /// The solution of a stage as one list: cells, surfaces, airs [degC]. The temperatures of the cells of constant walls
     /// follow from the others; `matrix` has their factors.
     #[inline(always)]
-    pub(crate) fn locate(
+    pub(crate) fn write_known_solution(
         &self,
         state: &State<S>,
         place: StagePlace,
@@ -140,9 +140,9 @@ impl<S: Real> Stepper<'_, S> {
         }
     }
 
-    /// Takes the solution of a stage: `solve` writes it with its derivatives.
+    /// Stores the solution of a stage: `solve` writes it with its derivatives.
     #[inline(always)]
-    pub(crate) fn take_solution(&mut self, solve: impl FnOnce([&mut [S]; 3])) {
+    pub(crate) fn store_solution(&mut self, solve: impl FnOnce([&mut [S]; 3])) {
         let StageSolver { system, solution: Unknowns { cells, surfaces, air }, .. } = &mut self.solver;
         solve([cells, surfaces, air]);
         for &w in &self.model.parts.nonlinear_walls {
@@ -150,9 +150,9 @@ impl<S: Real> Stepper<'_, S> {
         }
     }
 
-    /// What the second stage needs of the first.
+    /// Enthalpies and liquid fractions at the end of the first stage, for the second.
     #[inline(always)]
-    pub(crate) fn carry_first_stage(&mut self, state: &State<S>) {
+    pub(crate) fn store_first_stage(&mut self, state: &State<S>) {
         let StageSolver { start, system, .. } = &mut self.solver;
         for &w in &self.model.parts.nonlinear_walls {
             let (wall, chain) = (&self.model.plan.walls[w], &system.walls[w]);
@@ -166,7 +166,7 @@ impl<S: Real> Stepper<'_, S> {
         }
     }
 
-    /// Takes the last stage as the new state.
+    /// The last stage becomes the new state.
     #[inline(always)]
     pub(crate) fn end_known_step(&mut self, state: &mut State<S>) {
         self.accept_nonlinear(state);
@@ -177,7 +177,7 @@ impl<S: Real> Stepper<'_, S> {
         state.load.copy_from_slice(&start.load);
     }
 
-    /// Takes the balance of the surfaces at an instant as that of a state.
+    /// The surfaces balanced at an instant become those of a state.
     #[inline(always)]
     pub(crate) fn end_known_balance(&mut self, state: &mut State<S>) {
         state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
@@ -199,8 +199,8 @@ impl<S: Real> Stepper<'_, S> {
             *load = S::constant(known);
         }
         let reached = &solution.stages[last].air;
-        self.ideal_loads.ask(load, |zone| S::constant(reached[zone]));
-        self.ideal_loads.answering(0, all)
+        self.ideal_loads.mark_needed(load, |zone| S::constant(reached[zone]));
+        self.ideal_loads.finds_responses(0, all)
     }
 
     /// Sets the response of the airs at the end of the step to an ideal load [K/W].

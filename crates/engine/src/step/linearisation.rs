@@ -23,7 +23,7 @@ pub(crate) struct Linearisation<S> {
 }
 
 impl<S: Real> Linearisation<S> {
-    /// The laws of a building that never change, and room for the others.
+    /// With the laws of a building that never change; the others are zero.
     pub(crate) fn new(model: &Model<'_, S>, stages: usize) -> Self {
         let walls = model.coefficients.walls.iter();
         let gaps = walls.map(|wall| wall.glass.as_ref().map_or(0, Glass::filled_gaps));
@@ -32,9 +32,9 @@ impl<S: Real> Linearisation<S> {
     }
 
     /// Evaluates the convection in gaps at the cell temperatures that are expected in a stage: those of the step's start in
-    /// the first, so that a step depends on the state and the weather alone.
+    /// the first, so that a step depends on the state and the weather only.
     #[inline(always)]
-    pub(crate) fn expect_gaps(&mut self, model: &Model<'_, S>, stage: usize, expected: &[S]) {
+    pub(crate) fn extrapolate_gaps(&mut self, model: &Model<'_, S>, stage: usize, expected: &[S]) {
         for &w in &model.plan.windows {
             if let Some(glass) = &model.coefficients.walls[w].glass {
                 glass.expect(&expected[model.cells(w)], &mut self.gap_convection[stage][w]);

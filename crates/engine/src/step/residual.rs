@@ -1,7 +1,7 @@
 //! The residual of the stages of a step, on demand: the heat balances at the solution, all laws evaluated there.
 //!
-//! Newton's iteration looks at changes of temperature alone. The heat that is missing in the balances says how good a
-//! solution is independently of how it was found.
+//! Newton's iteration is stopped by changes of temperature. The residual of the balances measures the error of a solution
+//! independently of the iteration.
 
 use crate::balance::flow_index::FlowIndex;
 use crate::balance::terms::{self, Balances, Contents};

@@ -59,7 +59,7 @@ impl<S: Real> StageStart<S> {
 
     /// The second stage starts from `H_n + ratio (H_stage - H_n)`.
     #[inline(always)]
-    pub(crate) fn go_on(
+    pub(crate) fn begin_second_stage(
         &mut self,
         model: &Model<'_, S>,
         state: &State<S>,

@@ -52,7 +52,7 @@ pub(crate) fn read_solution(
     known
 }
 
-/// Solutions that a stepper keeps, where asked to.
+/// Solutions of the stages of a step, which a stepper keeps for derivatives.
 #[derive(Debug, Clone)]
 pub(crate) struct StageSolutions<S> {
     keeps: bool,

@@ -143,7 +143,7 @@ impl<S: Real> State<S> {
 
     /// Passes each number with one of others to a function, in the order of [`Self::write`].
     #[inline(always)]
-    pub(crate) fn beside<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
+    pub(crate) fn zip_with<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
         for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load] {
             let (own, rest) = numbers.split_at(values.len());
             numbers = rest;
@@ -176,7 +176,7 @@ impl<S: Real> State<S> {
     }
 
     /// Changes each number by the one at its place in another state.
-    pub(crate) fn meet<T: Real>(&mut self, other: &State<T>, mut change: impl FnMut(&mut S, T)) {
+    pub(crate) fn change_by<T: Real>(&mut self, other: &State<T>, mut change: impl FnMut(&mut S, T)) {
         let plain = [
             (&mut self.cells[..], &other.cells[..]),
             (&mut self.enthalpy, &other.enthalpy),

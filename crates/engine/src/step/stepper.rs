@@ -25,7 +25,7 @@ use crate::weather::conditions::{Instant, Weather};
 /// Effective length of the stage that brings surfaces into balance [s]: too short for anything to be stored.
 pub(super) const INSTANT: f64 = 1e-3;
 
-/// Takes a building through one step at a time.
+/// Computes the steps of a building one by one.
 #[derive(Debug, Clone)]
 pub struct Stepper<'a, S: Real> {
     pub(crate) model: Model<'a, S>,
@@ -37,7 +37,7 @@ pub struct Stepper<'a, S: Real> {
     pub(crate) ideal_loads: IdealLoads<S>,
     pub(crate) parts: StepParts<S>,
     pub(crate) known: StageSolutions<S>,
-    /// Only where residuals are asked for.
+    /// Present only where residuals are evaluated.
     pub(super) residuals: Option<Box<StageResiduals<S>>>,
 }
 
@@ -67,7 +67,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         State::new(&self.model, initial)
     }
 
-    /// What was spent since the start.
+    /// Counts of iterations, nested iterations and halvings since the start.
     pub fn counters(&self) -> Counters<S> {
         self.solver.counters
     }
@@ -78,7 +78,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.solver.counters.largest_residual = Some(S::zero());
     }
 
-    /// Lanes whose iteration failed: their numbers mean nothing any more.
+    /// Lanes whose iteration failed: their numbers have no meaning.
     pub fn failed(&self) -> S::Mask {
         self.solver.failed
     }
@@ -88,7 +88,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         vec![self.solver.solution.clone(); self.scheme.weights().len()]
     }
 
-    /// What comes next does not continue the step before.
+    /// The next step does not continue the last one: its guess starts anew.
     pub fn forget(&mut self) {
         self.guess.forget();
     }
@@ -133,7 +133,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 while let Some(part) = self.parts.next() {
                     match self.attempt(state, weather, part, dt, ledger) {
                         Ok(()) if part.halvings == 0 => {}
-                        // Parts differ in length: none is guessed from the one before it.
+                        // Parts differ in length: no part is guessed from the one before it.
                         Ok(()) => {
                             self.parts.average(part, &mut state.load);
                             self.forget();
@@ -146,7 +146,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         )
     }
 
-    /// Puts two halves in the place of a part that could not be solved. Lanes that fail are run alone instead.
+    /// Replaces a part that could not be solved by its two halves. With lanes this is an error: members that fail are run alone.
     // One copy only: inlining multiplies compile time.
     #[cold]
     #[inline(never)]
@@ -220,7 +220,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         solver.system.step_maps.begin();
         self.known.restart();
         self.guess.first(model, state, node, &mut solver.iterate);
-        solver.linearisation.expect_gaps(model, 0, &state.cells);
+        solver.linearisation.extrapolate_gaps(model, 0, &state.cells);
     }
 
     /// What the second stage starts from; its end is guessed on a straight line.
@@ -229,7 +229,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let Self { model, solver, .. } = self;
         let StageSolver { system, start, solution, .. } = solver;
         system.step_maps.set_first_surfaces(&solution.surfaces);
-        start.go_on(model, state, self.scheme.tableau().ratio, (&system.walls, solution));
+        start.begin_second_stage(model, state, self.scheme.tableau().ratio, (&system.walls, solution));
         self.extrapolate_stage(state);
     }
 
@@ -240,7 +240,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let StageSolver { linearisation, iterate, solution, .. } = &mut self.solver;
         let known = [state.view(), solution.view()];
         iterate.extrapolate(&self.model, &known, 1.0 / self.scheme.tableau().diagonal, &state.memory);
-        linearisation.expect_gaps(&self.model, 1, &iterate.cells);
+        linearisation.extrapolate_gaps(&self.model, 1, &iterate.cells);
     }
 
     /// Solves a stage in the weather that is set.

@@ -7,7 +7,7 @@ use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
 use crate::input::description::Facing;
 use crate::input::forcing::{Forcing, channel};
-use crate::number::real::Real;
+use crate::number::elementary::sincos;
 use crate::physics::convection::{Wind, WindTerms};
 use crate::physics::longwave::SkyState;
 use crate::physics::solar::{SkyVisibility, Sunlight};
@@ -35,8 +35,10 @@ impl<'a> Instant<'a> {
     /// Evaluates a forcing row.
     #[must_use]
     pub fn new(plan: &Plan, row: &'a [f64], terms: WindTerms, ground: bool) -> Self {
-        let unit =
-            |angle: f64, needed: bool| if needed { [Real::cos(angle), Real::sin(angle)] } else { [0.0; 2] };
+        let unit = |angle: f64, needed: bool| {
+            let (sine, cosine) = if needed { sincos(angle) } else { (0.0, 0.0) };
+            [cosine, sine]
+        };
         let sunlight = Sunlight::new(row, plan.description.site.diffuse);
         Self {
             row,

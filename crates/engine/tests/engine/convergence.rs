@@ -19,9 +19,9 @@ fn copies(count: usize) -> Description {
     let above = b.channel("above");
     for copy in 0..count {
         let room = b.zone(&format!("room_{copy}"), 27.0, 0.5, ZoneLongwave::None);
-        let out = b.film(4.0);
-        let film_in = b.power([0.3, 1.4, 0.3, 0.0, 1.0], [0.2, 0.6, 0.25, 0.0, 1.0]);
-        let inside = b.inside(room, film_in, 0.9);
+        let out = b.convection(4.0);
+        let inner = b.power([0.3, 1.4, 0.3, 0.0, 1.0], [0.2, 0.6, 0.25, 0.0, 1.0]);
+        let inside = b.inside(room, inner, 0.9);
         let outside = facing(Facing::Measured { channel: above }, Some(out));
         b.surface(&format!("ceiling_{copy}"), construction, [9.0, 0.0, 0.0], outside, inside);
     }

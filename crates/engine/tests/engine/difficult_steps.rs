@@ -3,8 +3,8 @@
 use crate::common::difficult::{jumps, probes, sharp, steps};
 use crate::common::{forcing, options, position, try_run, values};
 use mascarin_engine::batch::ensemble;
-use mascarin_engine::derivatives::jacobian::jacobian;
-use mascarin_engine::derivatives::trajectory::Trajectory;
+use mascarin_engine::derivatives::Trajectory;
+use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::Scheme;
 use mascarin_engine::march::{Watch, march};

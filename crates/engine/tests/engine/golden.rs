@@ -9,16 +9,16 @@ use core::fmt::Write as _;
 use std::process::Command;
 
 use crate::common::assorted::{assorted_cell, assorted_weather, assorted_windows};
-use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather, plant};
+use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather, ideal_load};
 use crate::common::glazed::{glazed_probes, glazed_rooms};
+use crate::common::linear::{cell_of_linear_laws, linear_cell};
 use crate::common::melting::{ceiling_weather, fine_ceiling, melting, melting_weather};
-use crate::common::straight::{linear_cell, straight_cell};
 use crate::common::{
     SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, values, weather,
 };
 use mascarin_engine::batch::ensemble;
-use mascarin_engine::derivatives::jacobian::jacobian;
-use mascarin_engine::derivatives::trajectory::Trajectory;
+use mascarin_engine::derivatives::Trajectory;
+use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::{Description, HysteresisModel};
 use mascarin_engine::dispatch::Level;
 use mascarin_engine::forcing::Forcing;
@@ -43,11 +43,11 @@ const RUNS: &[(&str, [u64; 2])] = &[
     ("cell, ApparentCapacity, jacobian", [0xa334054f59d40f02, 0x0000000000000000]),
     ("cell, ApparentCapacity, gradient, all kept", [0xce18943ffb8a716c, 0xf345846e75563a1b]),
     ("cell, ApparentCapacity, gradient, some kept", [0xb9a3958be655bc92, 0xf345846e75563a1b]),
-    ("straight cell, BackwardEuler, 1 slope", [0xd8b6ab6d2aa94d02, 0x7421e84d4b793496]),
-    ("straight cell, BackwardEuler, 8 slopes", [0x0c97770553b65c01, 0x327cf23d9aea8b7a]),
-    ("straight cell, BackwardEuler, jacobian", [0x22e788629ec0fa62, 0x0000000000000000]),
-    ("straight cell, BackwardEuler, gradient, all kept", [0xc2e8206f8a35274e, 0xa997954be191d10a]),
-    ("straight cell, BackwardEuler, gradient, some kept", [0x6da5ec7007b314a7, 0xa997954be191d10a]),
+    ("cell of linear laws, BackwardEuler, 1 slope", [0xd8b6ab6d2aa94d02, 0x7421e84d4b793496]),
+    ("cell of linear laws, BackwardEuler, 8 slopes", [0x0c97770553b65c01, 0x327cf23d9aea8b7a]),
+    ("cell of linear laws, BackwardEuler, jacobian", [0x22e788629ec0fa62, 0x0000000000000000]),
+    ("cell of linear laws, BackwardEuler, gradient, all kept", [0xc2e8206f8a35274e, 0xa997954be191d10a]),
+    ("cell of linear laws, BackwardEuler, gradient, some kept", [0x6da5ec7007b314a7, 0xa997954be191d10a]),
     ("conditioned cell, Sdirk2, 1 slope", [0xb0ed1d0fb4b6b571, 0x8e14b578256f6895]),
     ("conditioned cell, Sdirk2, 8 slopes", [0xf1aa5a5654790524, 0x652f7b4dddb339af]),
     ("conditioned cell, Sdirk2, jacobian", [0xc0d43e6215814247, 0x0000000000000000]),
@@ -104,21 +104,21 @@ const RUNS: &[(&str, [u64; 2])] = &[
     ("ceiling of gamma 1000 in 40 nodes, Sdirk2, jacobian", [0x2ab63d70aeb35db6, 0x0000000000000000]),
     ("ceiling of gamma 1000 in 40 nodes, Sdirk2, gradient, all kept", [0xd7a44dd4c8edb112, 0x5c09a360556b426a]),
     ("ceiling of gamma 1000 in 40 nodes, Sdirk2, gradient, some kept", [0x08748024bd0489ed, 0x5c09a360556b426a]),
-    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, 1 slope", [0xb02b8e6fb2025919, 0xa1e6658113e4f8ed]),
-    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, 8 slopes", [0xe66fc0af1c70819f, 0x3d70bd3f8194b3df]),
-    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, jacobian", [0x7b002a2368f824d9, 0x0000000000000000]),
-    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, gradient, all kept", [0xb19d7315a3171943, 0x77198229a4e37e21]),
-    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, gradient, some kept", [0xf1e4593756fa21d2, 0x77198229a4e37e21]),
-    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2, 1 slope", [0x0f44a852f0107c42, 0x8a796f8f4b8cde60]),
-    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2, jacobian", [0xd58ec49c62f27b2a, 0x0000000000000000]),
-    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2, gradient, all kept", [0x99a6ad3309c56112, 0x77c872a781ca9bb3]),
-    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2, gradient, some kept", [0x08a2b24c72d62f8e, 0x77c872a781ca9bb3]),
+    ("ceiling of gamma 1000 in 20 nodes with ideal loads, BackwardEuler, 1 slope", [0xb02b8e6fb2025919, 0xa1e6658113e4f8ed]),
+    ("ceiling of gamma 1000 in 20 nodes with ideal loads, BackwardEuler, 8 slopes", [0xe66fc0af1c70819f, 0x3d70bd3f8194b3df]),
+    ("ceiling of gamma 1000 in 20 nodes with ideal loads, BackwardEuler, jacobian", [0x7b002a2368f824d9, 0x0000000000000000]),
+    ("ceiling of gamma 1000 in 20 nodes with ideal loads, BackwardEuler, gradient, all kept", [0xb19d7315a3171943, 0x77198229a4e37e21]),
+    ("ceiling of gamma 1000 in 20 nodes with ideal loads, BackwardEuler, gradient, some kept", [0xf1e4593756fa21d2, 0x77198229a4e37e21]),
+    ("ceiling of gamma 1000 in 40 nodes with ideal loads, Sdirk2, 1 slope", [0x0f44a852f0107c42, 0x8a796f8f4b8cde60]),
+    ("ceiling of gamma 1000 in 40 nodes with ideal loads, Sdirk2, jacobian", [0xd58ec49c62f27b2a, 0x0000000000000000]),
+    ("ceiling of gamma 1000 in 40 nodes with ideal loads, Sdirk2, gradient, all kept", [0x99a6ad3309c56112, 0x77c872a781ca9bb3]),
+    ("ceiling of gamma 1000 in 40 nodes with ideal loads, Sdirk2, gradient, some kept", [0x08a2b24c72d62f8e, 0x77c872a781ca9bb3]),
     ("linear cell, matrices", [0x8e8acf1d22451ddf, 0x7ad8fdbd070e8ad0]),
     ("cell, BackwardEuler, 4 lanes", [0xd04bb012e2476262, 0x9d71ea155efc1d34]),
     ("cell, Sdirk2, 8 lanes", [0x6c5ec0904246c24b, 0xca3490b1b8220283]),
     ("cell, ApparentCapacity, 8 lanes", [0x70957eda54388385, 0x9c893e47e3402fa1]),
-    ("straight cell, Sdirk2, 4 lanes", [0x2f1308d71ecd4424, 0x915a85566c3ab579]),
-    ("straight cell, BackwardEuler, 8 lanes", [0x4e685b077874707a, 0xb4b36d28181f4f89]),
+    ("cell of linear laws, Sdirk2, 4 lanes", [0x2f1308d71ecd4424, 0x915a85566c3ab579]),
+    ("cell of linear laws, BackwardEuler, 8 lanes", [0x4e685b077874707a, 0xb4b36d28181f4f89]),
     ("conditioned cell, Sdirk2, 4 lanes", [0x224f65442d436a85, 0x25f1b6540036819a]),
     ("conditioned cell, BackwardEuler, 8 lanes", [0x39622ae94d72604d, 0x666502fc101fdadb]),
     ("glazed room, sun by geometry, Sdirk2, 4 lanes", [0x775cba87645ab998, 0x9ff93a5475040026]),
@@ -128,9 +128,9 @@ const RUNS: &[(&str, [u64; 2])] = &[
     ("cell, Sdirk2", [0x88971e282be29f1f, 0x04fb81f8f18eaca2]),
     ("cell, BackwardEuler", [0x1cab02f0e5a5e816, 0x9428b4c23d82d772]),
     ("cell, ApparentCapacity", [0x9e13258e2d89ef74, 0x8371214020894bc1]),
-    ("straight cell, Sdirk2", [0xd1c2209cf60648bc, 0x7cf949954c1e4b54]),
-    ("straight cell, BackwardEuler", [0x0831713d637ec54f, 0x64b7c67523e5ad71]),
-    ("straight cell, ApparentCapacity", [0x1fef07ba1c2c70bb, 0x47e9e83f72e4afff]),
+    ("cell of linear laws, Sdirk2", [0xd1c2209cf60648bc, 0x7cf949954c1e4b54]),
+    ("cell of linear laws, BackwardEuler", [0x0831713d637ec54f, 0x64b7c67523e5ad71]),
+    ("cell of linear laws, ApparentCapacity", [0x1fef07ba1c2c70bb, 0x47e9e83f72e4afff]),
     ("linear cell, Sdirk2", [0xc7dd24357d740877, 0xcb28cc1ceb7d23ba]),
     ("linear cell, BackwardEuler", [0x35336da8f3954138, 0x04d54a1ab75ab264]),
     ("linear cell, ApparentCapacity", [0x35336da8f3954138, 0x04d54a1ab75ab264]),
@@ -177,16 +177,16 @@ const RUNS: &[(&str, [u64; 2])] = &[
     ("ceiling of gamma 300 in 20 nodes, BackwardEuler", [0xbfeaa81e7123acdd, 0xf638ede0bfa87649]),
     ("ceiling of gamma 1000 in 40 nodes, Sdirk2", [0x010f5f60a7705b45, 0x5c09a360556b426a]),
     ("ceiling of gamma 100 in 40 nodes, Sdirk2", [0xe97ec5c991a576b7, 0xf50943443863bef2]),
-    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler", [0x4eff420e57a04396, 0xe61d5aedfe6aed90]),
-    ("ceiling of gamma 1000 in 40 nodes over plants, Sdirk2", [0xd550948ae8afe3dd, 0xd32a5aed5e373366]),
-    ("ceiling of gamma 1000 in 80 nodes over plants, BackwardEuler", [0x2e7786f19309ff3b, 0x28dc99314167e063]),
+    ("ceiling of gamma 1000 in 20 nodes with ideal loads, BackwardEuler", [0x4eff420e57a04396, 0xe61d5aedfe6aed90]),
+    ("ceiling of gamma 1000 in 40 nodes with ideal loads, Sdirk2", [0xd550948ae8afe3dd, 0xd32a5aed5e373366]),
+    ("ceiling of gamma 1000 in 80 nodes with ideal loads, BackwardEuler", [0x2e7786f19309ff3b, 0x28dc99314167e063]),
     ("cell from given temperatures", [0xf0d99957d53d72a0, 0x10ae0e1b4c6b9d73]),
 ];
 
 #[rustfmt::skip]
 const ENSEMBLES: &[(&str, [u64; 2])] = &[
     ("cell, Sdirk2, ensemble", [0xca8d47e3cd7fe638, 0x2cdcdc0dfc5d1141]),
-    ("straight cell, Sdirk2, ensemble", [0x021dbcad5f6432a1, 0x2cdcdc0dfc5d1141]),
+    ("cell of linear laws, Sdirk2, ensemble", [0x021dbcad5f6432a1, 0x2cdcdc0dfc5d1141]),
     ("conditioned cell, Sdirk2, ensemble", [0xbf88173cadb31fe4, 0x2cdcdc0dfc5d1141]),
     ("glazed room, sun by geometry, Sdirk2, ensemble", [0xd7de508c9ca7d246, 0x2cdcdc0dfc5d1141]),
     ("curve scale, Sdirk2, ensemble", [0xc4625e2868179363, 0x2cdcdc0dfc5d1141]),
@@ -194,8 +194,8 @@ const ENSEMBLES: &[(&str, [u64; 2])] = &[
     ("ceiling of gamma 1000 in 10 nodes, BackwardEuler, ensemble", [0x65bbe7a3c43a89e0, 0xcbf29ce484222325]),
     ("ceiling of gamma 300 in 20 nodes, BackwardEuler, ensemble", [0x89ecca82728a3d1d, 0xcbf29ce484222325]),
     ("ceiling of gamma 100 in 40 nodes, Sdirk2, ensemble", [0xbd75e4eeca9aaed3, 0xcbf29ce484222325]),
-    ("ceiling of gamma 1000 in 20 nodes over plants, BackwardEuler, ensemble", [0x67fb776f33e117d4, 0xcbf29ce484222325]),
-    ("ceiling of gamma 1000 in 80 nodes over plants, BackwardEuler, ensemble", [0x1e55cb91e9c93475, 0xcbf29ce484222325]),
+    ("ceiling of gamma 1000 in 20 nodes with ideal loads, BackwardEuler, ensemble", [0x67fb776f33e117d4, 0xcbf29ce484222325]),
+    ("ceiling of gamma 1000 in 80 nodes with ideal loads, BackwardEuler, ensemble", [0x1e55cb91e9c93475, 0xcbf29ce484222325]),
 ];
 
 const STEP: f64 = 900.0;
@@ -282,7 +282,7 @@ fn hashed<S: Sloped>(name: &str, run: &Run<S>) -> Row {
         let [first, second] = memory.marks;
         rest.lanes(&[memory.liquid_fraction, memory.temperature, first, second], failed);
     }
-    rest.lanes(&[run.settled, run.counters.reversals], failed);
+    rest.lanes(&[run.warm_up_change, run.counters.reversals], failed);
     for count in [run.counters.iterations, run.counters.nested, run.counters.halvings] {
         rest.count(count);
     }
@@ -301,23 +301,23 @@ struct Sample {
     start: f64,
     steps: usize,
     probes: Vec<Probe>,
-    /// Whether the first hours are repeated until they settle.
-    settle: bool,
+    /// Whether the first hours are repeated until their end is their start.
+    warm_up: bool,
 }
 
 impl Sample {
     /// From the morning to the evening.
     fn new(name: &str, description: Description, weather: fn(f64, &mut [f64]), probes: Vec<Probe>) -> Self {
         let plan = Plan::new(description).unwrap();
-        Self { name: name.to_owned(), plan, weather, start: 7.0, steps: 40, probes, settle: false }
+        Self { name: name.to_owned(), plan, weather, start: 7.0, steps: 40, probes, warm_up: false }
     }
 
     fn cell() -> Self {
-        Self { settle: true, ..Self::new("cell", cell(0.04), cell_weather, every(cell_probes())) }
+        Self { warm_up: true, ..Self::new("cell", cell(0.04), cell_weather, every(cell_probes())) }
     }
 
-    fn straight() -> Self {
-        Self::new("straight cell", straight_cell(false), cell_weather, cell_probes())
+    fn linear_laws() -> Self {
+        Self::new("cell of linear laws", cell_of_linear_laws(false), cell_weather, cell_probes())
     }
 
     fn linear() -> Self {
@@ -360,13 +360,13 @@ impl Sample {
         })
     }
 
-    /// Sharp melting in a number of nodes under a film [W/(m2 K)], with or without plants in the room. From this hour on
+    /// Sharp melting in a number of nodes under a heat transfer coefficient [W/(m2 K)], with or without ideal loads. From this hour on
     /// Newton's iteration fails within so many steps, but for the last four.
-    fn sharp([gamma, film, start]: [f64; 3], nodes: usize, plants: bool, steps: usize) -> Self {
-        let mut d = fine_ceiling(gamma, nodes, film);
-        if plants {
-            d.zones[0].heating = Some(plant(&mut d, "room.heating", 22.0, 300.0));
-            d.zones[0].cooling = Some(plant(&mut d, "room.cooling", 24.0, 80.0));
+    fn sharp([gamma, coefficient, start]: [f64; 3], nodes: usize, ideal_loads: bool, steps: usize) -> Self {
+        let mut d = fine_ceiling(gamma, nodes, coefficient);
+        if ideal_loads {
+            d.zones[0].heating = Some(ideal_load(&mut d, "room.heating", 22.0, 300.0));
+            d.zones[0].cooling = Some(ideal_load(&mut d, "room.cooling", 24.0, 80.0));
         }
         let probes = vec![
             Probe::AirTemperature { zone: 0 },
@@ -374,8 +374,8 @@ impl Sample {
             Probe::FaceFlux { surface: 0, side: 1 },
             Probe::CoolingLoad { zone: 0 },
         ];
-        let below = if plants { " over plants" } else { "" };
-        let name = format!("ceiling of gamma {gamma} in {nodes} nodes{below}");
+        let loads = if ideal_loads { " with ideal loads" } else { "" };
+        let name = format!("ceiling of gamma {gamma} in {nodes} nodes{loads}");
         Self { start, steps, ..Self::new(&name, d, ceiling_weather, probes) }
     }
 
@@ -394,7 +394,7 @@ impl Sample {
     }
 
     fn options(&self, scheme: Scheme) -> Options {
-        let warmup = self.settle.then_some(Warmup { steps: 12, tolerance: 0.2, max_cycles: 200 });
+        let warmup = self.warm_up.then_some(Warmup { steps: 12, tolerance: 0.2, max_cycles: 200 });
         Options { warmup, ..options(scheme, STEP, self.probes.clone()) }
     }
 
@@ -419,7 +419,7 @@ impl Sample {
         self.plan.n_cells < 40
     }
 
-    /// Members that differ in their materials, films and powers.
+    /// Members that differ in their materials, heat transfer coefficients and powers.
     fn members(&self, count: usize) -> Vec<Vec<f64>> {
         let varied = ["conductivity", "density", "latent_heat", "coefficient", "power", "width", "factor"];
         let parameters = self.plan.description.parameters.iter();
@@ -496,7 +496,7 @@ fn hard() -> Vec<(Sample, Scheme, Fails)> {
 
 /// Runs of plain numbers.
 fn plain() -> Vec<Row> {
-    let mut samples = vec![Sample::cell(), Sample::straight(), Sample::linear(), Sample::conditioned()];
+    let mut samples = vec![Sample::cell(), Sample::linear_laws(), Sample::linear(), Sample::conditioned()];
     samples.extend(Sample::glazed());
     samples.extend(Sample::melting());
     samples.extend(Sample::assorted());
@@ -504,7 +504,7 @@ fn plain() -> Vec<Row> {
         SCHEMES.map(|scheme| {
             let name = format!("{}, {scheme:?}", sample.name);
             let run = sample.run(&values(&sample.plan), &sample.options(scheme));
-            assert!(!sample.settle || run.cycles > 1, "{name}: the first hours are repeated");
+            assert!(!sample.warm_up || run.cycles > 1, "{name}: the first hours are repeated");
             let turns = sample.name == "curve switch" && scheme == Scheme::Sdirk2;
             assert!(!turns || run.counters.reversals > 0.0, "{name}: melting turns within a step");
             hashed(&name, &run)
@@ -518,7 +518,7 @@ fn plain() -> Vec<Row> {
         assert!(reached > 0, "{name}: expected {fails:?}, found {:?}", run.counters);
         hashed(&name, &run)
     }));
-    let sample = Sample { settle: false, ..Sample::cell() };
+    let sample = Sample { warm_up: false, ..Sample::cell() };
     let count = |count: usize, from: f64| (0..count).map(|k| from + 0.1 * k as f64).collect();
     let initial = Initial::Given {
         cells: count(sample.plan.n_cells, 20.0),
@@ -547,7 +547,7 @@ fn lanes() -> Vec<Row> {
     ];
     let [.., glazed] = Sample::glazed();
     let [.., scale] = Sample::melting();
-    let others = [Sample::straight(), Sample::conditioned(), glazed, scale];
+    let others = [Sample::linear_laws(), Sample::conditioned(), glazed, scale];
     rows.par_extend(others.into_par_iter().flat_map_iter(|sample| {
         let sample = Sample { steps: 24, ..sample };
         let members = sample.members(8);
@@ -561,7 +561,7 @@ fn lanes() -> Vec<Row> {
 fn ensembles() -> Vec<Row> {
     let [.., glazed] = Sample::glazed();
     let [.., scale] = Sample::melting();
-    let samples = [Sample::cell(), Sample::straight(), Sample::conditioned(), glazed, scale];
+    let samples = [Sample::cell(), Sample::linear_laws(), Sample::conditioned(), glazed, scale];
     let mut all: Vec<_> = samples.map(|sample| (Sample { steps: 12, ..sample }, Scheme::Sdirk2, 10)).into();
     all.push((Sample { steps: 12, ..Sample::cell() }, Scheme::BackwardEuler, 3));
     let hard = hard().into_iter().filter(|(sample, _, fails)| sample.small() || *fails == Fails::Halved);
@@ -611,12 +611,12 @@ fn slopes_of(sample: &Sample, scheme: Scheme) -> Vec<Row> {
 
     // All states are kept, then only some: the steps between these are run again.
     for (kept, bytes) in [("all", 1 << 28), ("some", 1 << 12)] {
-        let way = Trajectory::new(&sample.plan, &numbers, &drive, &options, &watch, bytes).unwrap();
+        let trajectory = Trajectory::new(&sample.plan, &numbers, &drive, &options, &watch, bytes).unwrap();
         let weights: Vec<f64> =
-            (0..way.run.records.len()).map(|i| 1.0 + 0.5 * Real::sin(0.37 * i as f64)).collect();
-        let slopes = way.pull(&sample.plan, &numbers, &drive, &options, &watch, &weights).unwrap();
+            (0..trajectory.run.records.len()).map(|i| 1.0 + 0.5 * Real::sin(0.37 * i as f64)).collect();
+        let slopes = trajectory.pull(&sample.plan, &numbers, &drive, &options, &watch, &weights).unwrap();
         let name = format!("{name}, gradient, {kept} kept");
-        let Row(_, [answers, rest]) = hashed(&name, &way.run);
+        let Row(_, [answers, rest]) = hashed(&name, &trajectory.run);
         let mut all = Hash(answers);
         all.numbers(&slopes);
         rows.push(Row(name, [all.0, rest]));
@@ -632,7 +632,7 @@ fn slopes() -> Vec<Row> {
     let mut all = vec![
         (Sample::cell(), Scheme::Sdirk2),
         (Sample::cell(), Scheme::ApparentCapacity),
-        (Sample::straight(), Scheme::BackwardEuler),
+        (Sample::linear_laws(), Scheme::BackwardEuler),
         (Sample::conditioned(), Scheme::Sdirk2),
         (Sample::conditioned(), Scheme::BackwardEuler),
         (by_area, Scheme::Sdirk2),
@@ -677,8 +677,8 @@ fn made(rows: impl FnOnce() -> Vec<Row> + Send) -> Vec<Row> {
 fn compare(name: &str, table: &[(&str, [u64; 2])], rows: &[Row]) {
     let same = |row: &Row| table.contains(&(row.0.as_str(), row.1));
     let differing: Vec<&str> = rows.iter().filter(|row| !same(row)).map(|row| row.0.as_str()).collect();
-    let gone = table.iter().filter(|(name, _)| rows.iter().all(|row| row.0 != *name)).count();
-    if differing.is_empty() && gone == 0 {
+    let missing = table.iter().filter(|(name, _)| rows.iter().all(|row| row.0 != *name)).count();
+    if differing.is_empty() && missing == 0 {
         return;
     }
     let mut text = String::new();
@@ -686,7 +686,7 @@ fn compare(name: &str, table: &[(&str, [u64; 2])], rows: &[Row]) {
         writeln!(text, "    (\"{name}\", [0x{answers:016x}, 0x{rest:016x}]),").unwrap();
     }
     panic!(
-        "{} of {} rows differ from {name} and {gone} of it are gone: {}\n{name} as it would be now:\n{text}",
+        "{} of {} rows differ from {name} and {missing} of it are missing: {}\n{name} as it would be now:\n{text}",
         differing.len(),
         rows.len(),
         differing.join("; ")

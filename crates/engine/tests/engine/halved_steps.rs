@@ -1,6 +1,6 @@
 //! Steps that are made in parts.
 
-use crate::common::conditioned::plant;
+use crate::common::conditioned::ideal_load;
 use crate::common::melting::{ceiling_weather, fine_ceiling};
 use crate::common::{forcing, options, run};
 use mascarin_engine::ledger::Flow;
@@ -16,8 +16,8 @@ const STEP: f64 = 900.0;
 #[test]
 fn loads_are_means_over_halved_steps() {
     let mut description = fine_ceiling(1000.0, 80, 25.0);
-    description.zones[0].heating = Some(plant(&mut description, "room.heating", 21.0, 5000.0));
-    description.zones[0].cooling = Some(plant(&mut description, "room.cooling", 21.5, 5000.0));
+    description.zones[0].heating = Some(ideal_load(&mut description, "room.heating", 21.0, 5000.0));
+    description.zones[0].cooling = Some(ideal_load(&mut description, "room.cooling", 21.5, 5000.0));
     let plan = Plan::new(description).unwrap();
     let weather = |time, row: &mut [f64]| ceiling_weather(20.0 * 3600.0 + time, row);
     for scheme in [Scheme::Sdirk2, Scheme::BackwardEuler] {
@@ -29,11 +29,11 @@ fn loads_are_means_over_halved_steps() {
         let (reported, all) = loads.fold((0.0, 0.0), |(net, all), load| {
             (net + (load[0] - load[1]) * STEP, all + (load[0] + load[1]) * STEP)
         });
-        let booked = run.ledger.into[Flow::Heating as usize] + run.ledger.into[Flow::Cooling as usize];
+        let in_ledger = run.ledger.into[Flow::Heating as usize] + run.ledger.into[Flow::Cooling as usize];
         assert!(all > 1e7, "{all} J");
         assert!(
-            (reported - booked).abs() < 1e-12 * all,
-            "{reported} J, in the ledger {booked} J, {scheme:?}"
+            (reported - in_ledger).abs() < 1e-12 * all,
+            "{reported} J, in the ledger {in_ledger} J, {scheme:?}"
         );
     }
 }

@@ -192,14 +192,14 @@ fn no_closed_cycle_gains_entropy() {
         let (mut least, mut most) = (0.0_f64, f64::NEG_INFINITY);
         for _ in 0..150 {
             let mut memory = pcm.begin(5.0);
-            let mut way = vec![5.0];
+            let mut path = vec![5.0];
             for _ in 0..6 {
-                way.push(draws.temperature(*way.last().unwrap()));
+                path.push(draws.temperature(*path.last().unwrap()));
             }
-            way.push(5.0);
+            path.push(5.0);
             let mut sum = 0.0;
             let mut last = pcm.at(5.0, &memory).enthalpy;
-            for pair in way.windows(2) {
+            for pair in path.windows(2) {
                 for i in 0..PARTS {
                     let [before, here] =
                         [i, i + 1].map(|i| pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(PARTS));

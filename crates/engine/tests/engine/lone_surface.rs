@@ -15,8 +15,8 @@ fn walls_that_look_the_same_way_exchange_nothing() {
         let wall = b.construction("wall", &[(board, 0.05, 3)]);
         let zone = b.zone("zone", 50.0, 0.5, longwave);
         for (name, area) in [("large", 12.0), ("small", 7.0)] {
-            let (film_out, film_in) = (b.film(15.0), b.film(3.0));
-            let (outside, inside) = (b.outdoors(film_out, 0.9, 0.6), b.inside(zone, film_in, 0.9));
+            let (outer, inner) = (b.convection(15.0), b.convection(3.0));
+            let (outside, inside) = (b.outdoors(outer, 0.9, 0.6), b.inside(zone, inner, 0.9));
             b.surface(name, wall, [area, 90.0, 0.0], outside, inside);
         }
         let plan = Plan::new(b.describe()).unwrap();

@@ -4,7 +4,7 @@
 
 mod common;
 
-mod closed_answers;
+mod closed_form;
 mod convergence;
 mod difficult_steps;
 mod empty_ensemble;

@@ -1,7 +1,7 @@
-//! Properties of whole runs of a cell with every film, two zones and a phase-change ceiling.
+//! Properties of whole runs of a cell with every law of convection, two zones and a phase-change ceiling.
 
+use crate::common::linear::cell_of_linear_laws;
 use crate::common::melting::{ceiling, ceiling_weather};
-use crate::common::straight::straight_cell;
 use crate::common::{
     SCHEMES, cell, cell_members, cell_probes, cell_weather, forcing, options, position, run, try_run, values,
     warmup,
@@ -17,7 +17,7 @@ use mascarin_engine::state::Initial;
 
 const STEP: f64 = 900.0;
 
-/// Every scheme keeps the books, but the paper's.
+/// The energy balance closes with every scheme but the paper's (apparent capacity).
 #[test]
 fn energy_closes() {
     for (gamma, dt) in [(0.04, STEP), (1.0, STEP), (0.04, 3600.0), (100.0, 300.0)] {
@@ -70,7 +70,7 @@ fn lanes_are_scalars() {
             let alone = match march(&plan, numbers, &drive, &options, &watch) {
                 Ok(alone) => alone,
                 Err(error) => {
-                    // The paper's scheme never settles where the melting is sharp.
+                    // The warm-up of the paper's scheme does not converge where the melting is sharp.
                     assert!(scheme == Scheme::ApparentCapacity, "member {member}: {error}");
                     assert!(together.failures.contains(&(member, error)), "member {member}");
                     continue;
@@ -111,7 +111,7 @@ fn duals_are_differences() {
     let plan = Plan::new(cell(0.04)).unwrap();
     let mut numbers = values(&plan);
     for (number, parameter) in numbers.iter_mut().zip(&plan.description.parameters) {
-        // Correlations jump where a face stops being vertical: lean the walls a little.
+        // Correlations jump where a surface stops being vertical: the walls are tilted a little.
         if parameter.path.rsplit('.').next() == Some("tilt") && *number == 90.0 {
             *number = 88.0;
         }
@@ -238,27 +238,27 @@ fn solver_counters() {
 
 /// What is eliminated once, because nothing in it changes, is what would be found if it were eliminated every time.
 #[test]
-fn straight_lines_are_eliminated_once() {
+fn linear_laws_are_eliminated_once() {
     for scheme in SCHEMES {
-        let runs = [false, true].map(|bent| {
-            let plan = Plan::new(straight_cell(bent)).unwrap();
+        let runs = [false, true].map(|as_power| {
+            let plan = Plan::new(cell_of_linear_laws(as_power)).unwrap();
             let rows = forcing(&plan, scheme, 5 * 96, STEP, cell_weather);
             run(&plan, &rows, &options(scheme, STEP, cell_probes()))
         });
-        let [straight, bent] = &runs;
-        for (a, b) in straight.records.iter().zip(&bent.records) {
+        let [linear, as_power] = &runs;
+        for (a, b) in linear.records.iter().zip(&as_power.records) {
             assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "{a} is not {b} with {scheme:?}");
         }
         if scheme != Scheme::ApparentCapacity {
-            assert!(straight.ledger.closure() < 1e-10, "{:?}", straight.ledger);
+            assert!(linear.ledger.closure() < 1e-10, "{:?}", linear.ledger);
         }
     }
 }
 
 /// Members of such a cell, too, have the same bits alone and in a pack, and one at no number fails by itself.
 #[test]
-fn straight_lanes_are_scalars() {
-    let plan = Plan::new(straight_cell(false)).unwrap();
+fn lanes_of_linear_laws_have_the_bits_of_single_runs() {
+    let plan = Plan::new(cell_of_linear_laws(false)).unwrap();
     let width = plan.description.parameters.len();
     let rows = forcing(&plan, Scheme::Sdirk2, 3 * 96, STEP, cell_weather);
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
@@ -294,8 +294,8 @@ fn a_start_may_be_given_cell_by_cell() {
         assert_eq!(a.to_bits(), b.to_bits());
     }
     options.initial = given(vec![20.0; plan.n_cells + 1]);
-    let told = try_run(&plan, &values(&plan), &rows, &options).unwrap_err().to_string();
-    assert!(told.contains(&format!("{} cells, expected {}", plan.n_cells + 1, plan.n_cells)), "{told}");
+    let message = try_run(&plan, &values(&plan), &rows, &options).unwrap_err().to_string();
+    assert!(message.contains(&format!("{} cells, expected {}", plan.n_cells + 1, plan.n_cells)), "{message}");
     options.initial = given(vec![f64::NAN; plan.n_cells]);
     assert!(try_run(&plan, &values(&plan), &rows, &options).is_err());
 }

@@ -3,8 +3,8 @@
 use crate::common::difficult::{all_steps, jumps};
 use crate::common::glazed_box::glazed_box;
 use crate::common::{Builder, cell, cell_probes, cell_weather, forcing, options, position, set, values};
-use mascarin_engine::derivatives::jacobian::jacobian;
-use mascarin_engine::derivatives::trajectory::Trajectory;
+use mascarin_engine::derivatives::Trajectory;
+use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::{Description, IdealLoad, SetPoint, ZoneLongwave};
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::Scheme;
@@ -59,8 +59,8 @@ fn slopes_of_loads_with_phase_change() {
             let wall = b.construction("wall", &[(pcm, 0.006, 6)]);
             let zone = b.zone("zone", 27.0, 0.5, ZoneLongwave::None);
             for (name, azimuth) in [("north", 0.0), ("east", 90.0), ("south", 180.0)] {
-                let (film_out, film_in) = (b.film(15.0), b.film(3.0));
-                let (outside, inside) = (b.outdoors(film_out, 0.9, 0.6), b.inside(zone, film_in, 0.9));
+                let (outer, inner) = (b.convection(15.0), b.convection(3.0));
+                let (outside, inside) = (b.outdoors(outer, 0.9, 0.6), b.inside(zone, inner, 0.9));
                 b.surface(name, wall, [9.0, 90.0, azimuth], outside, inside);
             }
             let plan = heated(b.describe());

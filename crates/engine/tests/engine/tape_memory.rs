@@ -4,7 +4,7 @@ use core::sync::atomic::Ordering;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::common::{cell, cell_probes, cell_weather, forcing, options, values};
-use mascarin_engine::derivatives::trajectory::Trajectory;
+use mascarin_engine::derivatives::Trajectory;
 use mascarin_engine::error::EngineError;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::Scheme;

@@ -1,4 +1,4 @@
-//! Which walls a wind blows onto.
+//! Which walls are windward.
 
 use crate::common::{Builder, facing, forcing, options, position, set, values};
 use mascarin_engine::batch::ensemble;
@@ -49,7 +49,7 @@ fn winds(plan: &Plan) -> Vec<f64> {
     })
 }
 
-/// A wind along a wall blows onto both of its sides, in every direction: the angle decides, not its rounding.
+/// Both sides of a wall along the wind are windward, in every direction: the angle decides, not its rounding.
 #[test]
 fn a_wind_along_a_wall_is_windward() {
     let plan = walls();

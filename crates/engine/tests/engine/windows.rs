@@ -1,4 +1,4 @@
-//! Rooms with windows, frames and shades: books, lanes, derivatives, order.
+//! Rooms with windows, frames and shades: energy balance, lanes, derivatives, order.
 
 use crate::common::glazed::{glazed, glazed_probes, glazed_rooms};
 use crate::common::{facing, forcing, options, position, run, try_run, values, warmup, weather};
@@ -14,7 +14,7 @@ use mascarin_engine::real::{Dual, Real};
 
 const STEP: f64 = 900.0;
 const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
-/// The books close, and what windows let in is what the zone gets.
+/// The energy balance closes, and the sun that windows transmit is what the zone gains.
 #[test]
 fn energy_closes_with_windows() {
     for description in glazed_rooms() {
@@ -28,7 +28,7 @@ fn energy_closes_with_windows() {
                 .collect();
             assert!(sums[8] > 1e7 && (sums[6] + sums[7] - sums[8]).abs() < 1e-9 * sums[8]);
             assert!(sums[9] > 0.01 * sums[8] && sums[9] < 0.2 * sums[8], "{} of {}", sums[9], sums[8]);
-            // What stays in the room, and what the glass takes on the way out.
+            // What stays in the zone, and what the panes absorb of the sun that leaves it.
             let kept = result.ledger.into[Flow::Transmitted as usize];
             assert!(kept > 0.7 * sums[8] && kept <= (sums[8] - sums[9]) * (1.0 + 1e-12));
             assert!(result.ledger.into[Flow::Glass as usize] > 0.0);
@@ -113,7 +113,7 @@ fn duals_are_differences_with_windows() {
     }
 }
 
-/// Numbering the faces of the room another way changes nothing beyond round-off.
+/// Another order of the surfaces of the room changes nothing beyond round-off.
 #[test]
 fn order_of_faces_does_not_matter() {
     for sun in [ZoneSun::Area, ZoneSun::Geometry] {

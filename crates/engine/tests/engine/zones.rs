@@ -1,6 +1,6 @@
-//! Zones with plants, gains, ventilation, openings and paths: loads, lanes, derivatives, books.
+//! Zones with ideal loads, gains, ventilation, openings and paths: loads, lanes, derivatives, energy balance.
 
-use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather, number, plant};
+use crate::common::conditioned::{conditioned, conditioned_probes, conditioned_weather, ideal_load, number};
 use crate::common::{Builder, facing, forcing, options, position, relative, run, try_run, values, warmup};
 use mascarin_engine::batch::ensemble;
 use mascarin_engine::description::{AirPath, Facing, ZoneLongwave};
@@ -15,7 +15,7 @@ use mascarin_engine::real::{Dual, Real};
 const STEP: f64 = 900.0;
 const SCHEMES: [Scheme; 2] = [Scheme::Sdirk2, Scheme::BackwardEuler];
 
-/// The books close, the paths between zones cancel, and all modes of a plant are seen.
+/// The energy balance closes, the paths between zones cancel, and every mode of an ideal load occurs.
 #[test]
 fn energy_closes_with_plants() {
     let plan = Plan::new(conditioned(0.04)).unwrap();
@@ -55,7 +55,7 @@ fn energy_closes_with_plants() {
     }
 }
 
-/// A member's bits do not depend on its neighbours, whatever their plants do.
+/// A member's bits do not depend on its neighbours, whatever their ideal loads do.
 #[test]
 fn lanes_are_scalars_with_plants() {
     let plan = Plan::new(conditioned(0.04)).unwrap();
@@ -139,7 +139,7 @@ fn duals_are_differences_with_plants() {
     assert!(differ.is_empty(), "{}", differ.join("\n"));
 }
 
-/// Numbering zones and surfaces the other way round changes nothing beyond round-off.
+/// The reverse order of zones and surfaces changes nothing beyond round-off.
 #[test]
 fn order_of_zones_and_surfaces_does_not_matter() {
     let forward = Plan::new(conditioned(0.04)).unwrap();
@@ -183,7 +183,7 @@ fn order_of_zones_and_surfaces_does_not_matter() {
     }
 }
 
-/// Two heated zones behind adiabatic faces: each gives what it loses, by wall, path and outdoor air.
+/// Two heated zones behind adiabatic surfaces: each load is what its zone loses, by wall, path and outdoor air.
 #[test]
 fn coupled_loads_by_hand() {
     let mut b = Builder::new();
@@ -191,14 +191,14 @@ fn coupled_loads_by_hand() {
     let wall = b.construction("wall", &[(board, 0.1, 3)]);
     let zones =
         [("a", 1.0), ("b", 0.0)].map(|(name, changes)| b.zone(name, 40.0, changes, ZoneLongwave::None));
-    let (film_out, film_in) = (b.film(4.0), b.film(4.0));
-    let [outside, inside] = [(zones[0], film_out), (zones[1], film_in)]
-        .map(|(zone, film)| facing(Facing::Zone { zone }, Some(film)));
+    let (outer, inner) = (b.convection(4.0), b.convection(4.0));
+    let [outside, inside] = [(zones[0], outer), (zones[1], inner)]
+        .map(|(zone, convection)| facing(Facing::Zone { zone }, Some(convection)));
     b.surface("between", wall, [12.0, 90.0, 0.0], outside, inside);
     let mut d = b.describe();
-    d.zones[0].heating = Some(plant(&mut d, "a.heating", 22.0, 1e5));
-    d.zones[1].heating = Some(plant(&mut d, "b.heating", 18.0, 1e5));
-    d.zones[1].cooling = Some(plant(&mut d, "b.cooling", 18.0, 1e5));
+    d.zones[0].heating = Some(ideal_load(&mut d, "a.heating", 22.0, 1e5));
+    d.zones[1].heating = Some(ideal_load(&mut d, "b.heating", 18.0, 1e5));
+    d.zones[1].cooling = Some(ideal_load(&mut d, "b.cooling", 18.0, 1e5));
     let flow = number(&mut d, "door.flow", 0.02);
     d.air_paths.push(AirPath { name: "door".to_owned(), between: [0, 1], flow, schedule: None });
     d.site.air_density = Some(number(&mut d, "site.air_density", 1.2));

@@ -53,7 +53,7 @@ def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
         if observed is None or main is None or len(series) * series.step < 1.5 * 86400.0:
             continue
         pictures = []
-        # Each on its own scale: on that of a good model a bad one is a single colour.
+        # Each with its own scale: on the scale of an accurate model others have a single color.
         for key in dict.fromkeys((model, "nominal")):
             column = series.columns.get(f"{key}/{sensor}")
             if key is not None and column is not None:

@@ -7,14 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from markupsafe import Markup
 
-from mascarin.report import text
-from mascarin.report.drawn import hours_of, time_axis
+from mascarin.figures import comparison
+from mascarin.report import embedding, text
 from mascarin.report.labels import label_of, main_model, model_label, period_label, short_periods, unit_of
 from mascarin.report.series import Array, Series
-from mascarin.report.svg import Axis, Chart
 
 TITLE = "Time series"
 #: Largest number of points of a curve in a printed figure.
@@ -66,7 +64,9 @@ class PeriodCurves:
     errors: Markup
 
 
-def period_curves(study: Mapping[str, Any], series: Series, period: str) -> list[PeriodCurves]:
+def period_curves(
+    study: Mapping[str, Any], series: Series, period: str, place: str = ""
+) -> list[PeriodCurves]:
     """Observed and simulated curves of every sensor over a short period.
 
     Parameters
@@ -77,6 +77,8 @@ def period_curves(study: Mapping[str, Any], series: Series, period: str) -> list
         Curves.
     period : str
         Name of a period of one span.
+    place : str
+        Name of the place on the page, if the figures are shown at several.
     """
     start, end = study["periods"][period]["spans"][0]
     part = series.slice_of(start, end)
@@ -87,7 +89,8 @@ def period_curves(study: Mapping[str, Any], series: Series, period: str) -> list
         simulated = series.columns.get(f"{model}/{sensor}")
         if observed is None or simulated is None:
             continue
-        found.append(_period_curves(study, series, sensor, part, (observed.values, simulated.values)))
+        values = observed.values, simulated.values
+        found.append(_period_curves(study, series, sensor, part, values, place))
     return found
 
 
@@ -102,41 +105,44 @@ def headline(study: Mapping[str, Any], series: Series) -> PeriodCurves | None:
         Curves.
     """
     periods = short_periods(study)
-    curves = period_curves(study, series, periods[-1]) if periods else []
+    curves = period_curves(study, series, periods[-1], "headline") if periods else []
     return curves[0] if curves else None
 
 
 def _period_curves(
-    study: Mapping[str, Any], series: Series, sensor: str, part: slice, curves: tuple[Array, Array]
+    study: Mapping[str, Any],
+    series: Series,
+    sensor: str,
+    part: slice,
+    curves: tuple[Array, Array],
+    place: str,
 ) -> PeriodCurves:
-    seen, made = curves[0][part], curves[1][part]
+    label, unit = label_of(study, sensor), unit_of(study, sensor)
+    every = max(1, math.ceil((part.stop - part.start) / _MOST_POINTS))
+    pick = slice(part.start, part.stop, every)
+    measured, simulated = curves[0][pick], curves[1][pick]
+    times = [series.time(part.start + every * k) for k in range(len(measured))]
+    models = {"fitted": simulated}
     nominal = series.columns.get(f"nominal/{sensor}")
-    every = max(1, math.ceil(len(seen) / _MOST_POINTS))
-    hours = hours_of(len(seen), series.step)
-    x = time_axis(series.time(part.start), hours[-1] if len(hours) else 1.0)
-    raw_unit = unit_of(study, sensor)
-    label = label_of(study, sensor)
-    before = nominal.values[part] if nominal is not None else np.empty(0)
-    chart = Chart(x, Axis.over(seen, made, before), height=170.0, y_label=text.unit(raw_unit), bottom=22.0)
-    band = float(study["sensor_info"][sensor].get("uncertainty", 0.0))
-    pick = slice(None, None, every)
-    if band > 0.0:
-        chart.band(hours[pick], seen[pick] - band, seen[pick] + band, "sensor-band")
-    foreseen = series.columns.get(f"band/{sensor}")
-    if foreseen is not None:
-        half = foreseen.values[part][pick]
-        chart.band(hours[pick], made[pick] - half, made[pick] + half, "model-band")
     if nominal is not None and main_model(study) != "nominal":
-        chart.curve(hours[pick], before[pick], "nominal")
-    chart.curve(hours[pick], seen[pick], "observed")
-    chart.curve(hours[pick], made[pick], "fitted")
-    error = made - seen
-    limits = Axis.over(error, [-band, band], count=4, around=0.0)
-    below = Chart(
-        x, limits, height=104.0, y_label=f"error, {text.difference_unit(raw_unit)}", bottom=22.0, top=20.0
+        models = {"nominal": nominal.values[pick], **models}
+    interval = series.columns.get(f"band/{sensor}")
+    uncertainty = float(study["sensor_info"][sensor].get("uncertainty", 0.0))
+    upper, lower = embedding.axes(340.0, 170.0), embedding.axes(340.0, 104.0)
+    comparison.series(
+        upper,
+        times,
+        measured,
+        models,
+        uncertainty=uncertainty,
+        interval=None if interval is None else interval.values[pick],
     )
-    if band > 0.0:
-        below.bar(x.low, x.high, -band, band, "sensor-band")
-    below.curve(hours[pick], error[pick], "error")
-    words = f"{label}: measured and simulated"
-    return PeriodCurves(label, chart.markup(words), below.markup(f"{label}: simulated minus measured"))
+    comparison.errors(lower, times, {"fitted": simulated - measured}, uncertainty=uncertainty)
+    for ax, name in ((upper, text.unit(unit)), (lower, f"error, {text.difference_unit(unit)}")):
+        embedding.titled(ax, name)
+        embedding.days(ax, times)
+    return PeriodCurves(
+        label,
+        embedding.drawn(upper, f"{label}: measured and simulated", place),
+        embedding.drawn(lower, f"{label}: simulated minus measured", place),
+    )

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from mascarin.report import text
-from mascarin.report.drawn import Figure, hour_marks
+from mascarin.figures.sensitivity import indices_over_time, time_axis
+from mascarin.report import embedding, text
+from mascarin.report.drawn import Figure
 from mascarin.report.labels import label_of, layout, parameter_label, unit_of
 from mascarin.report.series import Array, Series
 from mascarin.report.svg import Axis, Chart
@@ -209,17 +210,10 @@ def day_shares(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) 
         As in :class:`~mascarin.report.schema.DayShares`.
     """
     hours = np.asarray(entry.get("hours", []), dtype=np.float64)
-    shares = 100.0 * np.asarray(entry.get("share", []), dtype=np.float64).reshape(-1, len(hours))
-    chart = Chart(
-        Axis(float(hours.min(initial=0.0)), float(hours.max(initial=24.0)), *hour_marks(hours)),
-        Axis(0.0, 100.0, (0.0, 25.0, 50.0, 75.0, 100.0), ("0", "25", "50", "75", "100")),
-        height=190.0,
-        y_label="first-order index S1, %",
-        x_label="hour of the day",
-    )
-    below = np.zeros(len(hours))
-    for number, row in enumerate(shares[:8]):
-        chart.band(hours, below, np.minimum(below + row, 100.0), f"area c{number}")
-        below = np.minimum(below + row, 100.0)
+    index = np.asarray(entry.get("share", []), dtype=np.float64).reshape(-1, len(hours))[:8]
+    ax = embedding.axes(340.0, 190.0, bottom=32.0)
+    indices_over_time(ax, hours, index, [""] * len(index), rest="")
+    time_axis(ax, hours=True)
+    embedding.titled(ax, "first-order index S1, %")
     label = label_of(study, sensor)
-    return Figure(label, chart.markup(f"First-order indices over the day, {label}"))
+    return Figure(label, embedding.drawn(ax, f"First-order indices over the day, {label}"))

@@ -9,7 +9,7 @@ from mascarin.study.document.numbers import plain
 from mascarin.study.prediction_intervals import interval_entry, interval_table
 
 if TYPE_CHECKING:
-    from mascarin.calibration import Fit, Profile
+    from mascarin.calibration import Calibration, Profile
     from mascarin.study.description import IdentificationPlan
     from mascarin.study.findings import PredictionIntervals
     from mascarin.study.setup import Setup
@@ -19,11 +19,12 @@ _COSTS: Final = {
     "nll": "negative log-likelihood",
     "sd": "sum of the standard deviations",
     "rmse": "sum of the root mean squares",
-    "cv_rmse": "sum of the root mean squares over the means",
+    "rmse_over_range": "sum of the root mean squares over the measured ranges",
+    "cv_rmse": "sum of CV(RMSE) of ASHRAE Guideline 14, over the means",
 }
 
 
-def estimates(study: Setup, fit: Fit) -> dict[str, Any]:
+def estimates(study: Setup, fit: Calibration) -> dict[str, Any]:
     """Parameters with their uncertainty, and facts about the calibration."""
     return {
         "parameters": parameters(study, fit, study.sought),
@@ -54,7 +55,7 @@ def prediction_entries(study: Setup, found: PredictionIntervals) -> dict[str, An
     return {"band": interval_entry(study, found), "tables": [interval_table(study, found)]}
 
 
-def parameters(study: Setup, fit: Fit, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
+def parameters(study: Setup, fit: Calibration, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:
     """Estimates by path, with interval, range and source."""
     known = {parameter.path for parameter in study.building.parameters()}
     given = {
@@ -80,7 +81,7 @@ def parameters(study: Setup, fit: Fit, plan: IdentificationPlan) -> dict[str, di
     return entries
 
 
-def _identification(fit: Fit) -> list[list[str]]:
+def _identification(fit: Calibration) -> list[list[str]]:
     return [
         ["method", fit.method.replace("_", " ")],
         ["cost", _COSTS.get(fit.cost_name, fit.cost_name)],

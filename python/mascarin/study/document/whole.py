@@ -9,7 +9,7 @@ from mascarin.study.document.estimates import estimates, parameters, prediction_
 from mascarin.study.document.header import header
 from mascarin.study.document.phase_change import phase_change
 from mascarin.study.document.sensitivity import importance
-from mascarin.validation.error_sources import words
+from mascarin.validation.error_sources import explain_missed_aims
 
 if TYPE_CHECKING:
     from mascarin.study.findings import Findings
@@ -62,7 +62,7 @@ def document(findings: Findings) -> dict[str, Any]:
 def _notes(findings: Findings) -> list[dict[str, str]]:
     """Notes with the titles under which the report shows them."""
     sources = findings.error_sources
-    missed = [] if sources is None else words(findings.aims, sources, "blind")
+    missed = [] if sources is None else explain_missed_aims(findings.aims, sources, "blind")
     titled = (
         (ESTIMATES, findings.calibration.warnings),
         (ESTIMATES, [profile.words for profile in findings.profiles if profile.words]),

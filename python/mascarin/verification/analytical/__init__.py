@@ -1,4 +1,4 @@
-"""Cases whose answer is known without Mascarin, each run through the whole chain from YAML to results."""
+"""Cases with an analytical solution, each simulated like the building of a user: from YAML to results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a case leaves behind: numbers held against what they must be."""
+"""Cases and checks: simulated numbers, their expected values and bounds."""
 
 from __future__ import annotations
 
@@ -12,22 +12,27 @@ Topic = Literal["building", "pcm"]
 
 @dataclass(frozen=True)
 class Check:
-    """One number and the bounds it must keep.
+    """One simulated number, its expected value and its bounds.
 
     Attributes
     ----------
     name : str
         The case.
     quantity : str
-        What of it.
+        Which number of the case.
     unit : str
         Unit of all its numbers.
     value : float
-        What Mascarin gives. [unit]
+        Simulated value. [unit]
     expected : float or None
-        The closed answer; none: the number is shown for information. [unit]
+        The analytical solution; None: the number is shown for information. [unit]
     low, high : float or None
-        Bounds; none on a side that is not bounded. [unit]
+        Bounds; None on a side without a bound. [unit]
+
+    Examples
+    --------
+    >>> Check.near("box", "temperature", "degC", 20.01, 20.0, within=0.1).passed
+    True
     """
 
     name: str
@@ -42,28 +47,28 @@ class Check:
     def near(
         cls, name: str, quantity: str, unit: str, value: float, expected: float, *, within: float
     ) -> Check:
-        """A number that may differ from the expected one by `within`. [unit]"""
+        """Make a check of a number that may differ from the expected one by `within`. [unit]"""
         return cls(name, quantity, unit, float(value), expected, expected - within, expected + within)
 
     @classmethod
     def most(cls, name: str, quantity: str, unit: str, value: float, *, high: float) -> Check:
-        """The size of an error, which should be 0 and may be `high`. [unit]"""
+        """Make a check of an error that should be 0 and may be at most `high`. [unit]"""
         return cls(name, quantity, unit, float(value), 0.0, 0.0, high)
 
     @property
     def informs(self) -> bool:
-        """Whether the number is shown for information and nothing is demanded of it."""
+        """Whether the number is shown for information, without bounds."""
         return self.low is None and self.high is None
 
     @property
     def passed(self) -> bool:
-        """Whether the number keeps its bounds; what is no number keeps none."""
+        """Whether the number is within its bounds; NaN and infinity are not."""
         low = -math.inf if self.low is None else self.low
         high = math.inf if self.high is None else self.high
         return bool(math.isfinite(self.value) and low <= self.value <= high)
 
     def to_dict(self) -> dict[str, Any]:
-        """The row as it stands in ``mascarin verify --json``."""
+        """Return the row of ``mascarin verify --json``."""
         return {
             "name": self.name,
             "quantity": self.quantity,
@@ -77,30 +82,30 @@ class Check:
 
 
 def _plain(value: float | None) -> float | None:
-    """A number as JSON knows it: what numpy computed is no plain float."""
+    """Convert a number of numpy to a plain float for JSON."""
     return None if value is None else float(value)
 
 
 @dataclass(frozen=True)
 class Case:
-    """A problem whose answer is known without Mascarin.
+    """A problem with an analytical solution.
 
     Attributes
     ----------
     name : str
         Its name.
     problem : str
-        What is simulated.
+        Description of the problem.
     answer : str
-        The closed answer, as a formula.
+        The analytical solution, as a formula.
     source : str
-        Where the answer is published.
+        Where the solution is published.
     tolerance : str
-        Why the bounds are where they are.
+        Reason for the bounds.
     topics : tuple of str
         Where it is shown: ``building``, ``pcm`` (``mascarin verify --pcm``), or both.
     work : callable
-        Gives the rows.
+        Simulates the problem and gives the checks.
     """
 
     name: str
@@ -112,5 +117,5 @@ class Case:
     work: Callable[[str], Iterable[Check]]
 
     def run(self) -> list[Check]:
-        """Simulate and compare."""
+        """Simulate the problem and compare it with the solution."""
         return list(self.work(self.name))

@@ -1,4 +1,4 @@
-"""Conduction in walls: closed answers for sinusoids and steps, and the order of the space discretisation."""
+"""Conduction in walls: analytical solutions for sinusoids and steps, and the order in space."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OMEGA: Final = 2.0 * math.pi / setup.DAY
 AMPLITUDE: Final = 10.0  # K
 #: z^3 coefficient of exp(z) - R(z) of SDIRK2, gamma = 1 - sqrt(1/2): its relative error in frequency.
 STEP_ERROR: Final = 0.0404
-#: Bounds are this many times the leading term of the discretisation: room for the terms behind it.
+#: Bounds are this many times the leading term of the discretization error, for the higher-order terms.
 MARGIN: Final = 2.0
 
 
@@ -36,22 +36,22 @@ class Layer(NamedTuple):
 
     @property
     def depth(self) -> float:
-        """Depth at which a daily oscillation has faded to 1/e. [m]"""
+        """Penetration depth of a daily oscillation, where it is damped to 1/e. [m]"""
         return math.sqrt(2.0 * self.conductivity / (self.density * self.specific_heat * OMEGA))
 
     @property
     def error(self) -> float:
-        """Leading relative error of the damping and lag over the layer from its finite volumes. [-]"""
+        """Leading relative error of damping and lag over the layer by its finite volumes. [-]"""
         return self.error_at(self.thickness)
 
     def error_at(self, depth: float) -> float:
-        """The same as far as a depth [m]: of the half volume at the face, and of the way behind it. [-]"""
+        """Compute `error` up to a depth [m]: of half a volume at the surface and the path behind it. [-]"""
         cell = self.thickness / self.nodes / self.depth
         return cell**2 * (0.25 + depth / self.depth / 12.0)
 
 
 def materials(layers: Sequence[Layer]) -> str:
-    """The materials and the construction `wall` of a list of layers, as YAML."""
+    """Write the materials and the construction `wall` of a list of layers as YAML."""
     lines = ["materials:"]
     for k, one in enumerate(layers):
         lines.append(
@@ -76,13 +76,13 @@ def _semi_infinite(name: str) -> Iterator[Check]:
     sensors = "\n".join(f"  at{k}: {{surface: w, depth: {depth}}}" for k, depth in enumerate(_DEPTHS))
     text = (
         f"{materials([_THICK])}surfaces:\n  w: {{construction: wall, area: 1, tilt: 90, "
-        f"outside: {{measured: face}}, inside: {{adiabatic: true}}}}\nsensors:\n{sensors}\n"
+        f"outside: {{measured: surface}}, inside: {{adiabatic: true}}}}\nsensors:\n{sensors}\n"
     )
     step = 300.0
     t = setup.times(60 * setup.DAY, 60.0)
-    face = 20.0 + AMPLITUDE * np.sin(OMEGA * t)
+    surface = 20.0 + AMPLITUDE * np.sin(OMEGA * t)
     outputs = [f"at{k}.temperature" for k in range(len(_DEPTHS))]
-    series = setup.run(text, 60.0, {"face": face}, step=step, outputs=outputs).records
+    series = setup.run(text, 60.0, {"surface": surface}, step=step, outputs=outputs).records
     for k, depth in enumerate(_DEPTHS):
         found = setup.harmonic(series[:, k], step, setup.DAY)
         x = depth / _THICK.depth
@@ -96,7 +96,7 @@ def _semi_infinite(name: str) -> Iterator[Check]:
 
 # --- the periodic response of a wall of layers -------------------------------------------------------------
 
-_OUTER, _INNER = 25.0, 1.0 / 0.13  # films of ISO 6946, W/(m2 K)
+_OUTER, _INNER = 25.0, 1.0 / 0.13  # surface heat transfer coefficients of ISO 6946, W/(m2 K)
 _WALL: Final = (
     Layer(0.020, 0.87, 1800.0, 1000.0, 10),
     Layer(0.100, 0.035, 20.0, 1450.0, 20),
@@ -106,9 +106,10 @@ _WALL: Final = (
 
 
 def transfer(layers: Sequence[Layer]) -> Complex:
-    """Transfer matrix of a wall with its films for a daily oscillation (ISO 13786:2017, 7.2).
+    """Compute the transfer matrix of a wall for a daily oscillation (ISO 13786:2017, 7.2).
 
-    Maps (temperature, flux) inside to outside, with the signs of the standard.
+    It maps (temperature, flux) inside to outside, with the signs of the standard, surface resistances
+    included.
 
     Parameters
     ----------
@@ -121,10 +122,10 @@ def transfer(layers: Sequence[Layer]) -> Complex:
         Z.
     """
 
-    def film(coefficient: float) -> Complex:
+    def surface(coefficient: float) -> Complex:
         return np.array([[1.0, -1.0 / coefficient], [0.0, 1.0]], dtype=np.complex128)
 
-    whole = film(_INNER)
+    whole = surface(_INNER)
     for one in reversed(layers):
         x = (1.0 + 1j) * one.thickness / one.depth
         impedance = one.depth / (one.conductivity * (1.0 + 1j))
@@ -133,16 +134,16 @@ def transfer(layers: Sequence[Layer]) -> Complex:
             dtype=np.complex128,
         )
         whole = matrix @ whole
-    return film(_OUTER) @ whole
+    return surface(_OUTER) @ whole
 
 
 def conductance(layers: Sequence[Layer]) -> float:
-    """Steady thermal transmittance with films. [W/(m2 K)]"""
+    """Compute the thermal transmittance with surface resistances. [W/(m2 K)]"""
     return 1.0 / (1.0 / _OUTER + 1.0 / _INNER + sum(one.thickness / one.conductivity for one in layers))
 
 
 def _response(layers: Sequence[Layer], step: float, *, inside: bool) -> tuple[complex, float]:
-    """Inside flux per kelvin of a daily oscillation of one side's air; mean flux. [W/(m2 K), W/m2]"""
+    """Inside flux per kelvin of a daily oscillation of the air of one side; mean flux. [W/(m2 K), W/m2]"""
     days = 20
     t = setup.times(days * setup.DAY, 60.0)
     wave, still = 20.0 + AMPLITUDE * np.sin(OMEGA * t), np.full(len(t), 20.0)
@@ -186,10 +187,10 @@ def _angle(value: complex) -> float:
     return math.atan2(value.imag, value.real) % (2.0 * math.pi)
 
 
-# --- a film on a thick wall --------------------------------------------------------------------------------
+# --- a step of the air before a thick wall -----------------------------------------------------------------
 
 
-def _film_step(name: str) -> Iterator[Check]:
+def _convective_step(name: str) -> Iterator[Check]:
     from scipy.special import erfc, erfcx
 
     h, rise, step, end = 8.0, 20.0, 60.0, 4 * setup.HOUR
@@ -210,13 +211,13 @@ def _film_step(name: str) -> Iterator[Check]:
     ).records[-1]
     reach = math.sqrt(a * end)
     cell = layer.thickness / layer.nodes
-    # Second order in both: a cell against the depth of the film's influence, a step against the time.
+    # Second order in both: cell over the depth k/h, step over the time.
     bound = MARGIN * rise * ((cell * h / layer.conductivity) ** 2 + (cell / reach) ** 2 + (step / end) ** 2)
-    for what, x, value in (("face", 0.0, found[0]), (f"at {1000 * depth:g} mm", depth, found[1])):
+    for what, x, value in (("of the surface", 0.0, found[0]), (f"at {1000 * depth:g} mm", depth, found[1])):
         u, v = x / (2.0 * reach), h * reach / layer.conductivity
-        # exp(h x/k + h^2 a t/k^2) erfc(u + v), written so that it does not overflow.
-        share = erfc(u) - math.exp(-u * u) * erfcx(u + v)
-        yield Check.near(name, f"temperature {what}", "degC", value, 20.0 + rise * float(share), within=bound)
+        # exp(h x/k + h^2 a t/k^2) erfc(u + v), in a form that does not overflow.
+        ratio = erfc(u) - math.exp(-u * u) * erfcx(u + v)
+        yield Check.near(name, f"temperature {what}", "degC", value, 20.0 + rise * float(ratio), within=bound)
 
 
 # --- order of convergence in dx ----------------------------------------------------------------------------
@@ -242,44 +243,45 @@ _CARSLAW: Final = "Carslaw & Jaeger 1959, Conduction of Heat in Solids, 2nd ed."
 CASES: Final = (
     Case(
         name="semi-infinite sinusoid",
-        problem="Concrete of 1.5 m (1.75 W/(m K), 2240 kg/m3, 900 J/(kg K)), 300 volumes, 300 s; its face"
-        " follows a daily sinusoid of 10 K, imposed as a measured column. The last of 60 days.",
+        problem="Concrete of 1.5 m (1.75 W/(m K), 2240 kg/m3, 900 J/(kg K)), 300 volumes, 300 s; its surface"
+        " follows a daily sinusoid of 10 K, given as a measured column. The last of 60 days.",
         answer="T = A exp(-x/d) sin(w t - x/d), d = sqrt(2 a/w)",
         source=f"{_CARSLAW}, 2.6",
-        tolerance="Twice the leading terms of the discretisation: (dx/d)^2 (1/4 + x/(12 d)) in space and "
-        "0.04 (w dt)^2 x/d in time.",
+        tolerance="Twice the leading terms of the discretization error: (dx/d)^2 (1/4 + x/(12 d)) in "
+        "space and 0.04 (w dt)^2 x/d in time.",
         topics=("building",),
         work=_semi_infinite,
     ),
     Case(
         name="periodic wall",
-        problem="Render, insulation, brick and plaster with films of 25 and 7.69 W/(m2 K); the air of one"
-        " side follows a daily sinusoid, outdoors 15 K colder on average. Flux through the inside"
-        " face, day 20.",
-        answer="Z = film_e Z_1 ... Z_n film_i; Y12 = -1/Z12, f = |Y12|/U, Y11 = -Z11/Z12",
+        problem="Render, insulation, brick and plaster with surface heat transfer coefficients of 25 "
+        "and 7.69 W/(m2 K); the air of one side follows a daily sinusoid, outdoors 15 K colder"
+        " on average. Flux through the inside surface, day 20.",
+        answer="Z = Z_se Z_1 ... Z_n Z_si; Y12 = -1/Z12, f = |Y12|/U, Y11 = -Z11/Z12",
         source=_ISO,
-        tolerance="Twice the leading terms of the discretisation: (dx/d)^2 (1/4 + thickness/(12 d)) summed "
-        "over the layers, and 0.04 (w dt)^2. The mean flux: what is left of the start after 20 "
-        "days.",
+        tolerance="Twice the leading terms of the discretization error: (dx/d)^2 (1/4 + thickness/(12 "
+        "d)) summed over the layers, and 0.04 (w dt)^2. The mean flux: the effect of the "
+        "initial state that remains after 20 days.",
         topics=("building",),
         work=_periodic,
     ),
     Case(
-        name="film on a thick wall",
-        problem="Brick of 1.2 m at 20 degC; the air before it steps to 40 degC, film 8 W/(m2 K). After 4 h.",
+        name="air step at a thick wall",
+        problem="Brick of 1.2 m at 20 degC; the air before it changes to 40 degC, surface heat transfer "
+        "coefficient 8 W/(m2 K). After 4 h.",
         answer="theta = erfc(u) - exp(h x/k + h^2 a t/k^2) erfc(u + h sqrt(a t)/k), u = x/(2 sqrt(a t))",
         source=f"{_CARSLAW}, 2.7",
-        tolerance="Twice the step in air times (dx h/k)^2 + (dx/sqrt(a t))^2 + (dt/t)^2: second order in "
-        "both.",
+        tolerance="Twice the change of the air times (dx h/k)^2 + (dx/sqrt(a t))^2 + (dt/t)^2: second "
+        "order in both.",
         topics=("building",),
-        work=_film_step,
+        work=_convective_step,
     ),
     Case(
         name="order in dx",
-        problem="The periodic wall on three meshes, each twice as fine as the one before, at 60 s.",
+        problem="The periodic wall on three meshes, each twice as fine as the previous one, at 60 s.",
         answer="error of Y12 ~ dx^2",
         source=_ISO,
-        tolerance="2 within 0.1: nearer to the formal order than the next order's share on these meshes.",
+        tolerance="2 within 0.1: the effect of the next order on these meshes is smaller.",
         topics=("building",),
         work=_order_in_space,
     ),

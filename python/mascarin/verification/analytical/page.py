@@ -1,4 +1,4 @@
-"""The page that shows the cases: ``python -m mascarin.verification.analytical.page FILE``."""
+"""The documentation page of the cases: ``python -m mascarin.verification.analytical.page FILE``."""
 
 from __future__ import annotations
 
@@ -13,35 +13,40 @@ from mascarin.verification.analytical.check import Case, Check
 _HEAD: Final = """\
 # Verification
 
-`mascarin verify` simulates problems whose answer is known without Mascarin and holds the numbers against
-it; `mascarin verify --pcm` does the same for phase change. Each takes seconds, ends with 1 if a number
-leaves its bounds, and prints the table below; `--json` gives the same rows to programs, as a list of
-objects with `name`, `quantity`, `unit`, `value`, `min`, `max`, `expected` and `passed`.
+Verification compares the simulation with analytical solutions: it shows that the equations are solved
+correctly. Whether they are the right equations for a building is the question of validation, by measurements
+(see [Calibration](calibration.md) and [Studies](studies.md)). [BESTEST](bestest.md) compares with other
+programs.
 
-Every case goes the way a user's building goes: YAML, model, climate from a table, engine, results. What is
-expected is computed from the closed form when the command runs; the only figures that are typed in are
-published ones. Bounds follow from the discretisation or from what the project demands of itself, and the
-reason stands with each case. A row without bounds is shown for information.
+`mascarin verify` simulates problems with an analytical solution and compares the numbers; `mascarin verify
+--pcm` does so for phase change. Each takes seconds and prints a table as below. The exit code is 1 if a
+number is outside its bounds. `--json` prints the same rows for programs, as a list of objects with `name`,
+`quantity`, `unit`, `value`, `min`, `max`, `expected` and `passed`.
+
+Every case is simulated like the building of a user: YAML, model, climate from a table, engine, results. The
+expected values are computed from the analytical solution when the command runs; only published numbers are
+fixed. The bounds follow from the discretization or from requirements of this project; the reason is given
+with each case. A row without bounds is for information only.
 """
 
 
 def sentence(check: Check) -> str:
-    """How a row ended."""
+    """Say in a word whether a row is within its bounds."""
     if check.informs:
         return "shown"
     return "passed" if check.passed else "FAILED"
 
 
 def section(case: Case) -> str:
-    """What a case is, as Markdown."""
+    """Describe a case in Markdown."""
     return (
         f"### {case.name}\n\n{case.problem}\n\n"
-        f"- **Answer:** {case.answer}\n- **Source:** {case.source}\n- **Bounds:** {case.tolerance}\n"
+        f"- **Solution:** {case.answer}\n- **Source:** {case.source}\n- **Bounds:** {case.tolerance}\n"
     )
 
 
 def table(rows: Sequence[Check]) -> str:
-    """Rows as a Markdown table."""
+    """Write rows as a Markdown table."""
 
     def cell(value: float | None) -> str:
         return "" if value is None else f"{value:.6g}"
@@ -56,14 +61,14 @@ def table(rows: Sequence[Check]) -> str:
 
 
 def page() -> str:
-    """The whole page."""
+    """Write the whole page."""
     parts = [
         _HEAD,
-        "## What `mascarin verify` prints\n",
+        "## Results of `mascarin verify`\n",
         table(run("building")),
-        "## What `mascarin verify --pcm` prints\n",
+        "## Results of `mascarin verify --pcm`\n",
         table(run("pcm")),
-        "## The cases\n",
+        "## Cases\n",
         *(section(case) for case in cases()),
     ]
     return "\n".join(parts)

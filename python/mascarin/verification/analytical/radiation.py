@@ -1,4 +1,4 @@
-"""Long-wave exchange and films: enclosures with closed forms, a plate under the sky, correlations by hand."""
+"""Long-wave exchange and convection: enclosures, a plate under the sky, correlations."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from mascarin.verification.analytical.check import Case, Check
 
 SIGMA: Final = 5.670374419e-8  # W/(m2 K4), CODATA 2018
 KELVIN: Final = 273.15
-#: Newton's tolerance: nothing else separates a settled run from its balance. [K]
-SETTLED: Final = 1e-6
+#: Tolerance of Newton's iteration: the only difference of a steady state from its balance. [K]
+TOLERANCE: Final = 1e-6
 
 
 def emission(temperature: float) -> float:
-    """Black emission at a temperature in degC. [W/m2]"""
+    """Compute black-body emission at a temperature in degC. [W/m2]"""
     return SIGMA * (temperature + KELVIN) ** 4
 
 
-class Face(NamedTuple):
-    """A face of an enclosure: m2, emissivity, temperature behind it [degC]."""
+class EnclosureSurface(NamedTuple):
+    """A surface of an enclosure: area [m2], emissivity [-], temperature behind it [degC]."""
 
     area: float
     emissivity: float
     behind: float
 
 
-_RESISTANCE, _FILM = 0.05, 2.0
+_RESISTANCE, _CONVECTION = 0.05, 2.0  # m2 K/W, W/(m2 K)
 
 
-def exchange(faces: Sequence[Face], views: setup.Array) -> setup.Array:
-    """Net heat that leaves each face by radiosity, from face emissions: a matrix. [m2]
+def exchange(surfaces: Sequence[EnclosureSurface], views: setup.Array) -> setup.Array:
+    """Compute the matrix of net heat flows from black-body emissions by radiosity. [m2]
 
     Parameters
     ----------
-    faces : sequence of Face
+    surfaces : sequence of EnclosureSurface
         The enclosure.
     views : ndarray, shape (n, n)
         View factors.
@@ -48,33 +48,37 @@ def exchange(faces: Sequence[Face], views: setup.Array) -> setup.Array:
     ndarray, shape (n, n)
         ``Q = M E``: Q [W] from black emissions E [W/m2].
     """
-    e = np.array([face.emissivity for face in faces])
-    area = np.array([face.area for face in faces])
-    unit = np.eye(len(faces))
+    e = np.array([one.emissivity for one in surfaces])
+    area = np.array([one.area for one in surfaces])
+    unit = np.eye(len(surfaces))
     # J = e E + (1 - e) F J; Q = A (J - F J).
     radiosity = np.linalg.solve(unit - (1.0 - e)[:, None] * views, np.diag(e))
     return area[:, None] * ((unit - views) @ radiosity)
 
 
-def balance(faces: Sequence[Face], leaving: setup.Array) -> setup.Array:
-    """Face temperatures, then the air's, of a steady room without air change. [degC]"""
+def balance(surfaces: Sequence[EnclosureSurface], leaving: setup.Array) -> setup.Array:
+    """Solve for the temperatures of surfaces and air of a steady room without air change. [degC]"""
     from scipy.optimize import root
 
-    behind = np.array([face.behind for face in faces])
-    area = np.array([face.area for face in faces])
+    behind = np.array([one.behind for one in surfaces])
+    area = np.array([one.area for one in surfaces])
 
     def residual(x: setup.Array) -> setup.Array:
-        face, air = x[:-1], x[-1]
-        emitted = SIGMA * (face + KELVIN) ** 4
-        heat = area * ((behind - face) / _RESISTANCE - _FILM * (face - air)) - leaving @ emitted
-        return np.append(heat, np.sum(area * (face - air)))
+        surface, air = x[:-1], x[-1]
+        emitted = SIGMA * (surface + KELVIN) ** 4
+        heat = area * ((behind - surface) / _RESISTANCE - _CONVECTION * (surface - air)) - leaving @ emitted
+        return np.append(heat, np.sum(area * (surface - air)))
 
     answer = root(residual, np.append(behind, behind.mean()), tol=1e-13)
     return np.asarray(answer.x)
 
 
 def _enclosure(
-    name: str, title: str, faces: Sequence[Face], views: setup.Array | None, leaving: setup.Array
+    name: str,
+    title: str,
+    surfaces: Sequence[EnclosureSurface],
+    views: setup.Array | None,
+    leaving: setup.Array,
 ) -> Iterator[Check]:
     rows = []
     if views is not None:
@@ -82,31 +86,31 @@ def _enclosure(
             cells = ", ".join(f"f{j}: {value!r}" for j, value in enumerate(row.tolist()) if value > 0.0)
             rows.append(f"f{k}: {{{cells}}}")
     factors = f", view_factors: {{{', '.join(rows)}}}" if rows else ""
-    surfaces = "".join(
+    described = "".join(
         f"  f{k}: {{construction: panel, area: {one.area!r}, tilt: {180 * (k % 2)}, "
         f"outside: {{measured: t{k}}}, "
-        f"inside: {{zone: room, convection: {_FILM}, emissivity: {one.emissivity}}}}}\n"
-        for k, one in enumerate(faces)
+        f"inside: {{zone: room, convection: {_CONVECTION}, emissivity: {one.emissivity}}}}}\n"
+        for k, one in enumerate(surfaces)
     )
     text = (
         f"materials: {{panel: {{kind: resistance, resistance: {_RESISTANCE}}}}}\n"
         "constructions: {panel: {layers: [{material: panel}]}}\n"
-        f"zones: {{room: {{volume: 10{factors}}}}}\nsurfaces:\n{surfaces}"
+        f"zones: {{room: {{volume: 10{factors}}}}}\nsurfaces:\n{described}"
     )
-    columns = {f"t{k}": setup.steady(one.behind) for k, one in enumerate(faces)}
-    outputs = [f"f{k}.inside_temperature" for k in range(len(faces))] + ["room.air_temperature"]
+    columns = {f"t{k}": setup.steady(one.behind) for k, one in enumerate(surfaces)}
+    outputs = [f"f{k}.inside_temperature" for k in range(len(surfaces))] + ["room.air_temperature"]
     end = 10 * setup.DAY
     found = setup.run(text, end, columns, step=setup.HOUR, outputs=outputs).records[-1]
-    for output, value, expected in zip(outputs, found, balance(faces, leaving), strict=True):
-        yield Check.near(name, f"{title}: {output}", "degC", value, float(expected), within=SETTLED)
+    for output, value, expected in zip(outputs, found, balance(surfaces, leaving), strict=True):
+        yield Check.near(name, f"{title}: {output}", "degC", value, float(expected), within=TOLERANCE)
 
 
 def _enclosures(name: str) -> Iterator[Check]:
-    plates = [Face(4.0, 0.9, 80.0), Face(4.0, 0.25, 5.0)]
+    plates = [EnclosureSurface(4.0, 0.9, 80.0), EnclosureSurface(4.0, 0.25, 5.0)]
     conductance = 4.0 / (1.0 / 0.9 + 1.0 / 0.25 - 1.0)
     pair = np.array([[1.0, -1.0], [-1.0, 1.0]])
     yield from _enclosure(name, "plates", plates, None, conductance * pair)
-    body = [Face(1.5, 0.8, 90.0), Face(12.0, 0.6, 10.0)]
+    body = [EnclosureSurface(1.5, 0.8, 90.0), EnclosureSurface(12.0, 0.6, 10.0)]
     small, large = body
     conductance = small.area / (
         1.0 / small.emissivity + small.area / large.area * (1.0 / large.emissivity - 1.0)
@@ -116,7 +120,11 @@ def _enclosures(name: str) -> Iterator[Check]:
         name, "body in a shell", body, np.array([[0.0, 1.0], [ratio, 1.0 - ratio]]), conductance * pair
     )
     # A long triangular duct: view factors by Hottel's crossed strings.
-    sides = [Face(3.0, 0.9, 60.0), Face(4.0, 0.4, 20.0), Face(5.0, 0.7, 0.0)]
+    sides = [
+        EnclosureSurface(3.0, 0.9, 60.0),
+        EnclosureSurface(4.0, 0.4, 20.0),
+        EnclosureSurface(5.0, 0.7, 0.0),
+    ]
     a = [side.area for side in sides]
     views = np.array(
         [[0.0 if i == j else (a[i] + a[j] - a[3 - i - j]) / (2.0 * a[i]) for j in range(3)] for i in range(3)]
@@ -127,7 +135,7 @@ def _enclosures(name: str) -> Iterator[Check]:
 def _sky(name: str) -> Iterator[Check]:
     from scipy.optimize import brentq
 
-    air, dew, cloud, film, emissivity = 18.0, 9.0, 4.0, 6.0, 0.9
+    air, dew, cloud, convection, emissivity = 18.0, 9.0, 4.0, 6.0, 0.9
     skies: dict[str, float] = {
         "martin_berdahl": 0.711 + 0.56 * dew / 100.0 + 0.73 * (dew / 100.0) ** 2,
         "clark_allen": 0.787 + 0.764 * math.log((dew + KELVIN) / 273.0),
@@ -147,7 +155,7 @@ materials: {{sheet: {{conductivity: 1, density: 1000, specific_heat: 1000}}}}
 constructions: {{sheet: {{layers: [{{material: sheet, thickness: 0.01}}]}}}}
 surfaces:
   plate: {{construction: sheet, area: 1, tilt: {tilt}, azimuth: 0, inside: {{adiabatic: true}},
-          outside: {{outdoors: true, convection: {film}, emissivity: {emissivity}, absorptance: 0.5}}}}
+          outside: {{outdoors: true, convection: {convection}, emissivity: {emissivity}, absorptance: 0.5}}}}
 """
             end = 5 * setup.DAY
             found = setup.run(
@@ -155,23 +163,23 @@ surfaces:
             ).records[-1, 0]
             view = 0.5 * (1.0 + math.cos(math.radians(tilt)))
             beta = math.sqrt(view)
-            # Sky, split by beta between sky and air, and a ground as warm as the air.
+            # Radiation of the sky, part of it (1 - beta) that of the air, and a ground as warm as the air.
             arriving = view * beta * min(clear * clouds, 1.0) * emission(air) + (
                 1.0 - view * beta
             ) * emission(air)
 
-            def heat(face: float, arriving: float = arriving) -> float:
-                return emissivity * (arriving - emission(face)) + film * (air - face)
+            def heat(surface: float, arriving: float = arriving) -> float:
+                return emissivity * (arriving - emission(surface)) + convection * (air - surface)
 
             expected = float(brentq(heat, air - 60.0, air + 20.0, xtol=1e-12))
-            yield Check.near(name, f"plate of {tilt:g} deg, {sky}", "degC", found, expected, within=SETTLED)
+            yield Check.near(name, f"plate of {tilt:g} deg, {sky}", "degC", found, expected, within=TOLERANCE)
 
 
-# --- films -------------------------------------------------------------------------------------------------
+# --- surface heat transfer coefficients --------------------------------------------------------------------
 
 
-class Film(NamedTuple):
-    """A film in words, the tilt of its surface, and its coefficient by hand from (|dT|, warm face, wind)."""
+class Convection(NamedTuple):
+    """A correlation in YAML, the tilt of its surface, and the coefficient by hand from (|dT|, wind)."""
 
     law: str
     tilt: float
@@ -184,20 +192,20 @@ def _blend(a: float, b: float, difference: float, length: float) -> float:
 
 _LENGTH, _AREA, _PERIMETER, _ROUGH = 2.5, 4.0, 8.0, 1.67
 _STILL: Final = (
-    Film("{kind: constant, coefficient: 3.2}", 90, lambda d, _: 3.2),
-    Film("{kind: alamdari_hammond, length: 2.5}", 90, lambda d, _: _blend(1.5, 1.23, d, _LENGTH)),
-    Film("{kind: paper_eq5, length: 2.5}", 90,
+    Convection("{kind: constant, coefficient: 3.2}", 90, lambda d, _: 3.2),
+    Convection("{kind: alamdari_hammond, length: 2.5}", 90, lambda d, _: _blend(1.5, 1.23, d, _LENGTH)),
+    Convection("{kind: paper_eq5, length: 2.5}", 90,
          lambda d, _: float(((1.51 * d**0.25 / _LENGTH) ** 6 + (1.33 * d ** (1 / 3)) ** 6) ** (1 / 6))),
-    Film("{kind: tarp}", 90, lambda d, _: 1.31 * d ** (1 / 3)),
-    # The warm face looks down where the tilt is 0 and up where it is 180: stable, unstable.
-    Film("{kind: alamdari_hammond, length: 2.5}", 0, lambda d, _: 0.6 * (d / _LENGTH**2) ** 0.2),
-    Film("{kind: alamdari_hammond, length: 2.5}", 180, lambda d, _: _blend(1.4, 1.63, d, _LENGTH)),
-    Film("{kind: tarp}", 0, lambda d, _: 1.810 * d ** (1 / 3) / 2.382),
-    Film("{kind: tarp}", 180, lambda d, _: 9.482 * d ** (1 / 3) / 6.283),
-    Film("{kind: tarp}", 45, lambda d, _: 1.810 * d ** (1 / 3) / (1.382 + math.sqrt(0.5))),
-    Film("{kind: power, upward: {a: 1, b: 2, n: 0.25}, downward: {a: 0.5, b: 1, n: 0.3}}", 180,
+    Convection("{kind: tarp}", 90, lambda d, _: 1.31 * d ** (1 / 3)),
+    # The warm surface faces down where the tilt is 0 and up where it is 180: stable, unstable.
+    Convection("{kind: alamdari_hammond, length: 2.5}", 0, lambda d, _: 0.6 * (d / _LENGTH**2) ** 0.2),
+    Convection("{kind: alamdari_hammond, length: 2.5}", 180, lambda d, _: _blend(1.4, 1.63, d, _LENGTH)),
+    Convection("{kind: tarp}", 0, lambda d, _: 1.810 * d ** (1 / 3) / 2.382),
+    Convection("{kind: tarp}", 180, lambda d, _: 9.482 * d ** (1 / 3) / 6.283),
+    Convection("{kind: tarp}", 45, lambda d, _: 1.810 * d ** (1 / 3) / (1.382 + math.sqrt(0.5))),
+    Convection("{kind: power, upward: {a: 1, b: 2, n: 0.25}, downward: {a: 0.5, b: 1, n: 0.3}}", 180,
          lambda d, _: 1.0 + 2.0 * d**0.25),
-    Film("{kind: power, upward: {a: 1, b: 2, n: 0.25}, downward: {a: 0.5, b: 1, n: 0.3}}", 0,
+    Convection("{kind: power, upward: {a: 1, b: 2, n: 0.25}, downward: {a: 0.5, b: 1, n: 0.3}}", 0,
          lambda d, _: 0.5 + 1.0 * d**0.3),
 )  # fmt: skip
 
@@ -211,20 +219,20 @@ def _forced(side: float, wind: float) -> float:
 
 
 _WINDY: Final = (
-    Film("{kind: linear_wind, constant: 5.7, wind: 3.8}", 90, lambda d, v: 5.7 + 3.8 * v),
-    Film("{kind: mowitt}", 90, lambda d, v: math.hypot(0.84 * d ** (1 / 3), 3.26 * v**0.89)),
-    Film("{kind: doe2, roughness: 1.67}", 90, lambda d, v: _doe2(1.31 * d ** (1 / 3), 3.26 * v**0.89)),
-    Film(
+    Convection("{kind: linear_wind, constant: 5.7, wind: 3.8}", 90, lambda d, v: 5.7 + 3.8 * v),
+    Convection("{kind: mowitt}", 90, lambda d, v: math.hypot(0.84 * d ** (1 / 3), 3.26 * v**0.89)),
+    Convection("{kind: doe2, roughness: 1.67}", 90, lambda d, v: _doe2(1.31 * d ** (1 / 3), 3.26 * v**0.89)),
+    Convection(
         "{kind: tarp, roughness: 1.67, perimeter: 8}", 90, lambda d, v: 1.31 * d ** (1 / 3) + _forced(1.0, v)
     ),
-    Film(
+    Convection(
         "{kind: power, upward: {a: 2, c: 4, m: 0.8}, downward: {a: 1}}", 90, lambda d, v: 2.0 + 4.0 * v**0.8
     ),
 )
 _LEEWARD: Final = (
-    Film("{kind: mowitt}", 90, lambda d, v: math.hypot(0.84 * d ** (1 / 3), 3.55 * v**0.617)),
-    Film("{kind: doe2, roughness: 1.67}", 90, lambda d, v: _doe2(1.31 * d ** (1 / 3), 3.55 * v**0.617)),
-    Film(
+    Convection("{kind: mowitt}", 90, lambda d, v: math.hypot(0.84 * d ** (1 / 3), 3.55 * v**0.617)),
+    Convection("{kind: doe2, roughness: 1.67}", 90, lambda d, v: _doe2(1.31 * d ** (1 / 3), 3.55 * v**0.617)),
+    Convection(
         "{kind: tarp, roughness: 1.67, perimeter: 8}", 90, lambda d, v: 1.31 * d ** (1 / 3) + _forced(0.5, v)
     ),
 )
@@ -234,14 +242,14 @@ _PANEL: Final = (
 )
 
 
-def _films(name: str) -> Iterator[Check]:
+def _correlations(name: str) -> Iterator[Check]:
     end = setup.DAY
-    for film in _STILL:
+    for law in _STILL:
         text = f"""\
 {_PANEL}zones: {{room: {{volume: 5, longwave: none, infiltration: 5}}}}
 surfaces:
-  warm: {{construction: panel, area: {_AREA}, tilt: {film.tilt}, azimuth: 0, outside: {{measured: hot}},
-         inside: {{zone: room, convection: {film.law}}}}}
+  warm: {{construction: panel, area: {_AREA}, tilt: {law.tilt}, azimuth: 0, outside: {{measured: hot}},
+         inside: {{zone: room, convection: {law.law}}}}}
   cold: {{construction: panel, area: 20, tilt: 90, azimuth: 180, outside: {{measured: cold}},
          inside: {{zone: room, convection: 5}}}}
 """
@@ -250,14 +258,16 @@ surfaces:
             "cold": setup.steady(10.0),
             "air_temperature": setup.steady(10.0),
         }
-        yield from _film(name, film, text, columns, end, "warm.inside", "room.air_temperature", "still")
+        yield from _correlation(
+            name, law, text, columns, end, "warm.inside", "room.air_temperature", "no wind"
+        )
     wind, height = 4.0, 6.0
-    for films, words, direction in ((_WINDY, "windward", 0.0), (_LEEWARD, "leeward", 180.0)):
-        for film in films:
+    for laws, words, direction in ((_WINDY, "windward", 0.0), (_LEEWARD, "leeward", 180.0)):
+        for law in laws:
             text = f"""\
 {_PANEL}surfaces:
-  warm: {{construction: panel, area: {_AREA}, tilt: {film.tilt}, azimuth: 0, inside: {{measured: hot}},
-         outside: {{outdoors: true, convection: {film.law}, emissivity: 0.9, absorptance: 0.5, longwave: none,
+  warm: {{construction: panel, area: {_AREA}, tilt: {law.tilt}, azimuth: 0, inside: {{measured: hot}},
+         outside: {{outdoors: true, convection: {law.law}, emissivity: 0.9, absorptance: 0.5, longwave: none,
                    height: {height}}}}}
 """
             columns = {
@@ -266,72 +276,72 @@ surfaces:
                 "wind_speed": setup.steady(wind),
                 "wind_direction": setup.steady(direction),
             }
-            yield from _film(
-                name, film, text, columns, end, "warm.outside", 10.0, words, _at_height(wind, height)
+            yield from _correlation(
+                name, law, text, columns, end, "warm.outside", 10.0, words, _at_height(wind, height)
             )
 
 
 def _at_height(wind: float, height: float) -> float:
-    """Wind at a height over open terrain from a mast of 10 m in the same (ASHRAE power law). [m/s]"""
+    """Wind at a height over open terrain, from that at 10 m over open terrain (ASHRAE power law). [m/s]"""
     return float(wind * (270.0 / 10.0) ** 0.14 * (height / 270.0) ** 0.14)
 
 
-def _film(
+def _correlation(
     name: str,
-    film: Film,
+    law: Convection,
     text: str,
     columns: dict[str, setup.Array],
     end: float,
-    face: str,
+    surface: str,
     air: str | float,
     words: str,
     wind: float = 0.0,
 ) -> Iterator[Check]:
-    outputs = [f"{face}_flux", f"{face}_temperature", *([air] if isinstance(air, str) else [])]
+    outputs = [f"{surface}_flux", f"{surface}_temperature", *([air] if isinstance(air, str) else [])]
     found = setup.run(text, end, columns, step=600.0, outputs=outputs).records[-1]
     difference = float(found[1]) - (float(found[2]) if isinstance(air, str) else float(air))
     coefficient = abs(float(found[0])) / difference
-    expected = film.by_hand(difference, wind)
-    kind = film.law.strip("{}").split(",")[0].removeprefix("kind: ")
-    # |dT| is rounded off within 0.01 K at 0, by (0.01/dT)^2/2; no exponent is above 1. And Newton's 1e-6 K.
+    expected = law.by_hand(difference, wind)
+    kind = law.law.strip("{}").split(",")[0].removeprefix("kind: ")
+    # |dT| is smoothed within 0.01 K of 0, by (0.01/dT)^2/2; no exponent is above 1. And 1e-6 K of Newton.
     bound = expected * (0.5 * (0.01 / difference) ** 2 + 2e-6 / difference)
     yield Check.near(
-        name, f"{kind}, {film.tilt:g} deg, {words}", "W/(m2 K)", coefficient, expected, within=bound
+        name, f"{kind}, {law.tilt:g} deg, {words}", "W/(m2 K)", coefficient, expected, within=bound
     )
 
 
 CASES: Final = (
     Case(
         name="enclosures",
-        problem="Faces behind 0.05 m2K/W with films of 2 W/(m2 K) around air without change: two plates, "
+        problem="Surfaces behind 0.05 m2K/W with convection of 2 W/(m2 K) around still air: two plates, "
         "a body in a shell, a triangular duct; steady.",
-        answer="Q = A s (T1^4 - T2^4)/(1/e1 + (A1/A2)(1/e2 - 1)) for two faces; radiosity with crossed "
-        "strings for three; the balance with films and panels by root finding",
+        answer="Q = A s (T1^4 - T2^4)/(1/e1 + (A1/A2)(1/e2 - 1)) for two surfaces; radiosity with crossed "
+        "strings for three; the balance with convection and panels by root finding",
         source="Hottel & Sarofim 1967, Radiative Transfer, ch. 2-3",
-        tolerance="1e-6 K: Newton's tolerance; nothing else separates the two.",
+        tolerance="1e-6 K: the tolerance of Newton's iteration, the only difference.",
         topics=("building",),
         work=_enclosures,
     ),
     Case(
         name="plate under the sky",
-        problem="An insulated plate, flat and at 60 deg, film 6 W/(m2 K), emissivity 0.9, air 18 degC, "
-        "dew point 9 degC, 4 tenths of cloud; steady, at night.",
+        problem="An insulated plate, horizontal and at 60 deg, convection 6 W/(m2 K), emissivity 0.9, "
+        "air 18 degC, dew point 9 degC, 4 tenths of cloud; steady, at night.",
         answer="e (E_in - s T^4) + h (Ta - T) = 0, E_in = F b E_sky + (1 - F b) E_air, b = sqrt(F)",
         source="Martin & Berdahl 1984, doi:10.1016/0038-092X(84)90162-2; Clark & Allen 1978; Li et al. "
         "2017, doi:10.1016/j.solener.2017.01.006; Walton 1983 (b)",
-        tolerance="1e-6 K: Newton's tolerance.",
+        tolerance="1e-6 K: the tolerance of Newton's iteration.",
         topics=("building",),
         work=_sky,
     ),
     Case(
-        name="films",
-        problem="A warm panel in a room, and one outdoors in a wind of 4 m/s at the mast; the coefficient"
-        " is the flux over the temperature difference that the run shows.",
-        answer="each correlation by hand at that difference and wind",
+        name="surface heat transfer coefficients",
+        problem="A warm panel in a room, and one outdoors in a wind of 4 m/s at 10 m; the coefficient"
+        " is the simulated flux over the simulated temperature difference.",
+        answer="each correlation at that difference and wind",
         source="Alamdari & Hammond 1983, doi:10.1177/014362448300400304; Walton 1983, NBSSIR 83-2655; "
         "Yazdanian & Klems 1994; Guichard et al., eq. 5 as printed",
-        tolerance="The rounding of |dT| within 0.01 K, (0.01/dT)^2/2, and Newton's 1e-6 K.",
+        tolerance="The smoothing of |dT| within 0.01 K, (0.01/dT)^2/2, and 1e-6 K of Newton's iteration.",
         topics=("building",),
-        work=_films,
+        work=_correlations,
     ),
 )

@@ -1,6 +1,6 @@
-"""The bench that the cases stand on: descriptions as text, boundaries as columns of a table.
+"""Test setup of the cases: buildings from YAML text, boundary conditions as columns of a table.
 
-Everything goes the way a user's building goes: YAML text, model, climate from a table, simulation.
+The cases are simulated like the building of a user: YAML, model, climate from a table, simulation.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ START: Final = "2001-01-01"
 SITE: Final = (
     "site: {latitude: 0, longitude: 0, altitude: 0, timezone: UTC, sky: {kind: offset, depression: 0}}\n"
 )
-"""A site that does nothing: sea level, sky as warm as the air."""
+"""A site without effect: sea level, sky as warm as the air."""
 
 _CHANNELS: Final = (
     "air_temperature",
@@ -43,12 +43,12 @@ _CHANNELS: Final = (
 
 
 def times(length: float, every: float) -> Array:
-    """Stamps from 0 to a length, both included, shape (n + 1,). [s]"""
+    """Return times from 0 to a length, both included, shape (n + 1,). [s]"""
     return every * np.arange(round(length / every) + 1, dtype=np.float64)
 
 
 def climate(every: float, columns: Mapping[str, Array | float]) -> Climate:
-    """A climate from columns of instants; what is not given is still, dark and 20 degC.
+    """Make a climate from columns of instants; without a column: no wind, no sun, air of 20 degC.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def climate(every: float, columns: Mapping[str, Array | float]) -> Climate:
 
 
 def building(text: str) -> Building:
-    """A building from YAML text, read as a file is; a site that does nothing is added where there is none."""
+    """Read a building from YAML text; without a site it gets one without effect."""
     from pathlib import Path
     from tempfile import TemporaryDirectory
 
@@ -104,7 +104,7 @@ def simulation(
     scheme: Scheme = "sdirk2",
     length: float | None = None,
 ) -> Simulation:
-    """A simulation from one temperature throughout, over the whole table or its first part. [s, degC]"""
+    """Prepare a simulation from one initial temperature, over the table or its first part. [s, degC]"""
     import pandas as pd
 
     from mascarin.simulation.simulation import Simulation
@@ -127,8 +127,8 @@ def run(
     scheme: Scheme = "sdirk2",
     length: float | None = None,
 ) -> Results:
-    """Describe and simulate; arguments as above."""
-    bench = simulation(
+    """Build and simulate; arguments as for `building`, `climate` and `simulation`."""
+    prepared = simulation(
         building(text),
         climate(every, columns),
         step=step,
@@ -137,16 +137,16 @@ def run(
         scheme=scheme,
         length=length,
     )
-    return bench.run()
+    return prepared.run()
 
 
 def steady(value: float) -> Array:
-    """Two stamps of one value: a boundary that does not change. [any]"""
+    """Return a constant boundary condition: two stamps of one value. [any]"""
     return np.full(2, value)
 
 
 def harmonic(series: Array, step: float, period: float) -> complex:
-    """Complex amplitude ``a`` of ``Im(a e^{i w t})`` in the last period of a series, drift taken out.
+    """Fit the amplitude ``a`` of ``Im(a e^{i w t})`` to the last period of a series, without its drift.
 
     Parameters
     ----------
@@ -156,6 +156,11 @@ def harmonic(series: Array, step: float, period: float) -> complex:
         Spacing. [s]
     period : float
         Period; a whole number of steps. [s]
+
+    Returns
+    -------
+    complex
+        Amplitude. [unit of the series]
     """
     count = round(period / step)
     t = step * np.arange(len(series) - count, len(series))

@@ -1,4 +1,4 @@
-"""The sun: transposition and position against pvlib."""
+"""The sun: irradiance on inclined planes and position, compared with pvlib."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from mascarin.verification.analytical.check import Case, Check
 _PLANES: Final = ((0.0, 0.0), (20.0, 0.0), (90.0, 90.0), (90.0, 180.0), (60.0, 300.0), (180.0, 0.0))
 _MODELS: Final = {"isotropic": "isotropic", "hay_davies": "haydavies", "perez": "perez"}
 _ALBEDO: Final = 0.2
-#: A plane's irradiance is read off a balance of fluxes below 2000 W/m2 whose faces are known to 1e-6 K.
-READ_OFF: Final = 1e-4
+#: The irradiance follows from a balance of fluxes below 2000 W/m2 with temperatures known to 1e-6 K.
+IRRADIANCE_ERROR: Final = 1e-4
 
 
 def _weather(days: int) -> dict[str, setup.Array]:
-    """Days of changing clearness whose radiation follows the sun at the place of the case, every 10 min."""
+    """Radiation of days with varying clearness at the place of the case, every 10 min."""
     import pandas as pd
     from pvlib import solarposition
 
@@ -48,7 +48,7 @@ def _transposition(name: str) -> Iterator[Check]:
         for k, (tilt, azimuth) in enumerate(_PLANES)
     )
     weather = setup.climate(600.0, {**_weather(4), "behind": 20.0})
-    for model, theirs in _MODELS.items():
+    for model, pvlib_model in _MODELS.items():
         described = setup.building(
             f"site: {{latitude: {_PLACE[0]}, longitude: {_PLACE[1]}, altitude: 0, timezone: UTC, "
             f"diffuse: {model}, ground_reflectance: {_ALBEDO}, sky: {{kind: offset, depression: 0}}}}\n"
@@ -67,19 +67,23 @@ def _transposition(name: str) -> Iterator[Check]:
         # pvlib's Perez model divides by the air mass, which has no value below the horizon.
         lit = zenith < 89.9
         for k, (tilt, azimuth) in enumerate(_PLANES):
-            flux, face = records[:, 2 * k], records[:, 2 * k + 1]
-            mine = flux + (face - channel["air_temperature"])  # a I + h (Ta - T) = q with a = h = 1
+            flux, surface = records[:, 2 * k], records[:, 2 * k + 1]
+            simulated = flux + (surface - channel["air_temperature"])  # a I + h (Ta - T) = q with a = h = 1
             extra = {} if model == "isotropic" else {"dni_extra": channel["direct_normal_extra"][lit]}
             if model == "perez":
                 extra["airmass"] = atmosphere.get_relative_airmass(zenith[lit])
-            oracle = irradiance.get_total_irradiance(
+            expected = irradiance.get_total_irradiance(
                 tilt, azimuth, zenith[lit], bearing[lit], channel["direct_normal"][lit],
                 channel["global_horizontal"][lit], channel["diffuse_horizontal"][lit],
-                albedo=_ALBEDO, model=theirs, **extra,
+                albedo=_ALBEDO, model=pvlib_model, **extra,
             )["poa_global"]  # fmt: skip
-            worst = max(worst, float(np.max(np.abs(mine[lit] - np.asarray(oracle)))))
+            worst = max(worst, float(np.max(np.abs(simulated[lit] - np.asarray(expected)))))
         yield Check.most(
-            name, f"{model}, largest difference on {len(_PLANES)} planes", "W/m2", worst, high=READ_OFF
+            name,
+            f"{model}, largest difference on {len(_PLANES)} planes",
+            "W/m2",
+            worst,
+            high=IRRADIANCE_ERROR,
         )
 
 
@@ -96,40 +100,40 @@ def _position(name: str) -> Iterator[Check]:
         for day in days:
             times = pd.date_range(day, periods=480, freq="197s")
             seconds = (times - pd.Timestamp(0, tz="UTC")).total_seconds().to_numpy(dtype=np.float64)
-            mine = SunPath.over(latitude, longitude, seconds[0], seconds[-1]).vector(seconds)
-            theirs = solarposition.get_solarposition(times, latitude, longitude)
+            simulated = SunPath.over(latitude, longitude, seconds[0], seconds[-1]).vector(seconds)
+            reference = solarposition.get_solarposition(times, latitude, longitude)
             zenith, azimuth = (
-                np.radians(theirs["zenith"].to_numpy()),
-                np.radians(theirs["azimuth"].to_numpy()),
+                np.radians(reference["zenith"].to_numpy()),
+                np.radians(reference["azimuth"].to_numpy()),
             )
             vector = np.stack(
                 [np.sin(zenith) * np.sin(azimuth), np.sin(zenith) * np.cos(azimuth), np.cos(zenith)], axis=-1
             )
-            apart = np.linalg.norm(mine - vector, axis=-1)
+            apart = np.linalg.norm(simulated - vector, axis=-1)
             worst = max(worst, float(np.degrees(np.max(apart))))
         where = f"{abs(latitude):g} {'N' if latitude >= 0 else 'S'}"
-        yield Check.most(name, f"largest angle to pvlib's sun, {where}", "deg", worst, high=3e-4)
+        yield Check.most(name, f"largest angle to the sun of pvlib, {where}", "deg", worst, high=3e-4)
 
 
 CASES: Final = (
     Case(
         name="transposition",
-        problem="Six planes under four days of changing clearness at 43.5 N, every 15 min; the irradiance"
-        " is read off each plane's balance of fluxes.",
-        answer="pvlib.irradiance.get_total_irradiance at the same sun and radiation, sun more than 0.1 "
-        "deg up",
+        problem="Six planes on four days of varying clearness at 43.5 N, every 15 min; the irradiance "
+        "follows from the balance of fluxes of each plane.",
+        answer="pvlib.irradiance.get_total_irradiance for the same sun and radiation, sun more than 0.1 "
+        "deg above the horizon",
         source="Liu & Jordan 1963, Hay & Davies 1980, Perez et al. 1990 "
         "(doi:10.1016/0038-092X(90)90055-H) as in pvlib, doi:10.21105/joss.05994",
-        tolerance="1e-4 W/m2: the faces of the balance are known to 1e-6 K.",
+        tolerance="1e-4 W/m2: the surface temperatures of the balance are known to 1e-6 K.",
         topics=("building",),
         work=_transposition,
     ),
     Case(
         name="sun position",
-        problem="Five latitudes from 67 N to 55 S on four days, among them 29 February, every 197 s.",
+        problem="Five latitudes from 67 N to 55 S on four days, including 29 February, every 197 s.",
         answer="pvlib.solarposition (SPA), without refraction",
         source="Reda & Andreas 2004, doi:10.1016/j.solener.2003.12.003",
-        tolerance="0.0003 deg, the stated uncertainty of the algorithm itself.",
+        tolerance="0.0003 deg, the stated uncertainty of the algorithm.",
         topics=("building",),
         work=_position,
     ),

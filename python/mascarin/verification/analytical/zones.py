@@ -1,4 +1,4 @@
-"""Zones: a lumped room after a step, two zones in a steady state, order in dt, lanes."""
+"""Zones: a lumped room after a step, two zones in steady state, order in time, energy balance, ensembles."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ AIR_HEAT: Final = 1006.0
 
 def _lumped(name: str) -> Iterator[Check]:
     volume, factor, changes, resistance, area = 30.0, 4.0, 1.5, 0.5, 12.0
-    films = (20.0, 5.0)
+    convection = (20.0, 5.0)
     text = f"""\
 materials: {{panel: {{kind: resistance, resistance: {resistance}}}}}
 constructions: {{panel: {{layers: [{{material: panel}}]}}}}
 zones: {{room: {{volume: {volume}, capacity_factor: {factor}, infiltration: {changes}, longwave: none}}}}
 surfaces:
   panel: {{construction: panel, area: {area}, tilt: 90, azimuth: 0,
-          outside: {{measured: cold, convection: {films[0]}}},
-          inside: {{zone: room, convection: {films[1]}}}}}
+          outside: {{measured: cold, convection: {convection[0]}}},
+          inside: {{zone: room, convection: {convection[1]}}}}}
 """
     air = AIR_DENSITY * AIR_HEAT * volume
-    conductance = area / (resistance + 1.0 / films[0] + 1.0 / films[1]) + air * changes / 3600.0
+    conductance = area / (resistance + 1.0 / convection[0] + 1.0 / convection[1]) + air * changes / 3600.0
     constant = factor * air / conductance
     step, end = 60.0, 3 * setup.HOUR
     columns = {"air_temperature": setup.steady(0.0), "cold": setup.steady(0.0)}
@@ -109,16 +109,16 @@ surfaces:
         [south * sol_air[0] + floor * 12.0 + vent(40, 0.5) * 5.0, north * sol_air[1] + vent(25, 2.0) * 5.0]
     )
     sunny, shady = np.linalg.solve(matrix, right)
-    face = sol_air[0] - south / 10.0 * (sol_air[0] - sunny) / 20.0
+    surface = sol_air[0] - south / 10.0 * (sol_air[0] - sunny) / 20.0
     flux = between / 12.0 * (sunny - shady)
     bound = 1e-6
-    expected = (sunny, shady, flux, face)
+    expected = (sunny, shady, flux, surface)
     units = ("degC", "degC", "W/m2", "degC")
     for output, unit, value, right_value in zip(outputs, units, found, expected, strict=True):
         yield Check.near(name, output, unit, value, float(right_value), within=bound)
 
 
-# --- a building of everything: order in dt, closure, lanes -------------------------------------------------
+# --- a building with all features: order in time, energy balance, ensembles --------------------------------
 
 EVERYTHING: Final = """\
 name: everything
@@ -158,11 +158,11 @@ surfaces:
           outside: {ground: {mean: 22, amplitude: 2, coldest_day: 200}},
           inside: {zone: room, convection: {kind: alamdari_hammond, length: 3}, emissivity: 0.9}}
 """
-"""A room under a melting ceiling and a ventilated gap: two zones, every flow, no law linear."""
+"""A room under a melting ceiling and a ventilated gap: two zones, all heat flows, nonlinear laws."""
 
 
 def island_weather(days: int) -> dict[str, setup.Array]:
-    """Smooth days on an island, hourly: warm, windy, clear and cloudy. [units of the channels]"""
+    """Return hourly weather of smooth days on an island: warm, windy, clear and cloudy."""
     t = setup.times(days * setup.DAY, setup.HOUR)
     day, slow = 2.0 * np.pi * t / setup.DAY, 2.0 * np.pi * t / (2.7 * setup.DAY)
     light = np.maximum(-np.cos(day), 0.0)
@@ -180,7 +180,7 @@ def island_weather(days: int) -> dict[str, setup.Array]:
 def everything(
     step: float, days: int = 4, scheme: Scheme = "sdirk2", described: Building | None = None
 ) -> Simulation:
-    """A simulation of the building of everything in the island's weather. [s]"""
+    """Prepare a simulation of the building with all features in the weather of an island. [s]"""
     outputs = ["room.air_temperature", "gap.air_temperature", "ceiling.outside_temperature",
                "roof.inside_flux",
                "ceiling.energain_liquid_fraction", "room.mean_radiant_temperature"]  # fmt: skip
@@ -238,49 +238,50 @@ def _order_in_time(name: str) -> Iterator[Check]:
 
 
 CLOSED: Final = 1e-10
+"""Largest relative energy-balance residual that this project accepts. [-]"""
 
 
 def _closure(name: str) -> Iterator[Check]:
     schemes: tuple[Scheme, ...] = ("sdirk2", "backward-euler")
     for scheme in schemes:
         for step in (900.0, 3600.0):
-            closure = everything(step, scheme=scheme).run().energy.closure
-            yield Check.most(name, f"{scheme}, {step:g} s", "-", closure, high=CLOSED)
+            residual = everything(step, scheme=scheme).run().energy.closure
+            yield Check.most(name, f"{scheme}, {step:g} s", "-", residual, high=CLOSED)
 
 
 def _apparent_loss(name: str) -> Iterator[Check]:
     losses = [
         everything(step, scheme="apparent-capacity").run().energy.closure for step in (900.0, 450.0, 225.0)
     ]
-    yield Check(name, "heat lost over heat turned over, 900 s", "-", losses[0])
+    yield Check(name, "heat lost over total heat exchanged, 900 s", "-", losses[0])
     for k, (coarse, fine) in enumerate(pairwise(losses)):
         yield Check(name, f"order of the loss, halving {k + 1} (formally 1)", "-", math.log2(coarse / fine))
 
 
 def _lanes(name: str) -> Iterator[Check]:
-    bench_of_all = everything(900.0, days=2)
+    prepared = everything(900.0, days=2)
     rng = np.random.default_rng(20)
-    samples = np.tile(bench_of_all.values, (11, 1))  # one full pack of eight and a part
+    samples = np.tile(prepared.values, (11, 1))  # one full pack of eight and a part
     paths = ("materials.energain.latent_heat", "materials.energain.law.width",
              "surfaces.roof.outside.absorptance",
              "zones.room.infiltration.constant", "surfaces.ceiling.outside.emissivity", "surfaces.north.area",
              "constructions.ceiling.layers.energain.thickness")  # fmt: skip
     for path in paths:
-        samples[:, bench_of_all.position(path)] *= rng.uniform(0.6, 1.2, len(samples))
-    records, closure, failures = bench_of_all.ensemble(samples)
-    alone = [bench_of_all.run_vector(row) for row in samples]
+        samples[:, prepared.position(path)] *= rng.uniform(0.6, 1.2, len(samples))
+    records, closure, failures = prepared.ensemble(samples)
+    alone = [prepared.run_vector(row) for row in samples]
     apart = max(float(np.max(np.abs(records[k] - one.records))) for k, one in enumerate(alone))
-    books = max(abs(float(closure[k]) - one.energy.closure) for k, one in enumerate(alone))
-    yield Check.most(name, "largest difference of 11 members, alone and in lanes", "K", apart, high=0.0)
-    yield Check.most(name, "the same for the closure", "-", books, high=0.0)
+    residual = max(abs(float(closure[k]) - one.energy.closure) for k, one in enumerate(alone))
+    yield Check.most(name, "largest difference of 11 members, alone and in an ensemble", "K", apart, high=0.0)
+    yield Check.most(name, "largest difference of the energy-balance residual", "-", residual, high=0.0)
     yield Check.most(name, "members that failed", "-", float(len(failures)), high=0.0)
 
 
 CASES: Final = (
     Case(
         name="lumped zone",
-        problem="A room of 30 m3 behind a panel without mass, 1.5 air changes an hour, everything at 20 "
-        "degC; outdoors steps to 0 degC. 60 s.",
+        problem="A room of 30 m3 behind a panel without mass, 1.5 air changes an hour, all at 20 "
+        "degC; the outdoor air changes to 0 degC. 60 s.",
         answer="T = T0 exp(-t/tau), tau = 4 rho c V/(A/(1/he + R + 1/hi) + rho c V n/3600)",
         source="heat balance of one capacity",
         tolerance="Twice the leading term of the step, 0.04 (dt/tau)^2 t/tau, times the temperature.",
@@ -289,51 +290,52 @@ CASES: Final = (
     ),
     Case(
         name="two zones, steady",
-        problem="Two zones behind sunlit walls, with a partition, a floor on ground of 12 degC and air "
-        "changes; 120 days.",
+        problem="Two zones behind sunlit walls, with a partition, a floor on ground of 12 degC and "
+        "infiltration; 120 days.",
         answer="two heat balances with sol-air temperatures, K T = q",
-        source="heat balance by hand",
-        tolerance="1e-6 K: Newton's tolerance; nothing else separates a settled run from its balance.",
+        source="heat balance",
+        tolerance="1e-6 K: the tolerance of Newton's iteration, the only difference of a steady state "
+        "from its balance.",
         topics=("building",),
         work=_two_zones,
     ),
     Case(
         name="order in dt",
-        problem="A room with a melting ceiling (half-width 2 K), buoyant films and radiosity between "
-        "sinusoids, against a run at 15 s. Root mean square over four readings at five times.",
+        problem="A room with a melting ceiling (half-width 2 K), natural convection and radiosity between "
+        "sinusoids, compared with a run at 15 s. Root mean square over four temperatures at five times.",
         answer="error ~ dt^2 (SDIRK2), ~ dt (backward Euler)",
         source="Alexander 1977, doi:10.1137/0714068",
-        tolerance="The formal order within 0.1: nearer to it than the next term's share at these steps.",
+        tolerance="The formal order within 0.1: the effect of the next order at these steps is smaller.",
         topics=("building",),
         work=_order_in_time,
     ),
     Case(
-        name="energy closure",
-        problem="A room under a melting ceiling and a ventilated gap, four days of sun and wind: every "
-        "flow, every law nonlinear.",
+        name="energy balance",
+        problem="A room under a melting ceiling and a ventilated gap, four days of sun and wind: all "
+        "heat flows, all laws nonlinear.",
         answer="stored = solar + convection + long-wave + boundary + infiltration, in every step",
         source="first law of thermodynamics",
-        tolerance="1e-10 of the heat turned over, as demanded of every run.",
+        tolerance="1e-10 of the total heat exchanged, as for every run.",
         topics=("building",),
         work=_closure,
     ),
     Case(
         name="apparent capacity",
-        problem="The same building with the scheme of the paper, which takes the heat capacity at the old"
-        " temperature.",
-        answer="it loses heat in proportion to dt, as long as a step stays within the melting range",
+        problem="The same building with the scheme of the paper, which takes the heat capacity at the "
+        "previous temperature.",
+        answer="heat is lost in proportion to dt, as long as a step stays within the melting range",
         source="Guichard et al., eq. 2 with implicit Euler",
-        tolerance="Shown for information: this scheme is offered to show its loss.",
+        tolerance="For information: this scheme is available to show its loss.",
         topics=("building",),
         work=_apparent_loss,
     ),
     Case(
-        name="lanes",
-        problem="Eleven variants of that building in an ensemble, eight at a time in lanes, and each of "
+        name="ensemble",
+        problem="Eleven variants of that building in an ensemble, eight at a time in SIMD lanes, and each of "
         "them alone.",
         answer="the same bits",
-        source="rule of this project",
-        tolerance="0: not one bit.",
+        source="requirement of this project",
+        tolerance="0.",
         topics=("building",),
         work=_lanes,
     ),

@@ -1,6 +1,7 @@
-"""The cases of ANSI/ASHRAE Standard 140-2020, building thermal fabric: a row of facts for each.
+"""The cases of ANSI/ASHRAE Standard 140-2020, building thermal fabric: one row of properties for each.
 
-The standard itself was not at hand: the facts are those of public models of these cases (docs/bestest.md).
+The standard itself was not available: the properties are those of public models of these cases
+(docs/bestest.md).
 """
 
 from __future__ import annotations
@@ -19,16 +20,16 @@ Thermostat = Literal["20,27", "20,20", "setback", "day cooling", "none"]
 
 @dataclass(frozen=True)
 class Case:
-    """One case: what it is made of, and how it differs from another.
+    """One case: its properties, and how it differs from its base case.
 
     Attributes
     ----------
     name : str
         Its number in the standard.
     base : str
-        The case that it is read against; itself for the first of a series.
+        The case that it is compared with; itself for the first of a series.
     change : str
-        What makes it differ from its base.
+        How it differs from its base case.
     heavy : bool
         High-mass walls and floor.
     opening : str
@@ -45,9 +46,9 @@ class Case:
     fan : bool
         Night ventilation.
     emissivity_inside, emissivity_outside : float
-        Long-wave emissivity of opaque faces. [-]
+        Long-wave emissivity of opaque surfaces. [-]
     absorptance_inside, absorptance_outside : float
-        Solar absorptance of opaque faces. [-]
+        Solar absorptance of opaque surfaces. [-]
     sunspace : bool
         The two zones of case 960.
     """
@@ -70,19 +71,19 @@ class Case:
 
     @property
     def conditioned(self) -> bool:
-        """Whether it has loads."""
+        """Whether it has heating or cooling loads."""
         return self.thermostat != "none"
 
     @property
     def floating(self) -> str | None:
-        """Zone whose temperature is asked for."""
+        """Zone whose free-floating temperature is compared; None where there is none."""
         if self.sunspace:
             return "sunspace"
         return None if self.conditioned else "room"
 
     @property
     def zone(self) -> str:
-        """Zone with the plant, or the only one."""
+        """Zone with heating and cooling, or the only one."""
         return "back" if self.sunspace else "room"
 
     @property
@@ -124,7 +125,7 @@ def _but(base: Case, name: str, change: str, **facts: object) -> Case:
 
 
 def _main(base: Case, names: Sequence[str]) -> list[Case]:
-    """The series of 600 or 900, whose cases differ in the same way."""
+    """Cases of the series of 600 or 900, which differ in the same way."""
     overhang, east_west, fins, setback, fan, free, fan_free = names
     turned = _but(base, east_west, "windows to east and west instead of south", opening="east_west")
     vented = _but(
@@ -196,12 +197,26 @@ CASES: Final = {case.name: case for case in (*MAIN, *IN_DEPTH)}
 
 
 def chosen(names: Sequence[str]) -> list[Case]:
-    """Cases by their names, in the order of the catalogue.
+    """Select cases by their names, in the order of the catalogue.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Numbers of cases, in upper or lower case.
+
+    Returns
+    -------
+    list of Case
 
     Raises
     ------
     InputError
         There is no such case.
+
+    Examples
+    --------
+    >>> [case.change for case in chosen(["900FF"])]
+    ['no heating, no cooling']
     """
     for name in names:
         if name.upper() not in CASES:

@@ -1,6 +1,6 @@
-"""Quantities of Standard 140 from the hours of a year.
+"""Quantities of Standard 140 from the hourly means of a year.
 
-An hour is named by the one in which it ends: hour 1 is 00:00 to 01:00, local standard time.
+An hour has the number of the hour that ends: hour 1 is 00:00 to 01:00, local standard time.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MONTHS: Final = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", 
 _LENGTHS: Final = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
 _STARTS: Final = tuple(accumulate(_LENGTHS, initial=0))
 COLDEST_BIN: Final = -50
-"""Lowest bin of the histogram, which takes everything below the next. [degC]"""
+"""Lowest bin of the histogram, which contains all lower temperatures. [degC]"""
 HOTTEST_BIN: Final = 98
 """Highest bin of the histogram. [degC]"""
 ORIENTATIONS: Final = {
@@ -37,27 +37,27 @@ ORIENTATIONS: Final = {
     "south": "south_wall.incident_solar",
     "west": "west_wall.incident_solar",
 }
-"""Output with the sun on each plane of case 600. [W/m2]"""
+"""Output with the incident solar radiation on each surface of case 600. [W/m2]"""
 ONTO_GLASS: Final = "glass.incident_solar"
-"""Series of the sun on the glass that a case is asked about: south, or west. [W/m2]"""
+"""Series of the incident solar radiation on the glass that is compared, south or west. [W/m2]"""
 THROUGH_GLASS: Final = "glass.transmitted_solar"
-"""Series of the sun that this glass lets through, per area of glass. [W/m2]"""
+"""Series of the solar radiation transmitted by this glass, per area of glass. [W/m2]"""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of a case beside what the six programs found.
+    """A number of a case, with the results of the six programs.
 
     Attributes
     ----------
     case, quantity, unit : str
         What it is.
     value : float
-        Ours. [unit]
+        Result of Mascarin. [unit]
     when : str
         Hour of a peak or an extreme: month, day, hour that ends.
     range : Range or None
-        Theirs; none for a building of the user's.
+        Results of the programs; None for a building of the user.
     """
 
     case: str
@@ -69,24 +69,24 @@ class Quantity:
 
     @property
     def passed(self) -> bool | None:
-        """Whether it lies between the smallest and the largest result of the six programs; none without."""
+        """Whether it is between the smallest and largest result of the programs; None without them."""
         if self.range is None:
             return None
         return self.range.low <= self.value <= self.range.high
 
     def to_dict(self) -> dict[str, object]:
-        """Plain values for JSON."""
-        theirs = self.range
+        """Return plain values for JSON."""
+        programs = self.range
         return {
             "case": self.case,
             "quantity": self.quantity,
             "unit": self.unit,
             "value": self.value,
             "when": self.when,
-            "min": None if theirs is None else theirs.low,
-            "max": None if theirs is None else theirs.high,
-            "expected": None if theirs is None else theirs.mean,
-            "programs": {} if theirs is None else dict(theirs.programs),
+            "min": None if programs is None else programs.low,
+            "max": None if programs is None else programs.high,
+            "expected": None if programs is None else programs.mean,
+            "programs": {} if programs is None else dict(programs.programs),
             "passed": self.passed,
         }
 
@@ -98,11 +98,11 @@ class Year:
     Attributes
     ----------
     case : Case
-        Which.
+        The case.
     series : mapping of str to ndarray, shape (8760,)
         Hourly means by output name. [W, degC, W/m2]
     closure : float
-        Closure of the energy ledger. [-]
+        Relative energy-balance residual. [-]
     """
 
     case: Case
@@ -110,7 +110,7 @@ class Year:
     closure: float
 
     def __post_init__(self) -> None:
-        """Refuse anything but whole years."""
+        """Refuse series that are not a whole year."""
         for name, values in self.series.items():
             if values.shape != (HOURS,):
                 raise InputError(
@@ -128,18 +128,29 @@ class Year:
         return self._load("cooling")
 
     def _load(self, kind: str) -> Array:
-        """A load; zero where the case has no such plant. [W]"""
+        """Return a load; zero where the case has none. [W]"""
         return self.series.get(f"{self.case.zone}.{kind}_load", np.zeros(HOURS))
 
     @property
     def temperature(self) -> Array:
-        """Air of the zone that floats, or of the one with the plant. [degC]"""
+        """Air temperature of the free-floating zone, or of the conditioned one. [degC]"""
         return self.series[f"{self.case.floating or self.case.zone}.air_temperature"]
 
 
 def when(hour: int) -> str:
-    """Name of an hour of the year, counted from 0: month, day, hour that ends.
+    """Name an hour of the year, counted from 0, by month, day and the hour that ends.
 
+    Parameters
+    ----------
+    hour : int
+        Hour of the year, from 0.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
     >>> when(0), when(8759)
     ('Jan 1 1', 'Dec 31 24')
     """
@@ -149,18 +160,18 @@ def when(hour: int) -> str:
 
 
 def hours_of(month: str, day: int) -> slice:
-    """The 24 hours of a day, counted from 0."""
+    """Return the 24 hours of a day, counted from 0."""
     first = 24 * (_STARTS[MONTHS.index(month)] + day - 1)
     return slice(first, first + 24)
 
 
 def months() -> list[slice]:
-    """The hours of each month, counted from 0."""
+    """Return the hours of each month, counted from 0."""
     return [slice(24 * start, 24 * end) for start, end in pairwise(_STARTS)]
 
 
 def bins(temperatures: Array) -> Array:
-    """Hours in each bin of 1 K, from -50 to 98 degC; the lowest takes everything colder.
+    """Count the hours in each bin of 1 K, from -50 to 98 degC; the lowest has all lower temperatures.
 
     Parameters
     ----------
@@ -177,19 +188,23 @@ def bins(temperatures: Array) -> Array:
 
 
 def energy(watts: Array) -> float:
-    """Sum of hourly means. [MWh from W, kWh/m2 x 1e-3 from W/m2]"""
+    """Sum hourly means. [MWh from W, kWh/m2 x 1e-3 from W/m2]"""
     return float(watts.sum()) / 1e6
 
 
 def quantities(years: Mapping[str, Year], case: Case) -> list[Quantity]:
-    """Every quantity of a case that the six programs have given.
+    """Compute every quantity of a case for which the six programs have results.
 
     Parameters
     ----------
     years : mapping of str to Year
-        Years by case; those that the case's quantities refer to must be among them.
+        Years by case, with those that the quantities of the case refer to.
     case : Case
-        Which.
+        The case.
+
+    Returns
+    -------
+    list of Quantity
     """
     found = {**_loads(years[case.name]), **_floating(years[case.name]), **_sun(years, case)}
     known = ranges()
@@ -201,19 +216,19 @@ def quantities(years: Mapping[str, Year], case: Case) -> list[Quantity]:
 
 
 def quantities_of(name: str, series: Mapping[str, Array]) -> list[Quantity]:
-    """Loads and temperatures of any building, beside which nobody's stand.
+    """Compute loads and temperatures of any building, without results of programs.
 
     Parameters
     ----------
     name : str
-        What to call it.
+        Name of the building.
     series : mapping of str to ndarray, shape (8760,)
         Hourly means of loads and air temperatures, by output name. [W, degC]
 
     Returns
     -------
     list of Quantity
-        Annual loads and peaks, and extremes and mean of the air, each with its zone before its name.
+        Annual and peak loads, and extremes and mean of the air temperature, as ``zone.quantity``.
     """
     found = []
     for output, values in series.items():
@@ -232,12 +247,12 @@ _UNITS: Final = {"annual": "MWh", "peak": "kW", "max": "degC", "min": "degC", "m
 
 
 def partners(case: Case) -> tuple[str, ...]:
-    """Further cases that the quantities of a case refer to."""
+    """Return further cases that the quantities of a case refer to."""
     return (case.base,) if (case.name, _shading(case)) in ranges() else ()
 
 
-def asked_about_sun(case: Case) -> bool:
-    """Whether the sun through its glass is asked for."""
+def has_solar_quantities(case: Case) -> bool:
+    """Whether the solar radiation through its glass is compared."""
     return (case.name, f"transmitted_solar_{facing(case)}") in ranges()
 
 
@@ -246,7 +261,7 @@ def _shading(case: Case) -> str:
 
 
 def facing(case: Case) -> str:
-    """Where the glass looks that a case is asked about."""
+    """Return the orientation of the glass that is compared."""
     return "west" if case.opening == "east_west" else "south"
 
 
@@ -260,7 +275,7 @@ def _load(kind: str, watts: Array) -> dict[str, tuple[float, str]]:
     top = int(np.argmax(watts))
     return {
         f"annual_{kind}": (energy(watts), ""),
-        # A plant that never runs has no hour of its peak.
+        # A load that is always zero has no hour of its peak.
         f"peak_{kind}": (float(watts[top]) / 1e3, when(top) if watts[top] > 0.0 else ""),
     }
 
@@ -280,9 +295,9 @@ def _extremes(air: Array) -> dict[str, tuple[float, str]]:
 
 
 def _sun(years: Mapping[str, Year], case: Case) -> dict[str, tuple[float, str]]:
-    """Incident and transmitted sun; transmitted is per area of glass."""
+    """Incident and transmitted solar radiation; transmitted is per area of glass."""
     year = years[case.name]
-    way = facing(case)
+    orientation = facing(case)
     found = {
         f"incident_solar_{plane}": (1e3 * energy(year.series[output]), "")
         for plane, output in ORIENTATIONS.items()
@@ -291,8 +306,8 @@ def _sun(years: Mapping[str, Year], case: Case) -> dict[str, tuple[float, str]]:
     if THROUGH_GLASS not in year.series:
         return found
     through = 1e3 * energy(year.series[THROUGH_GLASS])
-    found[f"transmitted_solar_{way}"] = (through, "")
-    found[f"transmissivity_{way}"] = (through / (1e3 * energy(year.series[ONTO_GLASS])), "")
+    found[f"transmitted_solar_{orientation}"] = (through, "")
+    found[f"transmissivity_{orientation}"] = (through / (1e3 * energy(year.series[ONTO_GLASS])), "")
     if case.base in years and case.shaded:
         unshaded = 1e3 * energy(years[case.base].series[THROUGH_GLASS])
         found[_shading(case)] = (1.0 - through / unshaded, "")

@@ -1,4 +1,4 @@
-"""What six programs found for each quantity of each case."""
+"""Results of six programs for each quantity of each case."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Range:
     Attributes
     ----------
     case, quantity, unit : str
-        What it is.
+        Case, quantity and unit.
     programs : mapping of str to float
         Result of each program that gave one. [unit]
     whens : mapping of str to str
@@ -52,7 +52,18 @@ class Range:
 
 @cache
 def ranges() -> Mapping[tuple[str, str], Range]:
-    """Every range, by case and quantity."""
+    """Read all ranges, by case and quantity.
+
+    Returns
+    -------
+    mapping of (str, str) to Range
+
+    Examples
+    --------
+    >>> found = ranges()["600", "peak_heating"]
+    >>> found.low, found.high, found.unit
+    (3.02023, 3.35889, 'kW')
+    """
     text = files("mascarin.verification.bestest").joinpath("reference.csv").read_text(encoding="utf-8")
     rows = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
     return {(found.case, found.quantity): found for found in map(_range, rows)}

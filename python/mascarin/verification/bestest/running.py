@@ -1,14 +1,15 @@
-"""The cases run: hour by hour through the year of the weather file, two at a time."""
+"""Simulation of the cases over the year of the weather file, two at a time."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin.progress import ProgressOption, Report, reporting
 from mascarin.verification.bestest.catalogue import CASES, Case
 from mascarin.verification.bestest.quantities import (
     HOURS,
@@ -16,8 +17,8 @@ from mascarin.verification.bestest.quantities import (
     ORIENTATIONS,
     THROUGH_GLASS,
     Year,
-    asked_about_sun,
     facing,
+    has_solar_quantities,
     partners,
 )
 
@@ -48,24 +49,24 @@ def run(
     own: Sequence[Path] = (),
     step: str | float = STEP,
     workers: int = WORKERS,
-    progress: Callable[[float, float], object] | None = None,
+    progress: ProgressOption = False,
 ) -> tuple[dict[str, Year], dict[Path, dict[str, Array]]]:
-    """Run cases, and those that their quantities refer to; and buildings of the user's in the same way.
+    """Simulate cases, those that their quantities refer to, and buildings of the user in the same way.
 
     Parameters
     ----------
     cases : sequence of Case
-        Which.
+        The cases.
     climate : Climate
-        The weather, as `weather.read` gives it.
+        The weather, from `weather.read`.
     own : sequence of Path
         Building files.
     step : str or float
         Time step. [s]
     workers : int
-        How many run at a time.
-    progress : callable, optional
-        Called with the number of runs done and in all.
+        Number of cases that run at a time.
+    progress : bool or callable, optional
+        Shows progress; a function is called with the number of runs done and their total.
 
     Returns
     -------
@@ -77,52 +78,50 @@ def run(
     Raises
     ------
     InputError
-        A file cannot be used, or the weather is not that of a year.
+        A file cannot be used, or the weather is not a whole year.
     SolverError
         A step did not converge.
     """
     from mascarin.building import load
 
-    buildings = {file: load(file) for file in own}  # what is wrong in them is told before the work
+    buildings = {file: load(file) for file in own}  # errors in them are found before the first run
     names = dict.fromkeys(name for case in cases for name in (case.name, *partners(case)))
-    with ThreadPoolExecutor(workers) as pool:
+    with reporting(progress, "cases") as report, ThreadPoolExecutor(workers) as pool:
         years = {name: pool.submit(run_one, CASES[name], climate, step) for name in names}
         others = {file: pool.submit(_run_own, one, climate, step) for file, one in buildings.items()}
         try:
-            _await([*years.values(), *others.values()], progress)
+            _await([*years.values(), *others.values()], report)
         finally:
             pool.shutdown(cancel_futures=True)
     return {name: f.result() for name, f in years.items()}, {file: f.result() for file, f in others.items()}
 
 
-def _await(futures: Sequence[Future[Any]], progress: Callable[[float, float], object] | None) -> None:
+def _await(futures: Sequence[Future[Any]], report: Report) -> None:
     """Wait for all, or for the first that fails."""
     for done, future in enumerate(as_completed(futures)):
-        if progress is not None:
-            progress(done, len(futures))
+        report(done, len(futures))
         future.result()
-    if progress is not None:
-        progress(len(futures), len(futures))
+    report(len(futures), len(futures))
 
 
 def run_one(case: Case, climate: Climate, step: str | float = STEP) -> Year:
-    """Run a case through the year, after 30 days of December."""
+    """Simulate a case over the year, after 30 days of December."""
     from mascarin.building import load
 
-    hourly, closure = _march(load(case.file), climate, step, outputs(case))
-    return Year(case, dict(_series(case, hourly)), closure)
+    hourly, residual = _simulate(load(case.file), climate, step, outputs(case))
+    return Year(case, dict(_series(case, hourly)), residual)
 
 
 def _run_own(building: Building, climate: Climate, step: str | float) -> dict[str, Array]:
     wanted = [f"{zone}.air_temperature" for zone in building.zones]
-    wanted += [f"{name}.{plant}_load" for name, zone in building.zones.items() for plant in zone.loads]
-    return _march(building, climate, step, wanted)[0]
+    wanted += [f"{name}.{load}_load" for name, zone in building.zones.items() for load in zone.loads]
+    return _simulate(building, climate, step, wanted)[0]
 
 
-def _march(
+def _simulate(
     building: Building, climate: Climate, step: str | float, wanted: Iterable[str]
 ) -> tuple[dict[str, Array], float]:
-    """Hourly means over the year by output, and the closure of the ledger."""
+    """Hourly means over the year by output, and the relative energy-balance residual."""
     from datetime import datetime, timedelta
 
     from mascarin.simulation.run import simulate
@@ -143,7 +142,7 @@ def _march(
 
 
 def outputs(case: Case) -> set[str]:
-    """What a case records."""
+    """Return the outputs of a case."""
     wanted = {f"{zone}.air_temperature" for zone in {case.zone, case.floating or case.zone}}
     if case.conditioned:
         wanted.add(f"{case.zone}.cooling_load")
@@ -151,7 +150,7 @@ def outputs(case: Case) -> set[str]:
             wanted.add(f"{case.zone}.heating_load")
     if case.name == "600":
         wanted |= {*ORIENTATIONS.values(), "sky_temperature"}
-    if asked_about_sun(case):
+    if has_solar_quantities(case):
         wanted |= {f"{window}.{kind}" for window in _glass(case) for kind in _SUN}
     return wanted
 
@@ -160,15 +159,15 @@ _SUN: Final = ("incident_solar", "transmitted_solar")
 
 
 def _glass(case: Case) -> list[str]:
-    """Windows whose sun is asked for."""
+    """Windows whose solar radiation is compared."""
     return [window for window in case.windows if window.startswith(facing(case))]
 
 
 def _series(case: Case, hourly: Mapping[str, Array]) -> Iterator[tuple[str, Array]]:
-    """The sun on and through the glass over all panes that are asked for, and everything else as it is."""
+    """Mean solar radiation on and through the compared windows, and all other series."""
     sunny = {f"{window}.{kind}" for window in _glass(case) for kind in _SUN}
     yield from ((name, values) for name, values in hourly.items() if name not in sunny)
-    if asked_about_sun(case):
+    if has_solar_quantities(case):
         onto, through = ([hourly[f"{window}.{kind}"] for window in _glass(case)] for kind in _SUN)
         yield ONTO_GLASS, np.mean(onto, axis=0)
         yield THROUGH_GLASS, np.mean(through, axis=0) / GLASS_AREA

@@ -1,4 +1,4 @@
-"""The weather of Standard 140: which file it is, and how to tell it from another."""
+"""The weather of Standard 140: reading the file and recognizing it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate
 
 FINGERPRINT: Final = "33dade78c566d0930e6b9e92b76bdb279853a01277d0d326ee77ab6df47fcf8a"
-"""SHA-256 of the 8760 hours' numbers. Files that differ in their header alone have the same."""
+"""SHA-256 of the numbers of 8760 hours. Files that differ only in their header have the same one."""
 WHERE: Final = (
     "It is 725650TYCST.epw: Denver International Airport, TMY3, station 725650. It comes with the standard's "
     "accompanying files and with NREL's BESTEST-GSR (github.com/NREL/BESTEST-GSR)"
@@ -23,17 +23,21 @@ _HEADER: Final = 8
 
 
 def read(file: Path | None) -> Climate:
-    """Read the weather, once it is sure that it is the right one.
+    """Read the weather, and refuse other files than that of the standard.
 
     Parameters
     ----------
     file : Path or None
         The EPW file.
 
+    Returns
+    -------
+    Climate
+
     Raises
     ------
     InputError
-        No file was given, it cannot be read, or it holds other weather.
+        No file was given, it cannot be read, or it has other weather.
     """
     from mascarin.weather import Climate
 
@@ -47,13 +51,13 @@ def read(file: Path | None) -> Climate:
         place = climate.site.name if climate.site is not None else "an unknown place"
         raise InputError(
             f"--weather: found '{file}', weather of {place} (fingerprint {found[:12]}); expected that of the "
-            f"standard (fingerprint {FINGERPRINT[:12]}), for which alone the programs' results hold. {WHERE}."
+            f"standard (fingerprint {FINGERPRINT[:12]}), for which the programs were run. {WHERE}."
         )
     return climate
 
 
 def fingerprint(file: Path) -> str:
-    """SHA-256 of the numbers of an EPW file, hour by hour, without header, years and flags."""
+    """Compute SHA-256 of the numbers of an EPW file, hour by hour, without header, years and flags."""
     digest = hashlib.sha256()
     for line in file.read_text(encoding="latin-1").splitlines()[_HEADER:]:
         fields = line.split(",")

@@ -1,7 +1,6 @@
-"""The building file of a case, written from its row of facts.
+"""The building file of a case, written from its row in the catalogue.
 
-``python -m mascarin.verification.bestest.writing`` writes all of them again; a test checks that
-nothing changes.
+``python -m mascarin.verification.bestest.writing`` writes all of them again; a test compares the files.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ _SIDE_SPAN: Final = (1.5, 4.5)
 
 
 def text(case: Case) -> str:
-    """The building file of a case."""
+    """Write the building file of a case as text."""
     parts = [
         _header(case),
         _SITE,
@@ -48,7 +47,7 @@ def text(case: Case) -> str:
 
 
 def write_all() -> None:
-    """Write every building file anew."""
+    """Write every building file again."""
     FOLDER.mkdir(exist_ok=True)
     for case in CASES.values():
         case.file.write_text(text(case), encoding="utf-8")
@@ -206,7 +205,7 @@ def _zones(case: Case) -> str:
         lines.append(f"    gains: {{internal: {{power: {_number(case.gain)}, radiative: 0.6}}}}\n")
     if case.fan:
         lines.append("    ventilation: {fan: {flow: 0.4722, schedule: night}}  # 1700 m3/h of outdoor air\n")
-    lines += _PLANT[case.thermostat]
+    lines += _IDEAL_LOADS[case.thermostat]
     if case.windows and not case.sunspace:
         lines.append(_SUN)
     if case.sunspace:
@@ -221,7 +220,7 @@ def _zones(case: Case) -> str:
 
 _SUN: Final = "    sun: {kind: geometry}\n"
 
-_PLANT: Final = {
+_IDEAL_LOADS: Final = {
     "20,27": ["    heating: {setpoint: 20}\n", "    cooling: {setpoint: 27}\n"],
     "20,20": ["    heating: {setpoint: 20}\n", "    cooling: {setpoint: 20}\n"],
     "setback": ["    heating: {setpoint: {schedule: setback}}\n", "    cooling: {setpoint: 27}\n"],
@@ -250,7 +249,7 @@ def _surfaces(case: Case) -> str:
 def _box(
     case: Case, prefix: str, kind: str, zone: str, span: tuple[float, float], walls: Sequence[str]
 ) -> Iterator[str]:
-    """Walls, roof and floor around a zone between two ordinates."""
+    """Walls, roof and floor around a zone between two north-south coordinates."""
     south, north = span
     corners = {
         "south": ((0.0, south), (WIDTH, south)),
@@ -259,7 +258,7 @@ def _box(
         "west": ((0.0, north), (0.0, south)),
     }
     outside = _weather(case, "rough")
-    inside = _room(case, zone)
+    inside = _inside(case, zone)
     anchors = f"&{prefix}outside ", f"&{prefix}inside "
     for wall in walls:
         (x0, y0), (x1, y1) = corners[wall]
@@ -276,7 +275,7 @@ def _box(
 
 def _common_wall(case: Case) -> Iterator[str]:
     outline = [(0.0, 0.0, 0.0), (WIDTH, 0.0, 0.0), (WIDTH, 0.0, HEIGHT), (0.0, 0.0, HEIGHT)]
-    yield from _surface("common_wall", "common_wall", outline, _room(case, "sunspace"), "*back_inside")
+    yield from _surface("common_wall", "common_wall", outline, _inside(case, "sunspace"), "*back_inside")
 
 
 def _panels(case: Case) -> Iterator[str]:
@@ -305,14 +304,14 @@ def _weather(case: Case, roughness: str) -> str:
 
 
 def _underside(case: Case) -> str:
-    """A raised floor: outdoor air, neither sun nor wind, surroundings at the temperature of the air."""
+    """A raised floor: outdoor air, no sun, no wind, surroundings at the temperature of the air."""
     return (
         "{outdoors: true, exposure: {sun: false, wind: false, sky: false}, convection: tarp, "
         f"emissivity: {_number(case.emissivity_outside)}}}"
     )
 
 
-def _room(case: Case, zone: str) -> str:
+def _inside(case: Case, zone: str) -> str:
     sun = f", absorptance: {_number(case.absorptance_inside)}" if case.windows and zone != "back" else ""
     return f"{{zone: {zone}, convection: tarp, emissivity: {_number(case.emissivity_inside)}{sun}}}"
 
@@ -321,14 +320,14 @@ def _windows(case: Case) -> str:
     if not case.windows:
         return ""
     lines = ["windows:\n"]
-    faces = (
+    sides = (
         "&pane_outside {convection: {kind: doe2, roughness: very_smooth}}",
         "&pane_inside {convection: iso15099}",
     )
     for name, (surface, outline) in zip(case.windows, _openings(case), strict=True):
         lines.append(f"  {name}:\n    surface: {surface}\n    glazing: clear_double\n")
-        lines.append(f"    vertices: {_points(outline)}\n    outside: {faces[0]}\n    inside: {faces[1]}\n")
-        faces = "*pane_outside", "*pane_inside"
+        lines.append(f"    vertices: {_points(outline)}\n    outside: {sides[0]}\n    inside: {sides[1]}\n")
+        sides = "*pane_outside", "*pane_inside"
     return "".join(lines)
 
 

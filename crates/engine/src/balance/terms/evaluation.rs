@@ -98,7 +98,7 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
         for (end, heat) in ends.into_iter().zip([-heat, heat]) {
             match end {
                 End::Node(node) => self.heat.add_to_node(node, area, heat),
-                // What the environment gives the building gets.
+                // Heat that leaves the environment enters the building.
                 End::Environment { flow, .. } => self.heat.add_to_building(flow, -heat),
             }
         }

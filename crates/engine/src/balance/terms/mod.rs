@@ -9,13 +9,13 @@
 //! - zone air: storage, convection from surfaces, infiltration, ventilation and openings, air paths, convective gains,
 //!   ideal load.
 //!
-//! Laws that are not linear stand as their tangents. [`Balances`] walks all terms and passes each of them to a [`Sink`]:
+//! Nonlinear laws are replaced by their tangents. [`Balances`] goes through all terms and passes each of them to a [`Sink`]:
 //! the residual ([`residual`]), the slopes of the equations (`derivatives`), the linear model (`linear_model`), the energy
-//! ledger ([`booking`]). The run itself solves the same balances by a fast elimination (`linear`, `step`): the only
-//! second copy, held to this one by a test.
+//! ledger ([`heat_flows`]). The run itself solves the same balances by a fast elimination (`linear`, `step`): the only
+//! second copy; a test compares it with this one.
 
-pub(crate) mod booking;
 pub(crate) mod evaluation;
+pub(crate) mod heat_flows;
 pub(crate) mod residual;
 #[cfg(test)]
 mod tests;
@@ -138,6 +138,12 @@ pub(crate) trait Sink<S: Real> {
     /// The terms that follow, up to the next call, belong to a zone.
     #[inline(always)]
     fn begin_zone(&mut self, _zone: usize) {}
+
+    /// Whether the sink takes the radiation between the surfaces of the zone: their pairs are many.
+    #[inline(always)]
+    fn takes_radiation(&self) -> bool {
+        true
+    }
 
     /// A node of constant heat capacity stores `area thickness capacity (T - held) / length` [W].
     fn store_heat(&mut self, node: Node, sizes: [S; 2], capacity: S, held: Held<S>);
@@ -264,10 +270,11 @@ impl<S: Real> Balances<'_, S> {
             let held = stage.held(stage.start.air[z], stage.first.air[z]);
             sink.store_heat(Node::Air(z), [one; 2], numbers.capacity, held);
             let n = zone.surfaces.len();
+            let radiation = !numbers.exchange.is_empty() && sink.takes_radiation();
             for (i, &surface) in zone.surfaces.iter().enumerate() {
                 let ends = [End::Node(Node::Surface(surface)), End::Node(Node::Air(z))];
                 sink.exchange(ends, numbers.areas[i], &self.laws.surfaces[surface].convection);
-                if numbers.exchange.is_empty() {
+                if !radiation {
                     continue;
                 }
                 for (j, &other) in zone.surfaces.iter().enumerate().skip(i + 1) {
@@ -332,7 +339,7 @@ impl<S: Real> Balances<'_, S> {
         }
     }
 
-    /// The sun in panes, and what windows let in, less what is lost through them again and what panes absorb of it.
+    /// The sun absorbed in panes, and the sun that windows transmit, less what leaves through them again or is absorbed in panes.
     #[inline(always)]
     pub(crate) fn windows(&self, sink: &mut impl Sink<S>) {
         if self.model.plan.windows.is_empty() {

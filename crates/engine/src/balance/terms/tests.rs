@@ -12,12 +12,13 @@ const OUTDOOR: f64 = -4.0;
 const IMPOSED: f64 = 21.0;
 
 /// A wall of a resistance between outdoor air and an imposed temperature, with convection to it or held at it.
-fn wall(resistance: f64, films: [Option<f64>; 2]) -> Plan {
+fn wall(resistance: f64, coefficients: [Option<f64>; 2]) -> Plan {
     let mut b = Builder::new();
     let material = b.resistance("insulation", resistance);
     let construction = b.construction("wall", &[(material, 0.0, 0)]);
     let channel = b.channel("imposed");
-    let [outer, inner] = films.map(|film| film.map(|film| b.film(film)));
+    let [outer, inner] =
+        coefficients.map(|coefficient| coefficient.map(|coefficient| b.convection(coefficient)));
     let mut outside = b.outdoors(outer.unwrap(), 0.9, 0.0);
     outside.longwave = OutdoorLongwave::None;
     b.surface("wall", construction, [AREA, 90.0, 0.0], outside, facing(Facing::Measured { channel }, inner));
@@ -58,9 +59,9 @@ fn at(plan: &Plan, surfaces: [f64; 2]) -> ([f64; 2], [f64; 2]) {
 #[test]
 fn a_wall_between_two_temperatures_conducts_its_u_value() {
     const RESISTANCE: f64 = 0.8;
-    for films in [[Some(20.0), Some(7.0)], [Some(20.0), None]] {
-        let plan = wall(RESISTANCE, films);
-        let [outer, inner] = films.map(|film| film.unwrap_or(f64::INFINITY));
+    for coefficients in [[Some(20.0), Some(7.0)], [Some(20.0), None]] {
+        let plan = wall(RESISTANCE, coefficients);
+        let [outer, inner] = coefficients.map(|coefficient| coefficient.unwrap_or(f64::INFINITY));
         let density = (IMPOSED - OUTDOOR) / (1.0 / outer + RESISTANCE + 1.0 / inner);
         let surfaces = [OUTDOOR + density / outer, IMPOSED - density / inner];
         let (residual, [convection, imposed]) = at(&plan, surfaces);
@@ -73,11 +74,11 @@ fn a_wall_between_two_temperatures_conducts_its_u_value() {
 /// One kelvin too warm, a surface loses `h + 1/R` more than it gets [W/m2].
 #[test]
 fn the_residual_is_the_missing_heat() {
-    let (resistance, films) = (0.5, [20.0, 7.0]);
-    let plan = wall(resistance, films.map(Some));
-    let density = (IMPOSED - OUTDOOR) / (1.0 / films[0] + resistance + 1.0 / films[1]);
-    let surfaces = [OUTDOOR + density / films[0] + 1.0, IMPOSED - density / films[1]];
+    let (resistance, coefficients) = (0.5, [20.0, 7.0]);
+    let plan = wall(resistance, coefficients.map(Some));
+    let density = (IMPOSED - OUTDOOR) / (1.0 / coefficients[0] + resistance + 1.0 / coefficients[1]);
+    let surfaces = [OUTDOOR + density / coefficients[0] + 1.0, IMPOSED - density / coefficients[1]];
     let ([outside, inside], _) = at(&plan, surfaces);
-    assert!((outside + films[0] + 1.0 / resistance).abs() < 1e-11, "{outside}");
+    assert!((outside + coefficients[0] + 1.0 / resistance).abs() < 1e-11, "{outside}");
     assert!((inside - 1.0 / resistance).abs() < 1e-11, "{inside}");
 }

@@ -1,7 +1,7 @@
 //! The equations of a front: heat balances of its surfaces [W] and of its air, the exterior surfaces eliminated.
 
 use crate::number::line::Line;
-use crate::number::real::{Abreast, Real};
+use crate::number::real::{Chunk, Real};
 
 use super::front::ZoneFront;
 use super::layout::{Elimination, Layout};
@@ -9,9 +9,9 @@ use super::layout::{Elimination, Layout};
 impl<S: Real> ZoneFront<S> {
     /// Eliminates the exterior surfaces, and sums up what acts on the surfaces of the zone and on its air.
     #[inline(always)]
-    pub(super) fn assemble<V: Abreast<S>>(&mut self, elimination: Elimination) {
+    pub(super) fn assemble<V: Chunk<S>>(&mut self, elimination: Elimination) {
         let Layout { surfaces, eliminated, .. } = self.layout;
-        for start in (0..surfaces).step_by(S::SIDE) {
+        for start in (0..surfaces).step_by(S::CHUNK) {
             let (mut gain, mut right) = (V::zero(), part!(self.heat, start));
             if start < eliminated {
                 let from_walls: (V, V) = self.exterior.eliminate(elimination, start);
@@ -30,14 +30,14 @@ impl<S: Real> ZoneFront<S> {
     /// Adds convection and emission of the surfaces of one register. `gain`: heat from the wall by the surface's temperature
     /// [W/K], `right`: by nothing in the zone [W].
     #[inline(always)]
-    fn assemble_register<V: Abreast<S>>(
+    fn assemble_register<V: Chunk<S>>(
         &mut self,
         elimination: Elimination,
         start: usize,
         gain: V,
         mut right: V,
     ) {
-        let places = start..start + S::SIDE;
+        let places = start..start + S::CHUNK;
         let (laws, equations) = (&self.laws, &mut self.equations);
         let convection: Line<V> = laws.convection_at(start);
         let area: V = part!(self.area, start);

@@ -4,7 +4,7 @@
 //! once, all rows above are subtracted, and it is stored. Of the symmetric part only the upper triangle is computed; the row
 //! of the air is not symmetric (surfaces count by emission there) and is kept apart. The matrix is an M-matrix: no pivoting.
 
-use crate::number::real::{Abreast, Real};
+use crate::number::real::{Chunk, Real};
 
 use super::equations::Equations;
 use super::layout::Layout;
@@ -37,13 +37,13 @@ impl<S: Real> Factors<S> {
 
     /// Assembles a front and eliminates its surfaces.
     #[inline(always)]
-    pub(super) fn eliminate<V: Abreast<S>>(&mut self, equations: &Equations<S>, layout: &Layout) {
+    pub(super) fn eliminate<V: Chunk<S>>(&mut self, equations: &Equations<S>, layout: &Layout) {
         // A constant: no code is compiled for the fixed sizes.
-        if const { !S::REGISTERS } {
+        if const { !S::IN_REGISTERS } {
             return self.eliminate_any(equations, layout);
         }
-        let registers = layout.stride / S::SIDE;
-        if const { S::SIDE > 1 } {
+        let registers = layout.stride / S::CHUNK;
+        if const { S::CHUNK > 1 } {
             return match registers {
                 1 => self.eliminate_fixed::<V, 1>(equations, layout),
                 2 => self.eliminate_fixed::<V, 2>(equations, layout),
@@ -69,43 +69,43 @@ impl<S: Real> Factors<S> {
     /// Rows of `C` registers, which stay there while they are computed.
     #[allow(clippy::absurd_extreme_comparisons, reason = "only the first number is the smallest")]
     #[inline(always)]
-    fn eliminate_fixed<V: Abreast<S>, const C: usize>(&mut self, equations: &Equations<S>, layout: &Layout) {
-        let (surfaces, eliminated, stride) = (layout.surfaces, layout.eliminated, C * S::SIDE);
+    fn eliminate_fixed<V: Chunk<S>, const C: usize>(&mut self, equations: &Equations<S>, layout: &Layout) {
+        let (surfaces, eliminated, stride) = (layout.surfaces, layout.eliminated, C * S::CHUNK);
         let equations = View::new(equations, stride);
         let rows = &mut self.rows[..stride * stride];
         let (inverse_pivots, below) = (&mut self.inverse_pivots[..stride], &mut self.below[..stride]);
         let mut air: [V; C] = air_row(&equations, surfaces);
         each!(I, 'rows: {
-            if const { I + 1 >= C * S::SIDE } {
+            if const { I + 1 >= C * S::CHUNK } {
                 break 'rows;
             }
             if I >= surfaces {
                 break 'rows;
             }
-            let first = I / S::SIDE;
+            let first = I / S::CHUNK;
             let mut row: [V; C] = surface_row(&equations, layout, I);
             let last = if I < eliminated { I } else { eliminated };
             for (above, &inverse) in rows.chunks_exact(stride).zip(&*inverse_pivots).take(last) {
-                let factor = V::everywhere(above[I] * inverse);
+                let factor = V::filled(above[I] * inverse);
                 for c in first..C {
-                    row[c] = row[c] - factor * V::load(&above[c * S::SIDE..(c + 1) * S::SIDE]);
+                    row[c] = row[c] - factor * V::load(&above[c * S::CHUNK..(c + 1) * S::CHUNK]);
                 }
             }
             for c in first..C {
-                row[c].store(&mut rows[I * stride + c * S::SIDE..][..S::SIDE]);
+                row[c].store(&mut rows[I * stride + c * S::CHUNK..][..S::CHUNK]);
             }
             if I < eliminated {
-                let inverse = S::one() / row[first].spread(I % S::SIDE).first();
+                let inverse = S::one() / row[first].broadcast(I % S::CHUNK).first();
                 inverse_pivots[I] = inverse;
-                let entry = air[first].spread(I % S::SIDE);
+                let entry = air[first].broadcast(I % S::CHUNK);
                 below[I] = entry.first();
-                let factor = entry * V::everywhere(inverse);
+                let factor = entry * V::filled(inverse);
                 for c in first..C {
                     air[c] = air[c] - factor * row[c];
                 }
             }
         });
-        for (&entry, numbers) in air.iter().zip(rows[surfaces * stride..].chunks_exact_mut(S::SIDE)) {
+        for (&entry, numbers) in air.iter().zip(rows[surfaces * stride..].chunks_exact_mut(S::CHUNK)) {
             entry.store(numbers);
         }
     }
@@ -171,7 +171,7 @@ impl<'e, S> View<'e, S> {
 
 /// The row of the air, by emissions.
 #[inline(always)]
-fn air_row<S: Real, V: Abreast<S>, const C: usize>(equations: &View<'_, S>, surfaces: usize) -> [V; C] {
+fn air_row<S: Real, V: Chunk<S>, const C: usize>(equations: &View<'_, S>, surfaces: usize) -> [V; C] {
     let mut air: [V; C] = load_row(equations.to_air_by_emission, 0);
     for entry in &mut air {
         *entry = -*entry;
@@ -184,15 +184,15 @@ fn air_row<S: Real, V: Abreast<S>, const C: usize>(equations: &View<'_, S>, surf
 /// The row of a surface, from the register of its diagonal on. Retained surfaces have nothing but their exchange here: the
 /// rest is assembled in the coupled system.
 #[inline(always)]
-fn surface_row<S: Real, V: Abreast<S>, const C: usize>(
+fn surface_row<S: Real, V: Chunk<S>, const C: usize>(
     equations: &View<'_, S>,
     layout: &Layout,
     i: usize,
 ) -> [V; C] {
-    let (stride, first) = (C * S::SIDE, i / S::SIDE);
+    let (stride, first) = (C * S::CHUNK, i / S::CHUNK);
     let mut row: [V; C] = load_row(&equations.exchange[i * stride..], first);
     if i < layout.eliminated {
-        row[first] += V::alone(equations.diagonal[i], i % S::SIDE);
+        row[first] += V::single(equations.diagonal[i], i % S::CHUNK);
         add_at(&mut row, layout.surfaces, -equations.to_air[i]);
         add_at(&mut row, layout.surfaces + 1, equations.right[i]);
     }
@@ -201,21 +201,21 @@ fn surface_row<S: Real, V: Abreast<S>, const C: usize>(
 
 /// A row from some register on, zeros before.
 #[inline(always)]
-fn load_row<S: Real, V: Abreast<S>, const C: usize>(numbers: &[S], first: usize) -> [V; C] {
-    let numbers = &numbers[..C * S::SIDE];
+fn load_row<S: Real, V: Chunk<S>, const C: usize>(numbers: &[S], first: usize) -> [V; C] {
+    let numbers = &numbers[..C * S::CHUNK];
     let mut row = [V::zero(); C];
     for c in first..C {
-        row[c] = V::load(&numbers[c * S::SIDE..(c + 1) * S::SIDE]);
+        row[c] = V::load(&numbers[c * S::CHUNK..(c + 1) * S::CHUNK]);
     }
     row
 }
 
 /// Adds a number to a row at a column.
 #[inline(always)]
-fn add_at<S: Real, V: Abreast<S>, const C: usize>(row: &mut [V; C], column: usize, value: S) {
-    let value = V::alone(value, column % S::SIDE);
+fn add_at<S: Real, V: Chunk<S>, const C: usize>(row: &mut [V; C], column: usize, value: S) {
+    let value = V::single(value, column % S::CHUNK);
     for (c, entry) in row.iter_mut().enumerate() {
-        if c == column / S::SIDE {
+        if c == column / S::CHUNK {
             *entry += value;
         }
     }

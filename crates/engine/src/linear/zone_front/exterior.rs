@@ -1,13 +1,13 @@
 //! The exterior surfaces of the walls in a front: eliminated first, each onto the interior surface of its wall.
 //!
 //! With all laws as straight lines its balance holds for `T = offset + slope T_interior`. This is
-//! [`surface_balance`](crate::linear::surface_balance) for many walls side by side.
+//! [`surface_balance`](crate::linear::surface_balance) for many walls at once.
 
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::line::Line;
-use crate::number::real::{Abreast, Real};
+use crate::number::real::{Chunk, Real};
 use crate::physics::longwave::Emission;
 use crate::weather::conditions::Conditions;
 
@@ -116,8 +116,8 @@ impl<S: Real> Exterior<S> {
     /// Eliminates the surfaces of one register: heat into the interior surfaces by their own temperature [W/K] and at 0 degC
     /// [W], the former only with a matrix.
     #[inline(always)]
-    pub(super) fn eliminate<V: Abreast<S>>(&mut self, elimination: Elimination, start: usize) -> (V, V) {
-        let places = start..start + S::SIDE;
+    pub(super) fn eliminate<V: Chunk<S>>(&mut self, elimination: Elimination, start: usize) -> (V, V) {
+        let places = start..start + S::CHUNK;
         let (convection, emission): (Line<V>, Line<V>) =
             (self.laws.convection_at(start), self.laws.emission_at(start));
         let air: V = part!(self.laws.air, start);
@@ -142,7 +142,7 @@ impl<S: Real> Exterior<S> {
 
     /// Temperatures of the surfaces of one register from those of the interior surfaces.
     #[inline(always)]
-    pub(super) fn temperatures<V: Abreast<S>>(&self, interior: V, start: usize) -> V {
+    pub(super) fn temperatures<V: Chunk<S>>(&self, interior: V, start: usize) -> V {
         part!(self.line[0], start) + part!(self.line[1], start) * interior
     }
 

@@ -40,7 +40,7 @@ pub(super) struct Influence<S> {
     pub(super) of_right: Vec<S>,
     /// By retained unknown (rows): temperatures of the eliminated surfaces.
     pub(super) of_retained: Vec<S>,
-    /// Influence of the right-hand side at hand.
+    /// Influence of the current right-hand side.
     pub(super) applied: Vec<S>,
 }
 
@@ -67,7 +67,7 @@ impl<S: Real> ZoneFront<S> {
         let layout = Layout {
             surfaces: surfaces.len(),
             eliminated,
-            stride: (surfaces.len() + 2).next_multiple_of(S::SIDE),
+            stride: (surfaces.len() + 2).next_multiple_of(S::CHUNK),
             first_row: order.first().map_or(0, |&i| of_plan.surface_rows[i]),
             retained_rows: retained.chain([of_plan.air_row]).collect(),
             walls: surfaces[..eliminated].to_vec(),

@@ -6,7 +6,7 @@ use crate::building::plan::Plan;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
 use crate::linear::unknowns::Unknowns;
-use crate::number::real::{Abreast, Real, Task};
+use crate::number::real::{Chunk, ChunkTask, Real};
 use crate::weather::conditions::Conditions;
 
 use super::front::ZoneFront;
@@ -27,10 +27,10 @@ pub(super) struct Eliminate<'r, S: Real> {
     pub(super) constant: bool,
 }
 
-impl<S: Real> Task<S> for Eliminate<'_, S> {
+impl<S: Real> ChunkTask<S> for Eliminate<'_, S> {
     type Output = ();
     #[inline(always)]
-    fn run<V: Abreast<S>>(self) {
+    fn run<V: Chunk<S>>(self) {
         for (zone, front) in self.zone_fronts.iter_mut().enumerate() {
             if let Some(iterate) = self.iterate {
                 if front.laws.convection_is_nonlinear() {
@@ -65,10 +65,10 @@ pub(super) struct Solve<'r, S: Real> {
     pub(super) surfaces: &'r mut [S],
 }
 
-impl<S: Real> Task<S> for Solve<'_, S> {
+impl<S: Real> ChunkTask<S> for Solve<'_, S> {
     type Output = ();
     #[inline(always)]
-    fn run<V: Abreast<S>>(self) {
+    fn run<V: Chunk<S>>(self) {
         for front in self.zone_fronts {
             front.solve::<V>(self.constant, self.unknowns, self.surfaces);
         }
@@ -115,7 +115,12 @@ impl<S: Real> ZoneFronts<S> {
         S::vectorised(
             #[inline(always)]
             || {
-                S::abreast(Eliminate { zone_fronts: &mut self.zone_fronts, iterate, elimination, constant });
+                S::in_chunks(Eliminate {
+                    zone_fronts: &mut self.zone_fronts,
+                    iterate,
+                    elimination,
+                    constant,
+                });
                 for zone_front in &self.zone_fronts {
                     zone_front.add_schur_complement(elimination, constant, coupled);
                 }
@@ -128,7 +133,7 @@ impl<S: Real> ZoneFronts<S> {
     pub(crate) fn solve(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
         S::vectorised(
             #[inline(always)]
-            || S::abreast(Solve { zone_fronts: &mut self.zone_fronts, constant, unknowns, surfaces }),
+            || S::in_chunks(Solve { zone_fronts: &mut self.zone_fronts, constant, unknowns, surfaces }),
         );
     }
 

@@ -1,14 +1,14 @@
 //! The laws of several surfaces, linearised: convection and emission as straight lines.
 //!
-//! Numbers stand by the place of their surface in the front, so that neighbouring surfaces are computed together, as many as
-//! fill a register ([`Abreast`]). A register may hold surfaces of several correlations: each correlation is computed for all
+//! Arrays are in the order of the surfaces in the front, so that neighbouring surfaces are computed together, as many as
+//! fill a register ([`Chunk`]). A register may hold surfaces of several correlations: each correlation is computed for all
 //! of them, and a flag selects those that it belongs to.
 
 use crate::building::coefficients::Coefficients;
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::line::Line;
-use crate::number::real::{Abreast, Real};
+use crate::number::real::{Chunk, Real};
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::Emission;
 use crate::weather::conditions::Conditions;
@@ -69,7 +69,7 @@ impl<S: Real> Laws<S> {
             [all.emission[0][i], all.emission[1][i]] =
                 [laws[surface].emission.offset, laws[surface].emission.slope];
         }
-        all.places.resize(count.next_multiple_of(S::SIDE), all.places.first().copied().unwrap_or(0));
+        all.places.resize(count.next_multiple_of(S::CHUNK), all.places.first().copied().unwrap_or(0));
         all
     }
 
@@ -124,8 +124,8 @@ impl<S: Real> Laws<S> {
         let nonlinear = |surface: SurfaceId| convection(surface).filter(|convection| !convection.straight());
         let padded: Vec<_> = self.places.iter().map(|&place| SurfaceId::from_index(place)).collect();
         let (mut groups, mut fourth_power) = (Vec::new(), Vec::new());
-        for (chunk, surfaces) in padded.chunks(S::SIDE).enumerate() {
-            let start = chunk * S::SIDE;
+        for (chunk, surfaces) in padded.chunks(S::CHUNK).enumerate() {
+            let start = chunk * S::CHUNK;
             groups.extend(self.groups(numbers, start, surfaces, &nonlinear));
             if surfaces.iter().any(|&surface| radiates(surface)) {
                 fourth_power.push((start, self.flags(start, surfaces, &radiates)));
@@ -184,11 +184,11 @@ impl<S: Real> Laws<S> {
 
     /// Replaces the nonlinear laws by their tangents at the temperatures of an iterate.
     #[inline(always)]
-    pub(super) fn linearise<V: Abreast<S>>(&mut self, temperatures: &[S]) {
+    pub(super) fn linearise<V: Chunk<S>>(&mut self, temperatures: &[S]) {
         let half = V::constant(0.5);
         for group in &self.nonlinear {
             let start = group.start;
-            let temperature = V::pick(temperatures, &self.places[start..start + S::SIDE]);
+            let temperature = V::gather(temperatures, &self.places[start..start + S::CHUNK]);
             let difference = temperature - part!(self.air, start);
             let forced = [part!(self.forced[0], start), part!(self.forced[1], start)];
             let flux = group.convection.flux_of(
@@ -203,7 +203,7 @@ impl<S: Real> Laws<S> {
             store(line, members, &mut self.convection, start);
         }
         for (start, members) in &self.fourth_power {
-            let temperature = V::pick(temperatures, &self.places[*start..*start + S::SIDE]);
+            let temperature = V::gather(temperatures, &self.places[*start..*start + S::CHUNK]);
             let (value, slope) = Emission::Exact.at(temperature);
             let line = Line::tangent(value, slope, temperature);
             store(line, half.lt(V::load(members)), &mut self.emission, *start);
@@ -237,24 +237,24 @@ impl<S: Real> Laws<S> {
 
     /// The convection of the surfaces of one register.
     #[inline(always)]
-    pub(super) fn convection_at<V: Abreast<S>>(&self, start: usize) -> Line<V> {
+    pub(super) fn convection_at<V: Chunk<S>>(&self, start: usize) -> Line<V> {
         Line { offset: part!(self.convection[0], start), slope: part!(self.convection[1], start) }
     }
 
     /// The emission of the surfaces of one register.
     #[inline(always)]
-    pub(super) fn emission_at<V: Abreast<S>>(&self, start: usize) -> Line<V> {
+    pub(super) fn emission_at<V: Chunk<S>>(&self, start: usize) -> Line<V> {
         Line { offset: part!(self.emission[0], start), slope: part!(self.emission[1], start) }
     }
 }
 
 /// Stores lines as offsets and slopes from a place on, where a flag is set.
 #[inline(always)]
-fn store<S: Real, V: Abreast<S>>(line: Line<V>, flag: V::Mask, lines: &mut [Vec<S>; 2], start: usize) {
+fn store<S: Real, V: Chunk<S>>(line: Line<V>, flag: V::Mask, lines: &mut [Vec<S>; 2], start: usize) {
     let [offset, slope] = lines;
     for (numbers, new) in [(offset, line.offset), (slope, line.slope)] {
-        let numbers = &mut numbers[start..start + S::SIDE];
-        let new = if S::SIDE == 1 { new } else { V::select(flag, new, V::load(numbers)) };
+        let numbers = &mut numbers[start..start + S::CHUNK];
+        let new = if S::CHUNK == 1 { new } else { V::select(flag, new, V::load(numbers)) };
         new.store(numbers);
     }
 }

@@ -1,11 +1,11 @@
-//! The unknowns of a front: which are eliminated, which are retained, and where they stand.
+//! The unknowns of a front: which are eliminated, which are retained, and their rows.
 
 use crate::building::ids::SurfaceId;
 
-/// The unknowns of a front and where they stand.
+/// The unknowns of a front and their rows.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
-    /// Number of surfaces, the eliminated ones first. The air stands behind them, then the right-hand side.
+    /// Number of surfaces, the eliminated ones first. The air comes after them, then the right-hand side.
     pub(super) surfaces: usize,
     /// Number of eliminated surfaces.
     pub(super) eliminated: usize,

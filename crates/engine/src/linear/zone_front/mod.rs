@@ -10,12 +10,12 @@
 //! and the temperature of its air. Surfaces are then coupled by exchange areas, which never change and are symmetric: only
 //! the diagonal is assembled, and half of the elimination is saved. A zone without long-wave exchange has `E = T`.
 //!
-//! All numbers stand by their place in the front, so that neighbours are computed together ([`Abreast`](crate::number::real::Abreast)).
+//! All arrays are in the order of the front, so that neighbours are computed together ([`Chunk`](crate::number::real::Chunk)).
 
 /// The numbers from a place on that fill a register.
 macro_rules! part {
     ($line:expr, $start:expr) => {
-        V::load(&$line[$start..$start + S::SIDE])
+        V::load(&$line[$start..$start + S::CHUNK])
     };
 }
 

@@ -5,7 +5,7 @@
 
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::product::{PlainMatrix, Product, SameKind};
-use crate::number::real::{Abreast, Real};
+use crate::number::real::{Chunk, Real};
 
 use super::front::ZoneFront;
 use super::layout::{Elimination, Layout};
@@ -38,17 +38,17 @@ impl<S: Real> ZoneFront<S> {
         }
     }
 
-    /// Influence of the right-hand side at hand, where the matrix is constant.
+    /// Influence of the current right-hand side, where the matrix is constant.
     #[inline(always)]
-    pub(super) fn apply_influence<V: Abreast<S>>(&mut self) {
+    pub(super) fn apply_influence<V: Chunk<S>>(&mut self) {
         let Layout { surfaces, eliminated, stride, .. } = self.layout;
-        for start in (0..=surfaces).step_by(S::SIDE) {
+        for start in (0..=surfaces).step_by(S::CHUNK) {
             let mut sum = V::zero();
             let lines = self.influence.of_right.chunks_exact(stride);
             for (line, &right) in lines.zip(&self.equations.right).take(eliminated) {
-                sum += V::load(&line[start..start + S::SIDE]) * V::everywhere(right);
+                sum += V::load(&line[start..start + S::CHUNK]) * V::filled(right);
             }
-            sum.store(&mut self.influence.applied[start..start + S::SIDE]);
+            sum.store(&mut self.influence.applied[start..start + S::CHUNK]);
         }
     }
 
@@ -100,7 +100,7 @@ impl<S: Real> ZoneFront<S> {
     /// Temperatures of the eliminated surfaces and of the exterior surfaces of their walls, once the retained unknowns are
     /// known.
     #[inline(always)]
-    pub(super) fn solve<V: Abreast<S>>(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
+    pub(super) fn solve<V: Chunk<S>>(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
         if constant {
             self.solve_by_influence::<V>(unknowns);
         } else {
@@ -113,21 +113,21 @@ impl<S: Real> ZoneFront<S> {
 
     /// Temperatures of the eliminated surfaces in place of their right-hand sides, where the matrix is constant.
     #[inline(always)]
-    fn solve_by_influence<V: Abreast<S>>(&mut self, unknowns: &[S]) {
+    fn solve_by_influence<V: Chunk<S>>(&mut self, unknowns: &[S]) {
         let Layout { eliminated, stride, retained_rows, .. } = &self.layout;
-        for start in (0..*eliminated).step_by(S::SIDE) {
-            let mut sum = V::load(&self.influence.applied[start..start + S::SIDE]);
+        for start in (0..*eliminated).step_by(S::CHUNK) {
+            let mut sum = V::load(&self.influence.applied[start..start + S::CHUNK]);
             let lines = self.influence.of_retained[eliminated * stride..].chunks_exact(*stride);
             for (line, &row) in lines.zip(retained_rows) {
-                sum += V::load(&line[start..start + S::SIDE]) * V::everywhere(unknowns[row]);
+                sum += V::load(&line[start..start + S::CHUNK]) * V::filled(unknowns[row]);
             }
-            sum.store(&mut self.equations.right[start..start + S::SIDE]);
+            sum.store(&mut self.equations.right[start..start + S::CHUNK]);
         }
     }
 
     /// The same by back substitution, from the last surface to the first.
     #[inline(always)]
-    fn solve_by_factors<V: Abreast<S>>(&mut self, unknowns: &[S]) {
+    fn solve_by_factors<V: Chunk<S>>(&mut self, unknowns: &[S]) {
         let Self { layout, laws, equations, factors, scratch: emissions, .. } = self;
         let Layout { surfaces, eliminated, stride, .. } = *layout;
         let retained = emissions[eliminated..=surfaces].iter_mut().zip(&layout.retained_rows);
@@ -144,27 +144,27 @@ impl<S: Real> ZoneFront<S> {
             }
             emissions[k] = sum * inverse;
         }
-        for start in (0..eliminated).step_by(S::SIDE) {
+        for start in (0..eliminated).step_by(S::CHUNK) {
             let temperature: V = (part!(emissions, start) - part!(laws.emission[0], start))
                 * part!(equations.inverse_slope, start);
-            temperature.store(&mut equations.right[start..start + S::SIDE]);
+            temperature.store(&mut equations.right[start..start + S::CHUNK]);
         }
     }
 
     /// Writes the eliminated surfaces and the exterior surfaces of their walls to the surfaces of the building.
     #[inline(always)]
-    fn write_surfaces<V: Abreast<S>>(&mut self, surfaces: &mut [S]) {
+    fn write_surfaces<V: Chunk<S>>(&mut self, surfaces: &mut [S]) {
         let interior = &self.equations.right;
-        for start in (0..self.layout.eliminated).step_by(S::SIDE) {
+        for start in (0..self.layout.eliminated).step_by(S::CHUNK) {
             let exterior: V = self.exterior.temperatures(part!(interior, start), start);
-            exterior.store(&mut self.scratch[start..start + S::SIDE]);
+            exterior.store(&mut self.scratch[start..start + S::CHUNK]);
         }
         for ((&surface, &interior), &exterior) in self.layout.walls.iter().zip(interior).zip(&self.scratch) {
             (surfaces[surface.index()], surfaces[surface.opposite().index()]) = (interior, exterior);
         }
     }
 
-    /// Eliminates the surfaces from another right-hand side; `place` is where an unknown of the front stands in it.
+    /// Eliminates the surfaces from another right-hand side; `place` is the position of an unknown of the front in it.
     #[inline(always)]
     pub(super) fn forward<P: Product<S, R>, R: Real>(
         &self,

@@ -15,7 +15,7 @@ use crate::linear::surface_balance::SurfaceLaws;
 use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
 use crate::number::dual::Dual;
 use crate::number::line::Line;
-use crate::number::real::{Abreast, Real, Task};
+use crate::number::real::{Chunk, ChunkTask, Real};
 use crate::number::simd::{LaneTask, Level, WIDTH, run};
 
 /// What the rest of the building does to each retained unknown: a conductance to 0 degC [W/K], and heat [W].
@@ -29,7 +29,7 @@ fn front<S: Real>(surfaces: usize, eliminated: usize, nonlinear: bool) -> ZoneFr
     let layout = Layout {
         surfaces,
         eliminated,
-        stride: (surfaces + 2).next_multiple_of(S::SIDE),
+        stride: (surfaces + 2).next_multiple_of(S::CHUNK),
         first_row: 0,
         retained_rows: (eliminated..=surfaces).collect(),
         walls: ids[..eliminated].to_vec(),
@@ -87,7 +87,7 @@ fn solve<S: Real>(
         coupled.right[row] += S::constant(WARMTH);
     }
     let zone_fronts = core::slice::from_mut(zone);
-    S::abreast(Eliminate { zone_fronts, iterate: None, elimination, constant });
+    S::in_chunks(Eliminate { zone_fronts, iterate: None, elimination, constant });
     zone_fronts[0].add_schur_complement(elimination, constant, coupled);
     if elimination == Elimination::Full {
         coupled.keep_matrix();
@@ -96,7 +96,7 @@ fn solve<S: Real>(
     coupled.begin();
     coupled.solve_rest();
     let mut surfaces = vec![S::zero(); 2 * zone_fronts[0].layout.eliminated];
-    S::abreast(Solve { zone_fronts, constant, unknowns: &mut coupled.right, surfaces: &mut surfaces });
+    S::in_chunks(Solve { zone_fronts, constant, unknowns: &mut coupled.right, surfaces: &mut surfaces });
     let exterior = surfaces.chunks_exact(2).map(|pair| pair[0]);
     coupled.right.iter().copied().chain(exterior).collect()
 }
@@ -205,9 +205,9 @@ struct EliminateBoth<'f, S> {
     front: &'f ZoneFront<S>,
 }
 
-impl<S: Real> Task<S> for EliminateBoth<'_, S> {
+impl<S: Real> ChunkTask<S> for EliminateBoth<'_, S> {
     type Output = [Factors<S>; 2];
-    fn run<V: Abreast<S>>(self) -> [Factors<S>; 2] {
+    fn run<V: Chunk<S>>(self) -> [Factors<S>; 2] {
         let ZoneFront { equations, layout, .. } = self.front;
         let [mut fixed, mut any] = [(); 2].map(|()| Factors::new(layout.stride));
         fixed.eliminate::<V>(equations, layout);
@@ -241,13 +241,13 @@ fn rows_in_registers_have_the_bits_of_rows_of_any_length() {
                 let mut front = front::<S>(surfaces, eliminated, nonlinear);
                 solve(&mut front, &mut coupled, Elimination::Full, false);
                 // Solving leaves temperatures in place of the right-hand side.
-                S::abreast(Eliminate {
+                S::in_chunks(Eliminate {
                     zone_fronts: core::slice::from_mut(&mut front),
                     iterate: None,
                     elimination: Elimination::Full,
                     constant: false,
                 });
-                let [fixed, any] = S::abreast(EliminateBoth { front: &front });
+                let [fixed, any] = S::in_chunks(EliminateBoth { front: &front });
                 let context = format!("{surfaces} surfaces, {eliminated} eliminated, nonlinear {nonlinear}");
                 assert_eq!(bits(&front, &fixed), bits(&front, &any), "{context}");
                 assert_eq!(bits(&front, &front.factors), bits(&front, &any), "{context}");

@@ -1,12 +1,12 @@
-//! Neighbouring plain numbers of an array, eight at once: in registers, or in an array where the machine has none that
-//! this module knows.
+//! Neighbouring plain numbers, eight at once: in vector registers, or in an array on machines without registers that this
+//! module knows.
 
 use super::WIDTH;
 use crate::number::lanes::Lanes;
-use crate::number::real::{Abreast, Real};
+use crate::number::real::{Chunk, Real};
 
-/// One in one place, zero in all others.
-static ALONE: [[f64; WIDTH]; WIDTH] = {
+/// Rows of the unit matrix.
+static UNIT: [[f64; WIDTH]; WIDTH] = {
     let mut rows = [[0.0; WIDTH]; WIDTH];
     let mut place = 0;
     while place < WIDTH {
@@ -16,10 +16,10 @@ static ALONE: [[f64; WIDTH]; WIDTH] = {
     rows
 };
 
-/// Plain numbers side by side in lanes of some kind.
-macro_rules! side_by_side {
+/// Makes a kind of lanes a chunk of plain numbers.
+macro_rules! chunk {
     ($kind:ty, |$numbers:ident| $make:expr, |$value:ident| $take:expr) => {
-        impl Abreast<f64> for $kind {
+        impl Chunk<f64> for $kind {
             #[inline(always)]
             fn load(numbers: &[f64]) -> Self {
                 let mut $numbers = [0.0; WIDTH];
@@ -32,15 +32,15 @@ macro_rules! side_by_side {
                 numbers[..WIDTH].copy_from_slice(&$take);
             }
             #[inline(always)]
-            fn everywhere(number: f64) -> Self {
+            fn filled(number: f64) -> Self {
                 Self::constant(number)
             }
             #[inline(always)]
-            fn alone(number: f64, place: usize) -> Self {
-                Self::load(&ALONE[place]) * Self::constant(number)
+            fn single(number: f64, place: usize) -> Self {
+                Self::load(&UNIT[place]) * Self::constant(number)
             }
             #[inline(always)]
-            fn spread(self, place: usize) -> Self {
+            fn broadcast(self, place: usize) -> Self {
                 Self::constant(self.lane(place))
             }
             #[inline(always)]
@@ -48,7 +48,7 @@ macro_rules! side_by_side {
                 self.lane(0)
             }
             #[inline(always)]
-            fn pick(numbers: &[f64], places: &[usize]) -> Self {
+            fn gather(numbers: &[f64], places: &[usize]) -> Self {
                 let places = &places[..WIDTH];
                 let $numbers = core::array::from_fn(
                     #[inline(always)]
@@ -60,10 +60,10 @@ macro_rules! side_by_side {
     };
 }
 
-side_by_side!(Lanes<WIDTH>, |numbers| Self(numbers), |value| value.0);
+chunk!(Lanes<WIDTH>, |numbers| Self(numbers), |value| value.0);
 #[cfg(target_arch = "x86_64")]
-side_by_side!(super::avx512::Eight, |numbers| Self::of(numbers), |value| value.numbers());
+chunk!(super::avx512::Eight, |numbers| Self::of(numbers), |value| value.numbers());
 #[cfg(target_arch = "x86_64")]
-side_by_side!(super::avx2::Eight, |numbers| Self::of(numbers), |value| value.numbers());
+chunk!(super::avx2::Eight, |numbers| Self::of(numbers), |value| value.numbers());
 #[cfg(target_arch = "aarch64")]
-side_by_side!(super::neon::Eight, |numbers| Self::of(numbers), |value| value.numbers());
+chunk!(super::neon::Eight, |numbers| Self::of(numbers), |value| value.numbers());

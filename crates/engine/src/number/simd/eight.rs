@@ -2,9 +2,23 @@
 //!
 //! SAFETY of every call below: the operations may run only where the machine has their instructions. The type `Eight` of a
 //! module is private to [`simd`](super). Other code gets it as a type parameter only, from [`super::run`] and
-//! [`super::abreast`], and these give it on only in exchange for the token that detection has made ([`super::token`]). So
-//! whoever can name the type, and with it `constant`, `splat` or any operation, runs on a machine that has the
-//! instructions.
+//! [`super::in_chunks`]. Both need the token that only detection makes ([`super::token`]). So code that has the type, and
+//! with it `constant`, `splat` or any operation, runs on a machine that has the instructions.
+
+/// Operators that are one operation on the registers of a type: trait, method, operation.
+macro_rules! operators {
+    ($kind:ident: $($operator:ident $method:ident $operation:ident),*) => {$(
+        impl $operator for $kind {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: see the top of this file.
+                Self(unsafe { $operation(self.0, other.0) })
+            }
+        }
+    )*};
+}
+pub(super) use operators;
 
 /// Defines `Eight` and `EightMask`. The module must define `Vector`, `Flags` and the functions called below on them, and
 /// names its token and its target features.
@@ -12,11 +26,11 @@ macro_rules! eight {
     ($token:ty, $features:tt) => {
         use super::WIDTH;
         use crate::number::elementary::{
-            Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, cos, exp, inverse_cbrt, ln, logistic,
-            sin,
+            Bits, EXPONENT_BIAS, INVERSE_CBRT, SPLIT, THIRD, TWO_52, cos, logistic, sin,
         };
+        use crate::number::macros::{add_assign, elementary_functions};
         use crate::number::real::{Logistic, Mask, Real};
-        use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+        use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
         /// Eight numbers.
         #[derive(Clone, Copy)]
@@ -56,38 +70,7 @@ macro_rules! eight {
                 core::array::from_fn::<bool, WIDTH, _>(|lane| self.lane(lane)).fmt(f)
             }
         }
-        impl Add for Eight {
-            type Output = Self;
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                // SAFETY: see the top of this file.
-                Self(unsafe { add(self.0, other.0) })
-            }
-        }
-        impl Sub for Eight {
-            type Output = Self;
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                // SAFETY: see the top of this file.
-                Self(unsafe { sub(self.0, other.0) })
-            }
-        }
-        impl Mul for Eight {
-            type Output = Self;
-            #[inline(always)]
-            fn mul(self, other: Self) -> Self {
-                // SAFETY: see the top of this file.
-                Self(unsafe { mul(self.0, other.0) })
-            }
-        }
-        impl Div for Eight {
-            type Output = Self;
-            #[inline(always)]
-            fn div(self, other: Self) -> Self {
-                // SAFETY: see the top of this file.
-                Self(unsafe { div(self.0, other.0) })
-            }
-        }
+        super::eight::operators!(Eight: Add add add, Sub sub sub, Mul mul mul, Div div div);
         impl Neg for Eight {
             type Output = Self;
             #[inline(always)]
@@ -96,28 +79,8 @@ macro_rules! eight {
                 Self(unsafe { negate(self.0) })
             }
         }
-        impl AddAssign for Eight {
-            #[inline(always)]
-            fn add_assign(&mut self, other: Self) {
-                *self = *self + other;
-            }
-        }
-        impl BitAnd for EightMask {
-            type Output = Self;
-            #[inline(always)]
-            fn bitand(self, other: Self) -> Self {
-                // SAFETY: see the top of this file.
-                Self(unsafe { both(self.0, other.0) })
-            }
-        }
-        impl BitOr for EightMask {
-            type Output = Self;
-            #[inline(always)]
-            fn bitor(self, other: Self) -> Self {
-                // SAFETY: see the top of this file.
-                Self(unsafe { either(self.0, other.0) })
-            }
-        }
+        add_assign!([] Eight);
+        super::eight::operators!(EightMask: BitAnd bitand both, BitOr bitor either);
         impl Not for EightMask {
             type Output = Self;
             #[inline(always)]
@@ -148,7 +111,7 @@ macro_rules! eight {
             type Equations = ();
             const LANES: usize = WIDTH;
             const DERIVATIVES: bool = false;
-            const REGISTERS: bool = true;
+            const IN_REGISTERS: bool = true;
 
             #[inline(always)]
             fn vectorised<R>(work: impl FnOnce() -> R) -> R {
@@ -173,18 +136,7 @@ macro_rules! eight {
                 // SAFETY: see the top of this file.
                 Self(unsafe { sqrt(self.0) })
             }
-            #[inline(always)]
-            fn exp(self) -> Self {
-                exp(self)
-            }
-            #[inline(always)]
-            fn ln(self) -> Self {
-                ln(self)
-            }
-            #[inline(always)]
-            fn inverse_cbrt(self) -> Self {
-                inverse_cbrt(self)
-            }
+            elementary_functions!(always: exp, ln, inverse_cbrt);
             #[inline(always)]
             fn logistic(self) -> Logistic<Self> {
                 logistic(self)

@@ -1,11 +1,11 @@
-//! Eight numbers at once in the vector registers of the machine at hand.
+//! Eight numbers at once in the vector registers of the machine.
 //!
 //! The only module with `unsafe` code. Each type `Eight` below holds eight numbers and computes with one set of vector
 //! instructions; a token ([`Avx512`]) proves that the machine has them. No operation is contracted or reordered: every
 //! level gives the bits of a plain `f64`.
 //!
-//! Two kinds of work use them: [`LaneTask`] computes eight members of an ensemble, [`Task`] eight neighbouring numbers of
-//! one.
+//! Two kinds of work use them: a [`LaneTask`] computes eight members of an ensemble, a [`ChunkTask`] eight neighbouring
+//! numbers of one member.
 
 #![allow(unsafe_code, reason = "vector instructions are unsafe to call where the machine may not have them")]
 
@@ -25,7 +25,7 @@ mod tests;
 pub use token::{Avx2, Avx512, Level, Neon};
 
 use crate::number::lanes::Lanes;
-use crate::number::real::{Real, Task};
+use crate::number::real::{ChunkTask, Real};
 
 /// Members in one pack.
 pub const WIDTH: usize = 8;
@@ -53,12 +53,12 @@ pub fn run<T: LaneTask>(level: Level, task: T) -> T::Output {
 
 /// Does a task on neighbouring plain numbers with the registers of the level in use.
 #[inline(always)]
-pub(super) fn abreast<T: Task<f64>>(task: T) -> T::Output {
-    abreast_at(Level::in_use(), task)
+pub(super) fn in_chunks<T: ChunkTask<f64>>(task: T) -> T::Output {
+    in_chunks_at(Level::in_use(), task)
 }
 
 #[inline(always)]
-fn abreast_at<T: Task<f64>>(level: Level, task: T) -> T::Output {
+fn in_chunks_at<T: ChunkTask<f64>>(level: Level, task: T) -> T::Output {
     match level {
         #[cfg(target_arch = "x86_64")]
         Level::Avx512(_) => avx512::Eight::vectorised(
@@ -79,7 +79,7 @@ fn abreast_at<T: Task<f64>>(level: Level, task: T) -> T::Output {
     }
 }
 
-/// Does work on arrays of plain numbers, such as slopes, which the compiler vectorises: with AVX2 where it may be used.
+/// Does work on arrays of plain numbers, such as slopes. The compiler vectorises it, with AVX2 where that may be used.
 #[inline(always)]
 pub(crate) fn widened<R>(work: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]

@@ -1,8 +1,8 @@
 //! Every level gives the bits of a plain number, for every operation.
 
-use super::{LaneTask, Level, WIDTH, abreast_at, run};
+use super::{LaneTask, Level, WIDTH, in_chunks_at, run};
 use crate::number::lanes::Lanes;
-use crate::number::real::{Abreast, Mask, Real, Task};
+use crate::number::real::{Chunk, ChunkTask, Mask, Real};
 
 /// A single number of a lane, by itself: what lanes are held to.
 fn alone(value: f64) -> f64 {
@@ -179,10 +179,10 @@ fn masks_of_all_levels_mark_their_lanes() {
 /// Neighbouring numbers, loaded, computed with and stored again; and which type did it.
 struct Neighbours<'a>(&'a [f64]);
 
-impl Task<f64> for Neighbours<'_> {
+impl ChunkTask<f64> for Neighbours<'_> {
     type Output = (Vec<u64>, &'static str);
 
-    fn run<V: Abreast<f64>>(self) -> Self::Output {
+    fn run<V: Chunk<f64>>(self) -> Self::Output {
         let mut stored = Vec::new();
         let mut store = |value: V| {
             let mut numbers = [0.0; WIDTH + 1];
@@ -192,10 +192,10 @@ impl Task<f64> for Neighbours<'_> {
         };
         let (here, next) = (V::load(self.0), V::load(&self.0[WIDTH..]));
         store(here);
-        store(here * next + V::everywhere(0.1));
-        store(V::alone(7.5, 3));
-        store(next.spread(5));
-        store(V::pick(self.0, &[8, 3, 3, 0, 15, 1, 2, 9]));
+        store(here * next + V::filled(0.1));
+        store(V::single(7.5, 3));
+        store(next.broadcast(5));
+        store(V::gather(self.0, &[8, 3, 3, 0, 15, 1, 2, 9]));
         assert_eq!(here.first(), self.0[0]);
         (stored, core::any::type_name::<V>())
     }
@@ -212,7 +212,7 @@ fn neighbouring_numbers_get_the_same_bits_on_all_levels() {
     let expected: Vec<_> = expected.iter().map(|number| number.to_bits()).collect();
     let mut types = Vec::new();
     for level in Level::available() {
-        let (found, kind) = abreast_at(level, Neighbours(&numbers));
+        let (found, kind) = in_chunks_at(level, Neighbours(&numbers));
         assert_eq!(found, expected, "{level:?}");
         types.push(kind);
     }

@@ -157,7 +157,7 @@ impl<S> SurfaceConvection<S> {
 }
 
 impl<S: Copy> SurfaceConvection<S> {
-    /// Surfaces of one correlation, their numbers side by side.
+    /// Surfaces of one correlation: their numbers are neighbours in arrays.
     pub(crate) fn together(convections: &[&Self]) -> SurfaceConvection<Box<[S]>> {
         let numbers = convections.iter().map(|convection| {
             let mut numbers = Vec::new();

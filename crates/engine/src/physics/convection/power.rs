@@ -1,7 +1,7 @@
 //! `h = a + b |d|^n + c V^m`, with one set of numbers where heat flows up (or the surface is vertical) and one where it flows
 //! down; V the wind at the surface.
 //!
-//! The form of many published correlations; all numbers are parameters, and their source stands beside them in the description.
+//! The form of many published correlations; all numbers are parameters, and their source is given with them in the description.
 
 use super::correlation::{Correlation, Placement, WindPart};
 use super::natural::{Coefficient, Difference, any_power};

@@ -76,7 +76,7 @@ pub(crate) fn direct_exchange_areas<S: Real>(areas: &[S], weights: &[S]) -> Vec<
             for j in 0..n {
                 row += weights[i * n + j] * scale[j];
             }
-            // A surface that sees nothing keeps its zero row; its scale would grow without end.
+            // A surface that sees no other keeps its zero row; its scale would grow without bound.
             let least = S::constant(1e-300);
             let scaled = (scale[i] * areas[i] / row.max(least)).sqrt();
             next[i] = S::select(least.lt(row), scaled, S::one());

@@ -2,7 +2,7 @@
 //!
 //! A unit is described by its transmittance and the absorptance of each pane over the cosine of the angle of incidence:
 //! a monotone piecewise cubic through a few angles, computed once per run (`curves.rs`). In a step only the cubic is evaluated.
-//! The laws of a single pane stand in `pane.rs`.
+//! The laws of a single pane are in `pane.rs`.
 //!
 //! Panes are combined with values that are the mean of both polarisations already. Keeping the polarisations apart between the
 //! panes is what a single plane wave would do; tables of real units (WINDOW, EN 410) are made with the mean, and lie 3 % (60 deg)

@@ -68,7 +68,7 @@ impl<S: Real> Optics<S> {
         Self { beam, front, back }
     }
 
-    /// A single absorbing sheet that stands for a unit; `panes` and `category` as in Karlsson & Roos.
+    /// A single absorbing sheet in place of a unit; `panes` and `category` as in Karlsson & Roos.
     pub fn of_sheet(transmittance: S, absorptance: S, panes: S, category: S) -> Self {
         let units: Vec<Unit<S>> = ANGLES
             .iter()

@@ -282,7 +282,7 @@ impl<S: Real> Hysteresis<S> {
     }
 }
 
-/// Whether a fraction rose in the first part of a step and fell in the second, or the other way round.
+/// Whether a fraction rose in the first part of a step and fell in the second, or the reverse.
 #[inline(always)]
 pub fn reversed<S: Real>(start: S, midway: S, end: S) -> S::Mask {
     // Smaller changes are round-off.

@@ -9,9 +9,9 @@ use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
 use crate::step::ideal_loads::responses::Response;
 
-/// Airs off their set points by less than this are on them [K].
+/// Airs closer to their set points than this count as on them [K].
 const TOLERANCE: f64 = 1e-8;
-/// Set point that is never reached, where there is no heating or no cooling [degC].
+/// Magnitude of the set point without heating or cooling, which is never reached [degC].
 const NEVER: f64 = 1e6;
 
 /// Limits of one ideal load over a step.
@@ -19,7 +19,7 @@ const NEVER: f64 = 1e6;
 pub(super) struct Limits<S> {
     /// Set points of heating and cooling [degC].
     pub(super) set_points: [S; 2],
-    /// Most heating and cooling [W].
+    /// Largest heating and cooling [W].
     pub(super) most: [S; 2],
 }
 
@@ -54,10 +54,10 @@ pub(crate) struct IdealLoads<S: Real> {
     pub(super) outdoor: [S; 2],
     /// Loads that the step before started from [W].
     earlier: Vec<S>,
-    /// Lanes that give a load, or have to.
-    pub(super) asking: S::Mask,
+    /// Lanes that have, or need, a load.
+    pub(super) needed: S::Mask,
     /// Those of them whose responses are known.
-    pub(super) answered: S::Mask,
+    pub(super) responses_known: S::Mask,
     /// Change of each load [W].
     pub(super) correction: Vec<S>,
     pub(super) matrix: Vec<S>,
@@ -81,8 +81,8 @@ impl<S: Real> IdealLoads<S> {
             continues: false,
             outdoor: [S::zero(); 2],
             earlier: zeros(unknowns.air.len()),
-            asking: S::Mask::splat(false),
-            answered: S::Mask::splat(false),
+            needed: S::Mask::splat(false),
+            responses_known: S::Mask::splat(false),
             correction: zeros(count),
             matrix: zeros(count * count),
             right: zeros(count),
@@ -111,40 +111,40 @@ impl<S: Real> IdealLoads<S> {
         }
     }
 
-    /// Notes the lanes that start with a load, or whose air is expected off its set points.
+    /// Marks the lanes that start with a load, or whose air is expected outside its set points.
     #[inline(always)]
-    pub(crate) fn ask(&mut self, loads: &[S], air: impl Fn(usize) -> S) {
-        self.answered = S::Mask::splat(false);
-        self.asking = !self.within_set_points(air);
+    pub(crate) fn mark_needed(&mut self, loads: &[S], air: impl Fn(usize) -> S) {
+        self.responses_known = S::Mask::splat(false);
+        self.needed = !self.within_set_points(air);
         for &zone in &self.zones {
-            self.asking = self.asking | S::zero().lt(loads[zone].abs());
+            self.needed = self.needed | S::zero().lt(loads[zone].abs());
         }
     }
 
-    /// Whether some lane needs the responses.
+    /// Whether some active lane needs a load.
     #[inline(always)]
-    pub(super) fn asking(&self, active: S::Mask) -> bool {
-        (self.asking & active).any()
+    pub(super) fn any_needed(&self, active: S::Mask) -> bool {
+        (self.needed & active).any()
     }
 
-    /// Whether the responses are to be found in a sweep: the second uses those of the first, which are close enough.
+    /// Whether a sweep finds the responses: the second uses those of the first, which are close enough.
     #[inline(always)]
-    pub(crate) fn answering(&mut self, sweep: usize, active: S::Mask) -> bool {
-        let answering = sweep != 1 && self.asking(active);
-        if answering {
-            self.answered = self.asking;
+    pub(crate) fn finds_responses(&mut self, sweep: usize, active: S::Mask) -> bool {
+        let finds = sweep != 1 && self.any_needed(active);
+        if finds {
+            self.responses_known = self.needed;
         }
-        answering
+        finds
     }
 
-    /// Keeps the iterate that a stage was linearised about, in exchange for one to be overwritten, and its solution.
+    /// Keeps the iterate about which a stage was linearised (by exchange, the other is overwritten later) and its solution.
     #[inline(always)]
     pub(super) fn keep(&mut self, stage: usize, iterate: &mut Unknowns<S>, solved: &Unknowns<S>) {
         core::mem::swap(&mut self.iterates[stage], iterate);
         self.solved[stage].copy_from(solved);
     }
 
-    /// The iterate of a stage, and its solution with what the loads have changed since; of cells only those asked for.
+    /// The iterate of a stage, and its solution corrected by the changes of the loads since; only some cells are corrected.
     #[inline(always)]
     pub(super) fn guess(
         &mut self,
@@ -156,16 +156,16 @@ impl<S: Real> IdealLoads<S> {
         core::mem::swap(iterate, &mut self.iterates[stage]);
         solved.copy_some(cells, &self.solved[stage].view());
         for (response, &change) in self.responses.iter().zip(&self.correction) {
-            let answer = &response.stages[stage];
+            let rises = &response.stages[stage];
             let shift = |values: &mut [S], rises: &[S]| {
                 for (value, &rise) in values.iter_mut().zip(rises) {
                     *value += rise * change;
                 }
             };
-            shift(&mut solved.surfaces, &answer.surfaces);
-            shift(&mut solved.air, &answer.air);
+            shift(&mut solved.surfaces, &rises.surfaces);
+            shift(&mut solved.air, &rises.air);
             for cells in cells {
-                shift(&mut solved.cells[cells.clone()], &answer.cells[cells.clone()]);
+                shift(&mut solved.cells[cells.clone()], &rises.cells[cells.clone()]);
             }
         }
     }
@@ -212,7 +212,7 @@ impl<S: Real> IdealLoads<S> {
         }
     }
 
-    /// Response of the airs at the end of the step to a watt of each load in the last stage alone.
+    /// Response of the airs at the end of the step to a watt of each load in the last stage only.
     #[inline(always)]
     pub(super) fn respond_last(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>) {
         for (response, &zone) in self.responses.iter_mut().zip(&self.zones) {

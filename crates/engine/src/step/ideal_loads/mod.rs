@@ -1,18 +1,19 @@
 //! Ideal heating and cooling: the load that keeps the air of each zone between its set points.
 //!
-//! A load is the mean over a step and acts in all of its stages alike. (A load of its own for each stage would let the
-//! air overshoot.) It is the one that brings the air onto the set point at the end of the step, as far as the capacity
-//! goes, and nothing where the air stays between the set points without it.
+//! A load is the mean over a step and is the same in all stages of the step. (With one load for each stage the air would
+//! overshoot.) It brings the air to the set point at the end of the step, as far as the capacity allows, and is zero where
+//! the air stays between the set points without it.
 //!
-//! Step by step ([`sweeps`]): each stage is solved once, about a guess and with guessed loads; the response of the air at
-//! the end to each load follows from the factors at hand ([`responses`]); new loads follow from both ([`search`]), and with
-//! them the temperatures about which the stages are solved next; and so on until nothing changes. This is one Newton
-//! iteration on the temperatures of all stages and the loads together. In each of these sweeps a load is heating, cooling,
-//! off or at its capacity by what the air would do without it: Newton's method for the complementarity of load and set point
+//! A step is solved by sweeps ([`sweeps`]). Each sweep solves every stage once, linearised about a guess and with guessed
+//! loads. The response of the air at the end to each load follows from the same factors ([`responses`]). New loads follow
+//! from both ([`search`]), and with them the temperatures about which the next sweep linearises. The sweeps end when nothing
+//! changes: together they are one Newton iteration on the temperatures of all stages and the loads. In each sweep a load is
+//! heating, cooling, off or at its capacity according to the temperature that the air would have without it: Newton's method for
+//! the complementarity of load and set point
 //! (an active set method: Hintermueller, Ito & Kunisch 2002, SIAM J. Optim. 13(3), doi:10.1137/S1052623401383558).
 //!
-//! The loads of the last sweep miss the set points by hundred-thousandths of a kelvin at most. The last stage supplies what
-//! is missing, so that the air ends on its set point to round-off; the load reported is the mean of both.
+//! After the last sweep the air differs from its set point by some 1e-5 K at most. A correction of the load in the last stage
+//! removes this difference to round-off; the load reported is the mean over the step, with the correction.
 
 pub(crate) mod loads;
 pub(crate) mod responses;

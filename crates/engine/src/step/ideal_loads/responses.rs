@@ -60,10 +60,10 @@ impl<S: Real> Response<S> {
             self.known.fill(S::zero());
         }
         system.solve_again(&mut self.right);
-        self.spread(model, system, stage, ratio);
+        self.set_temperatures(model, system, stage, ratio);
     }
 
-    /// Response of the airs at the end of the step to a load in the last stage alone.
+    /// Response of the airs at the end of the step to a load in the last stage only.
     #[inline(always)]
     pub(super) fn find_last(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, zone: usize) {
         self.set_unit(model, zone);
@@ -74,7 +74,7 @@ impl<S: Real> Response<S> {
         }
     }
 
-    /// What the response of the first stage does to the second: heat held in walls and airs.
+    /// The effect of the response of the first stage on the second: heat stored in walls and airs.
     #[inline(always)]
     fn carry_over(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, length: f64, ratio: f64) {
         let Self { stages, held, known, right, sources } = self;
@@ -111,11 +111,17 @@ impl<S: Real> Response<S> {
 
     /// All surfaces, and the cells of nonlinear walls, from the solution of the coupled system.
     #[inline(always)]
-    fn spread(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, stage: usize, ratio: f64) {
+    fn set_temperatures(
+        &mut self,
+        model: &Model<'_, S>,
+        system: &BuildingSystem<'_, S>,
+        stage: usize,
+        ratio: f64,
+    ) {
         let Self { stages, held, known, right, sources } = self;
-        let answer = &mut stages[stage];
+        let rise = &mut stages[stage];
         for (zone, plan) in model.plan.zones.iter().enumerate() {
-            answer.air[zone] = right[plan.air_row];
+            rise.air[zone] = right[plan.air_row];
         }
         for (w, wall) in model.plan.walls.iter().enumerate() {
             let mut surfaces = [S::zero(); 2];
@@ -129,23 +135,23 @@ impl<S: Real> Response<S> {
                 surfaces[side] = line.slope * surfaces[1 - side]
                     + exterior_rise(model, system, SurfaceId::new(w, side), source);
             }
-            answer.surfaces.set_pair(w, surfaces);
+            rise.surfaces.set_pair(w, surfaces);
             if !wall.nonlinear {
                 continue;
             }
             let cells = model.cells(w);
             let chain = &system.walls[w];
-            chain.temperature_changes(&known[cells.clone()], surfaces, &mut answer.cells[cells.clone()]);
+            chain.temperature_changes(&known[cells.clone()], surfaces, &mut rise.cells[cells.clone()]);
             if stage == 0 {
                 for (i, k) in cells.enumerate() {
-                    held[k] = chain.storage[i].capacity * answer.cells[k].scale(ratio);
+                    held[k] = chain.storage[i].capacity * rise.cells[k].scale(ratio);
                 }
             }
         }
     }
 }
 
-/// Rise of an exterior surface with the heat that its wall sends into it, the other surface held [K].
+/// Rise of an exterior surface by the heat from its wall, at a constant temperature of the other surface [K].
 #[inline(always)]
 fn exterior_rise<S: Real>(
     model: &Model<'_, S>,

@@ -1,4 +1,4 @@
-//! The loads that bring the airs onto their set points, from the responses of the building: an active set.
+//! The loads that bring the airs to their set points, from the responses of the building: an active-set method.
 
 use crate::number::dense::solve_many;
 use crate::number::real::{Mask, Real};
@@ -32,12 +32,12 @@ impl<S: Real> Limits<S> {
 
 impl<S: Real> IdealLoads<S> {
     /// Compares the airs at the end of a sweep with the set points. True in the lanes whose loads are right; in the other
-    /// active ones that know the responses, and in `all` of them on demand, the loads are corrected.
+    /// active lanes whose responses are known (with `all`, in every active one) the loads are corrected.
     #[inline(always)]
     pub(crate) fn correct(&mut self, air: &[S], loads: &mut [S], active: S::Mask, all: bool) -> S::Mask {
         let quiet = self.within_set_points(|zone| air[zone]);
-        let known = self.answered;
-        self.asking = self.asking | !quiet;
+        let known = self.responses_known;
+        self.needed = self.needed | !quiet;
         if !(known & active).any() {
             self.correction.fill(S::zero());
             return quiet;
@@ -58,15 +58,15 @@ impl<S: Real> IdealLoads<S> {
         found
     }
 
-    /// Corrects the solution of the coupled system of the last stage by the loads that are missing there.
+    /// Corrects the solution of the coupled system of the last stage by the missing loads.
     #[inline(always)]
     pub(super) fn complete(&mut self, air: &[S], loads: &[S], solution: &mut [S]) {
-        let asking = self.asking;
+        let needed = self.needed;
         self.solve(air, loads);
         for (p, &zone) in self.zones.iter().enumerate() {
-            self.correction[p] = S::select(asking, self.correction[p] - loads[zone], S::zero());
+            self.correction[p] = S::select(needed, self.correction[p] - loads[zone], S::zero());
             for (value, &rise) in solution.iter_mut().zip(&self.responses[p].right) {
-                *value = S::select(asking, *value + rise * self.correction[p], *value);
+                *value = S::select(needed, *value + rise * self.correction[p], *value);
             }
         }
     }
@@ -78,7 +78,7 @@ impl<S: Real> IdealLoads<S> {
         for (load, &zone) in self.correction.iter_mut().zip(&self.zones) {
             *load = loads[zone];
         }
-        // One load finds its mode at once; several may change each other's.
+        // The mode of a single load is found at once; several loads may change each other's modes.
         for _ in 0..(if n == 1 { 1 } else { 2 * n + 2 }) {
             for (p, &zone) in self.zones.iter().enumerate() {
                 let mut now = air[zone];

@@ -12,7 +12,7 @@ use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
 
-/// Sweeps over the stages of a step before it counts as unsolvable, and those of them that solve each stage only once.
+/// Largest number of sweeps over the stages of a step, and how many of the first ones solve each stage only once.
 const MAX_SWEEPS: usize = 40;
 const SINGLE_SWEEPS: usize = 12;
 
@@ -24,11 +24,11 @@ struct Sweep<S: Real> {
     length: f64,
     /// Sweeps before it.
     number: usize,
-    /// Lanes that change; the others repeat the sweep before bit for bit.
+    /// Lanes that change; the others repeat the previous sweep with the same bits.
     active: S::Mask,
 }
 
-/// What a sweep has found.
+/// The result of a sweep.
 struct Swept<S: Real> {
     /// Heat of all but the last stage.
     energy: Power<S>,
@@ -47,7 +47,7 @@ impl<S: Real> Stepper<'_, S> {
         let previous = guess.previous();
         ideal_loads.begin(&model.coefficients.zones, row, load, previous.is_some());
         let diagonal = self.scheme.tableau().diagonal;
-        ideal_loads.ask(load, |zone| line(state.air[zone], iterate.air[zone], 1.0 / diagonal));
+        ideal_loads.mark_needed(load, |zone| line(state.air[zone], iterate.air[zone], 1.0 / diagonal));
         if let Some(previous) = previous {
             let known = [previous, ideal_loads.first.view()];
             iterate.shift(&model.parts.zone_surfaces, &state.view(), &known);
@@ -108,12 +108,12 @@ impl<S: Real> Stepper<'_, S> {
         let Self { model, solver, ideal_loads, .. } = self;
         let iterate = &mut solver.iterate;
         if stage > 0 {
-            // A straight line on from the first stage would contain the error of its load.
+            // Extrapolation from the first stage would contain the error of its load.
             let known = [ideal_loads.first.view(), state.view()];
             iterate.shift(&model.parts.zone_surfaces, &solver.solution.view(), &known);
             return;
         }
-        // Where the outdoor air changes its course, the surfaces outdoors do so with it.
+        // A change of the outdoor air against its extrapolation is added to the surfaces outdoors.
         let [before, now] = ideal_loads.outdoor;
         let expected = line(before, now, 1.0 + self.scheme.tableau().diagonal);
         let turn = self.weather.conditions.outdoor_air - expected;
@@ -124,18 +124,18 @@ impl<S: Real> Stepper<'_, S> {
         }
     }
 
-    /// Sweeps that are made once the numbers are found: for slopes, and where slopes will be found along these numbers.
+    /// Sweeps after convergence: for slopes, and where slopes will be computed at this solution.
     #[inline(always)]
     fn further_sweeps(&self) -> usize {
         if !S::DERIVATIVES {
-            // Numbers converge quadratically, but the effect of a parameter one sweep later: quotients would show it.
+            // The effect of a parameter converges one sweep after the numbers; difference quotients would show the error.
             return if self.known.keeps() { 2 } else { 0 };
         }
-        // Responses leave out what a load does to the convection expected in gaps: its slope is then found in two rounds.
+        // Responses do not contain the effect of a load on the convection extrapolated in gaps: slopes then take two sweeps.
         if self.model.plan.windows.is_empty() { 1 } else { 2 }
     }
 
-    /// All stages of a step at the present loads: one linear solve of each, or after many sweeps as many as it takes.
+    /// All stages of a step at the present loads: one linear solve of each; after many sweeps, iterations to convergence.
     #[inline(always)]
     fn sweep(
         &mut self,
@@ -146,7 +146,7 @@ impl<S: Real> Stepper<'_, S> {
         let tableau = self.scheme.tableau();
         let (weights, length_of_stage) = (tableau.weights, tableau.diagonal * length);
         let (mut energy, mut change, mut limited) = (Power::none(), S::zero(), S::Mask::splat(false));
-        let (again, answer) = (number > 0, self.ideal_loads.answering(number, active));
+        let (again, responds) = (number > 0, self.ideal_loads.finds_responses(number, active));
         if again {
             self.solver.start.begin(&self.model, state);
             self.known.restart();
@@ -183,7 +183,7 @@ impl<S: Real> Stepper<'_, S> {
             let sound = solver.solve(&stage, search)?;
             known.keep(&solver.solution);
             change = change.max(S::select(sound, solver.change(model), S::constant(f64::INFINITY)));
-            if answer {
+            if responds {
                 ideal_loads.respond(model, &solver.system, index, (length_of_stage, tableau.ratio));
             }
             ideal_loads.keep(index, &mut solver.iterate, &solver.solution);
@@ -197,13 +197,13 @@ impl<S: Real> Stepper<'_, S> {
         Ok(Swept { energy, change, limited })
     }
 
-    /// Brings the airs onto their set points by the loads of the last stage, and adds its heat.
+    /// Brings the airs to their set points by the loads of the last stage, and adds its heat.
     #[inline(always)]
     fn close(&mut self, state: &State<S>, energy: &mut Power<S>, length: f64) {
         let weights = self.scheme.weights();
         let weight = weights[weights.len() - 1];
         let Self { model, solver, ideal_loads, known, .. } = self;
-        if ideal_loads.asking(!solver.failed) {
+        if ideal_loads.any_needed(!solver.failed) {
             ideal_loads.respond_last(model, &solver.system);
             ideal_loads.complete(&solver.solution.air, &solver.start.load, &mut solver.system.coupled.right);
             solver.system.resolve_all(model, &mut solver.solution);

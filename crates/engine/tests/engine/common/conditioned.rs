@@ -13,8 +13,8 @@ pub fn number(description: &mut Description, path: &str, value: f64) -> ParamId 
     ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
 }
 
-/// Heating or cooling with a constant set point [degC] and a capacity [W].
-pub fn plant(description: &mut Description, path: &str, set_point: f64, capacity: f64) -> IdealLoad {
+/// Ideal heating or cooling with a constant set point [degC] and a capacity [W].
+pub fn ideal_load(description: &mut Description, path: &str, set_point: f64, capacity: f64) -> IdealLoad {
     IdealLoad {
         setpoint: SetPoint::Constant {
             temperature: number(description, &format!("{path}.setpoint"), set_point),
@@ -28,9 +28,9 @@ pub fn plant(description: &mut Description, path: &str, set_point: f64, capacity
 pub fn conditioned(gamma: f64) -> Description {
     let mut d = cell(gamma);
     d.channels.push("fan".to_owned());
-    d.zones[0].heating = Some(plant(&mut d, "room.heating", 22.0, 300.0));
-    d.zones[0].cooling = Some(plant(&mut d, "room.cooling", 24.0, 80.0));
-    d.zones[1].heating = Some(plant(&mut d, "gap.heating", 21.0, 1000.0));
+    d.zones[0].heating = Some(ideal_load(&mut d, "room.heating", 22.0, 300.0));
+    d.zones[0].cooling = Some(ideal_load(&mut d, "room.cooling", 24.0, 80.0));
+    d.zones[1].heating = Some(ideal_load(&mut d, "gap.heating", 21.0, 1000.0));
     let gain = Gain {
         name: "people".to_owned(),
         power: number(&mut d, "gain.power", 100.0),

@@ -62,15 +62,15 @@ fn sheet(d: &mut Description) -> Glazing {
 }
 
 fn side(b: &mut Builder, outdoors: bool) -> Side {
-    let film = b.film(if outdoors { 15.0 } else { 3.0 });
+    let convection = b.convection(if outdoors { 15.0 } else { 3.0 });
     if outdoors {
-        return b.outdoors(film, 0.9, 0.6);
+        return b.outdoors(convection, 0.9, 0.6);
     }
     let absorptance = Some(b.number("inside.absorptance", 0.55));
-    Side { absorptance, ..b.inside(0, film, 0.9) }
+    Side { absorptance, ..b.inside(0, convection, 0.9) }
 }
 
-/// The room, its faces in an order.
+/// The room, its surfaces in an order.
 pub fn glazed(sun: ZoneSun, order: [usize; 6]) -> Description {
     let mut b = Builder::new();
     let board = b.solid("board", 0.16, 800.0, 1090.0);

@@ -13,8 +13,8 @@ pub fn glazed_box(gas: bool) -> Description {
     let wall = b.construction("wall", &[(board, 0.05, 4)]);
     b.zone("zone", 50.0, 0.5, ZoneLongwave::Radiosity);
     for (name, azimuth) in [("north", 0.0), ("east", 90.0), ("south", 180.0), ("window", 180.0)] {
-        let (film_out, film_in) = (b.film(15.0), b.film(3.0));
-        let (mut outside, mut inside) = (b.outdoors(film_out, 0.9, 0.6), b.inside(0, film_in, 0.9));
+        let (outer, inner) = (b.convection(15.0), b.convection(3.0));
+        let (mut outside, mut inside) = (b.outdoors(outer, 0.9, 0.6), b.inside(0, inner, 0.9));
         outside.exposure = Exposure { sun: false, wind: false, sky: false };
         if name == "window" {
             (outside.absorptance, inside.absorptance) = (None, None);

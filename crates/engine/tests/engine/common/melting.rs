@@ -12,23 +12,23 @@ pub fn ceiling(gamma: f64) -> Description {
     layered(gamma, (0.00526, 4), 4.0)
 }
 
-/// The same with a number of nodes and a film above [W/(m2 K)]: where the melting is sharp, the nodes are many and the film
+/// The same with a number of nodes and a coefficient above [W/(m2 K)]: where the melting is sharp, the nodes are many and the coefficient
 /// is strong, Newton's iteration fails in some steps.
-pub fn fine_ceiling(gamma: f64, nodes: usize, film: f64) -> Description {
-    layered(gamma, (0.005, nodes), film)
+pub fn fine_ceiling(gamma: f64, nodes: usize, coefficient: f64) -> Description {
+    layered(gamma, (0.005, nodes), coefficient)
 }
 
-/// The ceiling with a thickness [m] and a number of nodes of what melts, and a film above it [W/(m2 K)].
-fn layered(gamma: f64, (thickness, nodes): (f64, usize), film: f64) -> Description {
+/// The ceiling with a thickness [m] and a number of nodes of what melts, and the heat transfer coefficient above it [W/(m2 K)].
+fn layered(gamma: f64, (thickness, nodes): (f64, usize), coefficient: f64) -> Description {
     let mut b = Builder::new();
     let board = b.solid("board", 0.16, 800.0, 1090.0);
     let energain = b.energain(gamma);
     let construction = b.construction("ceiling", &[(energain, thickness, nodes), (board, 0.0125, 2)]);
     let room = b.zone("room", 27.0, 0.5, ZoneLongwave::None);
     let above = b.channel("above");
-    let (film_out, film_in) = (b.film(film), b.film(6.0));
-    let inside = b.inside(room, film_in, 0.9);
-    let outside = facing(Facing::Measured { channel: above }, Some(film_out));
+    let (outer, inner) = (b.convection(coefficient), b.convection(6.0));
+    let inside = b.inside(room, inner, 0.9);
+    let outside = facing(Facing::Measured { channel: above }, Some(outer));
     b.surface("ceiling", construction, [9.0, 0.0, 0.0], outside, inside);
     b.describe()
 }
@@ -78,9 +78,9 @@ pub fn melting(model: Option<HysteresisModel>) -> Description {
         let name = format!("pcm_{index}");
         let pcm = b.pcm(&name, [[0.22, 0.18], [3134.0, 2833.0]], 855.0, law);
         let construction = b.construction(&name, &[(pcm, 0.00526, 3), (board, 0.0125, 2)]);
-        let (film_out, film_in) = (b.film(4.0), b.film(6.0));
-        let inside = b.inside(room, film_in, 0.9);
-        let outside = facing(Facing::Measured { channel: above }, Some(film_out));
+        let (outer, inner) = (b.convection(4.0), b.convection(6.0));
+        let inside = b.inside(room, inner, 0.9);
+        let outside = facing(Facing::Measured { channel: above }, Some(outer));
         b.surface(&name, construction, [1.5, 0.0, 0.0], outside, inside);
     }
     b.describe()

@@ -7,9 +7,9 @@ pub mod conditioned;
 pub mod difficult;
 pub mod glazed;
 pub mod glazed_box;
+pub mod linear;
 pub mod melting;
 pub mod random;
-pub mod straight;
 
 use mascarin_engine::description::{
     Construction, Convection, Description, DiffuseSky, Exposure, Facing, Infiltration, Layer, Material,
@@ -218,7 +218,7 @@ impl Builder {
         self.description.sensors.len() - 1
     }
 
-    pub fn film(&mut self, coefficient: f64) -> Convection {
+    pub fn convection(&mut self, coefficient: f64) -> Convection {
         Convection::Constant { coefficient: self.number("convection.coefficient", coefficient) }
     }
 
@@ -318,7 +318,7 @@ pub fn set(row: &mut [f64], channel: usize, value: f64) {
 pub fn weather(time: f64, row: &mut [f64]) {
     let hour = time / 3600.0;
     let day = hour / 24.0;
-    // Solar noon falls on no stage, so that no face has the sun exactly in its plane.
+    // Solar noon falls on no stage, so that no surface has the sun exactly in its plane.
     let angle = core::f64::consts::TAU * (day - 0.513);
     row[channel::AIR_TEMPERATURE] = 22.5 + 5.0 * Real::cos(angle - 0.6) + Real::sin(0.9 * day);
     row[channel::DEW_POINT] = 14.0 + Real::cos(2.1 * day);
@@ -382,7 +382,7 @@ pub fn relative(value: f64, expected: f64) -> f64 {
     (value / expected - 1.0).abs()
 }
 
-/// A two-zone cell with a phase-change ceiling under a metal roof, with every film and every kind of boundary.
+/// A two-zone cell with a phase-change ceiling under a metal roof, with every law of convection and every kind of boundary.
 pub fn cell(gamma: f64) -> Description {
     let mut b = Builder::new();
     let concrete = b.solid("concrete", 1.75, 2240.0, 900.0);
@@ -392,7 +392,7 @@ pub fn cell(gamma: f64) -> Description {
     let mask = b.resistance("mask", 0.15);
     let energain = b.energain(gamma);
     let wall = b.construction("wall", &[(board, 0.005, 1), (foam, 0.07, 4), (board, 0.005, 1)]);
-    let slab = b.construction("slab", &[(concrete, 0.08, 4), (foam, 0.06, 3)]);
+    let concrete_floor = b.construction("concrete floor", &[(concrete, 0.08, 4), (foam, 0.06, 3)]);
     let ceiling = b.construction("ceiling", &[(energain, 0.00526, 4), (board, 0.0125, 2)]);
     let roof = b.construction("roof", &[(steel, 0.001, 1)]);
     let door = b.construction("door", &[(mask, 0.0, 0)]);
@@ -411,48 +411,48 @@ pub fn cell(gamma: f64) -> Description {
         factor: b.number("alamdari.factor", 1.0),
     };
 
-    let film = tarp(&mut b, true);
-    let (film_in, film_out) = (alamdari(&mut b, 3.0), film);
-    let (outside, inside) = (b.outdoors(film_out, 0.9, 0.4), b.inside(room, film_in, 0.9));
+    let outer = tarp(&mut b, true);
+    let inner = alamdari(&mut b, 3.0);
+    let (outside, inside) = (b.outdoors(outer, 0.9, 0.4), b.inside(room, inner, 0.9));
     b.surface("north", wall, [9.0, 90.0, 0.0], outside, inside);
 
-    let (film_out, film_in) = (mowitt(&mut b), tarp(&mut b, false));
-    let mut outside = b.outdoors(film_out, 0.9, 0.4);
+    let (outer, inner) = (mowitt(&mut b), tarp(&mut b, false));
+    let mut outside = b.outdoors(outer, 0.9, 0.4);
     outside.height = Some(b.number("surfaces.east.outside.height", 1.5));
-    let inside = b.inside(room, film_in, 0.9);
+    let inside = b.inside(room, inner, 0.9);
     b.surface("east", wall, [9.0, 90.0, 90.0], outside, inside);
 
-    let film_out = Convection::LinearWind {
+    let outer = Convection::LinearWind {
         constant: b.number("linear.constant", 5.7),
         wind: b.number("linear.wind", 3.8),
     };
-    let film_in = b.power([0.3, 1.4, 0.3, 0.0, 1.0], [0.2, 0.6, 0.25, 0.0, 1.0]);
-    let (outside, inside) = (b.outdoors(film_out, 0.9, 0.4), b.inside(room, film_in, 0.9));
+    let inner = b.power([0.3, 1.4, 0.3, 0.0, 1.0], [0.2, 0.6, 0.25, 0.0, 1.0]);
+    let (outside, inside) = (b.outdoors(outer, 0.9, 0.4), b.inside(room, inner, 0.9));
     b.surface("south", wall, [7.0, 90.0, 180.0], outside, inside);
 
-    let film_out = b.power([2.0, 1.2, 0.33, 3.1, 0.8], [2.0, 0.7, 0.25, 3.1, 0.8]);
-    let film_in =
+    let outer = b.power([2.0, 1.2, 0.33, 3.1, 0.8], [2.0, 0.7, 0.25, 3.1, 0.8]);
+    let inner =
         Convection::PaperEq5 { length: b.number("eq5.length", 2.0), factor: b.number("eq5.factor", 1.0) };
-    let (outside, inside) = (b.outdoors(film_out, 0.9, 0.5), b.inside(room, film_in, 0.9));
+    let (outside, inside) = (b.outdoors(outer, 0.9, 0.5), b.inside(room, inner, 0.9));
     b.surface("door", door, [2.0, 90.0, 180.0], outside, inside);
 
-    let film_in = tarp(&mut b, false);
-    let inside = b.inside(room, film_in, 0.9);
+    let inner = tarp(&mut b, false);
+    let inside = b.inside(room, inner, 0.9);
     let outside = facing(Facing::Measured { channel: soil }, None);
-    b.surface("floor", slab, [9.0, 180.0, 0.0], outside, inside);
+    b.surface("floor", concrete_floor, [9.0, 180.0, 0.0], outside, inside);
 
-    let (film_out, film_in) = (alamdari(&mut b, 3.0), tarp(&mut b, false));
-    let (outside, inside) = (b.inside(gap, film_out, 0.05), b.inside(room, film_in, 0.9));
+    let (outer, inner) = (alamdari(&mut b, 3.0), tarp(&mut b, false));
+    let (outside, inside) = (b.inside(gap, outer, 0.05), b.inside(room, inner, 0.9));
     b.surface("ceiling", ceiling, [9.58, 20.0, 0.0], outside, inside);
 
-    let (film_out, film_in) = (mowitt(&mut b), alamdari(&mut b, 3.0));
-    let mut outside = b.outdoors(film_out, 0.9, 0.8);
+    let (outer, inner) = (mowitt(&mut b), alamdari(&mut b, 3.0));
+    let mut outside = b.outdoors(outer, 0.9, 0.8);
     outside.area_factor = Some(b.number("surfaces.roof.outside.area_factor", 1.1));
-    let inside = b.inside(gap, film_in, 0.25);
+    let inside = b.inside(gap, inner, 0.25);
     b.surface("roof", roof, [9.58, 20.0, 0.0], outside, inside);
 
-    let film_in = b.film(1.5);
-    let inside = b.inside(gap, film_in, 0.9);
+    let inner = b.convection(1.5);
+    let inside = b.inside(gap, inner, 0.9);
     b.surface("gable", wall, [1.5, 90.0, 270.0], facing(Facing::Adiabatic, None), inside);
     b.sensor(5, 0.006);
     b.describe()
@@ -480,7 +480,7 @@ pub fn cell_probes() -> Vec<Probe> {
     ]
 }
 
-/// Members with other numbers (sharp and blunt melting, other films, other warm-ups) side by side.
+/// Members with other numbers (sharp and blunt melting, other heat transfer coefficients, other warm-ups), to be run together.
 pub fn cell_members(plan: &Plan, count: usize) -> Vec<f64> {
     let nominal = values(plan);
     let gamma = position(plan, "materials.energain.law.gamma");

@@ -225,22 +225,6 @@ fn sides_of(description: &Description, zone: usize) -> Vec<(usize, usize)> {
     sides.filter(|(_, side)| side.facing == Facing::Zone { zone }).map(|(place, _)| place).collect()
 }
 
-/// Whether each surface of a zone sees another one: does not look the same way.
-fn each_sees_another(d: &Description, zone: usize) -> bool {
-    let value = |id: ParamId| d.parameters[id.0 as usize].value.to_radians();
-    let normals: Vec<[f64; 3]> = sides_of(d, zone)
-        .iter()
-        .map(|&(surface, side)| {
-            let (tilt, azimuth) = (value(d.surfaces[surface].tilt), value(d.surfaces[surface].azimuth));
-            let sign = if side == 0 { 1.0 } else { -1.0 };
-            [Real::sin(tilt) * Real::sin(azimuth), Real::sin(tilt) * Real::cos(azimuth), Real::cos(tilt)]
-                .map(|x| sign * x)
-        })
-        .collect();
-    let parallel = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() > 1.0 - 1e-6;
-    normals.len() < 2 || normals.iter().all(|a| normals.iter().any(|b| !parallel(a, b)))
-}
-
 /// Writes a random description.
 struct Maker<'a> {
     random: &'a mut Random,
@@ -470,8 +454,8 @@ impl Maker<'_> {
 
     /// The side of a wall that is not the one in its own zone.
     fn other_side(&mut self, zone: usize, zones: usize, free: bool) -> Side {
-        let film = self.random.chance(0.5).then(|| self.random.between(2.0, 15.0));
-        let film = film.map(|coefficient| self.b.film(coefficient));
+        let convection = self.random.chance(0.5).then(|| self.random.between(2.0, 15.0));
+        let convection = convection.map(|coefficient| self.b.convection(coefficient));
         match self.random.between(0.0, 1.0) {
             _ if !free => self.outdoors(),
             kind if kind < 0.4 => self.outdoors(),
@@ -487,9 +471,9 @@ impl Maker<'_> {
                     amplitude: self.number("ground.amplitude", 0.0, 5.0),
                     coldest_day: self.number("ground.coldest_day", 20.0, 60.0),
                 };
-                facing(ground, film)
+                facing(ground, convection)
             }
-            kind if kind < 0.9 => facing(Facing::Measured { channel: MEASURED }, film),
+            kind if kind < 0.9 => facing(Facing::Measured { channel: MEASURED }, convection),
             _ => facing(Facing::Adiabatic, None),
         }
     }
@@ -571,10 +555,6 @@ impl Maker<'_> {
         }
         for zone in 0..d.zones.len() {
             self.complete_zone(d, zone);
-            // A surface that sees no other one makes the exchange of its zone NaN, see tests/lone_surface.rs.
-            if !each_sees_another(d, zone) {
-                d.zones[zone].longwave = ZoneLongwave::None;
-            }
         }
         if d.zones.len() > 1 {
             for _ in 0..self.random.below(3) {
@@ -639,7 +619,10 @@ impl Maker<'_> {
                 solar_heat_gain: number(d, "glass.solar_heat_gain", self.random.between(0.3, 0.75)),
                 panes: number(d, "glass.panes", 2.0),
                 category: number(d, "glass.category", 4.0),
-                surface_resistances: [number(d, "glass.film", 0.04), number(d, "glass.film", 0.13)],
+                surface_resistances: [
+                    number(d, "glass.resistance", 0.04),
+                    number(d, "glass.resistance", 0.13),
+                ],
             }
         } else {
             let count = 1 + self.random.below(3);

@@ -25,14 +25,14 @@ _LONGEST_ORDER = 60
 
 
 def autocovariance(x: ArrayLike, lags: int) -> Floats:
-    """Autocovariance of a regularly sampled series with gaps.
+    """Estimate the autocovariance of a regularly sampled series with gaps.
 
     Each lag uses the pairs of samples that are both there, with the usual taper ``1 - lag / n``.
 
     Parameters
     ----------
     x : array_like, shape (n,)
-        Series; NaN where there is no sample. The mean is taken off. [unit]
+        Series; NaN where there is no sample. The mean is subtracted. [unit]
     lags : int
         Largest lag. [samples]
 
@@ -45,6 +45,11 @@ def autocovariance(x: ArrayLike, lags: int) -> Floats:
     ------
     InputError
         When there are fewer than two samples.
+
+    Examples
+    --------
+    >>> autocovariance([1.0, 2.0, 3.0, 6.0], 1)
+    array([3.5, 0.5])
     """
     series = np.asarray(x, dtype=np.float64)
     count = int(np.isfinite(series).sum())
@@ -55,7 +60,7 @@ def autocovariance(x: ArrayLike, lags: int) -> Floats:
 
 
 def _autocovariances(x: Floats, lags: int) -> Floats:
-    """Of series (B, n), shape (B, lags + 1); zero where fewer than two samples are there."""
+    """Estimate those of series (B, n), shape (B, lags + 1); zero where there are fewer than two samples."""
     there = np.isfinite(x)
     count = there.sum(axis=1)
     mean = np.where(there, x, 0.0).sum(axis=1) / np.maximum(count, 1)
@@ -75,7 +80,30 @@ def _autocovariances(x: Floats, lags: int) -> Floats:
 
 
 def autocorrelation(x: ArrayLike, lags: int) -> Floats:
-    """Autocorrelation of a regularly sampled series with gaps, shape (lags + 1,), 1 at lag 0. [-]"""
+    """Estimate the autocorrelation of a regularly sampled series with gaps.
+
+    Parameters
+    ----------
+    x : array_like, shape (n,)
+        Series; NaN where there is no sample.
+    lags : int
+        Largest lag. [samples]
+
+    Returns
+    -------
+    ndarray, shape (lags + 1,)
+        1 at lag 0. [-]
+
+    Raises
+    ------
+    InputError
+        When there are fewer than two samples.
+
+    Examples
+    --------
+    >>> autocorrelation([1.0, 2.0, 3.0, 6.0], 0)
+    array([1.])
+    """
     gamma = autocovariance(x, lags)
     if gamma[0] <= 0.0:
         return np.concatenate([[1.0], np.zeros(lags)])
@@ -84,7 +112,7 @@ def autocorrelation(x: ArrayLike, lags: int) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Autoregression:
-    """``x_t = sum_k coefficients[k] x_{t-1-k} + e_t`` about the mean.
+    """Autoregressive model ``x_t = sum_k coefficients[k] x_{t-1-k} + e_t`` about the mean.
 
     Attributes
     ----------
@@ -118,11 +146,11 @@ class Autoregression:
 
     @property
     def effective_samples(self) -> float:
-        """Number of independent samples that would tell as much about a mean, at most those there are. [-]"""
+        """Number of independent samples that determine a mean equally well, at most `samples`. [-]"""
         return self.samples / max(self.inflation, 1.0)
 
     def memory(self, tolerance: float = 1e-6) -> int:
-        """Number of steps after which a disturbance has died away. [samples]"""
+        """Return the number of steps after which a disturbance has decayed to a tolerance. [samples]"""
         if not self.order:
             return 0
         if self.order == 1:
@@ -136,7 +164,7 @@ class Autoregression:
 
 
 def fit_autoregression(x: ArrayLike, *, longest: int | None = None) -> Autoregression:
-    """Fit an autoregressive model to a series with gaps; the order is that of lowest BIC.
+    """Fit an autoregressive model to a series with gaps; the order has the lowest BIC.
 
     Parameters
     ----------
@@ -148,12 +176,18 @@ def fit_autoregression(x: ArrayLike, *, longest: int | None = None) -> Autoregre
     Returns
     -------
     Autoregression
+
+    Examples
+    --------
+    >>> x = np.random.default_rng(1).normal(size=500)
+    >>> fit_autoregression(x).order
+    0
     """
     return fit_autoregressions(np.asarray(x, dtype=np.float64)[None], longest=longest)[0]
 
 
 def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autoregression]:
-    """The same for several series of equal length at once.
+    """Fit autoregressive models to several series of equal length at once.
 
     Parameters
     ----------
@@ -161,6 +195,11 @@ def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autore
         Regularly sampled series, NaN for gaps. [unit]
     longest : int, optional
         As for `fit_autoregression`. [-]
+
+    Returns
+    -------
+    list of Autoregression
+        One for each series.
     """
     count = np.isfinite(x).sum(axis=1)
     if longest is None:
@@ -169,8 +208,8 @@ def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autore
     else:
         most = np.full(len(x), longest)
     gamma = _autocovariances(x, int(max(most.max(initial=0), 1)))
-    alive = gamma[:, 0] > 0.0
-    innovation = np.where(alive, gamma[:, 0], 1.0)
+    valid = gamma[:, 0] > 0.0
+    innovation = np.where(valid, gamma[:, 0], 1.0)
     lowest = count * np.log(innovation)
     coefficients = np.zeros((len(x), gamma.shape[1] - 1))
     best = [(np.empty(0), float(variance)) for variance in gamma[:, 0]]
@@ -178,15 +217,15 @@ def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autore
         before = coefficients[:, : p - 1]
         reflection = (gamma[:, p] - np.sum(before * gamma[:, p - 1 : 0 : -1], axis=1)) / innovation
         # Gaps can make the estimated autocovariance one that no series has: the recursion ends there.
-        alive &= (np.abs(reflection) < 1.0) & (p <= most)
-        if not alive.any():
+        valid &= (np.abs(reflection) < 1.0) & (p <= most)
+        if not valid.any():
             break
-        reflection = np.where(alive, reflection, 0.0)
+        reflection = np.where(valid, reflection, 0.0)
         coefficients[:, : p - 1] = before - reflection[:, None] * before[:, ::-1]
         coefficients[:, p - 1] = reflection
         innovation = innovation * (1.0 - reflection * reflection)
         score = count * np.log(innovation) + p * np.log(np.maximum(count, 1))
-        better = alive & (score < lowest)
+        better = valid & (score < lowest)
         lowest = np.where(better, score, lowest)
         for k in np.flatnonzero(better):
             best[k] = (coefficients[k, :p].copy(), float(innovation[k]))
@@ -197,12 +236,28 @@ def fit_autoregressions(x: Floats, *, longest: int | None = None) -> list[Autore
 
 
 def effective_samples(x: ArrayLike) -> float:
-    """Number of independent samples that a series with gaps is worth, from its autoregressive model. [-]"""
+    """Estimate the number of independent samples that determine a mean as well as a series with gaps does.
+
+    Parameters
+    ----------
+    x : array_like, shape (n,)
+        Regularly sampled series, NaN for gaps.
+
+    Returns
+    -------
+    float
+        From the autoregressive model of the series, at most the number of its samples. [-]
+
+    Examples
+    --------
+    >>> effective_samples(np.random.default_rng(1).normal(size=500))
+    500.0
+    """
     return fit_autoregression(x).effective_samples
 
 
 def correlate(x: ArrayLike, y: ArrayLike) -> tuple[float, float]:
-    """Correlation of two series and how large chance would make it.
+    """Correlate two series, and estimate the correlation that chance would give.
 
     Parameters
     ----------
@@ -214,6 +269,13 @@ def correlate(x: ArrayLike, y: ArrayLike) -> tuple[float, float]:
     tuple of float
         Correlation, and the size that 95 % of unrelated series with the same autocorrelations stay below;
         NaN and infinity when there are fewer than 3 common samples or one series never changes. [-]
+
+    Examples
+    --------
+    >>> x = np.random.default_rng(1).normal(size=500)
+    >>> r, limit = correlate(x, x)
+    >>> round(r, 3), limit < 0.2
+    (1.0, True)
     """
     a, b = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
     both = np.isfinite(a) & np.isfinite(b)

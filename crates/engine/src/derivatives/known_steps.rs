@@ -1,8 +1,8 @@
-//! Steps of numbers with derivatives along the known solutions of a plain run.
+//! Steps of numbers with derivatives, where the solution of the step is known from a plain run.
 //!
-//! At a known solution the slopes of the equations of a stage ([`super::equations`]) are all that is needed: the slopes of
-//! the solution follow from them by one solve with the plain matrix of the stage (implicit function theorem: Griewank &
-//! Walther (2008), ch. 15, doi:10.1137/1.9780898717761). Nothing is iterated, and nothing is eliminated with derivatives.
+//! Only the slopes of the equations of a stage are differentiated ([`super::equation_slopes`]). The slopes of the solution
+//! follow from them by one solve with the plain matrix of the stage (implicit function theorem: Griewank & Walther (2008),
+//! ch. 15, doi:10.1137/1.9780898717761). Nothing is iterated, and no elimination is computed with derivatives.
 
 use crate::balance::ledger::Ledger;
 use crate::balance::terms::Balances;
@@ -18,24 +18,24 @@ use crate::step::state::State;
 use crate::step::{Scheme, Stepper};
 use crate::weather::conditions::{Instant, Weather};
 
-use super::equations::{Carries, EquationSlopes};
+use super::equation_slopes::{Carries, EquationSlopes};
 
-/// A stepper whose numbers carry derivatives, with all that it needs to go along known solutions.
+/// A stepper whose numbers have derivatives, and the plain matrices at the known solutions.
 #[derive(Debug, Clone)]
-pub(super) struct StepperAlong<'a, S: Real> {
+pub(super) struct DerivativeStepper<'a, S: Real> {
     pub(super) stepper: Stepper<'a, S>,
     /// Matrices of the stages at their solutions, in plain numbers.
     matrices: Vec<StageMatrix<'a>>,
     equations: S::Equations,
     carries: Carries,
-    /// The solution of the stage in hand: cells, surfaces, airs [degC].
+    /// The solution of the current stage: cells, surfaces, airs [degC].
     at: Vec<f64>,
     /// Responses of all unknowns to each ideal load [K/W].
     responses: Vec<Vec<f64>>,
     scratch: Vec<f64>,
 }
 
-impl<'a, S: Real> StepperAlong<'a, S> {
+impl<'a, S: Real> DerivativeStepper<'a, S> {
     pub(super) fn new(plan: &'a Plan, numbers: &'a [S], scheme: Scheme) -> Self {
         let stepper = Stepper::new(plan, numbers, scheme);
         let plain: Vec<f64> = numbers.iter().map(|number| number.lane(0)).collect();
@@ -52,7 +52,7 @@ impl<'a, S: Real> StepperAlong<'a, S> {
         }
     }
 
-    /// Takes an action along its solution; where that is not known, by itself.
+    /// Takes an action whose solution is known; without one, by the iteration itself.
     pub(super) fn take(
         &mut self,
         action: Action,
@@ -89,8 +89,8 @@ impl<'a, S: Real> StepperAlong<'a, S> {
                 let plan = self.stepper.model.plan;
                 let controlled =
                     !plan.ideal_loads.is_empty() && self.stepper.set_ideal_loads(weather, step, solution);
-                // Responses leave out the effect of a load on the convection expected in gaps: with windows its slope
-                // takes one more round.
+                // Responses do not contain the effect of a load on the convection extrapolated in gaps: with windows a second
+                // round adds its slope.
                 let rounds = match (controlled, plan.windows.is_empty()) {
                     (false, _) => 0,
                     (true, true) => 1,
@@ -99,7 +99,7 @@ impl<'a, S: Real> StepperAlong<'a, S> {
                 for round in 0..=rounds {
                     for (place, known) in self.stepper.stage_places(dt).zip(solution.stages) {
                         if place.stage > 0 {
-                            self.stepper.carry_first_stage(state);
+                            self.stepper.store_first_stage(state);
                         }
                         self.stepper.conditions_of_stage(weather, step, place.stage);
                         self.stage(state, place, known);
@@ -133,13 +133,13 @@ impl<'a, S: Real> StepperAlong<'a, S> {
         let Self { stepper, matrices, equations, carries, at, .. } = self;
         let matrix = &mut matrices[place.stage];
         let new = matrix.factor_linear_walls(place.length);
-        stepper.locate(state, place, known, matrix, at);
+        stepper.write_known_solution(state, place, known, matrix, at);
         stepper.linearise_known_stage(state, place, known);
         let Balances { walls, laws, conditions, .. } = stepper.balances();
         matrix.factor((laws, walls, &conditions.paths), place.length, new);
         let mut slopes = EquationSlopes::new(&stepper.model, carries, equations, at);
         stepper.balances().visit(&stepper.stage_of(state, place), &mut slopes);
-        stepper.take_solution(
+        stepper.store_solution(
             #[inline(always)]
             |solution| equations.solve(place.stage, matrix, at, solution),
         );

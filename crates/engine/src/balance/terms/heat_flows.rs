@@ -34,13 +34,13 @@ struct OtherFlows<'a, S, F> {
 impl<S: Real, F: Fn(SurfaceId) -> S> HeatSink<S> for OtherFlows<'_, S, F> {
     #[inline(always)]
     fn add_to_building(&mut self, flow: Flow, heat: S) {
-        self.power.book(flow, heat);
+        self.power.add_flow(flow, heat);
     }
 
     #[inline(always)]
     fn impose(&mut self, surface: SurfaceId, area: S, _temperature: S) {
         // The environment supplies whatever the wall conducts away.
-        self.power.book(Flow::Boundary, area * (self.flux)(surface));
+        self.power.add_flow(Flow::Boundary, area * (self.flux)(surface));
     }
 }
 
@@ -58,9 +58,9 @@ impl<S: Real> Balances<'_, S> {
         let heat = ExteriorSums { solar: Sum::none(), convection: Sum::none(), longwave: Sum::none() };
         let mut exterior = Evaluation { cells: &[], surfaces, air, heat };
         self.exterior_surfaces(&mut exterior);
-        power.book_sum(Flow::Solar, &exterior.heat.solar);
-        power.book_sum(Flow::Convection, &exterior.heat.convection);
-        power.book_sum(Flow::Longwave, &exterior.heat.longwave);
+        power.add_sum(Flow::Solar, &exterior.heat.solar);
+        power.add_sum(Flow::Convection, &exterior.heat.convection);
+        power.add_sum(Flow::Longwave, &exterior.heat.longwave);
         let heat = OtherFlows { power: &mut power, flux };
         let mut others = Evaluation { cells: &[], surfaces, air, heat };
         self.imposed_temperatures(&mut others);

@@ -1,13 +1,13 @@
 //! Slopes of the balances of a stage at its solution.
 //!
-//! Each term of each balance ([`crate::balance::terms`]) is differentiated by the product rule in the numbers that it is made of, the
-//! temperatures held at the solution. Equations count heat into a node as positive, in the order and scale of
+//! Each term of each balance ([`crate::balance::terms`]) is differentiated by its coefficients with the product rule; the
+//! temperatures are constants, those of the solution. Equations count heat into a node as positive, in the order and scale of
 //! [`crate::linear::stage_matrix`]: of cells and of surfaces outside the zones per square metre, of all others whole; the equation
 //! of a surface held at a temperature is that temperature.
 
 use crate::balance::terms::{End, Held, Node, Origin, OutdoorRadiation, Sink};
 use crate::building::coefficients::{Coefficients, Matter};
-use crate::building::ids::SurfaceId;
+use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::model::Model;
 use crate::building::plan::SurfaceRole;
 use crate::linear::building_system::is_held;
@@ -17,7 +17,7 @@ use crate::number::real::{Equations, Real};
 use crate::physics::longwave::Emission;
 use crate::step::Stepper;
 
-/// Which numbers that never change have derivatives: terms of the others need not be differentiated by them.
+/// Which constant coefficients have derivatives (terms are not differentiated by the others), and scales.
 #[derive(Debug, Clone)]
 pub(super) struct Carries {
     /// By wall: its area, conductances, heat capacities.
@@ -27,6 +27,8 @@ pub(super) struct Carries {
     /// By zone: exchange areas between its surfaces, and the slope of a linear law of emission.
     exchange: Vec<bool>,
     emission: Vec<bool>,
+    /// Scales of the equations of surfaces.
+    scales: BySurface<Scale>,
 }
 
 /// Whether one of some numbers has derivatives.
@@ -36,7 +38,8 @@ fn any<S: Real>(numbers: impl IntoIterator<Item = S>) -> bool {
 
 impl Carries {
     pub(super) fn new<S: Real>(stepper: &Stepper<'_, S>) -> Self {
-        let Coefficients { walls, zones, .. } = &stepper.model.coefficients;
+        let model = &stepper.model;
+        let Coefficients { walls, zones, .. } = &model.coefficients;
         let heat = |matter: &Matter<S>| match *matter {
             Matter::Solid { capacity, .. } => capacity,
             Matter::Pcm(_) => S::zero(),
@@ -59,6 +62,13 @@ impl Carries {
                 .iter()
                 .map(|zone| matches!(zone.emission, Emission::Linearised(reference) if reference.carries()))
                 .collect(),
+            scales: model
+                .plan
+                .surfaces
+                .ids()
+                .map(|surface| Scale::of(model, surface))
+                .collect::<Vec<_>>()
+                .into(),
         }
     }
 }
@@ -74,6 +84,16 @@ enum Scale {
     Held,
 }
 
+impl Scale {
+    fn of<S: Real>(model: &Model<'_, S>, surface: SurfaceId) -> Self {
+        match model.plan.surfaces[surface].role {
+            SurfaceRole::Zone { .. } => Self::Whole,
+            _ if is_held(model, surface) => Self::Held,
+            SurfaceRole::Exterior => Self::PerArea,
+        }
+    }
+}
+
 /// Differentiates terms.
 pub(super) struct EquationSlopes<'a, S: Real> {
     model: &'a Model<'a, S>,
@@ -81,9 +101,9 @@ pub(super) struct EquationSlopes<'a, S: Real> {
     equations: &'a mut S::Equations,
     /// The solution: cells, surfaces, airs [degC].
     at: &'a [f64],
-    /// Whether the size of the term in hand has derivatives: an area, a share, or the number 1.
+    /// Whether the size of the current term has derivatives: an area, a share, or the number 1.
     size_carries: bool,
-    /// The wall and the zone in hand.
+    /// The current wall and zone.
     wall: usize,
     zone: usize,
 }
@@ -116,13 +136,11 @@ impl<'a, S: Real> EquationSlopes<'a, S> {
 
     #[inline(always)]
     fn scale(&self, node: Node) -> Scale {
-        let Node::Surface(surface) = node else {
-            return if matches!(node, Node::Cell(_)) { Scale::PerArea } else { Scale::Whole };
-        };
-        if let SurfaceRole::Zone { .. } = self.model.plan.surfaces[surface].role {
-            return Scale::Whole;
+        match node {
+            Node::Cell(_) => Scale::PerArea,
+            Node::Surface(surface) => self.carries.scales[surface],
+            Node::Air(_) => Scale::Whole,
         }
-        if is_held(self.model, surface) { Scale::Held } else { Scale::PerArea }
     }
 
     /// `sign size heat` into a node, where `heat` has these slopes by these numbers.
@@ -165,6 +183,11 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
     #[inline(always)]
     fn begin_zone(&mut self, zone: usize) {
         self.zone = zone;
+    }
+
+    #[inline(always)]
+    fn takes_radiation(&self) -> bool {
+        self.carries.exchange[self.zone] || self.carries.emission[self.zone]
     }
 
     #[inline(always)]
@@ -222,7 +245,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         self.size_carries = !of_path && self.carries.area[self.wall];
         if of_path || self.carries.links[self.wall] {
             self.between(ends, area, heat, [(conductance, difference)]);
-        } else {
+        } else if self.size_carries {
             self.between(ends, area, heat, []);
         }
     }
@@ -247,7 +270,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
         let slopes = [(law.offset, 1.0), (law.slope, difference)];
         self.size_carries = match ends[0] {
             End::Node(Node::Surface(surface)) => self.carries.area[surface.wall()],
-            // Outdoor air enters zones with no area.
+            // Outdoor air that flows into zones has no area.
             _ => false,
         };
         match ends {
@@ -272,7 +295,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
             self.size_carries = true;
             self.between(ends, area, Line::of(from).at(a) - Line::of(to).at(b), []);
         }
-        // An exact law depends on the solution alone. A linear one is the same at both ends: its offsets cancel.
+        // The exact law depends on the solution only. A linear law is the same at both ends: its offsets cancel.
         if self.carries.emission[self.zone] {
             let heat = area.lane(0) * (a - b);
             for (node, sign) in ends.into_iter().zip([-1.0, 1.0]) {

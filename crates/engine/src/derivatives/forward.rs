@@ -1,4 +1,4 @@
-//! Forward derivatives: a run, and its records' slopes by some parameters.
+//! Forward derivatives: a run and the slopes of its records by some parameters.
 
 use core::sync::atomic::Ordering;
 
@@ -16,18 +16,18 @@ use crate::step::Stepper;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
-use super::along::StepperAlong;
+use super::known_steps::DerivativeStepper;
 
 /// Records of a run and their slopes.
 #[derive(Debug)]
 pub struct Jacobian {
     /// Rows x probes.
     pub records: Vec<f64>,
-    /// Parameters asked for x rows x probes [unit of the record / unit of the parameter].
+    /// Chosen parameters x rows x probes [unit of the record / unit of the parameter].
     pub slopes: Vec<f64>,
 }
 
-/// Runs a plan and the slopes of all its records by the parameters `which`, on as many threads as there are.
+/// Runs a plan and computes the slopes of all its records by the parameters `which`, on all threads.
 ///
 /// # Errors
 /// As [`march`](crate::run::march::march); [`EngineError::Input`] also for a parameter that does not exist.
@@ -47,12 +47,12 @@ pub fn jacobian(
         )));
     }
     let weather = Weather::new(plan, forcing);
-    // Groups that share a thread share the plain run that they follow.
+    // All groups of a thread use the solutions of one plain run.
     let share = GROUP * which.len().div_ceil(GROUP).div_ceil(rayon::current_num_threads());
     let parts: Vec<_> = which
         .par_chunks(share)
         .map(|some| {
-            let part = along(plan, numbers, some, &weather, options, watch);
+            let part = run_with_slopes(plan, numbers, some, &weather, options, watch);
             watch.done.fetch_add(some.len(), Ordering::Relaxed);
             part
         })
@@ -65,15 +65,15 @@ pub fn jacobian(
     Ok(Jacobian { records, slopes: slopes.collect() })
 }
 
-/// Parameters whose slopes are carried side by side.
+/// Number of parameters whose slopes are computed together.
 const GROUP: usize = 8;
 
 /// A number with its slopes by the parameters of a group.
 type Sloped = Dual<GROUP>;
 
-/// A run with the slopes of a group, on its way beside a plain one.
+/// The slopes of a group during a run.
 struct Group<'a> {
-    stepper: StepperAlong<'a, Sloped>,
+    stepper: DerivativeStepper<'a, Sloped>,
     state: State<Sloped>,
     slopes: Slopes,
 }
@@ -84,8 +84,8 @@ struct Slopes {
     records: Vec<Sloped>,
 }
 
-/// Runs plain numbers, and beside them those with slopes by each group of parameters, along the same solutions.
-fn along(
+/// A plain run; after each of its steps, the slopes of the same step by each group of parameters.
+fn run_with_slopes(
     plan: &Plan,
     numbers: &[f64],
     by: &[usize],
@@ -96,29 +96,29 @@ fn along(
     let sloped = |group: &[usize]| {
         let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::constant(value)).collect();
         for (which, &by) in group.iter().enumerate() {
-            // A parameter may stand there twice.
+            // A parameter may be chosen twice.
             sloped[by].slope[which] = 1.0;
         }
         (sloped, group.len())
     };
     let vectors: Vec<_> = by.chunks(GROUP).map(sloped).collect();
-    let mut followers: Vec<_> = vectors
+    let mut groups: Vec<_> = vectors
         .iter()
         .map(|(numbers, parameters)| {
-            let stepper = StepperAlong::new(plan, numbers, options.scheme);
+            let stepper = DerivativeStepper::new(plan, numbers, options.scheme);
             let state = stepper.stepper.begin(&options.initial);
             Group { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })
         .collect();
     let mut plain = Stepper::new(plan, numbers, options.scheme);
     plain.known.start();
-    march_observed(plain, weather, options, watch, |plain, reached, made| {
+    march_observed(plain, weather, options, watch, |plain, reached, action| {
         let solution = plain.known.solution(&reached.load);
-        for Group { stepper, state, slopes } in &mut followers {
-            stepper.take(made, state, weather, options.dt, solution)?;
-            // Rounding and tolerances must not add up: the slopes are those along the plain run, as in reverse.
-            state.meet(reached, |number, value| number.value = value);
-            if made.row(options).is_some() {
+        for Group { stepper, state, slopes } in &mut groups {
+            stepper.take(action, state, weather, options.dt, solution)?;
+            // The values are those of the plain run, as in reverse: rounding and tolerances must not add up.
+            state.change_by(reached, |number, value| number.value = value);
+            if action.row(options).is_some() {
                 slopes
                     .records
                     .extend(options.probes.iter().map(|probe| probe.read(plan, &stepper.stepper, state)));
@@ -126,5 +126,5 @@ fn along(
         }
         Ok(())
     })?;
-    Ok(followers.into_iter().map(|follower| follower.slopes).collect())
+    Ok(groups.into_iter().map(|group| group.slopes).collect())
 }

@@ -7,14 +7,14 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from mascarin.calibration.series import (
+from mascarin.errors import InputError
+from mascarin.validation.series import (
     autocorrelation,
     autocovariance,
     correlate,
     effective_samples,
     fit_autoregression,
 )
-from mascarin.errors import InputError
 
 
 def _ar1(phi: float, n: int, seed: int) -> NDArray[np.float64]:

@@ -36,12 +36,12 @@ fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// A slab with its outside face at a measured temperature and an adiabatic inside.
-fn slab(b: &mut Builder, material: usize, thickness: f64, nodes: usize) {
-    let measured = b.channel("face");
-    let construction = b.construction("slab", &[(material, thickness, nodes)]);
+/// A wall with its outer surface at a measured temperature and an adiabatic inside.
+fn wall(b: &mut Builder, material: usize, thickness: f64, nodes: usize) {
+    let measured = b.channel("surface");
+    let construction = b.construction("wall", &[(material, thickness, nodes)]);
     b.surface(
-        "slab",
+        "wall",
         construction,
         [1.0, 90.0, 0.0],
         facing(Facing::Measured { channel: measured }, None),
@@ -57,7 +57,7 @@ fn sinusoid_in_a_thick_solid() {
     let d = (2.0 * k / (rho * c) / w).sqrt();
     let mut b = Builder::new();
     let solid = b.solid("solid", k, rho, c);
-    slab(&mut b, solid, 1.2, 240);
+    wall(&mut b, solid, 1.2, 240);
     let depths = [0.05, 0.1, 0.2];
     let probes = depths.map(|depth| Probe::Sensor { sensor: b.sensor(0, depth) });
     let plan = b.plan();
@@ -74,7 +74,7 @@ fn sinusoid_in_a_thick_solid() {
     }
 }
 
-/// Melted thickness of a slab of PCM [m] after some steps from a uniform temperature with a jump at the face.
+/// Melted thickness of a wall of PCM [m] after some steps from a uniform temperature with a jump at the surface.
 struct Melting {
     conductivity: [f64; 2],
     specific_heat: [f64; 2],
@@ -92,7 +92,7 @@ impl Melting {
         let mut b = Builder::new();
         let law = b.tanh(self.latent_heat, self.melts_at, self.width);
         let pcm = b.pcm("pcm", [self.conductivity, self.specific_heat], self.density, law);
-        slab(&mut b, pcm, self.thickness, nodes);
+        wall(&mut b, pcm, self.thickness, nodes);
         let plan = b.plan();
         let rows = forcing(&plan, Scheme::Sdirk2, steps, dt, |_, row| set(row, 0, self.hot));
         let mut options = options(Scheme::Sdirk2, dt, vec![Probe::LiquidFraction { surface: 0, layer: 0 }]);
@@ -160,10 +160,10 @@ fn stefan_one_phase() {
     assert!(relative(melted, 0.8144) < 3e-3, "{melted} melted, expected 0.8144");
 }
 
-/// A zone behind a resistance: `T = T1 + (T0 - T1) e^(-t/tau)`. Every film that makes 4 W/(m2 K) in still air serves.
+/// A zone behind a resistance: `T = T1 + (T0 - T1) e^(-t/tau)`. Every law that makes 4 W/(m2 K) in still air serves.
 #[test]
 fn lumped_zone() {
-    step_response(|b| b.film(4.0));
+    step_response(|b| b.convection(4.0));
     step_response(|b| Convection::LinearWind {
         constant: b.number("convection.constant", 4.0),
         wind: b.number("convection.wind", 3.0),
@@ -172,19 +172,19 @@ fn lumped_zone() {
     step_response(|b| b.power([0.0, 4.0, 0.0, 0.0, 1.0], [0.0, 4.0, 0.0, 0.0, 1.0]));
 }
 
-fn step_response(film: impl Fn(&mut Builder) -> Convection) {
+fn step_response(law: impl Fn(&mut Builder) -> Convection) {
     let mut b = Builder::new();
     let measured = b.channel("outer");
     let barrier = b.resistance("barrier", 0.5);
     let wall = b.construction("wall", &[(barrier, 0.0, 0)]);
     let zone = b.zone("room", 30.0, 0.7, ZoneLongwave::None);
-    let (film_out, film_in) = (b.film(20.0), film(&mut b));
-    let inside = b.inside(zone, film_in, 0.9);
+    let (outer, inner) = (b.convection(20.0), law(&mut b));
+    let inside = b.inside(zone, inner, 0.9);
     b.surface(
         "wall",
         wall,
         [12.0, 90.0, 0.0],
-        facing(Facing::Measured { channel: measured }, Some(film_out)),
+        facing(Facing::Measured { channel: measured }, Some(outer)),
         inside,
     );
     let plan = b.plan();
@@ -216,14 +216,14 @@ fn two_zones_at_rest() {
     let wall = b.construction("wall", &[(brick, 0.14, 3)]);
     let zones = ["a", "b"].map(|name| b.zone(name, 20.0, 0.5, ZoneLongwave::None));
     let place = [10.0, 90.0, 0.0];
-    let film = |b: &mut Builder| b.film(5.0);
-    let f = film(&mut b);
+    let constant = |b: &mut Builder| b.convection(5.0);
+    let f = constant(&mut b);
     let inside = b.inside(zones[0], f, 0.9);
     b.surface("hot", wall, place, facing(Facing::Measured { channel: hot }, None), inside);
-    let (f, g) = (film(&mut b), film(&mut b));
+    let (f, g) = (constant(&mut b), constant(&mut b));
     let (outside, inside) = (b.inside(zones[0], f, 0.9), b.inside(zones[1], g, 0.9));
     b.surface("middle", wall, place, outside, inside);
-    let f = film(&mut b);
+    let f = constant(&mut b);
     let inside = b.inside(zones[1], f, 0.9);
     b.surface("cold", wall, place, facing(Facing::Measured { channel: cold }, None), inside);
     let plan = b.plan();
@@ -234,7 +234,7 @@ fn two_zones_at_rest() {
     });
     let probes = vec![Probe::AirTemperature { zone: 0 }, Probe::AirTemperature { zone: 1 }];
     let result = run(&plan, &rows, &options(Scheme::BackwardEuler, 36000.0, probes));
-    // Walls: 0.14/0.7 = 0.2 m2K/W; with one film 0.4, with two 0.6: 25 and 16.667 W/K.
+    // Walls: 0.14/0.7 = 0.2 m2K/W; with one surface resistance 0.4, with two 0.6: 25 and 16.667 W/K.
     let (outer, middle) = (25.0, 10.0 / 0.6);
     let pressure = 101_325.0 * (1.0 - 2.25577e-5 * 55.0_f64).powf(5.25588);
     let air = 20.0 * 1006.0 * pressure / (287.055 * 288.15) * 0.5 / 3600.0;
@@ -248,18 +248,18 @@ fn two_zones_at_rest() {
     }
 }
 
-/// Face temperature of a slab under a smooth swing, for orders of convergence.
+/// Surface temperature of a wall under a smooth swing, for orders of convergence.
 fn swing(nodes: usize, dt: f64, scheme: Scheme) -> f64 {
     let mut b = Builder::new();
     let solid = b.solid("solid", 0.8, 1600.0, 900.0);
     let measured = b.channel("air");
-    let construction = b.construction("slab", &[(solid, 0.2, nodes)]);
-    let film = b.film(8.0);
+    let construction = b.construction("wall", &[(solid, 0.2, nodes)]);
+    let convection = b.convection(8.0);
     b.surface(
-        "slab",
+        "wall",
         construction,
         [1.0, 90.0, 0.0],
-        facing(Facing::Measured { channel: measured }, Some(film)),
+        facing(Facing::Measured { channel: measured }, Some(convection)),
         facing(Facing::Adiabatic, None),
     );
     let plan = b.plan();
@@ -299,11 +299,12 @@ fn maximum_principle() {
         let mut b = Builder::new();
         let solid = b.solid("solid", 0.8, 1600.0, 900.0);
         let pcm = b.energain(0.4);
-        let measured = b.channel("face");
+        let measured = b.channel("surface");
         let construction = b.construction("wall", &[(solid, 0.05, 10), (pcm, 0.01, 8), (solid, 0.02, 4)]);
         let zone = b.zone("room", 10.0, 0.0, ZoneLongwave::Radiosity);
-        let film = Convection::Tarp { factor: b.number("factor", 1.0), roughness: None, perimeter: None };
-        let inside = b.inside(zone, film, 0.9);
+        let convection =
+            Convection::Tarp { factor: b.number("factor", 1.0), roughness: None, perimeter: None };
+        let inside = b.inside(zone, convection, 0.9);
         b.surface(
             "wall",
             construction,

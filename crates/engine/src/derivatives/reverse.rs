@@ -1,10 +1,10 @@
-//! Reverse derivatives: a run that can be gone back along, from weights on its records to the slopes by all parameters.
+//! Reverse derivatives: from weights on the records of a run to the slopes of their weighted sum by all parameters.
 //!
-//! The run keeps the states between its steps and the solutions of their stages. On the way back each step is made once
-//! more with numbers that remember what they were made of, along its solution; the weights of the state
-//! after it become those of the state before it and of the coefficients. What the coefficients were made of stays on the
-//! tape from the start to the end. Where all of this would take too much memory, only every n-th state is kept and the
-//! steps between are run again.
+//! The run keeps the states between its steps and the solutions of their stages. The reverse pass takes the steps from the
+//! last to the first. Each step is computed once more at its known solution, with numbers that record their operations on a
+//! tape; from the weights on the state after the step follow those on the state before it and on the coefficients. The
+//! operations from parameters to coefficients stay on the tape during the whole pass. Where all states would take too much
+//! memory, only every n-th state is kept and the steps between are run again.
 
 use crate::balance::ledger::Ledger;
 use crate::building::plan::Plan;
@@ -21,34 +21,34 @@ use crate::step::stage_solutions::{Solution, read_solution};
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 
-use super::along::StepperAlong;
+use super::known_steps::DerivativeStepper;
 
-/// A run, and what is needed to go back along it.
+/// A run, and what its reverse pass needs.
 #[derive(Debug)]
 pub struct Trajectory {
     /// The run.
     pub run: Run<f64>,
-    /// Everything that was done to the state.
-    moves: Vec<Action>,
-    /// States before the stretches that are run again.
+    /// All actions of the run.
+    actions: Vec<Action>,
+    /// States at the start of the stretches that are run again.
     starts: Vec<State<f64>>,
-    /// Actions in each of them.
+    /// Number of actions in each of these stretches.
     length: usize,
-    /// What follows them.
+    /// The last stretch, which is kept.
     last: Stretch,
 }
 
-/// Actions in a row, each with the numbers of the state before it and of its solution.
+/// Successive actions: the numbers of the state before each of them and of its solution.
 #[derive(Debug, Default)]
 struct Stretch {
     states: Vec<f64>,
     solutions: Vec<f64>,
-    /// Where the numbers of each solution end; it has none where it is not known.
+    /// Where the numbers of each solution end; an unknown solution has none.
     ends: Vec<usize>,
 }
 
 impl Stretch {
-    /// Adds a move that a stepper has made, from the state before it to one with these loads.
+    /// Adds an action that a stepper has taken, from the state before it to a state with these loads.
     fn push(&mut self, before: &State<f64>, stepper: &Stepper<'_, f64>, load: &[f64]) {
         before.write(&mut self.states);
         if let Some(solution) = stepper.known.solution(load) {
@@ -57,8 +57,8 @@ impl Stretch {
         self.ends.push(self.solutions.len());
     }
 
-    /// The moves from the last to the first: numbers of the states before them and of their solutions.
-    fn back(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+    /// The actions from the last to the first: numbers of the state before each and of its solution.
+    fn reversed(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
         let size = self.states.len() / self.ends.len().max(1);
         (0..self.ends.len()).rev().map(move |k| {
             let first = k.checked_sub(1).map_or(0, |before| self.ends[before]);
@@ -87,19 +87,19 @@ impl Trajectory {
         let mut before = stepper.begin(&options.initial);
         let mut start = before.clone();
         let length = stretch(&before, weather.steps(), options, bytes);
-        let (mut moves, mut starts, mut last) = (Vec::new(), Vec::new(), Stretch::default());
+        let (mut actions, mut starts, mut last) = (Vec::new(), Vec::new(), Stretch::default());
         last.states.reserve(before.count() * length.min(weather.steps() + 1));
-        let run = march_observed(stepper, &weather, options, watch, |stepper, reached, made| {
+        let run = march_observed(stepper, &weather, options, watch, |stepper, reached, action| {
             if last.ends.len() == length {
                 starts.push(core::mem::replace(&mut start, before.clone()));
                 last = Stretch::default();
             }
-            moves.push(made);
+            actions.push(action);
             last.push(&before, stepper, &reached.load);
             before.copy_from(reached);
             Ok(())
         })?;
-        Ok(Self { run, moves, starts, length, last })
+        Ok(Self { run, actions, starts, length, last })
     }
 
     /// Slopes by all parameters of the sum of weights (rows x probes) times records.
@@ -124,15 +124,15 @@ impl Trajectory {
         // Dropped last: its end releases the tape, also after an error.
         let _recording = Tape::record();
         let leaves: Vec<_> = numbers.iter().map(|&number| Taped::variable(number)).collect();
-        let mut back = Back::new(plan, &leaves, &weather, options, weights);
+        let mut pass = ReversePass::new(plan, &leaves, &weather, options, weights);
         let first_of_last = self.starts.len() * self.length;
-        back.over(&self.moves[first_of_last..], &self.last, watch)?;
+        pass.over(&self.actions[first_of_last..], &self.last, watch)?;
         for (k, start) in self.starts.iter().enumerate().rev() {
-            let moves = &self.moves[k * self.length..(k + 1) * self.length];
-            let again = again(plan, numbers, &weather, options, start, moves)?;
-            back.over(moves, &again, watch)?;
+            let actions = &self.actions[k * self.length..(k + 1) * self.length];
+            let stretch = run_again(plan, numbers, &weather, options, start, actions)?;
+            pass.over(actions, &stretch, watch)?;
         }
-        Ok(back.finish(&leaves))
+        Ok(pass.finish(&leaves))
     }
 }
 
@@ -143,55 +143,55 @@ fn stretch(state: &State<f64>, steps: usize, options: &Options, bytes: usize) ->
     let repeated = options.warmup.map_or(0, |warmup| warmup.steps * warmup.max_cycles);
     let all = repeated + 1 + steps;
     let fit = (bytes / each).max(1);
-    // As many kept states as states between two of them take the least room.
+    // The least memory is taken with as many kept states as there are states between two of them.
     if all <= fit { all } else { fit.min(all.isqrt() + 1) }
 }
 
-/// Makes moves again, keeping what is needed to go back along them.
-fn again(
+/// Runs a stretch again and keeps its states and solutions.
+fn run_again(
     plan: &Plan,
     numbers: &[f64],
     weather: &Weather<'_>,
     options: &Options,
     start: &State<f64>,
-    moves: &[Action],
+    actions: &[Action],
 ) -> Result<Stretch, EngineError> {
     let mut stepper = Stepper::new(plan, numbers, options.scheme);
     stepper.known.start();
     let (mut before, mut state, mut unused) = (start.clone(), start.clone(), Ledger::new());
-    let mut made = Stretch::default();
-    for step in moves {
+    let mut stretch = Stretch::default();
+    for action in actions {
         before.copy_from(&state);
-        step.take(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
-        made.push(&before, &stepper, &state.load);
+        action.take(&mut stepper, &mut state, weather, options.dt, &mut unused)?;
+        stretch.push(&before, &stepper, &state.load);
     }
-    Ok(made)
+    Ok(stretch)
 }
 
-/// The way back.
-struct Back<'a> {
-    /// With the coefficients on the tape.
-    fresh: StepperAlong<'a, Taped>,
-    stepper: StepperAlong<'a, Taped>,
+/// The reverse pass.
+struct ReversePass<'a> {
+    /// The stepper as built, with its coefficients on the tape.
+    fresh: DerivativeStepper<'a, Taped>,
+    stepper: DerivativeStepper<'a, Taped>,
     weather: &'a Weather<'a>,
     options: &'a Options,
     /// Weights on the records.
     records: &'a [f64],
-    /// Entries of the tape that stay, and the first of them that stands for a number of the state before a move.
+    /// Number of entries of the tape that stay, and the first of them that is a number of the state before an action.
     base: usize,
     first: u32,
     /// Weights on the entries of the tape.
     weights: Vec<f64>,
     /// Weights on the state.
     state: Vec<f64>,
-    /// The state before the step in hand, then after it.
+    /// The state before the current action, then after it.
     now: State<Taped>,
     /// Its solution.
     stages: Vec<Unknowns<f64>>,
     load: Vec<f64>,
 }
 
-impl<'a> Back<'a> {
+impl<'a> ReversePass<'a> {
     fn new(
         plan: &'a Plan,
         leaves: &'a [Taped],
@@ -199,10 +199,10 @@ impl<'a> Back<'a> {
         options: &'a Options,
         records: &'a [f64],
     ) -> Self {
-        let fresh = StepperAlong::new(plan, leaves, options.scheme);
-        let (stepper, made) = (fresh.clone(), Tape::len());
+        let fresh = DerivativeStepper::new(plan, leaves, options.scheme);
+        let (stepper, length) = (fresh.clone(), Tape::len());
         let now = fresh.stepper.begin(&options.initial);
-        Tape::truncate(made);
+        Tape::truncate(length);
         let state = vec![0.0; now.count()];
         let first = Tape::reserve(state.len());
         let plain = |unknowns: &Unknowns<Taped>| unknowns.plain();
@@ -222,50 +222,50 @@ impl<'a> Back<'a> {
         }
     }
 
-    /// Goes back over a stretch.
-    fn over(&mut self, moves: &[Action], stretch: &Stretch, watch: &RunControl) -> Result<(), EngineError> {
-        for (&made, (before, solution)) in moves.iter().rev().zip(stretch.back()) {
+    /// Reverses the actions of a stretch.
+    fn over(&mut self, actions: &[Action], stretch: &Stretch, watch: &RunControl) -> Result<(), EngineError> {
+        for (&action, (before, solution)) in actions.iter().rev().zip(stretch.reversed()) {
             if watch.stop.load(core::sync::atomic::Ordering::Relaxed) {
                 return Err(EngineError::Interrupted);
             }
-            self.pass(made, before, solution)?;
+            self.reverse(action, before, solution)?;
         }
         Ok(())
     }
 
-    /// Goes back over a move: its weights on the state before it take the place of those on the state after it.
-    fn pass(&mut self, made: Action, before: &[f64], solution: &[f64]) -> Result<(), EngineError> {
+    /// Reverses an action: replaces the weights on the state after it by those on the state before it.
+    fn reverse(&mut self, action: Action, before: &[f64], solution: &[f64]) -> Result<(), EngineError> {
         Tape::truncate(self.base);
-        let (along, state) = (&mut self.stepper, &mut self.now);
+        let (stepper, state) = (&mut self.stepper, &mut self.now);
         let mut place = self.first;
         state.read(before, |number, value| {
             *number = Taped::new(value, place);
             place += 1;
         });
-        let cells = &along.stepper.model.parts.nonlinear_cells;
+        let cells = &stepper.stepper.model.parts.nonlinear_cells;
         let known = read_solution(solution, cells, &mut self.stages, &mut self.load);
         let solution = known.then_some(Solution { stages: &self.stages, load: &self.load });
-        along.stepper.forget();
-        along.take(made, state, self.weather, self.options.dt, solution)?;
+        stepper.stepper.forget();
+        stepper.take(action, state, self.weather, self.options.dt, solution)?;
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
-        state.beside(&self.state, |number, weight| number.add_weight(weight, weights));
-        if let Some(row) = made.row(self.options) {
+        state.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));
+        if let Some(row) = action.row(self.options) {
             let probes = &self.options.probes;
             for (probe, weight) in probes.iter().zip(&self.records[row * probes.len()..]) {
-                let record = probe.read(along.stepper.model.plan, &along.stepper, state);
+                let record = probe.read(stepper.stepper.model.plan, &stepper.stepper, state);
                 self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
                 record.add_weight(*weight, &mut self.weights);
             }
         }
         Tape::propagate(&mut self.weights, self.base, |stage, weights| {
-            along.solve_transposed(stage, weights);
+            stepper.solve_transposed(stage, weights);
         });
-        let passed = &mut self.weights[self.base - self.state.len()..self.base];
-        self.state.copy_from_slice(passed);
-        passed.fill(0.0);
+        let before = &mut self.weights[self.base - self.state.len()..self.base];
+        self.state.copy_from_slice(before);
+        before.fill(0.0);
         if !known {
-            // It has made factors that are about to be cut off.
+            // The stepper holds factors whose entries are about to be removed from the tape.
             self.stepper = self.fresh.clone();
         }
         Ok(())
@@ -277,7 +277,7 @@ impl<'a> Back<'a> {
         let start = self.fresh.stepper.begin(&self.options.initial);
         self.weights.resize(self.weights.len().max(Tape::len()), 0.0);
         let weights = &mut self.weights;
-        start.beside(&self.state, |number, weight| number.add_weight(weight, weights));
+        start.zip_with(&self.state, |number, weight| number.add_weight(weight, weights));
         Tape::propagate(&mut self.weights, leaves.len() + 1, |_, _| {});
         self.weights[1..=leaves.len()].to_vec()
     }

@@ -1,4 +1,4 @@
-//! Cells without curved films and radiation.
+//! Cells whose laws of convection and radiation are linear.
 
 use mascarin_engine::description::{
     AirPath, Convection, Description, Facing, Gain, Material, OutdoorLongwave, ParamId, Parameter, PowerLaw,
@@ -8,13 +8,13 @@ use mascarin_engine::description::{
 use super::cell;
 use super::conditioned::number;
 
-/// The cell with constant films inside, films linear in the wind outside and linearised radiation: nothing but the
-/// ceiling is more than a straight line. `bent`: one constant film is written as a power of the temperature difference
-/// with no gain.
-pub fn straight_cell(bent: bool) -> Description {
+/// The cell with constant heat transfer coefficients inside, coefficients linear in the wind outside and linearised
+/// radiation: only its ceiling, which melts, is nonlinear. With `as_power` one constant coefficient is written as a power of
+/// the temperature difference with the factor 0.
+pub fn cell_of_linear_laws(as_power: bool) -> Description {
     let mut description = cell(0.04);
     let mut number = |value: f64| {
-        let path = format!("straight.{}", description.parameters.len());
+        let path = format!("linear_laws.{}", description.parameters.len());
         description.parameters.push(Parameter { path, value });
         ParamId(u32::try_from(description.parameters.len() - 1).unwrap())
     };
@@ -22,7 +22,7 @@ pub fn straight_cell(bent: bool) -> Description {
         for side in [&mut surface.outside, &mut surface.inside] {
             side.longwave = OutdoorLongwave::Linearised { reference: number(25.0) };
             side.convection = match side.facing {
-                Facing::Zone { .. } if bent && index == 1 => {
+                Facing::Zone { .. } if as_power && index == 1 => {
                     let [a, b, n, c, m] = [3.0, 0.0, 0.5, 0.0, 1.0].map(&mut number);
                     let law = PowerLaw { a, b, n, c, m };
                     Some(Convection::Power { upward: law.clone(), downward: law })
@@ -41,10 +41,10 @@ pub fn straight_cell(bent: bool) -> Description {
     description
 }
 
-/// The straight cell with a solid in the place of what melts and constant films outside, with a gain, ventilation and an
-/// air path that never change: all of it is linear and constant.
+/// The cell of linear laws with a solid in the place of what melts and constant coefficients outside, with a gain,
+/// ventilation and an air path that never change: all of it is linear and constant.
 pub fn linear_cell() -> Description {
-    let mut d = straight_cell(false);
+    let mut d = cell_of_linear_laws(false);
     for index in 0..d.materials.len() {
         if matches!(d.materials[index], Material::Pcm { .. }) {
             d.materials[index] = Material::Solid {
@@ -54,10 +54,10 @@ pub fn linear_cell() -> Description {
             };
         }
     }
-    let film = number(&mut d, "linear.film", 18.0);
+    let coefficient = number(&mut d, "linear.coefficient", 18.0);
     for surface in &mut d.surfaces {
         if surface.outside.facing == Facing::Outdoors {
-            surface.outside.convection = Some(Convection::Constant { coefficient: film });
+            surface.outside.convection = Some(Convection::Constant { coefficient });
         }
     }
     let gain = Gain {

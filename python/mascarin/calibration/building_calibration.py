@@ -1,0 +1,218 @@
+"""Calibration of a building by measurements, in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.calibration.building_problem import fit_parameter, problem_of
+from mascarin.calibration.cost import CostName
+from mascarin.calibration.problem import FitParameter
+from mascarin.calibration.result import Calibration
+from mascarin.calibration.rules import MethodName, Rules
+from mascarin.calibration.search import solve
+from mascarin.errors import InputError
+from mascarin.progress import ProgressOption
+from mascarin.simulation.options import Scheme, TimeLike
+from mascarin.simulation.simulation import Simulation
+from mascarin.validation.observation import observe
+from mascarin.validation.sensors import Sensor, SensorUncertainty
+from mascarin.weather.times import seconds_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mascarin.building import Building
+    from mascarin.simulation.initial import Initial
+    from mascarin.weather import Climate, Measurements
+
+CONSTANT: Final = ("stuck", "forward_filled")
+"""Kinds of suspicious values of the quality check in which a sensor repeats one value."""
+
+MOST_CONSTANT: Final = 0.5
+"""Largest part of a period over which a sensor may repeat one value. [-]"""
+
+
+def calibrate(
+    building: Building,
+    climate: Climate,
+    measurements: Measurements,
+    *,
+    sensors: Mapping[str, str | Sensor],
+    vary: Sequence[str | FitParameter] | Mapping[str, tuple[float, float] | FitParameter],
+    parameters: Mapping[str, float] | None = None,
+    start: TimeLike | None = None,
+    end: TimeLike | None = None,
+    step: str | float = "15min",
+    scheme: Scheme = "sdirk2",
+    initial: Initial = "repeat",
+    first_period: str | float = "1d",
+    warm_up: str | float = "3d",
+    method: MethodName = "least-squares",
+    cost: CostName = "nll",
+    rules: Rules | None = None,
+    seed: int = 0,
+    record: str | Path | None = None,
+    progress: ProgressOption = None,
+) -> Calibration:
+    r"""Estimate parameters of a building from measurements.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    climate : Climate
+        The weather.
+    measurements : Measurements
+        The measured table; sensors and measured boundaries are columns of it.
+    sensors : mapping of str to str or Sensor
+        Output of the model -> column of the table, or `Sensor` with its uncertainty. The key of a sensor with
+        an ``output`` of its own is its name. A sensor in degC without uncertainty has an expanded uncertainty
+        of 0.5 degC; every other unit needs one.
+    vary : sequence of str or FitParameter, or mapping of str to (float, float) or FitParameter
+        Parameters to estimate by path, within the ranges of the building, with bounds (low, high), or from
+        `fit_parameter` with start, scale and prior. [unit of each]
+    parameters : mapping of str to float, optional
+        Values by path that replace those of the building. [unit of each]
+    start, end : str, datetime or pandas.Timestamp, optional
+        Period that is compared, local time of the climate unless an offset is given; the whole climate after
+        the warm-up when absent.
+    step : str or float
+        Time step, such as ``15min`` or seconds. [s]
+    scheme : str
+        ``sdirk2``, ``backward-euler`` or ``apparent-capacity``, see `Simulation`.
+    initial : ``"repeat"``, float, mapping, GivenStart or MeasuredStart
+        Initial state, see `Simulation`. [degC]
+    first_period : str or float
+        Length of the period that is repeated. [s]
+    warm_up : str or float
+        Length of the run before `start`, which is not compared. [s]
+    method, cost, rules, seed, record
+        See `solve`.
+    progress : bool or callable, optional
+        Shows progress, see `solve`.
+
+    Returns
+    -------
+    Calibration
+        Estimates with their uncertainty; its ``building`` is the calibrated building.
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used, before the first run.
+    SolverError
+        The model cannot be simulated at the start, or no search ended where it can.
+
+    Examples
+    --------
+    A wall is simulated with a known conductivity; its noisy inside temperature serves as measurement, and the
+    conductivity is estimated from it.
+
+    >>> import pandas as pd
+    >>> import mascarin as mc
+    >>> from mascarin.verification.analytical import setup
+    >>> wall = setup.building(
+    ...     "materials: {board: {conductivity: 0.2, density: 800, specific_heat: 1000}}\n"
+    ...     "constructions: {wall: {layers: [{material: board, thickness: 0.05}]}}\n"
+    ...     "surfaces: {w: {construction: wall, area: 1, tilt: 90, outside: {measured: air, convection: 20}, "
+    ...     "inside: {adiabatic: true}}}"
+    ... )
+    >>> hours = np.arange(97)
+    >>> climate = setup.climate(3600.0, {"air": 20.0 + 5.0 * np.sin(hours * np.pi / 12.0)})
+    >>> path, output = "materials.board.conductivity", "w.inside_temperature"
+    >>> run = mc.simulate(wall.replace({path: 0.3}), climate, step="1h", outputs=[output])
+    >>> noise = 0.05 * np.random.default_rng(1).normal(size=len(run.records))
+    >>> table = pd.DataFrame({"T": run.records[:, 0] + noise}, index=run.index)
+    >>> logger = mc.Measurements.from_table(table, timezone="UTC")
+    >>> found = calibrate(
+    ...     wall,
+    ...     climate,
+    ...     logger,
+    ...     sensors={output: Sensor("T", standard_uncertainty=0.05)},
+    ...     vary={path: (0.1, 0.5)},
+    ...     step="1h",
+    ...     warm_up="1d",
+    ... )
+    >>> bool(found.low[0] < 0.3 < found.high[0])
+    True
+    >>> found.building.parameter(path).value == found.values[path]
+    True
+    """
+    import pandas as pd
+
+    from mascarin.weather.timezones import moment
+
+    chosen = building.replace(dict(parameters)) if parameters else building
+    named = {name: s if isinstance(s, Sensor) else Sensor(s) for name, s in sensors.items()}
+    free = _parameters(chosen, vary)
+    lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))
+    begin = climate.index[0] + lead if start is None else moment(start, climate.grid.zone, "start")
+    simulation = Simulation(
+        chosen,
+        climate,
+        step=step,
+        start=begin - lead,
+        end=end,
+        outputs=[sensor.output or name for name, sensor in named.items()],
+        scheme=scheme,
+        initial=initial,
+        first_period=first_period,
+        measurements=measurements,
+        ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
+    )
+    _require_varying(measurements, named, begin, simulation.end)
+    observation = observe(simulation, measurements, named, begin)
+    use = np.ones(len(observation.times), dtype=np.bool_)
+    found = solve(
+        problem_of(simulation, observation, use, free, _uncertainties(simulation, named)),
+        method=method,
+        cost=cost,
+        seed=seed,
+        rules=rules,
+        record=None if record is None else Path(record),
+        progress=progress,
+    )
+    return replace(found, nominal_building=chosen, times=observation.times)
+
+
+def _uncertainties(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[str, SensorUncertainty]:
+    """Standard uncertainty of each sensor, in the unit of its output."""
+    return {
+        name: sensor.uncertainty(output.unit, f"sensors: {name}")
+        for (name, sensor), output in zip(sensors.items(), simulation.outputs, strict=True)
+    }
+
+
+def _parameters(
+    building: Building,
+    vary: Sequence[str | FitParameter] | Mapping[str, tuple[float, float] | FitParameter],
+) -> list[FitParameter]:
+    """Parameters to estimate, from paths, bounds or `FitParameter`."""
+    if not isinstance(vary, Mapping):
+        return [p if isinstance(p, FitParameter) else fit_parameter(building, p) for p in vary]
+    return [
+        bounds if isinstance(bounds, FitParameter) else fit_parameter(building, path, bounds)
+        for path, bounds in vary.items()
+    ]
+
+
+def _require_varying(
+    measurements: Measurements, sensors: Mapping[str, Sensor], start: pd.Timestamp, end: pd.Timestamp
+) -> None:
+    """Refuse a sensor that repeats one value over most of the period."""
+    found = [part for part in measurements.quality() if part.kind in CONSTANT]
+    for name, sensor in sensors.items():
+        for part in found:
+            shared = (min(end, part.end) - max(start, part.start)).total_seconds()
+            if part.channel in sensor.columns and shared > MOST_CONSTANT * (end - start).total_seconds():
+                raise InputError(
+                    f"{measurements.file}: sensor '{name}', column {part.channel}: "
+                    f"{part.kind.replace('_', '-')} from {part.start:%Y-%m-%d %H:%M} to "
+                    f"{part.end:%Y-%m-%d %H:%M} ({part.detail}), over most of the period; expected a "
+                    "sensor that measures: leave it out, mask these values, or choose another period"
+                )

@@ -1,0 +1,21 @@
+from .comparison import METRICS as METRICS
+from .comparison import Metrics as Metrics
+from .comparison import compare_sensors as compare_sensors
+from .comparison import metrics as metrics
+from .criteria import Criterion as Criterion
+from .criteria import Verdict as Verdict
+from .criteria import judge as judge
+from .criteria import parse_criteria as parse_criteria
+from .diagnosis import diagnose as diagnose
+from .error_sources import ErrorSources as ErrorSources
+from .error_sources import explain_missed_aims as explain_missed_aims
+from .error_sources import find_error_sources as find_error_sources
+from .observation import Observation as Observation
+from .observation import observe as observe
+from .residuals import DriverCorrelation as DriverCorrelation
+from .residuals import ResidualAnalysis as ResidualAnalysis
+from .residuals import analyze_residuals as analyze_residuals
+from .sensors import Sensor as Sensor
+from .sensors import SensorUncertainty as SensorUncertainty
+
+__all__: list[str]
