@@ -34,7 +34,7 @@ def call(data_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> lis
 def test_summary(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(call) == 0
     out, err = capsys.readouterr()
-    assert "warning: zones.room: 9.00 m2 of faces cannot enclose 27 m3" in err
+    assert "warning: zones.room: 9.00 m2 of surfaces cannot enclose 27 m3" in err
     assert "assumed values: 'mascarin check' lists them" in err
     name, unit, low, mean, high = out.splitlines()[1].split()
     assert (name, unit) == ("room.air_temperature", "degC")
