@@ -16,7 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from mascarin.genopt import Options, optimise
+from mascarin.genopt import Options, optimize
 
 C_PROGRAM = r"""
 #include <stdio.h>
@@ -111,7 +111,7 @@ def main(points: int = 400) -> None:
         for _ in range(3):
             alone = bare(folder, words, points)
             began = time.perf_counter()
-            outcome = optimise(ini, Options(progress=False))
+            outcome = optimize(ini, Options(progress=False))
             whole = (time.perf_counter() - began) / outcome.simulations
             rows.append((whole, alone, whole - alone))
         whole, alone, added = (1e3 * statistics.median(column) for column in zip(*rows, strict=True))

@@ -1,6 +1,6 @@
-"""How often the 95 % intervals of the spectral method hold the true share.
+"""How often the 95 % intervals of the spectral method contain the true first-order index.
 
-Every case has shares known in closed form (in the first M harmonics: that is what the method estimates).
+The indices of every case are known analytically (in the first M harmonics, which the method estimates).
 Run ``python bench/sensitivity_coverage.py [repetitions]``; a thousand take a few minutes on one core.
 """
 
@@ -23,16 +23,16 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Case:
-    """A model on [0, 1]^P with known shares, at one or several times."""
+    """A model on [0, 1]^P with known indices, at one or several times."""
 
     name: str
     parameters: int
     order: int
     model: Callable[[Floats], Floats]
-    share: Floats
+    index: Floats
 
 
-def kept(main: Callable[[Floats], Floats], order: int) -> float:
+def retained(main: Callable[[Floats], Floats], order: int) -> float:
     """Variance of a function of one uniform parameter in the first harmonics of its search curve."""
     angle = 2.0 * np.pi * np.arange(8192) / 8192
     values = main(0.5 + np.arcsin(np.sin(angle)) / np.pi)
@@ -45,8 +45,8 @@ def ishigami(order: int) -> Case:
     b4 = 0.1 * math.pi**4 / 5.0
     variance = 49.0 / 8.0 + b4 + 0.01 * math.pi**8 / 18.0 + 0.5
     first = [
-        kept(lambda u: (1.0 + b4) * np.sin(2.0 * np.pi * u - np.pi), order),
-        kept(lambda u: 7.0 * np.sin(2.0 * np.pi * u - np.pi) ** 2, order),
+        retained(lambda u: (1.0 + b4) * np.sin(2.0 * np.pi * u - np.pi), order),
+        retained(lambda u: 7.0 * np.sin(2.0 * np.pi * u - np.pi) ** 2, order),
         0.0,
     ]
 
@@ -61,8 +61,8 @@ def ishigami(order: int) -> Case:
 def g_function(a: Floats, order: int) -> Case:
     """Sobol's g-function."""
     variance = float(np.prod(1.0 + 1.0 / 3.0 / (1.0 + a) ** 2) - 1.0)
-    # Only the first part varies; a constant added to it changes nothing.
-    slope = kept(lambda u: np.abs(4.0 * u - 2.0), order)
+    # Only the first part varies; a constant does not change the variance.
+    slope = retained(lambda u: np.abs(4.0 * u - 2.0), order)
     first = slope / (1.0 + a) ** 2
 
     def model(u: Floats) -> Floats:
@@ -72,7 +72,7 @@ def g_function(a: Floats, order: int) -> Case:
 
 
 def day(parameters: int, order: int) -> Case:
-    """A made-up building: effects that follow the day, a square and all pairwise products, 24 hours."""
+    """A synthetic building: effects over 24 hours, a square and all products of two parameters."""
     rng = np.random.default_rng(7)
     hour = 2.0 * np.pi * np.arange(24) / 24
     size = rng.exponential(1.0, parameters) ** 3
@@ -94,36 +94,38 @@ def day(parameters: int, order: int) -> Case:
     def alone(k: Floats) -> Callable[[Floats], Floats]:
         return lambda u: (u - 0.5)[:, None] * k + 0.1 * (u - 0.5)[:, None] ** 2 * k**2
 
-    first = [kept(alone(k), order) for k in slope]
-    return Case(f"made-up day, {parameters} parameters", parameters, order, model, np.array(first) / variance)
+    first = [retained(alone(k), order) for k in slope]
+    return Case(
+        f"synthetic day, {parameters} parameters", parameters, order, model, np.array(first) / variance
+    )
 
 
 def cover(case: Case, repetitions: int, replicates: int) -> str:
     """One row of the table."""
     inside = np.zeros(case.parameters)
     width = np.zeros(case.parameters)
-    shares = np.zeros(case.parameters)
+    indices = np.zeros(case.parameters)
     factors = unit_factors(case.parameters)
     for seed in range(repetitions):
         plan = design(factors, order=case.order, replicates=replicates, seed=seed)
         y = case.model(plan.all_samples())
         result = analyze(plan, y.reshape(len(plan), -1, 1))
         low, high = result.low[:, 0], result.high[:, 0]
-        inside += (low <= case.share + 1e-12) & (case.share <= high + 1e-12)
+        inside += (low <= case.index + 1e-12) & (case.index <= high + 1e-12)
         width += high - low
-        shares += result.index[:, 0]
-    heard = case.share > 0.01
+        indices += result.index[:, 0]
+    large = case.index > 0.01
     coverage = inside / repetitions
-    bias = np.abs(shares / repetitions - case.share)[heard].max()
+    bias = np.abs(indices / repetitions - case.index)[large].max()
     return (
-        f"| {case.name} | {case.order} | {replicates} x {plan.runs} | {100 * coverage[heard].mean():.1f} % "
-        f"({100 * coverage[heard].min():.1f}-{100 * coverage[heard].max():.1f}) | "
-        f"{100 * coverage[~heard].mean():.1f} % | {width[heard].mean() / repetitions:.4f} | {bias:.5f} |"
+        f"| {case.name} | {case.order} | {replicates} x {plan.runs} | {100 * coverage[large].mean():.1f} % "
+        f"({100 * coverage[large].min():.1f}-{100 * coverage[large].max():.1f}) | "
+        f"{100 * coverage[~large].mean():.1f} % | {width[large].mean() / repetitions:.4f} | {bias:.5f} |"
     )
 
 
 def say(line: str) -> None:
-    """One line of the table, at once."""
+    """Print one line of the table immediately."""
     sys.stdout.write(line + "\n")
     sys.stdout.flush()
 
@@ -137,7 +139,7 @@ def main() -> None:
         g_function(np.concatenate([[0.0, 0.5, 1.0, 2.0, 3.0, 4.5, 9.0, 20.0], np.full(52, 60.0)]), 2),
         day(60, 2),
     ]
-    say(f"Coverage of 95 % intervals, {repetitions} repetitions. Parameters with a share above 1 %: mean")
+    say(f"Coverage of 95 % intervals, {repetitions} repetitions. Parameters with an index above 1 %: mean")
     say("(smallest-largest); the others; mean width of the interval and largest bias above 1 %.")
     say("")
     say("| case | M | runs | above 1 % | below 1 % | width | bias |")

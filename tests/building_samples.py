@@ -1,4 +1,4 @@
-"""Descriptions that the tests of the model share."""
+"""Descriptions that several tests use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said about a building before it runs."""
+"""Checks of a building before a run."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ def test_u_value_of_a_floor_on_the_ground() -> None:
     assert u_value(building, building.surfaces["floor"]) == pytest.approx(1 / (layers + 0.17))
 
 
-def test_a_described_film_counts_where_nothing_acts_beside_it() -> None:
+def test_a_given_coefficient_is_used_where_it_includes_radiation() -> None:
     """Outdoors without long-wave of its own a constant film stands for all; with it, only ISO 6946 does."""
     combined = parse(
         ROOM.replace("emissivity: 0.9, absorptance", "longwave: none, emissivity: 0.9, absorptance"), "x"
     )
     assert u_value(combined, combined.surfaces["south"]) == pytest.approx(1 / (1 / 15 + 0.2 / 1.75 + 0.13))
-    assert "described film outside, ISO 6946 film inside" in check(combined)[2]
+    assert "surface resistances: described outside, ISO 6946 inside" in check(combined)[2]
     both = combined.replace({"zones.room.longwave": "none"})
     assert u_value(both, both.surfaces["south"]) == pytest.approx(1 / (1 / 15 + 0.2 / 1.75 + 1 / 3))
-    assert check(both)[2].endswith(", described films")
+    assert check(both)[2].endswith(", described surface resistances")
     corrugated = both.replace({"surfaces.south.outside.area_factor": 1.2})
     assert u_value(corrugated, corrugated.surfaces["south"]) == pytest.approx(
         1 / (1 / 18 + 0.2 / 1.75 + 1 / 3)
     )
 
 
-def test_nothing_passes_an_adiabatic_side() -> None:
+def test_an_adiabatic_side_has_no_heat_flow() -> None:
     building = room()
     assert u_value(building, building.surfaces["rest"]) == 0.0
     total = 16 * u_value(building, building.surfaces["south"])
@@ -55,7 +55,7 @@ def infiltration(building: Building) -> float:
     return float(check(building)[1].split("infiltration ")[1].split(" W/K")[0])
 
 
-def test_air_weighs_what_it_weighs_in_the_engine() -> None:
+def test_density_of_the_air_is_that_of_the_engine() -> None:
     """Standard atmosphere: 1013.25 hPa at sea level, 826 hPa at 1700 m; a written density comes first."""
     site = room().replace({"site.altitude": 0.0}).site
     assert density(site) == pytest.approx(1.2250, abs=2e-4)
@@ -66,7 +66,7 @@ def test_air_weighs_what_it_weighs_in_the_engine() -> None:
     assert infiltration(written) == pytest.approx(1.0 * 1006 * 0.5 * 30 / 3600, abs=0.005)
 
 
-def test_the_engine_takes_the_same_density() -> None:
+def test_the_engine_uses_the_same_density() -> None:
     """The air's rate of change by its films goes with 1/density; air changes do not depend on it."""
     linear = parse(
         ROOM.replace("emissivity: 0.9, absorptance", "longwave: none, emissivity: 0.9, absorptance"), "x"
@@ -93,15 +93,15 @@ def test_smallest_time_constant() -> None:
     assert time_constant(building, "wall", choose(building, 900)) == pytest.approx(min(inner, outer))
 
 
-def test_the_lines() -> None:
+def test_lines_of_a_check() -> None:
     lines = check(room(), 900)
     assert lines[0] == "room: 1 zone, 2 surfaces, 38 parameters"
-    assert lines[1].startswith("zone room: 30 m3, 2 faces of 66.00 m2, UA ")
+    assert lines[1].startswith("zone room: 30 m3, 2 surfaces of 66.00 m2, UA ")
     assert "infiltration 5.07 W/K (air of 1.211 kg/m3)" in lines[1]
     assert "view factors approximated by areas" in lines[1]
     assert lines[2].startswith(
         "surface south: wall, 16.00 m2, tilt 90, azimuth 180, outdoors -> room, U 3.518 W/(m2 K), "
-        "ISO 6946 films"
+        "ISO 6946 surface resistances"
     )
     assert lines[3].endswith("adiabatic -> room, U 0.000 W/(m2 K), adiabatic")
     assert lines[4].startswith("construction wall: nodes concrete 9, smallest time constant ")
@@ -120,26 +120,26 @@ def test_a_step_that_may_overshoot() -> None:
     assert math.isfinite(least)
 
 
-def test_faces_that_cannot_enclose_the_volume() -> None:
+def test_surfaces_that_cannot_enclose_the_volume() -> None:
     small = parse(ROOM.replace("area: 50", "area: 5"), "x")
     assert any(
-        "21.00 m2 of faces cannot enclose 30 m3 (a sphere needs 46.69 m2)" in w
+        "21.00 m2 of surfaces cannot enclose 30 m3 (a sphere needs 46.69 m2)" in w
         for w in noted(small, "warning")
     )
     assert not any("sphere" in w for w in noted(room(), "warning"))
 
 
-def test_a_face_larger_than_all_others() -> None:
-    """Two faces enclose nothing unless they are equal; mass inside a zone encloses nothing either."""
-    told = [w for w in noted(room(), "warning") if "zones.room: the faces cannot enclose it" in w]
+def test_a_surface_larger_than_all_others() -> None:
+    """Two surfaces enclose a zone only if they are equal; internal mass does not enclose it."""
+    told = [w for w in noted(room(), "warning") if "zones.room: the surfaces cannot enclose it" in w]
     assert len(told) == 1
-    assert "rest has 50.00 m2 and the others together 16.00 m2" in told[0]
+    assert "rest has 50.00 m2, all others together 16.00 m2" in told[0]
     assert not [w for w in warned_of(room(), {"surfaces.rest.area": 16.0}) if "cannot enclose it" in w]
     closed = everything()[0]
-    assert not [w for w in noted(closed, "warning") if "zones.room: the faces" in w]
+    assert not [w for w in noted(closed, "warning") if "zones.room: the surfaces" in w]
     # Without the mass the room's walls still enclose it; with walls too small, mass is no help.
     heavy = {"surfaces.mass.area": 500.0, "surfaces.floor.area": 40.0}
-    assert [w for w in warned_of(closed, heavy) if "zones.room: the faces" in w and "floor has 40.00" in w]
+    assert [w for w in warned_of(closed, heavy) if "zones.room: the surfaces" in w and "floor has 40.00" in w]
 
 
 def warned_of(building: Building, values: dict[str, float]) -> list[str]:
@@ -150,7 +150,10 @@ def warned_of(building: Building, values: dict[str, float]) -> list[str]:
     ("values", "told"),
     [
         # A foam whose conductivity was written in mW/(m K).
-        ({"conductivity": 30.0, "density": 30.0, "specific_heat": 1400.0}, "nothing of 30 kg/m3 conducts 30"),
+        (
+            {"conductivity": 30.0, "density": 30.0, "specific_heat": 1400.0},
+            "no material of 30 kg/m3 conducts 30",
+        ),
         # A density in g/cm3, a conductivity in mW/(m K), a resistance in place of a conductivity.
         ({"conductivity": 0.5, "density": 2.0, "specific_heat": 900.0}, "a diffusivity of 0.00028 m2/s"),
         ({"conductivity": 1750.0}, "a diffusivity of 0.00087 m2/s"),
@@ -159,14 +162,14 @@ def warned_of(building: Building, values: dict[str, float]) -> list[str]:
         ({"conductivity": 400.0, "density": 8960.0, "specific_heat": 385.0}, None),
     ],
 )
-def test_properties_that_do_not_go_together(values: dict[str, float], told: str | None) -> None:
+def test_properties_in_wrong_units_are_warned_of(values: dict[str, float], told: str | None) -> None:
     changed = {f"materials.concrete.{key}": value for key, value in values.items()}
     found = [w for w in warned_of(room(), changed) if "materials.concrete:" in w]
     assert len(found) == (told is not None)
     assert told is None or (told in found[0] and "W/(m K)" in found[0])
 
 
-def test_both_phases_are_looked_at() -> None:
+def test_both_phases_are_checked() -> None:
     found = warned_of(everything()[0], {"materials.wax.conductivity.liquid": 40.0})
     fitting = "warning: materials.wax (liquid): a diffusivity of 1.7e-05"
     assert not any(w.startswith(fitting) for w in found)  # high, and still within what is known
@@ -175,12 +178,12 @@ def test_both_phases_are_looked_at() -> None:
     assert not any("materials.wax (solid)" in w for w in found)
 
 
-def test_a_specific_heat_in_kilojoules_is_refused() -> None:
+def test_a_specific_heat_in_kilojoules_is_an_error() -> None:
     with pytest.raises(InputError, match=r"found: 1\.4\s+expected: a number at least 100"):
         room().replace({"materials.concrete.specific_heat": 1.4})
 
 
-def test_vertices_that_contradict_what_is_written() -> None:
+def test_vertices_that_contradict_area_and_volume() -> None:
     text = EVERYTHING.replace("    vertices: [[0, 0, 3]", "    area: 8\n    vertices: [[0, 0, 3]")
     assert any(
         "8.00 m2 are given, the vertices enclose 9.12 m2" in w for w in noted(parse(text, "x"), "warning")
@@ -191,7 +194,7 @@ def test_assumptions_are_listed() -> None:
     told = noted(room(), "assumed")
     assert any("site.sky: martin_berdahl" in line for line in told)
     assert any("site.diffuse: perez" in line for line in told)
-    assert any("zones.room: every face sees every other one" in line for line in told)
+    assert any("zones.room: view factors by areas" in line for line in told)
     assert any("zones.room.capacity_factor = 1 -" in line for line in told)
 
 

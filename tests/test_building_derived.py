@@ -1,4 +1,4 @@
-"""What is left open follows from the rest of the description."""
+"""Defaults that are derived from the rest of a description."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def test_area_and_direction_from_vertices() -> None:
     assert derived("surfaces.roof.area").source == "from the vertices"
 
 
-def test_an_area_that_is_written_wins_over_the_vertices() -> None:
+def test_a_given_area_replaces_that_of_the_vertices() -> None:
     text = EVERYTHING.replace("    vertices: [[0, 0, 3]", "    area: 8\n    vertices: [[0, 0, 3]")
     assert parse(text, "x").parameter("surfaces.roof.area").value == 8.0
 
 
-def test_facts_of_the_wind() -> None:
+def test_defaults_of_forced_convection() -> None:
     assert derived("surfaces.roof.outside.height").value == pytest.approx(3.25)
     perimeter = 2 * (3.0 + math.hypot(3.0, 0.5))
     assert derived("surfaces.roof.outside.convection.perimeter").value == pytest.approx(perimeter)
@@ -50,7 +50,7 @@ def test_a_height_needs_vertices() -> None:
         ([[0, 0, 1], [4, 0, 1], [4, 2, 1], [0, 2, 1]], 4 * 8 / 12),  # lying: 4 A/P
     ],
 )
-def test_length_of_a_buoyant_film(vertices: list[list[float]], length: float) -> None:
+def test_length_of_buoyant_convection(vertices: list[list[float]], length: float) -> None:
     before = "    area: 50\n    tilt: 90\n    azimuth: 0\n"
     text = ROOM.replace(before, f"    vertices: {vertices}\n")
     text = text.replace(
@@ -72,6 +72,6 @@ def test_terrain_gives_the_profile_at_the_building() -> None:
     assert (own.parameter("site.wind.exponent").value, own.parameter("site.wind.layer").value) == (0.3, 460.0)
 
 
-def test_a_direction_that_does_not_act_need_not_be_written() -> None:
+def test_a_direction_without_effect_need_not_be_given() -> None:
     assert derived("surfaces.floor.azimuth").value == 0.0
     assert derived("surfaces.held.azimuth").reason

@@ -1,4 +1,4 @@
-"""What crosses the border is complete: every number of the language, every number of the engine."""
+"""The description for the engine is complete: every number of the building, every number of the engine."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def test_every_number_of_the_schema_is_a_parameter_and_back() -> None:
     assert {place for building in everything() for place in numeric_in(building)} == numeric_in_schema()
 
 
-def test_the_border_speaks_the_engine_s_words(repository: Path) -> None:
+def test_keys_are_those_of_the_engine(repository: Path) -> None:
     """Every field of the engine's description that holds parameters is filled by one of the samples."""
     folder = repository / "crates" / "engine" / "src" / "input" / "description"
     source = "\n".join(file.read_text(encoding="utf-8") for file in sorted(folder.glob("*.rs")))
@@ -110,7 +110,7 @@ def test_the_border_speaks_the_engine_s_words(repository: Path) -> None:
     assert {key for building in everything() for key, _ in ids(described(building))} == fields
 
 
-def test_the_kinds_are_the_engine_s() -> None:
+def test_kinds_are_those_of_the_engine() -> None:
     building = described(everything()[0])
     assert [material["kind"] for material in building["materials"]] == [
         "solid",
@@ -214,7 +214,7 @@ def test_view_weights_of_a_unit_cube() -> None:
     assert weights.sum(axis=1) == pytest.approx(np.ones(6), abs=1e-9)
 
 
-def test_a_door_takes_its_part_from_the_wall() -> None:
+def test_a_door_is_subtracted_from_its_wall() -> None:
     door = [[0.2, 0, 0], [0.6, 0, 0], [0.6, 0, 0.5], [0.2, 0, 0.5]]
     building = parse(cube(door=door), "cube.yaml")
     assert building.parameter("surfaces.south.area").value == pytest.approx(0.8)
@@ -223,7 +223,7 @@ def test_a_door_takes_its_part_from_the_wall() -> None:
     assert weights.sum(axis=1) == pytest.approx([1, 1, 0.8, 1, 1, 1, 0.2], abs=1e-9)
 
 
-def test_a_shell_with_a_hole_is_refused() -> None:
+def test_a_zone_that_is_not_closed_is_an_error() -> None:
     low = [[0, 0, 0.2], [1, 0, 0.2], [1, 1, 0.2], [0, 1, 0.2]]
     with pytest.raises(InputError, match="open edges"):
         parse(cube(top=low), "cube.yaml")
@@ -237,13 +237,13 @@ def test_a_zone_that_is_not_convex_needs_its_view_factors() -> None:
         parse(text, "cube.yaml").to_engine()
 
 
-def test_a_mesh_warning_crosses_with_the_description() -> None:
+def test_a_mesh_warning_is_part_of_the_description() -> None:
     building = room().replace({"constructions.wall.layers.concrete.nodes": 2})
     assert building.to_engine(900).notes == (
         "constructions.wall.layers.concrete.nodes: 2 given, 9 would resolve a step of 900 s",
     )
 
 
-def test_a_range_of_nothing_is_refused() -> None:
+def test_a_range_of_no_parameter_is_an_error() -> None:
     with pytest.raises(InputError, match="found no such parameter"):
         room().to_engine(900, {"materials.wood.density": (1.0, 2.0)})

@@ -1,4 +1,4 @@
-"""The published relations for gamma: numbers by hand, and that the law they describe is the engine's."""
+"""The published relations for gamma: numbers by hand, and the law of the engine."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_peak_is_the_slope_of_the_enthalpy() -> None:
     assert peak_capacity(0.04, HEATS, LATENT, 0.01) == pytest.approx(0.5 * sum(HEATS) + slope, rel=1e-6)
 
 
-def test_the_near_gamma_acts_in_a_window_of_two_hundredths_of_a_kelvin() -> None:
+def test_the_near_gamma_applies_in_a_window_of_two_hundredths_of_a_kelvin() -> None:
     t = np.linspace(20.0, 27.0, 70001)
     gamma = two_valued_gamma(t, 23.4, 0.01, near=0.97, far=0.04)
     assert np.count_nonzero(gamma == 0.97) == pytest.approx(201, abs=1)
@@ -64,7 +64,7 @@ def test_the_near_gamma_acts_in_a_window_of_two_hundredths_of_a_kelvin() -> None
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
-def test_what_is_not_positive_is_refused(value: float) -> None:
+def test_values_must_be_positive(value: float) -> None:
     for call in (
         lambda: half_width(value, 0.01),
         lambda: gamma_of_width(1.0, value),
@@ -75,7 +75,7 @@ def test_what_is_not_positive_is_refused(value: float) -> None:
             call()
 
 
-def test_shares_within_the_width() -> None:
+def test_fractions_within_the_width() -> None:
     """The shares that the module's text names."""
     for distance, share in ((0.55, 0.50), (1.0, 0.76), (2.0, 0.96)):
         ends = liquid_fraction(np.array([-distance, distance]), 0.0, 0.04, 0.01)

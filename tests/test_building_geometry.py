@@ -128,7 +128,7 @@ def test_tilt_and_azimuth(direction: list[float], tilt: float, azimuth: float) -
         ([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0.5, -1, 0)], "edge 1 crosses edge 3"),
     ],
 )
-def test_a_bad_outline_is_named(vertices: list[Any], message: str) -> None:
+def test_an_invalid_outline_is_an_error(vertices: list[Any], message: str) -> None:
     with pytest.raises(InputError, match=r"surface 'wall'") as caught:
         g.Polygon.of("wall", vertices)
     assert message in str(caught.value)
@@ -141,7 +141,7 @@ def test_cube_has_the_known_factors() -> None:
 
 
 @pytest.mark.parametrize("size", [(3.0, 4.0, 2.5), (3.0, 3.0, 0.28), (0.2, 7.0, 3.0), (1.0, 1.0, 30.0)])
-def test_a_box_agrees_with_the_closed_forms(size: tuple[float, float, float]) -> None:
+def test_a_box_agrees_with_the_analytical_solution(size: tuple[float, float, float]) -> None:
     a, b, c = size
     factors = g.view_factors(box(a, b, c))
     assert factors[0, 1] == pytest.approx(parallel_factor(a, b, c), abs=1e-11)
@@ -161,7 +161,7 @@ def test_long_hinged_plates(angle: float) -> None:
     assert factor == pytest.approx(1.0 - math.sin(half / 2.0), abs=3e-4)
 
 
-def test_skew_edges_agree_with_brute_force() -> None:
+def test_skew_edges_agree_with_quadrature() -> None:
     rng = np.random.default_rng(7)
     nodes, weights = np.polynomial.legendre.leggauss(120)
     s = 0.5 * (nodes + 1.0)
@@ -185,7 +185,7 @@ def test_skew_edges_agree_with_brute_force() -> None:
     st.floats(0.0, 6.0),
 )
 @settings(max_examples=30, deadline=None)
-def test_any_convex_room_closes(numbers: tuple[float, ...], turn: float) -> None:
+def test_view_factors_of_any_convex_room_sum_to_one(numbers: tuple[float, ...], turn: float) -> None:
     faces = hexahedron(list(numbers), turn)
     factors = g.view_factors(faces)
     exchange = g.exchange_areas(faces)
@@ -222,7 +222,7 @@ def test_parents_may_be_nested() -> None:
         g.parents([wall, g.Polygon.of("again", wall.vertices)])
 
 
-def test_a_neighbour_in_the_plane_is_no_child() -> None:
+def test_a_neighbor_in_the_plane_is_no_child() -> None:
     el = g.Polygon.of("el", [(0, 0, 0), (4, 0, 0), (4, 1, 0), (1, 1, 0), (1, 4, 0), (0, 4, 0)])
     bridge = g.Polygon.of("bridge", [(0.5, 0.2, 0), (3.9, 0.2, 0), (3.9, 0.9, 0), (0.5, 3.9, 0)])
     assert g.parents([el, bridge]) == [None, None]
@@ -240,7 +240,7 @@ def test_a_neighbour_in_the_plane_is_no_child() -> None:
         ((1.5, 0.0), (2.0, 1.0), False),
     ],
 )
-def test_what_overlaps(low: tuple[float, float], high: tuple[float, float], meet: bool) -> None:
+def test_overlapping_polygons(low: tuple[float, float], high: tuple[float, float], meet: bool) -> None:
     def drawn(a: tuple[float, float], b: tuple[float, float]) -> g.Polygon:
         return g.Polygon.of("box", [(a[0], 0, a[1]), (b[0], 0, a[1]), (b[0], 0, b[1]), (a[0], 0, b[1])])
 
@@ -252,7 +252,7 @@ def test_what_overlaps(low: tuple[float, float], high: tuple[float, float], meet
 def test_open_edges_are_named() -> None:
     faces = box(3, 4, 2.5)
     gaps = g.open_edges(faces[1:])
-    assert {gap.face for gap in gaps} == {"north", "south", "west", "east"}
+    assert {gap.polygon for gap in gaps} == {"north", "south", "west", "east"}
     assert sum(gap.length for gap in gaps) == pytest.approx(14.0)
     with pytest.raises(InputError, match=r"4 open edges .*north: from .* 3\.000 m"):
         g.volume(faces[1:])
@@ -260,7 +260,7 @@ def test_open_edges_are_named() -> None:
         g.view_factors(faces[1:])
 
 
-def test_a_split_face_closes_though_corners_meet_edges() -> None:
+def test_a_split_surface_is_closed_where_corners_meet_edges() -> None:
     faces = box(3, 4, 2.5)
     left = g.Polygon.of("left", [(0, 0, 0), (1, 0, 0), (1, 4, 0), (0, 4, 0)])
     right = g.Polygon.of("right", [(1, 0, 0), (3, 0, 0), (3, 4, 0), (1, 4, 0)])
@@ -270,12 +270,12 @@ def test_a_split_face_closes_though_corners_meet_edges() -> None:
     assert np.abs(g.view_factors(split).sum(axis=1) - 1.0).max() < 1e-12
 
 
-def test_a_shell_that_looks_outward_is_refused() -> None:
+def test_normals_out_of_the_zone_are_an_error() -> None:
     with pytest.raises(InputError, match="counter-clockwise seen from outside"):
         g.volume([face.reversed() for face in box(1, 1, 1)])
 
 
-def test_a_zone_that_is_not_convex_is_refused() -> None:
+def test_a_zone_that_is_not_convex_is_an_error() -> None:
     plan = [(0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)]
     faces = [
         g.Polygon.of("floor", [(x, y, 0) for x, y in plan]),

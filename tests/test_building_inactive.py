@@ -1,4 +1,4 @@
-"""Numbers without effect are named with the reason, and no others."""
+"""Numbers without effect have a reason, and no others."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from mascarin import _engine
 from mascarin.building import Building
 
 
-def idle(building: Building) -> dict[str, str]:
+def inactive(building: Building) -> dict[str, str]:
     return {p.path: p.reason for p in building.parameters() if p.reason and not p.structural}
 
 
 def test_in_a_room() -> None:
-    assert set(idle(room())) == {
+    assert set(inactive(room())) == {
         *(f"site.wind.{key}" for key in ("mast_height", "mast_exponent", "mast_layer", "exponent", "layer")),
         "surfaces.rest.azimuth",
         "surfaces.rest.tilt",
@@ -27,7 +27,7 @@ def test_in_a_room() -> None:
 
 
 def test_in_everything() -> None:
-    assert set(idle(everything()[0])) == {
+    assert set(inactive(everything()[0])) == {
         "surfaces.ceiling.azimuth",
         "surfaces.ceiling.inside.convection.downward.c",
         "surfaces.ceiling.inside.convection.downward.m",
@@ -65,15 +65,15 @@ def test_in_everything() -> None:
         ({"zones.room.longwave": "none"}, "surfaces.south.inside.emissivity"),
     ],
 )
-def test_a_choice_puts_numbers_out_of_work(changes: dict[str, object], path: str) -> None:
-    assert path in idle(room().replace(changes))
-    assert path not in idle(room())
+def test_a_choice_makes_numbers_inactive(changes: dict[str, object], path: str) -> None:
+    assert path in inactive(room().replace(changes))
+    assert path not in inactive(room())
 
 
 @pytest.mark.parametrize("film", ["mowitt", "doe2"])
-def test_a_height_and_a_wind_correlation_put_the_profile_to_work(film: str) -> None:
+def test_a_height_and_a_wind_correlation_make_the_profile_active(film: str) -> None:
     building = room().replace({"surfaces.south.outside.convection": film, "surfaces.south.outside.height": 2})
-    assert set(idle(building)) == {"surfaces.rest.azimuth", "surfaces.rest.tilt"}
+    assert set(inactive(building)) == {"surfaces.rest.azimuth", "surfaces.rest.tilt"}
 
 
 def weather(channels: list[str], steps: int) -> npt.NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""The mesh: as many volumes as the step can see, chosen at the worst end of the ranges."""
+"""The mesh: as many volumes as the step resolves, at the worst end of the ranges."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_node_counts_of_a_known_cell(
     assert diffusion_count(thickness, conductivity, capacity, 900.0) == nodes, name
 
 
-def test_a_finer_step_sees_more() -> None:
+def test_a_shorter_step_needs_more_volumes() -> None:
     """A depth is sqrt(2 alpha dt/pi): a quarter of the step needs twice the volumes."""
     alpha = 1e-6
     thickness = 10 * (2 * alpha * 900 / 3.141592653589793) ** 0.5
@@ -35,7 +35,7 @@ def test_a_finer_step_sees_more() -> None:
     assert diffusion_count(thickness, alpha, 1.0, 225.0) == 20
 
 
-def test_the_worst_end_of_a_range_decides() -> None:
+def test_the_mesh_resolves_the_worst_end_of_a_range() -> None:
     building, layer = room(), ("wall", "concrete")
     nominal = choose(building, 900).nodes[layer]
     assert nominal == 9
@@ -69,11 +69,11 @@ def test_a_phase_change_layer() -> None:
     )
 
 
-def test_latent_heat_does_not_act_on_the_mesh() -> None:
+def test_latent_heat_does_not_change_the_mesh() -> None:
     assert wax({"materials.wax.latent_heat": 1e6})[0] == wax({"materials.wax.latent_heat": 1e4})[0]
 
 
-def test_a_bare_resistance_has_no_nodes() -> None:
+def test_a_resistance_has_no_nodes() -> None:
     assert choose(everything()[0], 900).nodes["wall", "gap"] == 0
 
 
@@ -81,7 +81,7 @@ def thick(text: str) -> Building:
     return parse(ROOM.replace("thickness: 0.2", text), "room.yaml")
 
 
-def test_a_layer_that_asks_for_too_much_is_cut_and_said() -> None:
+def test_too_many_volumes_are_limited_with_a_warning() -> None:
     mesh = choose(thick("thickness: 3"), 900)
     assert mesh.nodes["wall", "concrete"] == MOST_IN_LAYER
     assert mesh.warnings == (

@@ -1,4 +1,4 @@
-"""Numbers carry their notes; quantities hold unit, limits and range."""
+"""Numbers have range and source; quantities have unit, limits and default range."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_a_number_is_a_float() -> None:
     assert (twin, twin.range, twin.source) == (2.0, (1.0, 4.0), "a book")
 
 
-def test_a_range_that_is_not_written_is_the_default_one() -> None:
+def test_without_a_range_the_default_is_used() -> None:
     assert LENGTH.read(2.0).plausible == pytest.approx((1.8, 2.2))
     assert LENGTH.read({"value": 2.0, "range": [1.0, 2.0]}).plausible == (1.0, 2.0)
     assert Number(3.0).plausible == (3.0, 3.0)
@@ -59,12 +59,12 @@ def test_a_default_range_keeps_inside_the_limits() -> None:
 @pytest.mark.parametrize(
     "raw", [0, -1, 6, math.nan, math.inf, "1", "1 m", True, None, [1], {}, {"value": None}]
 )
-def test_what_is_no_such_number_is_refused(raw: object) -> None:
+def test_invalid_numbers_are_errors(raw: object) -> None:
     with pytest.raises(PydanticCustomError, match=r"found .*; expected"):
         LENGTH.read(raw)
 
 
-def test_a_word_may_stand_for_a_number() -> None:
+def test_a_word_may_replace_a_number() -> None:
     worded = Quantity("-", "", Span(1, 2, ""), words={"rough": 1.67})
     assert worded.read("rough") == 1.67
     assert worded.read({"value": "rough", "range": [1, 2]}).source == "'rough'"
@@ -79,7 +79,7 @@ def test_a_whole_number() -> None:
         count.read(3.5)
 
 
-def test_every_quantity_says_what_it_is() -> None:
+def test_every_quantity_has_unit_meaning_and_range() -> None:
     """Unit, meaning and a reason for the range; the default range of a plain value has a width."""
     found = 0
     for name in dir(quantities):

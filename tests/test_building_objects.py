@@ -26,7 +26,7 @@ def cell(**changes: Any) -> mc.Building:
         "site": b.Site(latitude=48, longitude=2, altitude=100, timezone="Europe/Paris"),
         "materials": {
             "concrete": b.Solid(conductivity=1.75, density=2240, specific_heat=900),
-            "pcm": b.PhaseChangeMaterial(product="RT25HC"),
+            "pcm": b.PhaseChangeMaterial.from_product("RT25HC"),
         },
         "constructions": {
             "wall": b.Construction(
@@ -87,7 +87,7 @@ def test_a_part_that_is_used_in_two_buildings_derives_again() -> None:
     ("make", "message"),
     [
         (lambda: b.Zone(volume=-1), "Zone: volume\n  found: -1"),
-        (lambda: b.Zone(volum=1), "Did you mean 'volume'"),
+        (lambda: b.Zone(volum=1), "Did you mean 'volume'"),  # type: ignore[call-arg]
         (lambda: b.Site(latitude=48, longitude=2, altitude=0, timezone="Paris"), "Europe/Paris"),
         (lambda: cell(zones={}), "expected: the name of a zone under 'zones:'"),
         (lambda: cell(materials={}), "expected: the name of a material"),
@@ -137,11 +137,12 @@ def test_derived_values_are_written_only_where_they_no_longer_follow() -> None:
 
 def test_a_replaced_product_melts_as_that_product() -> None:
     other = cell().replace({"materials.pcm.product": "RT21HC"})
-    assert other == cell(materials=cell().materials | {"pcm": b.PhaseChangeMaterial(product="RT21HC")})
+    assert other == cell(materials=cell().materials | {"pcm": b.PhaseChangeMaterial.from_product("RT21HC")})
     before, after = cell().materials["pcm"], other.materials["pcm"]
     assert isinstance(before, b.PhaseChangeMaterial)
     assert isinstance(after, b.PhaseChangeMaterial)
     assert after.melting[1] < before.melting[1]
+    assert other.to_engine().json != cell().to_engine().json
     assert "RT21HC" in str(other.parameter("materials.pcm.law.enthalpies.3").source)
 
 
@@ -153,7 +154,7 @@ def test_what_was_given_beside_a_product_stays_when_the_product_is_replaced() ->
     assert later == together
     assert later.parameter("materials.pcm.density.solid").value == 850
     assert later.parameter("materials.pcm.law.temperature_shift").value == 0.5
-    law, own = later.materials["pcm"], b.PhaseChangeMaterial(product="RT21HC")
+    law, own = later.materials["pcm"], b.PhaseChangeMaterial.from_product("RT21HC")
     assert isinstance(law, b.PhaseChangeMaterial)
     assert isinstance(law.law, TableLaw)
     assert isinstance(own.law, TableLaw)
@@ -242,5 +243,5 @@ def test_every_exported_part_says_what_its_fields_are() -> None:
         text = getattr(b, name).__doc__
         assert text, name
         fields = getattr(getattr(b, name), "model_fields", {})
-        for field in fields:
+        for field in fields.keys() - {"kind"}:
             assert f"\n{field} : " in text, (name, field)

@@ -1,4 +1,4 @@
-"""The names of results: one for each thing that can be read, and the engine knows each of them."""
+"""Names of results: unique, and known to the engine."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def test_names_and_aliases_are_unique() -> None:
         ("core.temperature", "sensor", {"sensor": 0}),
     ],
 )
-def test_a_name_says_what_to_read(name: str, kind: str, place: dict[str, int]) -> None:
+def test_names_have_kind_and_position(name: str, kind: str, place: dict[str, int]) -> None:
     output = everything()[0].output(name)
     assert (output.kind, output.place) == (kind, place)
 
 
-def test_only_what_melts_has_a_liquid_fraction() -> None:
+def test_only_phase_change_layers_have_a_liquid_fraction() -> None:
     melting = {output.name for output in everything()[0].outputs() if output.kind == "liquid_fraction"}
     assert melting == {f"ceiling.{layer}_liquid_fraction" for layer in ("wax", "salt", "curve")}
 

@@ -1,4 +1,4 @@
-"""The language of parameters: paths, short ways to write them, replacement."""
+"""Parameters: paths, short forms of paths, replacement."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from mascarin.building.reading import parse
 from mascarin.errors import InputError
 
 
-def test_a_parameter_carries_all_that_is_known() -> None:
+def test_a_parameter_has_range_limits_and_source() -> None:
     parameter = everything()[0].parameter("site.altitude")
     assert (parameter.value, parameter.unit, parameter.low, parameter.high) == (55.0, "m", 40.0, 70.0)
     assert (parameter.lower, parameter.upper) == (-500.0, 9000.0)
     assert parameter.source == "a map"
     assert parameter.description.startswith("Altitude")
-    assert parameter.range_reason == "written in the description"
+    assert parameter.range_reason == "given in the description"
     assert not parameter.structural
     assert parameter.varies
 
 
-def test_a_source_of_a_part_is_that_of_its_numbers() -> None:
+def test_the_source_of_a_part_is_that_of_its_numbers() -> None:
     assert room().parameter("materials.concrete.density").source == "a table"
 
 
-def test_paths_are_unique_and_ranges_hold_the_value() -> None:
+def test_paths_are_unique_and_ranges_contain_the_value() -> None:
     for building in everything():
         parameters = building.parameters()
         assert len({parameter.path for parameter in parameters}) == len(parameters)
@@ -36,16 +36,16 @@ def test_paths_are_unique_and_ranges_hold_the_value() -> None:
             assert parameter.low < parameter.high or parameter.reason, parameter.path
 
 
-def test_a_range_without_width_is_said() -> None:
+def test_a_range_without_width_has_a_reason() -> None:
     building = room().replace({"surfaces.south.inside.convection": 0})
     parameter = building.parameter("surfaces.south.inside.convection.coefficient")
-    assert parameter.reason == "its default range has no width: write a range"
+    assert parameter.reason == "its default range has no width: give a range"
     assert not parameter.varies
 
 
-def test_what_shapes_the_calculation_is_marked() -> None:
+def test_structural_parameters_have_a_reason() -> None:
     structural = {p.path: p.reason for p in everything()[0].parameters() if p.structural}
-    assert structural["site.latitude"] == "acts through the sun's path in the forcing"
+    assert structural["site.latitude"] == "acts through the position of the sun in the forcing"
     for path in (
         "surfaces.roof.vertices.2.2",
         "constructions.wall.layers.concrete.nodes",
@@ -68,7 +68,7 @@ def test_what_shapes_the_calculation_is_marked() -> None:
         ("surfaces.floor.outside.ground.temperature", "surfaces.floor.outside.ground.mean"),
     ],
 )
-def test_short_ways_to_write_a_path(written: str, meant: str) -> None:
+def test_short_forms_of_a_path(written: str, meant: str) -> None:
     building = everything()[0]
     assert building.parameter(written).path == meant
     value = building.parameter(meant).value * 1.01
@@ -101,7 +101,7 @@ def test_a_replaced_number_keeps_its_range() -> None:
     assert (after.parameter("site.altitude").low, after.parameter("site.altitude").high) == (40.0, 70.0)
 
 
-def test_what_was_derived_follows_structure_and_not_parameters() -> None:
+def test_derived_values_follow_structure_and_not_parameters() -> None:
     """A sweep varies one number at a time, and a replacement must do the same."""
     building = parse(EVERYTHING, "x")
     perimeter, length = "surfaces.roof.outside.convection.perimeter", "surfaces.ceiling.inside.convection"

@@ -52,7 +52,7 @@ def test_a_product_is_a_material_with_its_numbers_and_sources() -> None:
     assert taken.to_engine().json
 
 
-def test_a_curve_is_chosen_by_its_word() -> None:
+def test_a_curve_is_chosen_by_its_name() -> None:
     law = pcm("product: RT25HC, law: cooling").law
     assert isinstance(law, TableLaw)
     assert law.melting == (14.0, 28.0)
@@ -60,7 +60,7 @@ def test_a_curve_is_chosen_by_its_word() -> None:
         pcm("product: RT28HC, law: cooling")
 
 
-def test_what_the_user_gives_comes_first() -> None:
+def test_given_values_replace_those_of_the_product() -> None:
     material = pcm("product: Energain, density: 870, melting_temperature: {value: 22, range: [21, 23]}")
     assert values(material, "density", "melting_temperature", "latent_heat") == [870, 22, 71000]
     assert isinstance(material.law, TanhLaw)
@@ -76,7 +76,7 @@ def test_a_law_by_width_takes_latent_heat_and_melting_temperature_from_the_produ
     assert float(material.melting_temperature or 0) == product("RT28HC").melting_temperature == 27.63
 
 
-def test_a_product_survives_other_values() -> None:
+def test_other_values_can_be_given_beside_a_product() -> None:
     other = building("product: RT25HC").replace(
         {"materials.pcm.density.solid": 900, "materials.pcm.law": "cooling"}
     )
@@ -93,17 +93,17 @@ def test_a_product_survives_other_values() -> None:
         ("product: 25", "expected: the name of a product"),
         ("product: RT25HC, kind: solid", "RT25HC is a phase-change material"),
         ("product: RT25HC, densty: 1", "Did you mean 'density'?"),
-        ("product: RT25HC, latent_heat: 1.0e5", "what the table rises"),
+        ("product: RT25HC, latent_heat: 1.0e5", "the rise of the table"),
     ],
 )
-def test_refusals_say_where_and_what(material: str, message: str) -> None:
+def test_errors_of_products_have_line_and_path(material: str, message: str) -> None:
     with pytest.raises(InputError) as caught:
         building(material)
     assert message in str(caught.value)
     assert str(caught.value).startswith("room.yaml:4: materials.pcm")
 
 
-def test_what_nobody_knows_must_be_given(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unknown_properties_must_be_given(monkeypatch: pytest.MonkeyPatch) -> None:
     bare = Product(
         "Bare", "y", None, None, "a leaflet", None, None, None, {"latent_heat": 1e5, "density": 900}
     )

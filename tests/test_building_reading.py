@@ -1,4 +1,4 @@
-"""Every way to get a description wrong is reported with its place, and says what to do."""
+"""Errors of a description are reported with line and path, and say what to do."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ FAULTS = {
         "constructions.wall.layers",
         ["two layers called 'concrete'", "Add 'name:'"],
     ),
-    "layer named as a face": (
+    "layer named as a side": (
         "{material: concrete, thickness: 0.2}",
         "{name: outside, material: concrete, thickness: 0.2} # here",
         "constructions.wall.layers.outside",
@@ -66,7 +66,7 @@ FAULTS = {
         "concrete: {conductivity: 1.75, density: 2240, specific_heat: 900, source: a table}",
         "concrete: {kind: resistance, resistance: 0.1}",
         "constructions.wall.layers.concrete.thickness",
-        ["none: the material is a bare resistance", "Remove 'thickness:'"],
+        ["none: the material is a resistance", "Remove 'thickness:'"],
     ),
     "unknown kind of material": (
         "concrete: {conductivity: 1.75,",
@@ -145,13 +145,13 @@ FAULTS = {
         "convection: 15, emissivity: 0.9, absorptance: 0.6}",
         "emissivity: 0.9, absorptance: 0.6} # here",
         "surfaces.south.outside.convection",
-        ["Film coefficient"],
+        ["Surface heat transfer coefficient"],
     ),
     "no emissivity in an exchanging zone": (
         "inside: {zone: room, convection: 3, emissivity: 0.9}\n  rest",
         "inside: {zone: room, convection: 3} # here\n  rest",
         "surfaces.south.inside.emissivity",
-        ["zone 'room' exchanges long-wave", "longwave: none"],
+        ["zone 'room' exchanges radiation", "longwave: none"],
     ),
     "no absorptance for a measured irradiance": (
         "outside: {adiabatic: true}",
@@ -169,7 +169,7 @@ FAULTS = {
         "true}\n    inside: {zone: room, convection: 3,",
         "true}\n    inside: {zone: room, convection: {kind: tarp, roughness: rough}, # here\n",
         "surfaces.rest.inside.convection.roughness",
-        ["it belongs to the wind's part"],
+        ["only the forced part by wind uses it"],
     ),
     "an outdoor film indoors": (
         "true}\n    inside: {zone: room, convection: 3,",
@@ -391,7 +391,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_fault_is_reported_with_its_place(name: str) -> None:
+def test_an_error_is_reported_with_line_and_path(name: str) -> None:
     old, new, path, words = FAULTS[name]
     assert ROOM.count(old) == 1
     text = ROOM.replace(old, new)
@@ -456,7 +456,7 @@ LAWS = {
         "    conductivity: 0.2\n",
         "    conductivity: 0.2\n    latent_heat: 40000\n",
         "materials.curve.latent_heat",
-        "what the table rises between 20 and 22 degC",
+        "the rise of the table between 20 and 22 degC",
     ),
     "three phases": (
         "[0.22, 0.18]",
@@ -474,7 +474,7 @@ LAWS = {
         "roof: {ceiling: 1.0}\n",
         "roof: {floor: 1.0}\n",
         "zones.attic.view_factors.roof.floor",
-        "a face of this zone",
+        "a surface of this zone",
     ),
     "view factors with a hole": (
         "      ceiling: {roof: 0.8, light: 0.1, hatch: 0.1}\n",
@@ -486,7 +486,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_what_cannot_be_physics_is_refused(name: str) -> None:
+def test_impossible_phase_change_is_an_error(name: str) -> None:
     old, new, path, words = LAWS[name]
     text = EVERYTHING.replace(old, new)
     if name == "falling enthalpy":
@@ -499,7 +499,7 @@ def test_what_cannot_be_physics_is_refused(name: str) -> None:
     assert words in report
 
 
-def test_all_faults_are_reported_at_once_and_in_order() -> None:
+def test_all_errors_are_reported_at_once_and_in_order() -> None:
     text = ROOM.replace("thickness: 0.2}", "thickness: -0.2}").replace("volume: 30", "volume: x")
     text = text.replace("zone: room,", "zone: rom,").replace("latitude: 48", "latitude: 480")
     with pytest.raises(InputError) as caught:
@@ -523,25 +523,25 @@ def test_all_faults_are_reported_at_once_and_in_order() -> None:
         ("a: \x00", "no YAML"),
     ],
 )
-def test_what_is_no_description_is_refused(text: str, words: str) -> None:
+def test_a_text_without_sections_is_an_error(text: str, words: str) -> None:
     with pytest.raises(InputError, match=words) as caught:
         parse(text, "x.yaml")
     assert str(caught.value).startswith("x.yaml:")
 
 
-def test_aliases_cannot_blow_up() -> None:
+def test_the_expansion_of_aliases_is_limited() -> None:
     rows = ["a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"]
     rows += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]" for i in range(1, 9)]
     with pytest.raises(InputError, match="more than 100000 values"):
         parse("\n".join(rows), "x.yaml")
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_missing_file_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be read"):
         load(tmp_path / "no.yaml")
 
 
-def test_a_file_that_is_no_text(tmp_path: Path) -> None:
+def test_a_binary_file_is_an_error(tmp_path: Path) -> None:
     path = tmp_path / "x.yaml"
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="not UTF-8"):
@@ -558,7 +558,7 @@ def test_numbers_are_those_of_yaml_1_2(tmp_path: Path) -> None:
     assert concrete.source == "NO"
 
 
-def test_an_alias_reads_like_what_it_stands_for() -> None:
+def test_an_alias_is_read_as_its_content() -> None:
     inside = "{zone: room, convection: 3, emissivity: 0.9}"
     first, _, rest = ROOM.partition(inside)
     text = f"{first}&inside {inside}{rest.replace(inside, '*inside')}"

@@ -1,4 +1,4 @@
-"""What a building rests on."""
+"""Sources of a building."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def test_numbers_and_correlations_are_cited_once() -> None:
 
 
 def test_remarks_are_no_sources() -> None:
-    remarks = ("not written", "no furniture", "as published", "as it is", "vertices", "of a square")
+    remarks = ("not given", "no furniture", "as published", "as it is", "vertices", "of a square")
     for building in (room(), *everything()):
         assert cites(building, *remarks) == [False] * len(remarks)
 
 
-def test_of_an_assumed_number_only_a_work_is_cited() -> None:
+def test_of_an_assumed_number_only_a_publication_is_cited() -> None:
     def beside(text: str) -> list[str]:
         noted = f'specific_heat: {{value: 900, assumed: true, source: "{text}"}}'
         return parse(ROOM.replace("specific_heat: 900", noted), "x").sources()
@@ -36,7 +36,7 @@ def test_of_an_assumed_number_only_a_work_is_cited() -> None:
         assert text in beside(text)
 
 
-def test_only_what_acts_is_cited() -> None:
+def test_only_active_numbers_and_methods_are_cited() -> None:
     """A sky that nothing sees, a sun that nothing takes from the climate, an unused material."""
     measured = parse(ROOM.replace("absorptance: 0.6", "absorptance: 0.6, irradiance: G"), "x")
     assert cites(measured, "Reda", "Perez", "Kasten", "Liu & Jordan", "Kopp") == [False] * 5
@@ -72,7 +72,7 @@ def test_the_sky_is_cited_with_its_clouds() -> None:
         assert cites(room().replace({"site.sky": kind}), *words) == cited, kind
 
 
-def test_other_coefficients_do_not_hide_who_the_form_of_a_sky_is_by() -> None:
+def test_a_sky_model_with_other_coefficients_is_still_cited() -> None:
     sky = {"kind": "martin_berdahl", "a": {"value": 0.76, "source": "a pyrgeometer"}}
     assert cites(room().replace({"site.sky": sky}), "a pyrgeometer", "Martin & Berdahl 1984") == [True, True]
 

@@ -28,12 +28,12 @@ def test_fixed_offsets(text: str, minutes: int | None) -> None:
 
 
 @pytest.mark.parametrize("zone", ["Indian/Reunion", "UTC+4", "UTC", "America/Denver"])
-def test_zones_that_are(zone: str) -> None:
+def test_valid_time_zones(zone: str) -> None:
     assert room().replace({"site.timezone": zone}).site.timezone == zone
 
 
 @pytest.mark.parametrize("zone", ["", "Paris", "UTC+25", "local", "/etc/localtime", "Europe"])
-def test_zones_that_are_not(zone: str) -> None:
+def test_invalid_time_zones(zone: str) -> None:
     with pytest.raises(InputError, match="IANA time zone"):
         room().replace({"site.timezone": zone})
 

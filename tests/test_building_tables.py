@@ -27,13 +27,13 @@ def errors(text: str) -> list[str]:
     return [error.json_path for error in validator().iter_errors(plain(text, "x"))]
 
 
-def test_the_samples_fit() -> None:
+def test_samples_are_valid_by_the_schema() -> None:
     assert errors(ROOM) == []
     assert errors(EVERYTHING) == []
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.parent.name)
-def test_the_examples_fit(path: Path) -> None:
+def test_examples_are_valid_by_the_schema(path: Path) -> None:
     assert errors(path.read_text(encoding="utf-8")) == []
     assert mascarin.load(path).to_engine(900).paths
 
@@ -49,7 +49,7 @@ def test_the_examples_fit(path: Path) -> None:
         ("adiabatic: true", "adiabatic: false"),
     ],
 )
-def test_what_does_not_fit(old: str, new: str) -> None:
+def test_errors_are_found_by_the_schema(old: str, new: str) -> None:
     assert errors(ROOM.replace(old, new))
 
 
@@ -61,7 +61,7 @@ def numbers(node: Any) -> list[dict[str, Any]]:
     return ([node] if "unit" in node else []) + [found for piece in node.values() for found in numbers(piece)]
 
 
-def test_every_number_of_the_schema_says_unit_meaning_and_range() -> None:
+def test_every_number_of_the_schema_has_unit_meaning_and_range() -> None:
     found = numbers(json_schema())
     assert len(found) > 90
     for number in found:

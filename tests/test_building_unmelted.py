@@ -1,4 +1,4 @@
-"""Layers whose latent heat does nothing in a run."""
+"""Layers that neither melt nor freeze in a run."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ def led(face: float, wax: str = WAX, initial: float = 15.0) -> Results:
     )  # fmt: skip
 
 
-def test_what_stays_solid_is_said_with_both_ranges() -> None:
+def test_a_layer_that_stays_solid_is_warned_of() -> None:
     (line,) = led(20.0, initial=20.0).warnings
     assert "surfaces.slab, layer wax: stayed solid" in line
     assert "20.00 to 20.00 degC on the mean" in line
     assert "melts from 21.30 to 22.70 degC:" in line
 
 
-def test_what_stays_liquid_is_said_with_where_it_would_freeze() -> None:
+def test_a_layer_that_stays_liquid_is_warned_of() -> None:
     curves = WAX + ", hysteresis: {model: curve_switch, freezing_temperature: 19.5}"
     (line,) = led(23.0, curves, initial=23.0).warnings
     assert "stayed liquid" in line
     assert "freezes from 20.20 to 18.80 degC" in line
 
 
-def test_what_melts_is_not_spoken_of() -> None:
+def test_a_layer_that_melts_is_not_warned_of() -> None:
     assert led(25.0).warnings == ()
     run = melting.ceiling(1.0, "curve_scale", 900.0, days=2).run()
     assert run.warnings == ()
@@ -46,7 +46,7 @@ def test_what_melts_is_not_spoken_of() -> None:
 
 
 @pytest.mark.parametrize(("swing", "said"), [(0.009, 1), (0.011, 0)])
-def test_a_hundredth_is_something(swing: float, said: int) -> None:
+def test_one_percent_of_melting_is_enough(swing: float, said: int) -> None:
     building = setup.building(slab(WAX, 0.005, 4))
     assert [output.name for output in unmelted.watched(building)] == [
         "slab.wax_temperature",

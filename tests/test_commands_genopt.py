@@ -78,4 +78,4 @@ def test_an_interrupted_run_is_mentioned(tmp_path: Path, capsys: pytest.CaptureF
     log.write_text("\n".join(log.read_text().splitlines()[:11]) + "\n")
     capsys.readouterr()
     assert cli.main(["optimize", str(ini)]) == 0
-    assert "an earlier run ended after 10 evaluations" in capsys.readouterr().err
+    assert "an earlier run stopped after 10 evaluations" in capsys.readouterr().err

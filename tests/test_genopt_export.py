@@ -17,7 +17,7 @@ from mascarin.calibration import Cost, Evaluator, Rules, solve
 from mascarin.calibration.problem import FitParameter
 from mascarin.errors import InputError, SolverError
 from mascarin.genopt import Options as RunOptions
-from mascarin.genopt import optimise
+from mascarin.genopt import optimize
 from mascarin.genopt.export.algorithms import ALGORITHMS, Plan
 from mascarin.genopt.export.algorithms import chosen as chosen_algorithm
 from mascarin.genopt.export.case import Case, inputs_of, open_case
@@ -103,7 +103,9 @@ def edit(path: Path, before: str, after: str) -> None:
 # --- the compiled case ----------------------------------------------------------------------------------
 
 
-def test_a_case_costs_what_the_study_costs_bit_by_bit(study: Study, case: Case, tmp_path: Path) -> None:
+def test_the_cost_of_a_case_equals_that_of_the_study_exactly(
+    study: Study, case: Case, tmp_path: Path
+) -> None:
     problem = study.problem()
     assert replace(problem, identity="").fingerprint() == case.problem.fingerprint()
     case.save(tmp_path / "case.npz")
@@ -120,18 +122,18 @@ def test_a_case_costs_what_the_study_costs_bit_by_bit(study: Study, case: Case, 
             assert found.kept == ()
 
 
-def test_what_is_not_given_keeps_the_value_of_the_study(case: Case) -> None:
+def test_parameters_that_are_not_given_keep_the_value_of_the_study(case: Case) -> None:
     found = case.evaluate({INSULATION: 0.03})
     assert found.kept == (ABSORPTANCE,)
     assert found.total == case.evaluate({INSULATION: 0.03, ABSORPTANCE: 0.5}).total
 
 
-def test_the_true_wall_costs_less_than_another(case: Case) -> None:
+def test_the_true_parameters_have_a_lower_cost(case: Case) -> None:
     true = {path: TRUTH[path] for path in (INSULATION, ABSORPTANCE)}
     assert case.evaluate(true).total < 0.5 * case.evaluate({}).total
 
 
-def test_priors_are_a_cost_of_their_own(copy: Path) -> None:
+def test_priors_have_a_separate_cost(copy: Path) -> None:
     edit(copy / "study.yaml", "cost: sd", "cost: nll")
     edit(copy / "study.yaml", "{low: 0.2, high: 0.8}", "{low: 0.2, high: 0.8, prior: 0.1}")
     case = compile_study(Study(copy / "study.yaml"))
@@ -142,7 +144,7 @@ def test_priors_are_a_cost_of_their_own(copy: Path) -> None:
 
 
 @pytest.mark.parametrize("changed", ["study.yaml", "building.yaml", "logger.csv"])
-def test_a_kept_case_is_dropped_when_a_file_changes(copy: Path, changed: str) -> None:
+def test_a_kept_case_is_not_used_when_a_file_changes(copy: Path, changed: str) -> None:
     kept = copy / "compiled.npz"
     compiled(copy / "study.yaml", kept)
     name = str((copy / "study.yaml").resolve())
@@ -187,7 +189,7 @@ def test_an_evaluation_imports_nothing_that_reads_studies(bench: Path, tmp_path:
 # --- the project ----------------------------------------------------------------------------------------
 
 
-def test_a_project_is_read_without_a_remark(bench: Path, tmp_path: Path) -> None:
+def test_an_exported_project_is_read_without_notes(bench: Path, tmp_path: Path) -> None:
     ini = write_project(str(bench / "study.yaml"), tmp_path / "project", SHORT)
     assert {path.name for path in ini.parent.iterdir()} == set(FILES)
     project, _ = check(ini)
@@ -206,7 +208,7 @@ def test_a_project_is_read_without_a_remark(bench: Path, tmp_path: Path) -> None
     ]
 
 
-def test_a_project_names_no_place_of_this_machine(
+def test_a_project_has_no_absolute_paths(
     bench: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", str(Path(PROGRAM).parent))
@@ -239,7 +241,7 @@ def test_every_algorithm_is_accepted(name: str, case: Case, bench: Path, tmp_pat
         assert lines[0].startswith(f"{algorithm.main}: {INSULATION}")
 
 
-def test_bounds_are_rounded_inwards_to_digits_that_survive_single_precision() -> None:
+def test_bounds_are_rounded_inwards_to_digits_of_single_precision() -> None:
     found = variable(FitParameter("a.b", 1.0 / 3.0, 2.0e-5 + 1.0, nominal=0.123456789), Path("study.yaml"))
     assert (str(found.lower), str(found.upper)) == ("0.333334", "1.00002")
     narrow = variable(FitParameter("a.b", 0.12345678, 8765.4321, nominal=1.0 / 3.0), Path("study.yaml"))
@@ -288,7 +290,7 @@ def in_process(study: Study, reductions: int, starts: int, seed: int) -> tuple[R
         return single(value)
 
     rows = Rows()
-    optimiser = HookeJeeves(
+    optimizer = HookeJeeves(
         space,
         reductions=reductions,
         starts=uniform_starts(space, starts, seed, rounding=rounded),
@@ -296,13 +298,13 @@ def in_process(study: Study, reductions: int, starts: int, seed: int) -> tuple[R
         observer=rows,
     )
     evaluator = Evaluator(Cost(study.problem(), study.sought.cost))
-    while points := optimiser.ask():
+    while points := optimizer.ask():
         told = []
         for point in points:
             x = np.array([point.x])
             total = float(evaluator.costs(x)[0])
             told.append(Evaluation(point, total, tuple(evaluator.trace().of_sensors[-1])))
-        optimiser.tell(told)
+        optimizer.tell(told)
     return rows, evaluator
 
 
@@ -324,7 +326,7 @@ def test_the_project_is_searched_like_the_study_evaluation_by_evaluation(
     study: Study, bench: Path, tmp_path: Path, without_processes: list[Path]
 ) -> None:
     ini = write_project(str(bench / "study.yaml"), tmp_path / "a project", SHORT)
-    outcome = optimise(ini, RunOptions(workers=1))
+    outcome = optimize(ini, RunOptions(workers=1))
     rows, evaluator = in_process(study, reductions=3, starts=3, seed=5)
     trace = evaluator.trace()
     assert len(without_processes) == outcome.simulations == len(trace.x) > 30
@@ -363,7 +365,7 @@ def test_the_project_is_searched_like_a_calibration(
     command.write_text(
         command.read_text(encoding="utf-8").replace("Step = 0.1;", "Step = 0.125;"), encoding="utf-8"
     )
-    outcome = optimise(ini, RunOptions(workers=1))
+    outcome = optimize(ini, RunOptions(workers=1))
     rules = Rules(sequences=1, agree=1, step=0.125, reductions=3)
     fit = solve(Study(copy / "study.yaml").problem(), method="hooke-jeeves", cost="sd", rules=rules)
     assert len(fit.trace.x) == len(without_processes) > 20
@@ -375,7 +377,7 @@ def test_the_project_is_searched_like_a_calibration(
 def test_the_program_itself_gives_the_same_numbers(bench: Path, tmp_path: Path) -> None:
     options = replace(SHORT, evaluations=6, starts=1)
     ini = write_project(str(bench / "study.yaml"), tmp_path / "a project", options)
-    outcome = optimise(ini, RunOptions(workers=1))
+    outcome = optimize(ini, RunOptions(workers=1))
     assert outcome.runs >= 6
     inside = search(ini)
     assert [(r.key, r.costs) for r in outcome.records] == [(r.key, r.costs) for r in inside.records]
@@ -422,19 +424,19 @@ def test_cost_reads_and_writes_files(
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("project = ..\n", "parameters.txt: holds no parameter"),
-        (f"{INSULATION} = 0.03\n", "parameters.txt: names no study; add a line 'project = FOLDER'"),
+        ("project = ..\n", "parameters.txt: found no parameter"),
+        (f"{INSULATION} = 0.03\n", "parameters.txt: found no study; add a line 'project = FOLDER'"),
         (f"project = ../..\n{INSULATION} = 0.03\n", "coupling.json: cannot be read"),
         (f"project = ..\n{INSULATION} 0.03\n", "parameters.txt:2: found '.*', expected 'path = value'"),
         (f"project = ..\n{INSULATION} = much\n", "parameters.txt:2: .*found 'much', expected a number"),
         (f"project = ..\n{INSULATION} = NaN\n", "parameters.txt:2: .*found 'NaN', expected a number"),
         (f"project = ..\n{INSULATION} = %x%\n", "parameters.txt:2: .*should have replaced"),
-        (f"{INSULATION} = 1\n{INSULATION} = 1\n", "parameters.txt:2: '.*' stands here a second time"),
+        (f"{INSULATION} = 1\n{INSULATION} = 1\n", "parameters.txt:2: '.*' occurs a second time"),
         ("project = ..\nmaterials.insulation.conductivty = 1\n", "Did you mean 'materials.insulation.cond"),
         (f"project = ..\n{INSULATION} = -1\n", "parameters.txt: .*found -1, expected .* narrow Min and Max"),
     ],
 )
-def test_cost_says_what_is_wrong_in_its_log(
+def test_errors_of_an_evaluation_are_in_its_log(
     run_folder: Path, text: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (run_folder / "result.txt").write_text("cost= 1\n", encoding="utf-8")
@@ -460,7 +462,7 @@ def test_a_building_that_cannot_be_simulated(run_folder: Path, monkeypatch: pyte
     assert f"MASCARIN ERROR: step 3 did not converge Parameters: {INSULATION}=0.03" in log
 
 
-def test_a_defect_stands_in_the_log_too(run_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unexpected_error_is_in_the_log(run_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object) -> None:
         raise RuntimeError("broken on purpose")
 
@@ -480,12 +482,14 @@ def test_cost_does_not_write_over_what_it_reads(run_folder: Path) -> None:
 # --- what cannot be used --------------------------------------------------------------------------------
 
 
-def test_a_folder_in_use_is_refused(bench: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_that_is_not_empty_is_an_error(
+    bench: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
     words = ["genopt", str(bench / "study.yaml"), "-o", str(tmp_path), "--program", PROGRAM]
     assert cli.main(words) == 2
     error = capsys.readouterr().err
-    assert "the folder is not empty (it holds mine.txt)" in error
+    assert "the folder is not empty (it has mine.txt)" in error
     assert "--force" in error
     assert cli.main([*words, "--force"]) == 0
     assert (tmp_path / "mine.txt").read_text(encoding="utf-8") == "mine"
@@ -504,7 +508,7 @@ def test_a_folder_in_use_is_refused(bench: Path, tmp_path: Path, capsys: pytest.
         (["--program", "/my programs/mascarin"], "with blanks, quotes or backslashes"),
     ],
 )
-def test_bad_choices(
+def test_errors_of_export_options(
     bench: Path, tmp_path: Path, words: list[str], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "project"
@@ -542,17 +546,17 @@ def test_names_that_genopt_cannot_take(copy: Path, tmp_path: Path) -> None:
         write_project(str(copy / "study.yaml"), tmp_path / "project", SHORT)
 
 
-def test_a_project_whose_study_has_gone(copy: Path, tmp_path: Path) -> None:
+def test_a_project_without_its_study(copy: Path, tmp_path: Path) -> None:
     ini = write_project(str(copy / "study.yaml"), tmp_path / "project", SHORT)
     (copy / "study.yaml").unlink()
     with pytest.raises(InputError, match=r"coupling.json: study: found '.*study.yaml', but there is no such"):
         search(ini)
     (ini.parent / "coupling.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(InputError, match="is not what 'mascarin genopt' writes"):
+    with pytest.raises(InputError, match="was not written by 'mascarin genopt'"):
         search(ini)
 
 
-def test_a_project_with_costs_of_its_own_needs_the_program(bench: Path, tmp_path: Path) -> None:
+def test_a_project_with_other_costs_needs_the_program(bench: Path, tmp_path: Path) -> None:
     ini = write_project(str(bench / "study.yaml"), tmp_path / "project", SHORT)
     edit(ini, 'Name1 = "cost"', 'Name1 = "mine"')
     with pytest.raises(InputError, match=r"has costs \(mine.*run it with 'mascarin optimize'"):

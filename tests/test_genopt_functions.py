@@ -29,11 +29,11 @@ def test_values(text: str, value: float) -> None:
 @pytest.mark.parametrize(
     ("text", "value"), [("divide(1, 0)", math.inf), ("log(0)", -math.inf), ("pow(0, -1)", math.inf)]
 )
-def test_what_mathematics_leaves_open_is_infinite(text: str, value: float) -> None:
+def test_undefined_limits_are_infinite(text: str, value: float) -> None:
     assert evaluate(text) == value
 
 
-def test_what_is_not_defined_is_not_a_number() -> None:
+def test_undefined_values_are_not_a_number() -> None:
     assert math.isnan(evaluate("sqrt(-1)"))
     assert math.isnan(evaluate("divide(0, 0)"))
 
@@ -42,7 +42,7 @@ def test_what_is_not_defined_is_not_a_number() -> None:
     ("text", "message"),
     [
         ("add(1, 2", "closing bracket is missing"),
-        ("add(1, 2) 3", "behind the closing bracket"),
+        ("add(1, 2) 3", "after the closing bracket"),
         ("adds(1, 2)", "'adds' is not known. Did you mean 'add'"),
         ("add(1)", "takes 2 to 6 arguments, found 1"),
         ("1+2", "without operators"),
@@ -50,7 +50,7 @@ def test_what_is_not_defined_is_not_a_number() -> None:
         ("-add(1, 2)", "'-add'"),
     ],
 )
-def test_mistakes_are_named(text: str, message: str) -> None:
+def test_errors_of_projects(text: str, message: str) -> None:
     with pytest.raises(InputError) as caught:
         evaluate(text)
     assert message in str(caught.value)
@@ -62,6 +62,6 @@ def test_functions_are_inserted_in_each_other() -> None:
     assert evaluate(substitute(resolve(functions, str)["a"], {"x": "4"})) == 9.0
 
 
-def test_functions_in_a_circle_are_refused() -> None:
+def test_functions_in_a_circle_are_an_error() -> None:
     with pytest.raises(InputError, match="in a circle"):
         resolve({"a": "abs(%b%)", "b": "abs(%a%)"}, str)

@@ -31,12 +31,12 @@ def test_text_of_doubles(value: float, text: str) -> None:
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
-def test_text_gives_the_double_back(value: float) -> None:
+def test_text_of_a_double_is_read_exactly(value: float) -> None:
     assert parse_double(double_text(value)) == value
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False, width=32))
-def test_text_gives_the_single_back(value: float) -> None:
+def test_text_of_a_single_is_read_exactly(value: float) -> None:
     text = single_text(value)
     assert single_text(float(text)) == text
     assert float(text) == pytest.approx(value, rel=1e-7)
@@ -63,5 +63,5 @@ def test_java_does_not_read(text: str) -> None:
     ("written", "kept"),
     [("0.10", "0.1"), ("10.0", "10"), ("1e-3", "0.001"), ("a.txt", "a.txt"), ("1f", "1f")],
 )
-def test_unquoted_numbers_are_written_anew(written: str, kept: str) -> None:
+def test_unquoted_numbers_are_written_again(written: str, kept: str) -> None:
     assert normalised(written) == kept

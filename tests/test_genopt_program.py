@@ -10,7 +10,7 @@ import pytest
 from genopt_support import TWO_CONTINUOUS, write_project
 from mascarin.errors import InputError
 from mascarin.genopt import load
-from mascarin.genopt.extraction import word_behind
+from mascarin.genopt.extraction import word_after
 from mascarin.genopt.program import Program, RunFailed
 from mascarin.optimization import Point
 
@@ -23,11 +23,11 @@ LINES = ["5, 1.2345, 11", "6, 12.345, 22"]
     [("5,", 0, "22"), ("5,", 1, "1.2345"), ("", 0, "6"), ("7,", 0, None), ("6,", 1, "12.345")],
 )
 def test_places_of_the_number(delimiter: str, column: int, word: str | None) -> None:
-    assert word_behind(LINES, delimiter, column, ":;,") == word
+    assert word_after(LINES, delimiter, column, ":;,") == word
 
 
 def test_a_delimiter_at_the_end_of_its_line_is_cut_first() -> None:
-    assert word_behind(["cost= 3.5; cost="], "cost=", 0, ":;,") == "3.5"
+    assert word_after(["cost= 3.5; cost="], "cost=", 0, ":;,") == "3.5"
 
 
 def run(ini: Path, point: Point = POINT, *, time_limit: float | None = None) -> tuple[float, ...]:
@@ -60,7 +60,7 @@ def test_paths_with_blanks_work(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="GenOpt keeps quotes on Windows")
-def test_an_argument_with_blanks_is_said_to_go_beyond_genopt(tmp_path: Path) -> None:
+def test_an_argument_with_blanks_gives_a_note(tmp_path: Path) -> None:
     project = load(write_project(tmp_path, command='echo \\"a b\\" c'))
     words = Program(project).command(tmp_path / "tmp-genopt-run-1")
     assert words == ["echo", "a b", "c"]
@@ -105,11 +105,11 @@ def test_functions_and_discrete_values(tmp_path: Path) -> None:
         ),
         ("open('log.txt', 'w'); open('out.txt', 'w').write('cost= NaN')", "'cost' is NaN"),
         ("open('log.txt', 'w'); open('out.txt', 'w').write('cost= 1.2D+03')", "a Fortran number"),
-        ("open('log.txt', 'w'); open('out.txt', 'w').write('cost= abc')", "which is no number"),
+        ("open('log.txt', 'w'); open('out.txt', 'w').write('cost= abc')", "which is not a number"),
         ("open('log.txt', 'w'); open('out.txt', 'w').write('kost= 1')", "delimiter is 'cost='"),
     ],
 )
-def test_failures_are_named_with_run_and_files(tmp_path: Path, program: str, message: str) -> None:
+def test_failures_have_run_and_files(tmp_path: Path, program: str, message: str) -> None:
     said = failure(write_project(tmp_path, program=program))
     assert message in said
     assert said.startswith("run 1: ")
@@ -119,12 +119,12 @@ def test_failures_are_named_with_run_and_files(tmp_path: Path, program: str, mes
     assert message in (folder / "failure.txt").read_text()
 
 
-def test_what_the_program_says_is_shown(tmp_path: Path) -> None:
+def test_the_error_stream_of_the_program_is_shown(tmp_path: Path) -> None:
     said = failure(write_project(tmp_path, program="import sys; sys.stderr.write('no licence'); sys.exit(7)"))
     assert "error stream of the program: no licence" in said
 
 
-def test_a_program_that_hangs_is_stopped_with_its_children(tmp_path: Path) -> None:
+def test_a_program_beyond_the_time_limit_is_stopped_with_its_children(tmp_path: Path) -> None:
     late = [str(tmp_path / name) for name in ("child.txt", "parent.txt")]
     program = f"""
     import subprocess, sys, time
@@ -141,7 +141,7 @@ def test_a_program_that_hangs_is_stopped_with_its_children(tmp_path: Path) -> No
         assert not Path(late[0]).exists()
 
 
-def test_a_missing_program_is_named_before_any_run(tmp_path: Path) -> None:
+def test_a_missing_program_is_an_error_before_any_run(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"sim\.cfg:3: the program 'no-such-program' is not found"):
         Program(load(write_project(tmp_path, command="no-such-program %Simulation.Files.Input.File1%")))
 
@@ -153,14 +153,14 @@ def test_a_missing_program_is_named_before_any_run(tmp_path: Path) -> None:
         ("echo .5", "write 0.5"),
     ],
 )
-def test_traps_of_the_command(tmp_path: Path, command: str, message: str) -> None:
+def test_errors_of_the_command(tmp_path: Path, command: str, message: str) -> None:
     with pytest.raises(InputError) as caught:
         Program(load(write_project(tmp_path, command=command)))
     assert "sim.cfg:3: " in str(caught.value)
     assert message in str(caught.value)
 
 
-def test_a_stale_file_where_the_run_is_started_is_named(
+def test_a_file_of_the_run_in_the_start_directory_is_an_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ini = write_project(tmp_path, command="echo in.txt")
@@ -168,7 +168,7 @@ def test_a_stale_file_where_the_run_is_started_is_named(
     elsewhere.mkdir()
     (elsewhere / "in.txt").write_text("old")
     monkeypatch.chdir(elsewhere)
-    with pytest.raises(InputError, match="GenOpt started in this directory would hand it to every run"):
+    with pytest.raises(InputError, match="GenOpt started in this directory would give it to every run"):
         Program(load(ini))
     project = load(ini, lenient=True)
     words = Program(project).command(tmp_path / "tmp-genopt-run-1")
@@ -176,7 +176,7 @@ def test_a_stale_file_where_the_run_is_started_is_named(
     assert any("accepted beyond GenOpt" in n for n in project.report.notes)
 
 
-def test_a_parameter_that_occurs_nowhere_is_named(tmp_path: Path) -> None:
+def test_a_parameter_without_place_in_a_template_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"command\.txt:3: '%x2%' must occur"):
         Program(load(write_project(tmp_path, template="x1 = %x1%\n")))
 

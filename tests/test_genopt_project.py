@@ -57,7 +57,7 @@ def test_a_project_is_read(tmp_path: Path) -> None:
         ({"io_format": "Single"}, "NumberFormat is 'Single'; expected Double or Float"),
         ({"objectives": "Name1 = a;"}, "'Name1' needs either 'Delimiter1' or 'Function1'"),
         ({"objectives": "Name2 = a; Delimiter2 = x;"}, "comes before number 1"),
-        ({"objectives": 'Name1 = a; Function1 = "add(%b%, 1)";'}, "'%b%' in a function is no parameter"),
+        ({"objectives": 'Name1 = a; Function1 = "add(%b%, 1)";'}, "'%b%' in a function is not a parameter"),
         (
             {"algorithm": "Main = GPSHookJeeves;"},
             "'GPSHookJeeves' is not known. Did you mean 'GPSHookeJeeves'",
@@ -77,17 +77,17 @@ def test_a_project_is_read(tmp_path: Path) -> None:
         ),
         (
             {"files": "Input { File1 = a; } Output { File1 = o; } Log { File1 = l; }"},
-            "'Log' stands behind 'Output'",
+            "'Log' comes after 'Output'",
         ),
     ],
 )
-def test_mistakes_are_named(tmp_path: Path, change: dict[str, str], message: str) -> None:
+def test_errors_of_projects(tmp_path: Path, change: dict[str, str], message: str) -> None:
     said = refused(write_project(tmp_path, **change))
     assert message in said
     assert str(tmp_path) in said.splitlines()[0]
 
 
-def test_traps_are_errors_and_notes_when_lenient(tmp_path: Path) -> None:
+def test_what_genopt_cannot_run_is_an_error_or_a_note_when_lenient(tmp_path: Path) -> None:
     algorithm = """
     Main = NelderMeadONeill;
     StepSizeFactor = 0.1;
@@ -97,7 +97,7 @@ def test_traps_are_errors_and_notes_when_lenient(tmp_path: Path) -> None:
     """
     ini = write_project(tmp_path, algorithm=algorithm)
     said = refused(ini)
-    assert "command.txt:9: 'Accuracy' stands behind 'StepSizeFactor'" in said
+    assert "command.txt:9: 'Accuracy' comes after 'StepSizeFactor'" in said
     assert "command.txt:9: '1e-3' is read as a number with a unit" in said
     assert "write 0.001" in said
     notes = "\n".join(built(ini, lenient=True))
@@ -135,7 +135,7 @@ def test_discrete_values_are_spaced_and_kept(tmp_path: Path) -> None:
     assert w.values == ("a", " b")
 
 
-def test_seeds_of_the_swarm_and_of_its_starts_are_told_apart(tmp_path: Path) -> None:
+def test_the_swarm_and_its_starts_have_separate_seeds(tmp_path: Path) -> None:
     algorithm = f"""Main = GPSPSOCCHJ; {SWARM} MeshSizeDivider = 2; InitialMeshSizeExponent = 0;
     MultiStart = Uniform; Seed = 7; NumberOfInitialPoint = 2;
     MeshSizeExponentIncrement = 1; NumberOfStepReduction = 1;"""

@@ -22,7 +22,7 @@ from genopt_support import (
     write_project,
 )
 from mascarin.errors import InputError, SolverError
-from mascarin.genopt import Options, optimise
+from mascarin.genopt import Options, optimize
 from mascarin.genopt.program import Result, RunFailed
 from mascarin.genopt.run import check, interrupted, log_path
 from mascarin.optimization import Point
@@ -58,9 +58,9 @@ def listings(folder: Path) -> list[list[str]]:
 
 @pytest.mark.parametrize("algorithm", [SEVERAL, SEVERAL.replace("HookeJeeves", "CoordinateSearch")])
 def test_parallel_polling_and_starts_equal_the_serial_search(tmp_path: Path, algorithm: str) -> None:
-    serial = optimise(write_project(tmp_path / "a", vary=WIDE, algorithm=algorithm), run=runner(two_wells))
+    serial = optimize(write_project(tmp_path / "a", vary=WIDE, algorithm=algorithm), run=runner(two_wells))
     ini = write_project(tmp_path / "b", vary=WIDE, algorithm=algorithm)
-    parallel = optimise(ini, Options(workers=8), run=runner(two_wells))
+    parallel = optimize(ini, Options(workers=8), run=runner(two_wells))
     assert listings(tmp_path / "a") == listings(tmp_path / "b")
     assert serial.simulations == parallel.simulations
     assert serial.values() == parallel.values()
@@ -82,13 +82,13 @@ def test_workers_shorten_a_sequential_search(tmp_path: Path) -> None:
     for workers in (1, 8):
         most[0] = 0
         ini = write_project(tmp_path / str(workers), vary=WIDE, algorithm=SEVERAL)
-        optimise(ini, Options(workers=workers), run=slow)
+        optimize(ini, Options(workers=workers), run=slow)
         assert most[0] == workers
 
 
-def test_without_looking_ahead_nothing_runs_in_vain(tmp_path: Path) -> None:
+def test_without_runs_in_advance_every_run_is_needed(tmp_path: Path) -> None:
     ini = write_project(tmp_path, vary=WIDE, algorithm=SEVERAL)
-    outcome = optimise(ini, Options(workers=8, ahead=False), run=runner(two_wells))
+    outcome = optimize(ini, Options(workers=8, ahead=False), run=runner(two_wells))
     assert outcome.runs == outcome.simulations
 
 
@@ -97,7 +97,7 @@ def test_a_parallel_swarm_equals_the_serial_one(tmp_path: Path) -> None:
     for workers in (1, 3):
         folder = tmp_path / str(workers)
         ini = write_project(folder, algorithm=f"Main = PSOCC; {SWARM}")
-        optimise(ini, Options(workers=workers), run=runner(bowl))
+        optimize(ini, Options(workers=workers), run=runner(bowl))
         texts.append(listings(folder))
     assert texts[0] == texts[1]
 
@@ -105,13 +105,13 @@ def test_a_parallel_swarm_equals_the_serial_one(tmp_path: Path) -> None:
 # ---------------------------------------------------------------------- resume
 
 
-def test_a_killed_run_goes_on_where_it_was(tmp_path: Path) -> None:
+def test_a_killed_run_continues(tmp_path: Path) -> None:
     whole = write_project(tmp_path / "whole")
     program = (tmp_path / "whole" / "simulate.py").read_text()
     counting = program + "\nopen(sys.argv[0] + '.count', 'a').write('x')\n"
     (tmp_path / "whole" / "simulate.py").write_text(counting)
     cut = write_project(tmp_path / "cut", program=counting)
-    optimise(whole)
+    optimize(whole)
     command = [sys.executable, "-m", "mascarin.cli", "optimize", str(cut), "--quiet"]
     process = subprocess.Popen(command, start_new_session=os.name == "posix")
     while not log_path(cut).exists() or log_path(cut).read_text().count("\n") < 12:
@@ -125,7 +125,7 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path) -> None:
     with log_path(cut).open("a") as file:
         file.write('{"number":13,"st')  # what a kill in the middle of a write leaves
     assert "--resume" in interrupted(cut)
-    optimise(cut, Options(resume=True))
+    optimize(cut, Options(resume=True))
     assert listings(tmp_path / "whole") == listings(tmp_path / "cut")
     starts = [(tmp_path / which / "simulate.py.count").stat().st_size for which in ("whole", "cut")]
     # The run that was going on when the kill came is the only one that is repeated.
@@ -133,34 +133,34 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path) -> None:
     assert interrupted(cut) == ""
 
 
-def test_a_longer_search_uses_what_a_shorter_one_found(tmp_path: Path) -> None:
+def test_a_longer_search_uses_the_results_of_a_shorter_one(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
-    first = optimise(ini, run=runner(bowl))
+    first = optimize(ini, run=runner(bowl))
     longer = (tmp_path / "command.txt").read_text().replace("Reduction = 4", "Reduction = 6")
     (tmp_path / "command.txt").write_text(longer)
-    second = optimise(ini, Options(resume=True), run=runner(bowl))
+    second = optimize(ini, Options(resume=True), run=runner(bowl))
     assert second.simulations > first.simulations
     assert second.runs == second.simulations - first.simulations
 
 
-def test_the_log_of_another_project_is_refused(tmp_path: Path) -> None:
+def test_the_log_of_another_project_is_an_error(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
-    optimise(ini, run=runner(bowl))
+    optimize(ini, run=runner(bowl))
     (tmp_path / "template.txt").write_text("x1 = %x1%\nx2 = %x2%\nmore\n")
     with pytest.raises(InputError, match=r"changed since then: template 'template\.txt'"):
-        optimise(ini, Options(resume=True), run=runner(bowl))
+        optimize(ini, Options(resume=True), run=runner(bowl))
 
 
 def test_without_a_log_there_is_nothing_to_resume(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no log"):
-        optimise(write_project(tmp_path), Options(resume=True), run=runner(bowl))
+        optimize(write_project(tmp_path), Options(resume=True), run=runner(bowl))
 
 
 def test_a_new_run_keeps_the_log_of_the_one_before(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
-    optimise(ini, run=runner(bowl))
+    optimize(ini, run=runner(bowl))
     before = log_path(ini).read_text()
-    optimise(ini, run=runner(two_wells))
+    optimize(ini, run=runner(two_wells))
     assert (tmp_path / "opt.evaluations.previous.jsonl").read_text() == before
     assert log_path(ini).read_text() != before
 
@@ -172,9 +172,9 @@ def fails(p: Point) -> bool:
     return p.x[0] > 0.95 or p.x[1] < 0.2
 
 
-def test_failures_cost_the_stated_penalty_and_are_kept(tmp_path: Path) -> None:
+def test_failures_have_the_given_cost_and_their_files_are_kept(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
-    outcome = optimise(ini, Options(penalty=1e3), run=runner(bowl, fails))
+    outcome = optimize(ini, Options(penalty=1e3), run=runner(bowl, fails))
     assert outcome.lowest is not None
     assert outcome.lowest.evaluation.point.x == (0.3, 0.3)
     assert outcome.failures > 0
@@ -190,7 +190,7 @@ def test_failures_cost_the_stated_penalty_and_are_kept(tmp_path: Path) -> None:
 
 def test_a_project_whose_first_runs_all_fail_stops(tmp_path: Path) -> None:
     with pytest.raises(RunFailed, match="every run of the first batch failed"):
-        optimise(write_project(tmp_path), Options(penalty=1.0), run=runner(bowl, lambda _: True))
+        optimize(write_project(tmp_path), Options(penalty=1.0), run=runner(bowl, lambda _: True))
 
 
 def test_without_a_penalty_one_more_try_then_the_end(tmp_path: Path) -> None:
@@ -203,7 +203,7 @@ def test_without_a_penalty_one_more_try_then_the_end(tmp_path: Path) -> None:
         return Result((bowl(point),), 0.0)
 
     with pytest.raises(RunFailed, match="broken"):
-        optimise(write_project(tmp_path), run=run)
+        optimize(write_project(tmp_path), run=run)
     assert len(calls) == 5
     assert calls[3] == calls[4]
 
@@ -215,16 +215,16 @@ def test_a_program_that_fails_at_every_first_try_gives_the_same_listings(tmp_pat
         tries[p] = tries.get(p, 0) + 1
         return tries[p] == 1 and len(tries) > 1
 
-    optimise(write_project(tmp_path / "a"), run=runner(bowl))
-    outcome = optimise(write_project(tmp_path / "b"), run=runner(bowl, moody))
+    optimize(write_project(tmp_path / "a"), run=runner(bowl))
+    outcome = optimize(write_project(tmp_path / "b"), run=runner(bowl, moody))
     assert listings(tmp_path / "a") == listings(tmp_path / "b")
     assert "Try to evaluate simulation a second time." in outcome.warnings[0]
 
 
-def test_failures_in_a_grid_are_zeros_as_genopt_has_them_and_named(tmp_path: Path) -> None:
+def test_failures_in_a_grid_are_zeros_as_in_genopt_and_reported(tmp_path: Path) -> None:
     ini = write_project(tmp_path, vary=COARSE, algorithm=GRID)
     table = tmp_path / "all.csv"
-    outcome = optimise(ini, Options(table=table), run=runner(bowl, lambda p: p.x == (0.5, 0.5)))
+    outcome = optimize(ini, Options(table=table), run=runner(bowl, lambda p: p.x == (0.5, 0.5)))
     row = next(line for line in listings(tmp_path)[0] if line.startswith("8\t"))
     assert row == "8\t8\t0\t0.0\t0.5\t0.5\tFunction evaluation successful."
     with table.open(newline="") as file:
@@ -237,8 +237,8 @@ def test_failures_in_a_grid_are_zeros_as_genopt_has_them_and_named(tmp_path: Pat
 def test_a_failed_run_of_a_resumed_search_is_tried_again(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
     with pytest.raises(RunFailed):
-        optimise(ini, run=runner(bowl, lambda p: p.x[0] < 0.5))
-    outcome = optimise(ini, Options(resume=True), run=runner(bowl))
+        optimize(ini, run=runner(bowl, lambda p: p.x[0] < 0.5))
+    outcome = optimize(ini, Options(resume=True), run=runner(bowl))
     assert outcome.lowest is not None
     assert outcome.lowest.evaluation.cost == 0.0
 
@@ -248,7 +248,7 @@ def test_too_many_equal_costs_stop_the_simplex(tmp_path: Path) -> None:
     ModifyStoppingCriterion = true;"""
     settings = "MaxIte = 50; MaxEqualResults = 2; WriteStepNumber = false;"
     with pytest.raises(SolverError, match="more than MaxEqualResults = 2 times"):
-        optimise(write_project(tmp_path, algorithm=algorithm, settings=settings), run=runner(lambda _: 1.0))
+        optimize(write_project(tmp_path, algorithm=algorithm, settings=settings), run=runner(lambda _: 1.0))
 
 
 # ---------------------------------------------------------------------- beyond GenOpt
@@ -265,9 +265,11 @@ def mixed(p: Point) -> float:
         (HOOKE_JEEVES.replace("GPSHooke", "MascarinHooke"), False),
     ],
 )
-def test_discrete_parameters_where_genopt_refuses_them(tmp_path: Path, algorithm: str, lenient: bool) -> None:
+def test_discrete_parameters_that_genopt_does_not_accept(
+    tmp_path: Path, algorithm: str, lenient: bool
+) -> None:
     ini = write_project(tmp_path, vary=MIXED, algorithm=algorithm, template="%x1% %n%\n")
-    outcome = optimise(ini, Options(lenient=lenient), run=runner(mixed))
+    outcome = optimize(ini, Options(lenient=lenient), run=runner(mixed))
     assert outcome.lowest is not None
     assert outcome.lowest.evaluation.point.choices == (4,)
     assert outcome.lowest.evaluation.point.x[0] == pytest.approx(0.5, abs=1e-2)
@@ -277,12 +279,12 @@ def test_discrete_parameters_where_genopt_refuses_them(tmp_path: Path, algorithm
 def test_a_removed_algorithm_names_its_replacement(tmp_path: Path) -> None:
     ini = write_project(tmp_path, algorithm="Main = MascarinDE; Seed = 1;")
     with pytest.raises(InputError, match=r"'MascarinDE' was removed; choose MascarinCMAES .* or PSOCC"):
-        optimise(ini, run=runner(bowl))
+        optimize(ini, run=runner(bowl))
 
 
 def test_covariance_search(tmp_path: Path) -> None:
     ini = write_project(tmp_path, algorithm="Main = MascarinCMAES; Seed = 4; Sigma = 1e-1;")
-    outcome = optimise(ini, run=runner(bowl))
+    outcome = optimize(ini, run=runner(bowl))
     assert outcome.lowest is not None
     assert outcome.lowest.evaluation.cost < 1e-8
 
@@ -292,7 +294,7 @@ def test_all_evaluations_as_a_table(tmp_path: Path, ending: str) -> None:
     import pandas as pd
 
     path = tmp_path / f"all.{ending}"
-    outcome = optimise(write_project(tmp_path), Options(table=path), run=runner(bowl))
+    outcome = optimize(write_project(tmp_path), Options(table=path), run=runner(bowl))
     table = pd.read_csv(path) if ending == "csv" else pd.read_parquet(path)
     assert list(table.columns[:6]) == ["simulation", "status", "step_number", "x1", "x2", "cost"]
     assert len(table) == outcome.simulations
@@ -300,10 +302,10 @@ def test_all_evaluations_as_a_table(tmp_path: Path, ending: str) -> None:
     assert (table["cost"] - expected).abs().max() < 1e-15
 
 
-def test_a_table_that_cannot_be_written_is_refused_first(tmp_path: Path) -> None:
+def test_a_table_that_cannot_be_written_is_an_error_before_the_runs(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
     with pytest.raises(InputError, match=r"expected \.csv or \.parquet"):
-        optimise(ini, Options(table=tmp_path / "all.xlsx"), run=runner(bowl))
+        optimize(ini, Options(table=tmp_path / "all.xlsx"), run=runner(bowl))
     assert not log_path(ini).exists()
 
 
@@ -319,7 +321,7 @@ def test_saved_files_are_numbered_and_old_ones_removed(
     files = """
     Input { File1 = in.txt; } Log { File1 = log.txt; } Output { File1 = out.txt; SavePath1 = kept; }"""
     ini = write_project(tmp_path, vary=COARSE, algorithm=GRID, files=files)
-    outcome = optimise(ini)
+    outcome = optimize(ini)
     assert outcome.simulations == 15
     assert sorted(p.name for p in (tmp_path / "kept").iterdir()) == sorted(
         f"{i}out.txt" for i in range(1, 16)
@@ -330,7 +332,7 @@ def test_saved_files_are_numbered_and_old_ones_removed(
 
 def test_the_log_of_runs_is_one_record_a_line(tmp_path: Path) -> None:
     ini = write_project(tmp_path)
-    outcome = optimise(ini, run=runner(bowl))
+    outcome = optimize(ini, run=runner(bowl))
     head, *records, end = map(json.loads, log_path(ini).read_text().splitlines())
     assert head["format"] == 1
     assert len(records) == outcome.simulations
@@ -339,7 +341,7 @@ def test_the_log_of_runs_is_one_record_a_line(tmp_path: Path) -> None:
 
 
 def test_the_end_by_the_limit_is_logged_as_genopt_does(tmp_path: Path) -> None:
-    outcome = optimise(
+    outcome = optimize(
         write_project(tmp_path, settings="MaxIte = 10; WriteStepNumber = false;"), run=runner(bowl)
     )
     assert outcome.exhausted

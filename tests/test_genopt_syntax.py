@@ -43,7 +43,7 @@ def test_blocks_entries_and_comments(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
-        ("A { x = 1 }", 1, "expected ';' behind the value of 'x', found '}'"),
+        ("A { x = 1 }", 1, "expected ';' after the value of 'x', found '}'"),
         ("A {\n x = a b; }", 2, "double quotes"),
         ("A { x = 1;\n", 2, "'A' opened in line 1 is not closed"),
         ("A { x = 1; }\n}", 2, "closing brace without an opening one"),
@@ -51,10 +51,10 @@ def test_blocks_entries_and_comments(tmp_path: Path) -> None:
         ("A { x = ; }", 1, "'x' has no value"),
         ("A { x = 1; } /* no end", 1, "comment without end"),
         ("A { x = (1); }", 1, "unexpected character '('"),
-        ("A { = 1; }", 1, "found '=' where a keyword should stand"),
+        ("A { = 1; }", 1, "found '=', expected a keyword"),
     ],
 )
-def test_mistakes_are_named_with_their_line(tmp_path: Path, text: str, line: int, message: str) -> None:
+def test_syntax_errors_have_their_line(tmp_path: Path, text: str, line: int, message: str) -> None:
     said = errors(tmp_path, text)
     assert message in said
     assert f"a.txt:{line}: " in said
@@ -63,11 +63,11 @@ def test_mistakes_are_named_with_their_line(tmp_path: Path, text: str, line: int
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
-        ("A { }\n/* text*/", 2, "no blank before '*/', which makes GenOpt hang"),
+        ("A { }\n/* text*/", 2, "no blank before '*/', with which GenOpt does not end"),
         ("/* \n it's */ A { }", 2, "apostrophe in a '/* */' comment"),
     ],
 )
-def test_what_makes_genopt_hang_ends_early(tmp_path: Path, text: str, line: int, message: str) -> None:
+def test_comments_that_genopt_cannot_read(tmp_path: Path, text: str, line: int, message: str) -> None:
     said = errors(tmp_path, text)
     assert message in said
     assert f"a.txt:{line}: " in said
@@ -76,7 +76,7 @@ def test_what_makes_genopt_hang_ends_early(tmp_path: Path, text: str, line: int,
     assert "accepted beyond GenOpt" in report.notes[0]
 
 
-def test_an_unquoted_exponent_is_seen(tmp_path: Path) -> None:
+def test_an_unquoted_exponent_is_found(tmp_path: Path) -> None:
     root, _ = parse(tmp_path, 'A { x = 1e-3; y = "1e-3"; z = 0.001; }')
     assert [(e.value, e.has_exponent) for e in root.blocks[0].entries] == [
         ("0.001", True),
@@ -89,12 +89,12 @@ def test_order_and_names_of_keys(tmp_path: Path) -> None:
     root, report = parse(tmp_path, "A {\n b = 1;\n a = 2;\n a = 3;\n cc = 4;\n}")
     ordered(root.blocks[0], ["a", "b", "c"], report)
     said = "\n".join(report.errors)
-    assert "a.txt:3: 'a' stands behind 'b'" in said
+    assert "a.txt:3: 'a' comes after 'b'" in said
     assert "a.txt:4: 'a' is written a second time" in said
     assert "a.txt:5: unknown or unexpected keyword 'cc' in 'A'. Did you mean 'c'?" in said
     assert "a.txt:6: missing specification of 'c'" in said
 
 
-def test_a_missing_file_is_named(tmp_path: Path) -> None:
+def test_a_missing_file_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot read"):
         read(tmp_path / "none.ini", Report())

@@ -25,6 +25,16 @@ def test_import_is_light() -> None:
     assert loaded_after("import mascarin") == []
 
 
+def test_import_of_simulation_and_ensemble_is_light() -> None:
+    assert loaded_after("import mascarin.simulation, mascarin.ensemble") == []
+
+
+def test_dir_lists_public_names_alone() -> None:
+    for module in (mascarin, mascarin.simulation, mascarin.ensemble):
+        assert sorted(dir(module)) == sorted(module.__all__)
+        assert not [name for name in dir(module) if name.startswith("_") and name != "__version__"]
+
+
 @pytest.mark.parametrize("words", [["--help"], ["--version"]])
 def test_command_line_starts_light(words: list[str]) -> None:
     assert loaded_after(f"import mascarin.cli; assert mascarin.cli.main({words!r}) == 0") == []

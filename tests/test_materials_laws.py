@@ -7,7 +7,7 @@ from mascarin.materials.laws import LAWS, Law, fit
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
-def test_each_law_melts_once_and_peaks_where_it_says(law: Law) -> None:
+def test_each_law_integrates_to_one_and_has_its_peak(law: Law) -> None:
     t = np.linspace(0.0, 50.0, 50001)
     p = (25.0, 1.0) if len(law.keys) == 1 else (25.0, 2.0, 0.5)
     xi = law.shape(t, p)
@@ -19,7 +19,7 @@ def test_each_law_melts_once_and_peaks_where_it_says(law: Law) -> None:
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
-def test_a_law_is_found_again(law: Law) -> None:
+def test_a_law_is_fitted_to_itself(law: Law) -> None:
     t = np.linspace(15.0, 35.0, 2001)
     p = (25.3, 0.9) if len(law.keys) == 1 else (25.3, 3.0, 0.7)
     found = fit(law, t, law.shape(t, p))

@@ -29,7 +29,7 @@ def from_collection() -> list[Product]:
     return [one for one in products().values() if one.name != "Energain"]
 
 
-def test_there_are_enough_and_each_says_where_it_comes_from() -> None:
+def test_there_are_enough_products_with_sources() -> None:
     assert len(products()) >= 25
     for one in products().values():
         assert one.source
@@ -79,7 +79,7 @@ def test_heating_and_cooling_meet_in_the_liquid() -> None:
         )
 
 
-def test_enthalpy_holds_latent_and_sensible_heat() -> None:
+def test_enthalpy_includes_latent_and_sensible_heat() -> None:
     """RT25HC, equal specific heats: 2000 J/(kg K) times the span and the latent heat."""
     one = product("RT25HC")
     _, temperatures, enthalpies = next(enthalpy_curves(one))
@@ -92,7 +92,7 @@ def test_enthalpy_holds_latent_and_sensible_heat() -> None:
     )
 
 
-def test_energain_is_the_papers() -> None:
+def test_energain_is_that_of_the_paper() -> None:
     one = product("energain")
     assert (one.melting_temperature, one.number("latent_heat")) == (23.4, 71000)
     assert one.pair("specific_heat") == (3134, 2833)
@@ -105,7 +105,7 @@ def test_energain_is_the_papers() -> None:
     assert enthalpies[-1] == pytest.approx(71000 + 4 * (3134 + 2833), rel=1e-3)
 
 
-def test_names_are_found_however_they_are_written() -> None:
+def test_names_are_found_in_any_spelling() -> None:
     assert product("rt 25 hc") is product("RT25HC") is product("RT25-HC")
     with pytest.raises(InputError, match="Did you mean 'RT25HC'"):
         product("RT25HD")
@@ -124,7 +124,7 @@ def test_search() -> None:
         search(melting=(28.0, 22.0))
 
 
-def test_what_is_not_known_stays_empty() -> None:
+def test_unknown_values_stay_empty() -> None:
     bare = Product("x", "y", None, None, "z", None, None, None, {"latent_heat": 1e5})
     assert bare.missing == PROPERTIES
     assert bare.pair("density") is None

@@ -45,7 +45,7 @@ def test_a_log_gets_a_plain_line_every_five_seconds() -> None:
     ]
 
 
-def test_a_terminal_keeps_one_line_and_wipes_it() -> None:
+def test_a_terminal_has_one_line_that_is_removed() -> None:
     clock, stream = Clock(), Terminal()
     with Progress("runs", stream=stream, clock=clock) as progress:
         clock.now += 3.0
@@ -58,7 +58,7 @@ def test_a_terminal_keeps_one_line_and_wipes_it() -> None:
     assert text == f"\r{shown}\r{' ' * len(shown)}\r"
 
 
-def test_resumed_work_counts_only_what_is_done_here() -> None:
+def test_the_remaining_time_counts_only_new_work() -> None:
     clock, stream = Clock(), io.StringIO()
     progress = Progress("runs", stream=stream, clock=clock)
     progress.update(900, 1000)  # found done
@@ -67,7 +67,7 @@ def test_resumed_work_counts_only_what_is_done_here() -> None:
     assert stream.getvalue() == "runs  95 %  10 s left\n"
 
 
-def test_a_terminal_that_went_away_does_not_stop_the_work() -> None:
+def test_a_closed_terminal_does_not_stop_the_work() -> None:
     clock, stream = Clock(), io.StringIO()
     progress = Progress("runs", stream=stream, clock=clock)
     stream.close()

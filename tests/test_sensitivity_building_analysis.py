@@ -58,7 +58,7 @@ def test_all_methods_agree_on_a_wall(building: Building, climate: Climate, measu
     assert indices["morris"] == pytest.approx(indices["spectral"], abs=0.1)
 
 
-def test_ranges_distributions_and_groups_reach_the_factors(building: Building) -> None:
+def test_factors_have_ranges_distributions_and_groups(building: Building) -> None:
     found = factors_of(
         building,
         ranges={PATHS[0]: (0.03, 0.05)},
@@ -86,7 +86,7 @@ def test_ranges_distributions_and_groups_reach_the_factors(building: Building) -
         ({"leave_out": ["nothing.here"]}, "nothing.here"),
     ],
 )
-def test_what_cannot_be_used_is_named(building: Building, keywords: dict[str, Any], text: str) -> None:
+def test_errors_of_factors_of_a_building(building: Building, keywords: dict[str, Any], text: str) -> None:
     with pytest.raises(InputError, match=text):
         factors_of(building, **keywords)
 

@@ -42,7 +42,7 @@ def test_ends_are_means_of_subsets_of_known_rank() -> None:
     assert high[0] == pytest.approx((0.4 + 0.8) / 2)
 
 
-def test_few_replicates_get_students_interval() -> None:
+def test_few_replicates_have_students_interval() -> None:
     values = np.array([0.2, 0.3, 0.4])[:, None]
     index, low, high = interval(*ratio(values), 0.95)
     assert (index[0], low[0], high[0]) == pytest.approx(

@@ -12,8 +12,8 @@ import pytest
 from numpy.typing import NDArray
 
 from mascarin.errors import InputError
-from mascarin.sensitivity import METHODS, Factor, MorrisSensitivity, Sensitivity, collector, plan, run
-from mascarin.sensitivity.salib import SQUARES, SalibPlan
+from mascarin.sensitivity import METHODS, Factor, Sensitivity, collector, plan, run
+from mascarin.sensitivity.salib import SQUARES, MorrisSensitivity, SalibPlan
 from mascarin.sensitivity.spectral import SpectralSensitivity
 
 Floats = NDArray[np.float64]
@@ -107,7 +107,7 @@ def test_groups_are_analyzed_together(method: Any) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_the_seed_decides_and_numpys_own_state_is_left_alone(method: Any) -> None:
+def test_the_seed_determines_the_result_and_numpys_state_is_unchanged(method: Any) -> None:
     state = str(np.random.get_state(legacy=False))  # noqa: NPY002 (the state that must not move)
     drawn = np.random.get_state(legacy=False)["state"]["key"].copy()  # noqa: NPY002
     one, two, other = (made(method, ishigami, ISHIGAMI, seed=seed) for seed in (0, 0, 1))
@@ -146,13 +146,13 @@ def test_errors_of_options(method: Any, keywords: dict[str, Any], text: str) -> 
         plan(ISHIGAMI, method, **keywords)
 
 
-def test_rbd_fast_takes_no_groups() -> None:
+def test_groups_are_an_error_for_rbd_fast() -> None:
     factors = [Factor("a", 0.0, 1.0, group="g"), Factor("b", 0.0, 1.0, group="g"), Factor("c", 0.0, 1.0)]
     with pytest.raises(InputError, match="analyzes single parameters"):
         plan(factors, "rbd-fast")
 
 
-def test_a_distribution_without_end_is_refused() -> None:
+def test_a_distribution_that_is_not_finite_is_an_error() -> None:
     from scipy.special import ndtri
 
     factors = [Factor("endless", 0.0, 1.0, distribution=ndtri), Factor("b", 0.0, 1.0)]

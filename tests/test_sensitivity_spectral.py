@@ -33,7 +33,7 @@ def sines(count: int) -> list[Factor]:
     return [Factor(f"p{k}", -1.0, 1.0, distribution="sine") for k in range(count)]
 
 
-def test_linear_model_gives_squared_standardised_coefficients_exactly() -> None:
+def test_linear_model_gives_squared_standardized_coefficients_exactly() -> None:
     rng = np.random.default_rng(1)
     low = rng.normal(0.0, 5.0, 30)
     span = rng.uniform(0.5, 4.0, 30)
@@ -131,7 +131,7 @@ def test_harmonics_on_the_lines_of_others_are_not_counted() -> None:
     assert np.max(result.raw_index[others, 0]) > 0.05
 
 
-def test_estimates_are_free_of_bias_where_lines_are_crowded() -> None:
+def test_estimates_are_unbiased_where_lines_are_crowded() -> None:
     # 20 parameters with all their interactions, every line taken many times over.
     rng = np.random.default_rng(5)
     slope = rng.exponential(1.0, 20) ** 2
@@ -149,7 +149,7 @@ def test_estimates_are_free_of_bias_where_lines_are_crowded() -> None:
     np.testing.assert_allclose(indices / 30, expected, atol=0.004)
 
 
-def test_threshold_is_what_noise_stays_under_and_nothing_in_noise_is_significant() -> None:
+def test_noise_stays_below_the_threshold_and_is_not_significant() -> None:
     rng = np.random.default_rng(6)
     exceeded = significant = 0
     for seed in range(150):
@@ -162,7 +162,7 @@ def test_threshold_is_what_noise_stays_under_and_nothing_in_noise_is_significant
     assert significant <= 3
 
 
-def test_streaming_gives_the_same_bits_in_any_order_of_batches() -> None:
+def test_any_order_of_batches_gives_the_same_bits() -> None:
     plan = design(ishigami_factors(), replicates=3, seed=7)
     y = np.stack([ishigami(plan.all_samples()), plan.all_samples()[:, 2]], axis=1)[:, None, :]
     whole = analyze(plan, y, names=["f", "c"])

@@ -43,14 +43,14 @@ def test_powers_of_the_peaks() -> None:
     assert by_label["b + c"].power == pytest.approx(0.125 / total, rel=0.02)
 
 
-def test_a_line_that_stands_out_once_gets_no_name() -> None:
+def test_a_line_above_the_threshold_in_one_replicate_has_no_name() -> None:
     result = _result()
     result.spectra[0, 99, 0] = 0.5
     peak = next(peak for peak in result.peaks("room") if peak.line == 100)
     assert (peak.kind, peak.label) == ("unnamed", "")
 
 
-def test_lines_beyond_half_the_runs_are_found_where_they_fold() -> None:
+def test_lines_above_half_the_runs_are_found_at_their_alias() -> None:
     factors = [Factor(name, -1.0, 1.0, distribution="sine") for name in "ab"]
     plan = design(factors, order=1, frequencies=[90, 100], runs=202, seed=0)
     a, b = plan.all_samples().T

@@ -89,7 +89,7 @@ def test_an_output_by_its_alias(everything: Building, island: Climate) -> None:
         ({"initial": 500.0}, "expected 'repeat', a temperature between -100 and 200 degC"),
     ],
 )
-def test_what_cannot_be_used_is_refused(
+def test_impossible_options_are_refused(
     options: dict[str, Any], words: str, everything: Building, island: Climate
 ) -> None:
     with pytest.raises(InputError) as caught:
@@ -104,7 +104,7 @@ def test_a_measured_column_that_is_missing_is_named(linear: Building) -> None:
         Simulation(linear, weather(3, **columns))
 
 
-def test_measured_columns_may_stand_in_a_table_of_their_own(linear: Building, climate: Climate) -> None:
+def test_measured_columns_may_be_in_a_separate_table(linear: Building, climate: Climate) -> None:
     index = pd.date_range("2001-01-01", periods=73, freq="1h", tz="UTC")
     beside = Measurements.from_table(pd.DataFrame(measured(3), index=index), timezone="UTC")
     together = simulate(linear, climate, step="1h", end="2001-01-03").records
@@ -118,32 +118,32 @@ def test_measured_columns_may_stand_in_a_table_of_their_own(linear: Building, cl
 def test_a_number_is_the_temperature_everywhere(linear: Building, climate: Climate) -> None:
     outputs = ["sunny.air_temperature", "shady.air_temperature", "deep.temperature"]
     run = simulate(linear, climate, step="1h", initial=31.5, outputs=outputs)
-    assert run.records[0] == pytest.approx(31.5, abs=1.5)  # the sensor stands between a volume and a face
+    assert run.records[0] == pytest.approx(31.5, abs=1.5)  # the sensor lies between a volume and a surface
     assert run["sunny.air_temperature"][0] == 31.5
     assert run.provenance.start == "31.5 degC everywhere"
 
 
-def test_repeat_starts_where_the_first_period_ends(linear: Building, climate: Climate) -> None:
+def test_a_repeated_period_starts_in_its_final_state(linear: Building, climate: Climate) -> None:
     run = simulate(
         linear, climate, step="1h", outputs=["sunny.air_temperature", "between.inside_temperature"]
     )
-    # Settled to 0.01 K: a day later all is as at the start, but for the weather's slow part.
+    # Converged to 0.01 K: after a day the state equals that at the start, but for slow changes of weather.
     assert run.records[24] == pytest.approx(run.records[0], abs=0.011)
     assert "first 24 h repeated" in run.provenance.start
 
 
-def test_repeat_does_not_depend_on_where_it_started(linear: Building, climate: Climate) -> None:
+def test_a_repeated_period_does_not_depend_on_the_first_guess(linear: Building, climate: Climate) -> None:
     outputs = ["shady.air_temperature"]
-    settled = simulate(linear, climate, step="1h", outputs=outputs).records[:24]
+    repeated = simulate(linear, climate, step="1h", outputs=outputs).records[:24]
     twice = [
         simulate(
             linear, climate, step="1h", outputs=outputs, initial=start, start="2001-01-01", end="2001-01-03"
         )
         for start in (0.0, 40.0)
     ]
-    # Two days wipe out 40 K of difference; what is left of it is far below what settling leaves.
+    # After two days the difference of 40 K has decayed below the tolerance of the repeated period.
     assert abs(float(twice[0].records[-1, 0] - twice[1].records[-1, 0])) < 0.05
-    assert np.ptp(settled) > 1.0
+    assert np.ptp(repeated) > 1.0
 
 
 def test_a_first_period_longer_than_the_run_is_the_run(linear: Building, climate: Climate) -> None:
@@ -157,13 +157,13 @@ def test_a_first_period_longer_than_the_run_is_the_run(linear: Building, climate
 
 
 def test_a_vector_changes_one_number(linear: Building, climate: Climate) -> None:
-    bench_of_linear = Simulation(linear, climate, step="1h", outputs=["sunny.air_temperature"])
+    simulation = Simulation(linear, climate, step="1h", outputs=["sunny.air_temperature"])
     path = "zones.sunny.infiltration"
-    vector = bench_of_linear.vector({path: 5.0})
-    position = bench_of_linear.position(path)
-    assert bench_of_linear.paths[position] == "zones.sunny.infiltration.constant"
-    assert np.flatnonzero(vector != bench_of_linear.vector({})).tolist() == [position]
-    drafty = bench_of_linear.run_vector(vector)
+    vector = simulation.vector({path: 5.0})
+    position = simulation.position(path)
+    assert simulation.paths[position] == "zones.sunny.infiltration.constant"
+    assert np.flatnonzero(vector != simulation.vector({})).tolist() == [position]
+    drafty = simulation.run_vector(vector)
     assert drafty.provenance.changed == {"zones.sunny.infiltration.constant": 5.0}
     direct = simulate(linear.replace({path: 5.0}), climate, step="1h", outputs=["sunny.air_temperature"])
     assert np.array_equal(drafty.records, direct.records)
@@ -190,17 +190,17 @@ def test_members_are_the_same_bits_alone_and_together(everything: Building, isla
     run = Simulation(everything, island, step="15min", end="2001-01-02", initial=23.0)
     samples = np.tile(run.vector({}), (9, 1))
     samples[:, run.position("materials.energain.latent_heat")] *= np.linspace(0.5, 1.5, 9)
-    told: list[tuple[int, int]] = []
-    records, closure, failures = run.ensemble(samples, progress=lambda *done: told.append(done))
+    calls: list[tuple[int, int]] = []
+    records, closure, failures = run.ensemble(samples, progress=lambda *done: calls.append(done))
     assert failures == []
-    assert all(total == 9 for _, total in told)
+    assert all(total == 9 for _, total in calls)
     for member in (0, 4, 8):
         alone = run.run_vector(samples[member])
         assert np.array_equal(alone.records, records[member])
-        assert alone.energy.closure == closure[member]
+        assert alone.energy.relative_residual == closure[member]
 
 
-def test_lanes_of_every_kind_give_the_same_bits(
+def test_lanes_of_all_kinds_give_the_same_bits(
     everything: Building, island: Climate, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = Simulation(everything, island, step="15min", end="2001-01-02", initial=23.0)
@@ -240,7 +240,7 @@ def test_a_member_that_fails_leaves_the_others(everything: Building, island: Cli
         run.run_vector(samples[1])
 
 
-# --- what is derived from what the engine records ---
+# --- outputs calculated from records ---
 
 
 def test_operative_temperature_is_the_mean_of_air_and_radiant(everything: Building, island: Climate) -> None:
@@ -248,12 +248,12 @@ def test_operative_temperature_is_the_mean_of_air_and_radiant(everything: Buildi
     run = simulate(everything, island, step="1h", end="2001-01-02", initial=23.0, outputs=names)
     operative, air, radiant = run.records.T
     assert operative == pytest.approx(0.5 * (air + radiant), abs=1e-12)
-    # In any order, and without the parts it is made of.
+    # In any order, and without the outputs that it is calculated from.
     alone = simulate(everything, island, step="1h", end="2001-01-02", initial=23.0, outputs=names[:1])
     assert np.array_equal(alone.records[:, 0], operative)
 
 
-def test_globe_balances_radiation_and_convection() -> None:
+def test_the_globe_temperature_balances_radiation_and_convection() -> None:
     air, radiant = np.array([20.0, 20.0, 30.0]), np.array([40.0, 20.0, 10.0])
     globe = globe_temperature(air, radiant)
     emitted = 0.95 * 5.670374419e-8 * ((radiant + 273.15) ** 4 - (globe + 273.15) ** 4)
@@ -262,25 +262,25 @@ def test_globe_balances_radiation_and_convection() -> None:
     assert globe[1] == pytest.approx(20.0)
 
 
-def test_faces_of_equal_temperature_make_that_mean_radiant(tmp_path: Path) -> None:
+def test_mean_radiant_temperature_is_weighted_by_area(tmp_path: Path) -> None:
     building = read(LINEAR, tmp_path)
     run = simulate(building, weather(1, **measured(1)), step="1h", outputs=["shady.mean_radiant_temperature",
         "between.inside_temperature", "south.inside_temperature", "floor.inside_temperature"])  # fmt: skip
-    radiant, *faces = run.records[-1]
-    assert radiant == pytest.approx(np.average(faces, weights=[10.0, 8.0, 10.0]), abs=1e-12)
+    radiant, *surfaces = run.records[-1]
+    assert radiant == pytest.approx(np.average(surfaces, weights=[10.0, 8.0, 10.0]), abs=1e-12)
 
 
-def test_weather_as_the_engine_saw_it(linear: Building, climate: Climate) -> None:
+def test_weather_as_the_engine_reads_it(linear: Building, climate: Climate) -> None:
     run = Simulation(linear, climate, step="1h", end="2001-01-02")
     expected = np.interp(hours(1), hours(3), climate.data["air_temperature"])
     assert run.weather("air_temperature")[1:] == pytest.approx(expected[1:], abs=1e-9)
 
 
-# --- units across the border ---
+# --- units between Python and engine ---
 
 
 def test_heat_into_a_zone_is_in_joules(tmp_path: Path) -> None:
-    """100 W/m2 on 2 m2 of absorptance 0.5 for an hour, with next to no film: 360 kJ, and stored."""
+    """100 W/m2 on 2 m2 of absorptance 0.5 for an hour, almost without convection: 360 kJ are stored."""
     text = setup.SITE + (
         "materials: {slab: {conductivity: 1, density: 2000, specific_heat: 1000}}\n"
         "constructions: {slab: {layers: [{material: slab, thickness: 0.1}]}}\n"
@@ -295,24 +295,24 @@ def test_heat_into_a_zone_is_in_joules(tmp_path: Path) -> None:
     )  # fmt: skip
     assert run.energy.into["solar"] == pytest.approx(360e3, rel=1e-12)
     assert run.energy.stored == pytest.approx(360e3, rel=1e-3)
-    assert run.energy.closure < 1e-10
+    assert run.energy.relative_residual < 1e-10
 
 
-def test_provenance_says_what_made_the_run(linear: Building, climate: Climate) -> None:
+def test_provenance_describes_the_run(linear: Building, climate: Climate) -> None:
     run = simulate(linear, climate, step="30min", end="2001-01-02", scheme="backward-euler")
-    told = run.provenance.to_dict()
-    assert told["mascarin_version"] == mc.__version__
-    assert told["building"] == "linear"
-    assert told["step_seconds"] == 1800.0
-    assert told["scheme"] == "backward-euler"
-    assert told["changed"] == {}
-    assert told["newton_iterations"] >= 48
-    assert told["climate"]["timezone"] == "UTC"
+    provenance = run.provenance.to_dict()
+    assert provenance["mascarin_version"] == mc.__version__
+    assert provenance["building"] == "linear"
+    assert provenance["step_seconds"] == 1800.0
+    assert provenance["scheme"] == "backward-euler"
+    assert provenance["changed"] == {}
+    assert provenance["newton_iterations"] >= 48
+    assert provenance["climate"]["timezone"] == "UTC"
     other = simulate(linear.replace({"zones.sunny.volume": 31.0}), climate, step="30min", end="2001-01-02")
     assert other.provenance.building_hash != run.provenance.building_hash
 
 
-def test_identity_tells_runs_apart(linear: Building, climate: Climate) -> None:
+def test_identity_differs_between_runs(linear: Building, climate: Climate) -> None:
     def identity(**options: Any) -> str:
         given: dict[str, Any] = {"step": "1h", "end": "2001-01-02", **options}
         return Simulation(linear, climate, **given).identity
@@ -330,16 +330,16 @@ def test_identity_tells_runs_apart(linear: Building, climate: Climate) -> None:
     assert len({same, *(identity(**options) for options in others)}) == len(others) + 1
 
 
-# --- every number reaches the engine ---
+# --- every parameter reaches the engine ---
 
 
 def claimed(building: Building) -> dict[str, str]:
-    """Numbers that the description itself calls idle."""
+    """Parameters that the description itself calls inactive."""
     return {p.path: p.reason for p in building.parameters() if p.reason is not None and not p.structural}
 
 
 def columns_for(building: Building) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
-    """Something that moves for every measured column of a building."""
+    """Varying values for every measured column of a building."""
     day = 2.0 * np.pi * hours(3) / 86400.0
     return {
         name: np.maximum(-500.0 * np.cos(day), 0.0) if name == "Pyr" else 22.0 + np.sin(day + k)
@@ -348,7 +348,9 @@ def columns_for(building: Building) -> dict[str, np.ndarray[Any, np.dtype[np.flo
 
 
 @pytest.mark.parametrize("name", ["everything", "linear", "wall_bench", "lgi"])
-def test_every_number_is_reached_or_says_why_not(name: str, linear: Building, everything: Building) -> None:
+def test_every_parameter_has_an_effect_or_a_reason_why_not(
+    name: str, linear: Building, everything: Building
+) -> None:
     if name in ("linear", "everything"):
         building = linear if name == "linear" else everything
     else:
@@ -362,7 +364,7 @@ def test_every_number_is_reached_or_says_why_not(name: str, linear: Building, ev
 
 
 def _anywhere(columns: dict[str, Any]) -> Climate:
-    """Weather in which all moves, wherever the building stands; in March the sun sees north and south."""
+    """Weather in which everything varies; in March the sun reaches north and south."""
     t = hours(3)
     air = zones.island_weather(3)
     index = pd.date_range("2001-03-05", periods=len(t), freq="1h", tz="UTC")
@@ -372,14 +374,14 @@ def _anywhere(columns: dict[str, Any]) -> Climate:
     )  # fmt: skip
 
 
-def test_a_number_that_only_the_period_keeps_idle_is_told(linear: Building) -> None:
+def test_a_parameter_that_is_inactive_only_in_this_period_is_found(linear: Building) -> None:
     """At night the absorptance of a wall does nothing."""
     found = inactive_parameters(linear, weather(1, **measured(1)), step="1h", end="2001-01-01 03:00")
     assert found["surfaces.north.outside.absorptance"] == "did not act in this period"
     assert "surfaces.north.area" not in found
 
 
-def test_the_command_lists_what_is_not_reached(
+def test_the_command_lists_parameters_without_effect(
     data_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "everything.yaml"

@@ -1,4 +1,4 @@
-"""Derivatives: equal to difference quotients for every parameter, to a closed answer, and named in full."""
+"""Derivatives: equal to difference quotients for every parameter, and named."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def days(cell: Study) -> Simulation:
     )
 
 
-#: Temperatures of the cell differ by this between runs of one and the same thing. [K]
+#: Temperatures of the cell differ by this between runs that should be equal. [K]
 ROUNDING = 5e-10
 
 
@@ -66,7 +66,7 @@ def quotient(run: Simulation, path: str, relative: float) -> Array:
 
     def at(steps: float) -> Array:
         vector = run.vector({path: parameter.value + steps * nudge})
-        # With derivatives Newton's iteration goes one further: its tolerance would show in the quotient.
+        # With derivatives Newton's iteration does one step more: its tolerance would be seen in the quotient.
         return run.jacobian_vector([path], vector)[0]
 
     if parameter.value - nudge < parameter.lower:
@@ -77,12 +77,12 @@ def quotient(run: Simulation, path: str, relative: float) -> Array:
 
 
 def misses(run: Simulation) -> dict[str, tuple[float, list[float]]]:
-    """Paths whose slope no quotient confirms, with the largest slope and the errors."""
+    """Paths whose derivative agrees with no quotient, with the largest derivative and the errors."""
     slopes = run.jacobian_vector(run.paths)[1]
     missed = {}
     for k, path in enumerate(run.paths):
         largest = np.abs(slopes[k]).max()
-        # A quotient errs by its curvature when the nudge is large and by rounding when it is small.
+        # A quotient has an error of curvature for a large nudge and of rounding for a small one.
         errors = []
         for relative in (1e-3, 1e-4, 1e-5, 1e-2):
             errors.append(np.abs(quotient(run, path, relative) - slopes[k]).max())
@@ -101,7 +101,7 @@ def test_every_path_of_the_cell_agrees_with_central_differences(days: Simulation
     np.testing.assert_allclose(records[:, 0], days.run()["room.air_temperature"], atol=2e-6)
 
 
-def test_the_repeated_start_is_derived_too(cell: Study) -> None:
+def test_the_repeated_start_is_differentiated(cell: Study) -> None:
     simulation = Simulation(
         cell.building, cell.climate, start="2010-09-20", end="2010-09-21", outputs=["room.air_temperature"],
         measurements=cell.measurements,
@@ -110,7 +110,7 @@ def test_the_repeated_start_is_derived_too(cell: Study) -> None:
     start = simulation.jacobian_vector([path])[1][0, 0, 0]
     vectors = [simulation.vector({path: 0.8 + nudge}) for nudge in (-1e-4, 1e-4)]
     low, high = (simulation.jacobian_vector([path], vector)[0][0, 0] for vector in vectors)
-    # The first record is that of a room already warmed through by a darker roof.
+    # At the first record the repeated period has already warmed the room through a darker roof.
     assert start > 3.0
     at = simulation.jacobian_vector([path], simulation.vector({path: 0.8}))[1][0, 0, 0]
     assert (high - low) / 2e-4 == pytest.approx(at, rel=1e-4)
@@ -137,7 +137,7 @@ def test_dataset_names_units_and_parameters(cell: Study) -> None:
     assert pd.Timestamp(found["time"].to_numpy()[0]) == pd.Timestamp("2010-09-19 20:00")
 
 
-def test_a_globe_follows_the_temperatures_it_is_made_of(cell: Study) -> None:
+def test_globe_temperature_follows_air_and_radiant_temperature(cell: Study) -> None:
     simulation = Simulation(
         cell.building, cell.climate, start="2010-09-20", end="2010-09-21", outputs=["room.globe_temperature"],
         measurements=cell.measurements, initial=23.0,
@@ -145,7 +145,7 @@ def test_a_globe_follows_the_temperatures_it_is_made_of(cell: Study) -> None:
     path = "surfaces.roof.outside.absorptance"
     records, slopes = simulation.jacobian_vector([path])
     exact = quotient(simulation, path, 1e-5)
-    # The slope of its film is infinite where globe and air are equally warm.
+    # The derivative of its convective coefficient is infinite where globe and air are equally warm.
     apart = np.abs(exact[:, 0]) > 0.1
     np.testing.assert_allclose(slopes[0, apart, 0], exact[apart, 0], rtol=2e-3)
     assert apart.sum() > 50
@@ -175,7 +175,7 @@ def both_ways(simulation: Simulation, *, memory: int = MEMORY) -> tuple[Array, A
     return trajectory.pull(weights) * ranges, np.einsum("to,pto->p", weights, forward) * ranges
 
 
-@pytest.mark.parametrize("memory", [MEMORY, 200_000], ids=["all kept", "stretches run again"])
+@pytest.mark.parametrize("memory", [MEMORY, 200_000], ids=["all kept", "parts calculated again"])
 def test_every_path_of_the_cell_is_the_same_in_reverse(days: Simulation, memory: int) -> None:
     reverse, forward = both_ways(days, memory=memory)
     assert (forward != 0.0).sum() > 150
@@ -183,7 +183,7 @@ def test_every_path_of_the_cell_is_the_same_in_reverse(days: Simulation, memory:
 
 
 @pytest.mark.parametrize("scheme", ["sdirk2", "backward-euler"])
-def test_the_repeated_start_is_gone_back_through(
+def test_the_repeated_start_is_the_same_in_reverse(
     cell: Study, scheme: Literal["sdirk2", "backward-euler"]
 ) -> None:
     simulation = Simulation(
@@ -196,7 +196,7 @@ def test_the_repeated_start_is_gone_back_through(
 
 @pytest.fixture(scope="module")
 def massive(data_dir: Path) -> Simulation:
-    """Case 900 of Standard 140 over two days of January: windows, gains and a plant that heats at night."""
+    """Case 900 of Standard 140 over two days of January: windows, gains, heating at night."""
     return Simulation(
         load(CASES["900"].file),
         Climate.from_epw(data_dir / "bestest" / "725650TYCST.epw"),
@@ -208,19 +208,19 @@ def massive(data_dir: Path) -> Simulation:
     )
 
 
-def test_windows_and_plant_are_the_same_in_reverse(massive: Simulation) -> None:
+def test_windows_and_ideal_loads_are_the_same_in_reverse(massive: Simulation) -> None:
     reverse, forward = both_ways(massive)
     assert (forward != 0.0).sum() > 80
     np.testing.assert_allclose(reverse, forward, rtol=0.0, atol=1e-9 * np.abs(forward).max())
 
 
-def test_windows_and_plant_agree_with_central_differences(massive: Simulation) -> None:
-    # A wall turned out of its place: the traced sun jumps from one face to another; no slope says that.
+def test_windows_and_ideal_loads_agree_with_central_differences(massive: Simulation) -> None:
+    # Where a wall is turned, the direct sun jumps from one surface to another; no derivative contains that.
     turned = {f"surfaces.{side}_wall.{way}" for side in SIDES for way in ("azimuth", "tilt")}
     assert set(misses(massive)) <= turned
 
 
-def test_a_gradient_leads_downhill(cell: Study) -> None:
+def test_a_step_against_the_gradient_lowers_the_quantity(cell: Study) -> None:
     options: dict[str, Any] = {
         "outputs": ["room.air_temperature"], "start": "2010-09-20", "end": "2010-09-21",
         "measurements": cell.measurements, "initial": 23.0,

@@ -1,4 +1,4 @@
-"""Where a run starts from: temperatures that are given or measured, and straight lines for the rest."""
+"""The initial state: given or measured temperatures, and linear interpolation for the rest."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from mascarin.weather import Climate, Measurements
 from simulation_samples import LINEAR, measured, read, weather
 from study_support import BUILDING, STUDY, Bench, logger_table
 
-#: A wall of two materials and a bare resistance between two faces that are held.
+#: A wall of two materials and a resistance between two surfaces of given temperature.
 WALL = """\
 materials:
   foam: {conductivity: 0.03, density: 30, specific_heat: 1400}
@@ -117,24 +117,26 @@ def test_a_steady_profile_stays() -> None:
     assert "from below" not in run.provenance.start
 
 
-def test_one_temperature_given_for_each_is_one_everywhere(linear: Building, climate: Climate) -> None:
+def test_one_temperature_for_each_zone_and_surface_is_one_everywhere(
+    linear: Building, climate: Climate
+) -> None:
     everywhere = simulate(linear, climate, step="1h", initial=21)
     each = {"zones": {"sunny": 21, "shady": 21}, "surfaces": dict.fromkeys(linear.surfaces, 21)}
     assert np.array_equal(simulate(linear, climate, step="1h", initial=each).records, everywhere.records)
 
 
-def test_what_is_not_named_lies_between_what_is_beside_it(linear: Building) -> None:
+def test_temperatures_that_are_not_given_are_interpolated(linear: Building) -> None:
     parts, air = laid(linear, zones={"sunny": 24.0, "shady": 18.0}, surfaces={"roof": [30.0, 20.0]})
     assert air == {"sunny": 24.0, "shady": 18.0}
     board, foam = 0.012 / 0.16, 0.05 / 0.03
     whole = board + foam + 0.15 + board
     first = 0.5 * board / linear.to_engine(3600.0, {}).nodes["wall", "board"]
-    # Outdoors and in the room a film of ISO 6946; a face that is given has none before it.
+    # Surface resistances of ISO 6946 outdoors and in the room; none at a surface of given temperature.
     assert parts["north"][0] == pytest.approx(4.0 + 20.0 * (0.04 + first) / (0.04 + whole + 0.13), abs=1e-12)
     assert parts["roof"][0] == pytest.approx(30.0 - 10.0 * first / whole, abs=1e-12)
     assert np.mean(parts["between"]) == pytest.approx(21.0, abs=1e-12)
     assert parts["south"][0] == pytest.approx(10.0 + 8.0 * (0.13 + first) / (0.13 + whole + 0.13), abs=1e-12)
-    # Ground is held at its temperature: no film.
+    # The ground has a given temperature: no surface resistance.
     last = 0.5 * 0.125 / len(parts["floor"])
     assert parts["floor"][-1] == pytest.approx(14.0 + 4.0 * (0.125 - last) / (0.125 + 0.13), abs=1e-12)
 
@@ -147,7 +149,7 @@ def test_what_is_not_named_lies_between_what_is_beside_it(linear: Building) -> N
         ({"default": 19, "surfaces": {"roof": 25}}, {"sunny": 19.0, "shady": 19.0}),
     ],
 )
-def test_airs_that_are_not_named(
+def test_airs_that_are_not_given(
     linear: Building, known: Mapping[str, Any], airs: Mapping[str, float]
 ) -> None:
     assert laid(linear, **known)[1] == airs
@@ -173,23 +175,23 @@ def test_windows_and_adiabatic_walls_have_a_start(tmp_path: Path) -> None:
     assert difference[60] < 0.02
 
 
-def test_what_melts_has_come_from_below() -> None:
-    """On the heating curve: half molten at 26 degC, where freezing would have it liquid."""
+def test_a_phase_change_layer_starts_on_its_heating_curve() -> None:
+    """Half molten at 26 degC, where the freezing curve is still liquid."""
     held = setup.climate(3600.0, {"face": np.full(25, 26.0)})
     run = simulate(
         setup.building(WAX), held, step="1h", end=held.index[-1],
         outputs=["slab.wax_liquid_fraction"], initial={"surfaces": {"slab": 26}},
     )  # fmt: skip
     assert run.records[0, 0] == pytest.approx(0.5, abs=1e-12)
-    assert run.provenance.start.endswith("what melts has come from below")
+    assert run.provenance.start.endswith("phase-change layers on the heating curve")
 
 
 @pytest.mark.parametrize(
-    ("initial", "told"),
+    ("initial", "words"),
     [
         ({"zones": {"suny": 21}}, "zones.suny: found 'suny'.*Did you mean 'sunny'"),
         ({"zones": {"sunny": 21}, "surfaces": {"rof": 21}}, "surfaces.rof.*Did you mean 'roof'"),
-        ({"surfaces": {"roof": 21}}, "found no temperature of the air in sunny, shady"),
+        ({"surfaces": {"roof": 21}}, "found no air temperature in sunny, shady"),
         ({"zones": {"sunny": 500}}, "zones.sunny"),
         ({"zones": {"sunny": True}}, "zones.sunny"),
         ({"surfaces": {"roof": [1, 2, 3]}}, "surfaces.roof"),
@@ -198,17 +200,15 @@ def test_what_melts_has_come_from_below() -> None:
         ("measured", "a MeasuredStart"),
     ],
 )
-def test_a_start_that_cannot_be_is_refused(
-    linear: Building, climate: Climate, initial: Any, told: str
-) -> None:
-    with pytest.raises(InputError, match=rf"(?s)^initial.*{told}"):
+def test_an_impossible_start_is_refused(linear: Building, climate: Climate, initial: Any, words: str) -> None:
+    with pytest.raises(InputError, match=rf"(?s)^initial.*{words}"):
         Simulation(linear, climate, initial=initial)
 
 
 # --- ensembles and derivatives ---
 
 
-def test_members_start_alike_and_slopes_take_the_start_as_constant(
+def test_all_members_start_alike_and_the_start_is_constant_for_derivatives(
     linear: Building, climate: Climate
 ) -> None:
     path = "materials.foam.conductivity"
@@ -243,7 +243,7 @@ SENSORS = {
 
 
 def table(**changes: object) -> Measurements:
-    """A day of measurements by the quarter of an hour, the same all day; changes replace columns."""
+    """A day of constant measurements every 15 min; changes replace columns."""
     index = pd.date_range("2001-01-01", periods=96, freq="15min", tz="UTC")
     values = {"sunny": 23.0, "shady a": 17.0, "shady b": 19.0, "face": 9.0, "deep": 15.0, "partition": 20.0}
     return Measurements.from_table(
@@ -251,7 +251,7 @@ def table(**changes: object) -> Measurements:
     )
 
 
-def test_a_measured_start_runs_through_what_was_measured(linear: Building, climate: Climate) -> None:
+def test_a_measured_start_has_the_measured_temperatures(linear: Building, climate: Climate) -> None:
     late = np.full(96, 23.0)
     late[:3] = np.nan
     late[3] = 22.0  # the first value that there is
@@ -274,7 +274,7 @@ def test_a_measured_start_runs_through_what_was_measured(linear: Building, clima
     assert "flux" not in said
 
 
-def test_sensors_at_one_place_count_as_their_mean(linear: Building) -> None:
+def test_the_mean_of_sensors_at_one_place_is_used(linear: Building) -> None:
     found = walls(linear, linear.to_engine(3600.0, {}).nodes)
     ends = ((0.0, 20.0), (0.0, 24.0), (found[0].whole, 22.0))
     flat = profile(linear, found, Known({"sunny": 20.0}, {"north": ends}), NOW)
@@ -282,7 +282,7 @@ def test_sensors_at_one_place_count_as_their_mean(linear: Building) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "sensors", "told"),
+    ("changes", "sensors", "words"),
     [
         (
             {"deep": np.nan},
@@ -295,10 +295,10 @@ def test_sensors_at_one_place_count_as_their_mean(linear: Building) -> None:
         ({}, {"suny.air_temperature": "sunny"}, "found no such output"),
     ],
 )
-def test_a_measured_start_that_cannot_be_is_refused(
-    linear: Building, climate: Climate, changes: Mapping[str, Any], sensors: Mapping[str, Any], told: str
+def test_an_impossible_measured_start_is_refused(
+    linear: Building, climate: Climate, changes: Mapping[str, Any], sensors: Mapping[str, Any], words: str
 ) -> None:
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=words):
         Simulation(linear, climate, initial=MeasuredStart(table(**changes), sensors))
 
 
@@ -320,7 +320,7 @@ def started(bench: Bench, name: str, initial: str, text: str | None = None) -> P
     return study
 
 
-def test_a_study_starts_as_it_says(wall: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_study_starts_as_its_file_says(wall: Bench, capsys: pytest.CaptureFixture[str]) -> None:
     for initial, words in (
         ("measured", "measured from 2023-03-01 00:00: wall.interface_1_temperature "),
         ("{surfaces: {wall: [3, 21]}}", "given: wall 3 to 21 degC; "),
@@ -330,7 +330,7 @@ def test_a_study_starts_as_it_says(wall: Bench, capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize(
-    ("initial", "told"),
+    ("initial", "words"),
     [
         ("cold", "bad.yaml:1: initial\n  found: 'cold'\n  expected: repeat, measured, a temperature"),
         ("mesured", "Did you mean 'measured'"),
@@ -340,8 +340,8 @@ def test_a_study_starts_as_it_says(wall: Bench, capsys: pytest.CaptureFixture[st
         ("300", "bad.yaml:1: initial\n  found: 300"),
     ],
 )
-def test_a_study_with_a_bad_start_is_refused(wall: Bench, initial: str, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_a_study_with_a_bad_start_is_refused(wall: Bench, initial: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
         Study(started(wall, "bad.yaml", initial))
 
 

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 SIGMA, KELVIN = 5.670374419e-8, 273.15
 DAYS = 2
 
-# A panel that shows the irradiance on the north wall: I = q + (T - Ta) with film and absorptance 1.
+# A panel that gives the irradiance on the north wall: I = q + (T - Ta) with h = 1 and absorptance 1.
 PANEL = """\
 site: {latitude: -35, longitude: 0, altitude: 55, timezone: UTC, diffuse: hay_davies}
 materials: {panel: {kind: resistance, resistance: 1}}
@@ -35,8 +35,8 @@ def irradiance(climate: Climate, step: float, folder: Path) -> Array:
     panel = Simulation(
         read(PANEL, folder), climate, step=step, end=climate.index[-1], outputs=names, initial=18.0
     )
-    flux, face = panel.run().records.T
-    return np.asarray(flux + face - panel.weather("air_temperature"))
+    flux, surface = panel.run().records.T
+    return np.asarray(flux + surface - panel.weather("air_temperature"))
 
 
 def drive(system: StateSpace, climate: Climate, step: float, sun: Array) -> Array:
@@ -63,7 +63,7 @@ def drive(system: StateSpace, climate: Climate, step: float, sun: Array) -> Arra
 
 
 def respond(system: StateSpace, u: Array, step: float, start: float) -> Array:
-    """Outputs for inputs that are straight between the rows: exact, by the exponential of a larger matrix."""
+    """Outputs for inputs that are linear between the rows: exact, by the exponential of a larger matrix."""
     n, m = system.b.shape
     block = np.zeros((n + 2 * m, n + 2 * m))
     block[:n, :n], block[:n, n : n + m] = system.a * step, system.b * step
@@ -92,9 +92,9 @@ def differences(step: float, folder: Path) -> dict[str, float]:
     return dict(zip(system.outputs, map(float, largest), strict=True))
 
 
-def test_the_matrices_answer_like_the_engine(tmp_path: Path) -> None:
+def test_the_matrices_agree_with_the_engine(tmp_path: Path) -> None:
     coarse, fine = (differences(step, tmp_path) for step in (120.0, 60.0))
-    # Where the sun's path has a kink, rising or grazing the wall, a lit face follows at first order.
+    # At sunrise, and where the sun starts to reach the wall, a sunlit surface converges at first order.
     lit = {"north.outside_temperature", "roof.outside_temperature"}
     assert max(value for name, value in fine.items() if name not in lit) < 2e-5
     assert max(fine.values()) < 1e-3
@@ -121,7 +121,7 @@ def test_names_and_time_constants(tmp_path: Path) -> None:
 
 
 def test_everything_at_one_temperature_stays_there(tmp_path: Path) -> None:
-    """Rows of conductances sum to zero: a building as warm as all around it does not move."""
+    """Rows of conductances sum to zero: a building at the temperature of its surroundings keeps it."""
     system = state_space(read(LINEAR.replace("reference: 15", "reference: 20"), tmp_path))
     black = SIGMA * (20.0 + KELVIN) ** 4
     level = {"outdoor_air_temperature": 20.0, "sky_emission": black, "yard": 20.0, "one": 1.0,
@@ -165,7 +165,7 @@ def test_a_law_that_is_not_linear_is_named(name: str, tmp_path: Path) -> None:
     assert "is not linear and constant; " in str(caught.value)
 
 
-def test_of_several_the_first_is_named(tmp_path: Path) -> None:
+def test_the_first_of_several_nonlinear_laws_is_named(tmp_path: Path) -> None:
     text = LINEAR
     for name in ("infiltration", "zone", "film"):
         old, new, _ = NONLINEAR[name]

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.dates import num2date
 from matplotlib.figure import Figure
 
 from mascarin import __version__
@@ -188,6 +189,17 @@ def test_plot_has_axes_for_each_unit(run: Results) -> None:
     assert "local time (Europe/Paris)" in figure.axes[1].get_xlabel()
     assert [len(axis.get_lines()) for axis in run.plot(["deep.temperature"]).axes] == [1]
     assert len(run.plot("deep.temperature").axes) == 1
+
+
+def test_plot_has_local_time_that_does_not_go_back(run: Results) -> None:
+    axis = run.plot(["deep.temperature"]).axes[0]
+    days = np.asarray(axis.get_lines()[0].get_xdata(), dtype=np.float64)
+    # 25 hours in the second night: daylight saving time ends.
+    assert np.diff(days) * 24.0 == pytest.approx(0.25)
+    first, last = num2date([days[0], days[-1]], tz=run.index.tz)  # type: ignore[no-untyped-call]
+    assert (f"{first:%d %H:%M}", f"{last:%d %H:%M}") == ("27 00:00", "28 12:00")
+    locator = axis.xaxis.get_major_locator()
+    assert str(getattr(locator, "tz", None)) == "Europe/Paris"
 
 
 def test_plot_uses_the_axes_of_the_reader(run: Results) -> None:

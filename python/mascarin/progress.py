@@ -87,9 +87,9 @@ def _notebook_bar(label: str) -> Iterator[Report]:
 
 
 class Progress:
-    """How far a piece of work is, for a person watching.
+    """Progress of work, as a line of text.
 
-    On a terminal one line is drawn over and over and is wiped at the end; elsewhere (a log, a
+    On a terminal one line is updated and removed at the end; elsewhere (a log, a
     pipe) a plain line appears every few seconds. Nothing is shown for work shorter than
     `SILENT_FOR`. An instance is also a callable ``progress(done, total)``.
 
@@ -139,14 +139,14 @@ class Progress:
         self.update(done, total)
 
     def update(self, done: float, total: float, note: str = "") -> None:
-        """Say how far the work is; cheap enough to be called often, from any thread.
+        """Show how much is done; cheap enough to be called often, from any thread.
 
         Parameters
         ----------
         done, total : float
-            Work done and work in all, in any common unit; a total of 0 means that nobody knows it. The
-            first call may be above zero (work found done by an earlier run): the remaining time counts only
-            what is done here.
+            Work done and work in all, in any common unit; a total of 0 means that it is not known. The
+            first call may be above zero (work done by an earlier run): the remaining time counts only the
+            work done since then.
         note : str, optional
             A few words shown behind the numbers, such as the best cost so far.
         """
@@ -163,7 +163,7 @@ class Progress:
             self._show(self._text(now, done, total, note))
 
     def close(self) -> None:
-        """Wipe the line from the terminal."""
+        """Remove the line from the terminal."""
         with self._lock:
             if self._terminal and self._width:
                 self._write("\r" + " " * self._width + "\r")
@@ -172,12 +172,12 @@ class Progress:
     def _text(self, now: float, done: float, total: float, note: str) -> str:
         if total <= 0:
             return "  ".join([self._label, note] if note else [self._label, f"{done:g} done"])
-        share = min(max(done / total, 0.0), 1.0)
+        part = min(max(done / total, 0.0), 1.0)
         parts = [self._label]
         if self._terminal:
-            filled = int(share * _BAR)
+            filled = int(part * _BAR)
             parts.append("[" + "#" * filled + "-" * (_BAR - filled) + "]")
-        parts.append(f"{100 * share:.0f} %")
+        parts.append(f"{100 * part:.0f} %")
         remaining = self._remaining(now, done, total)
         if remaining is not None:
             parts.append(f"{duration(remaining)} left")
@@ -199,7 +199,7 @@ class Progress:
         self._width = len(text)
 
     def _write(self, text: str) -> None:
-        # Nobody's run is lost because the terminal went away.
+        # A terminal that was closed does not stop the work.
         with contextlib.suppress(OSError, ValueError):
             self._stream.write(text)
             self._stream.flush()

@@ -26,12 +26,12 @@ def density(site: Site) -> float:
     Parameters
     ----------
     site : Site
-        Where the building stands.
+        The site.
 
     Returns
     -------
     float
-        As written, else at 15 degC and the pressure of the standard atmosphere at the altitude. [kg/m3]
+        As given, else at 15 degC and the pressure of the standard atmosphere at the altitude. [kg/m3]
     """
     if site.air_density is not None:
         return float(site.air_density)

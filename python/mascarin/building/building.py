@@ -12,7 +12,7 @@ from pydantic import ValidationError, model_validator
 from mascarin._io import atomic, display
 from mascarin.building import outputs as results
 from mascarin.building import summary
-from mascarin.building.checks import check
+from mascarin.building.checks import check, seconds_of
 from mascarin.building.derived import derive_surfaces, derive_windows, derive_zones
 from mascarin.building.description import Description
 from mascarin.building.engine_input import EngineDescription, describe
@@ -113,6 +113,12 @@ class Building(Description):
         InputError
             If the file cannot be read or its description has errors. The text names each error by file, line
             and path, with what was found, what was expected and what to do.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml").name
+        'LGI cell'
         """
         return read(path, cls, "a building", blanks=False)
 
@@ -134,6 +140,13 @@ class Building(Description):
         ------
         InputError
             If the description has errors. The text names each error by its path.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> Building.from_dict(cell.to_dict()) == cell
+        True
         """
         if not isinstance(description, Mapping):
             raise InputError(
@@ -158,6 +171,13 @@ class Building(Description):
             What was given, with ranges and sources. Defaults are left out, and so is what Mascarin derives
             (such as areas from vertices), unless it no longer follows from the rest because a value was
             replaced.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.to_dict()["site"]["timezone"]
+        'UTC+4'
         """
         given = self.written()
         again = {path: number for path, number, _ in leaves(type(self).model_validate(given))}
@@ -184,6 +204,13 @@ class Building(Description):
         ------
         OSError
             If the file cannot be written.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.to_yaml().splitlines()[0]
+        'name: LGI cell'
         """
         text = text_of(self.to_dict())
         if path is not None:
@@ -203,6 +230,13 @@ class Building(Description):
         -------
         list of Parameter
             In the order of the description.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.parameters()[0].path
+        'site.latitude'
         """
         return list(self._parameters.values())
 
@@ -225,6 +259,13 @@ class Building(Description):
         ------
         InputError
             If there is no such parameter; the text names the nearest ones.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.parameter("site.altitude").value
+        55.0
         """
         return self._parameters[resolve(self, path, self._parameters)]
 
@@ -249,6 +290,13 @@ class Building(Description):
         ------
         InputError
             If a path does not exist or a value is not possible.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.replace({"site.sky": "brunt"}).site.sky.kind
+        'brunt'
         """
         places = {self._place(path, value): without_parts(value) for path, value in values.items()}
         structural = any(self._is_structural(path) for path in places)
@@ -274,6 +322,13 @@ class Building(Description):
         ------
         InputError
             If a path is not that of a parameter, or a value is no number or outside its limits.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.with_values({"site.altitude": 60}).parameter("site.altitude").value
+        60.0
         """
         for path, value in values.items():
             if isinstance(value, bool) or not isinstance(value, int | float):
@@ -311,6 +366,13 @@ class Building(Description):
         -------
         list of Output
             In the order of the description.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.outputs()[0].name
+        'room.air_temperature'
         """
         return results.outputs(self)
 
@@ -331,11 +393,31 @@ class Building(Description):
         ------
         InputError
             If there is no such result; the text names the nearest ones.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.output("room.air_temperature").unit
+        'degC'
         """
         return results.find(self, name)
 
     def sources(self) -> list[str]:
-        """Sources of the numbers that act in this building and of the methods of a run, once each."""
+        """Sources of the numbers that act in this building and of the methods of a run, once each.
+
+        Returns
+        -------
+        list of str
+            Sources of numbers in the order of the description, then of methods.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> any("pvlib" in source for source in cell.sources())
+        True
+        """
         return sources(self)
 
     def check(self, step: str | float = "15min") -> list[str]:
@@ -356,8 +438,15 @@ class Building(Description):
         ------
         InputError
             If the step is no duration.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.check()[0]
+        'LGI cell: 2 zones, 13 surfaces, 333 parameters'
         """
-        return check(self, _seconds(step))
+        return check(self, seconds_of(step))
 
     def to_engine(
         self, step_seconds: float = 900.0, ranges: Mapping[str, Interval] | None = None
@@ -380,6 +469,13 @@ class Building(Description):
         ------
         InputError
             If a range names no parameter, or the vertices of a zone do not enclose it.
+
+        Examples
+        --------
+        >>> from mascarin import examples
+        >>> cell = Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml")
+        >>> cell.to_engine().paths[0]
+        'site.altitude'
         """
         return describe(self, self.parameters(), step_seconds, ranges or {})
 
@@ -394,16 +490,3 @@ class Building(Description):
     def _repr_html_(self) -> str:
         rows = summary.rows(self, self.parameters())
         return display.page(f"Building '{self.name}'", rows, tables=summary.tables(self, self.parameters()))
-
-
-def _seconds(step: str | float) -> float:
-    if not isinstance(step, str):
-        return float(step)
-    import pandas as pd
-
-    try:
-        return float(pd.Timedelta(step).total_seconds())
-    except ValueError:
-        raise InputError(
-            f"step: found '{step}'; expected a duration such as '15min' or a number [s]"
-        ) from None

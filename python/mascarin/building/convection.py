@@ -1,4 +1,4 @@
-"""Film coefficients of a face: which correlation, with which numbers."""
+"""Surface heat transfer coefficients: constants and correlations."""
 
 from __future__ import annotations
 
@@ -14,22 +14,40 @@ _AS_PUBLISHED = Remark("the correlation as published")
 
 
 class Constant(Part):
-    """A constant film coefficient."""
+    """A constant surface heat transfer coefficient.
+
+    Examples
+    --------
+    >>> Constant(coefficient=8)
+    Constant(coefficient=8 W/(m2 K))
+    """
 
     kind: Literal["constant"] = "constant"
-    coefficient: q.Film
+    coefficient: q.HeatTransferCoefficient
 
 
 class LinearWind(Part):
-    """``constant + wind V``, V the wind speed at the face."""
+    """``constant + wind V``, with the wind speed V at the surface.
+
+    Examples
+    --------
+    >>> LinearWind(constant=11.4, wind=5.7)
+    LinearWind(constant=11.4 W/(m2 K), wind=5.7 W/(m2 K)/(m/s))
+    """
 
     kind: Literal["linear_wind"] = "linear_wind"
-    constant: q.Film
-    wind: q.FilmPerSpeed
+    constant: q.HeatTransferCoefficient
+    wind: q.HeatTransferCoefficientPerSpeed
 
 
 class AlamdariHammond(Part):
-    """Buoyant convection by orientation and direction of heat flow (Alamdari & Hammond 1983)."""
+    """Buoyant convection by orientation and direction of heat flow (Alamdari & Hammond 1983).
+
+    Examples
+    --------
+    >>> AlamdariHammond(factor=1.1)
+    AlamdariHammond(factor=1.1)
+    """
 
     kind: Literal["alamdari_hammond"] = "alamdari_hammond"
     length: q.ConvectionLength | None = None
@@ -37,7 +55,13 @@ class AlamdariHammond(Part):
 
 
 class PaperEq5(Part):
-    """Eq. 5 of Guichard et al. as it is printed there."""
+    """Equation 5 of Guichard et al. 2016 as printed.
+
+    Examples
+    --------
+    >>> PaperEq5()
+    PaperEq5(factor=1)
+    """
 
     kind: Literal["paper_eq5"] = "paper_eq5"
     length: q.ConvectionLength | None = None
@@ -45,7 +69,13 @@ class PaperEq5(Part):
 
 
 class Tarp(Part):
-    """TARP (Walton 1983): buoyant part, and outdoors a forced part by roughness and perimeter."""
+    """TARP (Walton 1983): buoyant part, and outdoors a forced part by roughness and perimeter.
+
+    Examples
+    --------
+    >>> Tarp(roughness="smooth").roughness
+    1.11
+    """
 
     kind: Literal["tarp"] = "tarp"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
@@ -54,14 +84,26 @@ class Tarp(Part):
 
 
 class Mowitt(Part):
-    """MoWiTT (Yazdanian & Klems 1994), for smooth faces outdoors."""
+    """MoWiTT (Yazdanian & Klems 1994), for smooth surfaces outdoors.
+
+    Examples
+    --------
+    >>> Mowitt(factor=0.9)
+    Mowitt(factor=0.9)
+    """
 
     kind: Literal["mowitt"] = "mowitt"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
 
 
 class Doe2(Part):
-    """DOE-2: TARP's buoyant part, and MoWiTT's wind on faces of any roughness, outdoors."""
+    """DOE-2: the buoyant part of TARP and the wind of MoWiTT on surfaces of any roughness, outdoors.
+
+    Examples
+    --------
+    >>> Doe2(roughness="rough")
+    Doe2(factor=1, roughness=1.67)
+    """
 
     kind: Literal["doe2"] = "doe2"
     factor: q.ConvectionFactor = Number(1.0, source=_AS_PUBLISHED)
@@ -69,7 +111,13 @@ class Doe2(Part):
 
 
 class Iso15099(Part):
-    """Free convection at the room's face of a glazing, by its height and tilt (ISO 15099:2003)."""
+    """Free convection on the room side of a glazing, by its height and tilt (ISO 15099:2003).
+
+    Examples
+    --------
+    >>> Iso15099()
+    Iso15099(factor=1)
+    """
 
     kind: Literal["iso15099"] = "iso15099"
     length: q.ConvectionLength | None = None
@@ -77,20 +125,32 @@ class Iso15099(Part):
 
 
 class PowerLaw(Part):
-    """``a + b |dT|^n + c V^m`` for one direction of heat flow."""
+    """``a + b |dT|^n + c V^m`` for one direction of heat flow.
 
-    a: q.PowerConstant = Number(0.0, source=Remark("not written: no constant part"))
-    b: q.PowerBuoyant = Number(0.0, source=Remark("not written: no buoyant part"))
+    Examples
+    --------
+    >>> PowerLaw(b=1.5, n=0.33)
+    PowerLaw(a=0 W/(m2 K), b=1.5 W/(m2 K^(n+1)), n=0.33, c=0 W/(m2 K (m/s)^m), m=0.8)
+    """
+
+    a: q.PowerConstant = Number(0.0, source=Remark("not given: no constant part"))
+    b: q.PowerBuoyant = Number(0.0, source=Remark("not given: no buoyant part"))
     n: q.PowerExponent = Number(1.0 / 3.0, source=Remark("turbulent free convection"))
-    c: q.PowerForced = Number(0.0, source=Remark("not written: no forced part"))
+    c: q.PowerForced = Number(0.0, source=Remark("not given: no forced part"))
     m: q.PowerWindExponent = Number(0.8, source=Remark("turbulent flow along a plate"))
 
 
 class Power(Part):
-    """A power law for each direction of heat flow."""
+    """A power law for each direction of heat flow.
+
+    Examples
+    --------
+    >>> Power(upward={"b": 1.5}, downward={"b": 0.6, "n": 0.25})
+    Power(upward=PowerLaw, downward=PowerLaw)
+    """
 
     kind: Literal["power"] = "power"
-    upward: PowerLaw = Field(description="Heat flows up, or the face is vertical")
+    upward: PowerLaw = Field(description="Heat flows up, or the surface is vertical")
     downward: PowerLaw = Field(description="Heat flows down")
 
 
@@ -100,7 +160,10 @@ Convection = Annotated[
     Shorthand(word="kind", number="coefficient", kind="constant"),
 ]
 
-#: Where the correlations come from.
+#: Description of the fields that hold a coefficient.
+CONVECTION = "Surface heat transfer coefficient: a number [W/(m2 K)], or a correlation"
+
+#: Sources of the correlations.
 SOURCES = {
     "alamdari_hammond": "Alamdari & Hammond 1983, doi:10.1177/014362448300400304",
     "paper_eq5": "Guichard et al. 2016, doi:10.3390/en9010009, eq. 5 as printed",

@@ -1,4 +1,4 @@
-"""What the user may leave open and the rest of the description decides: areas, lengths, heights, volumes."""
+"""Defaults derived from the rest of a description: areas, lengths, heights, volumes."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ def _outlines(section: str, given: Mapping[str, Vertices | None]) -> dict[str, P
     return found
 
 
-def faces_of(zone: str, surfaces: Mapping[str, Surface]) -> list[tuple[str, str]]:
-    """Faces of a zone as (surface, side), in the order of the description, outside before inside."""
+def sides_of_zone(zone: str, surfaces: Mapping[str, Surface]) -> list[tuple[str, str]]:
+    """Surfaces of a zone as (surface, side), in the order of the description, outside before inside."""
     return [
         (name, side)
         for name, surface in surfaces.items()
@@ -55,22 +55,22 @@ def faces_of(zone: str, surfaces: Mapping[str, Surface]) -> list[tuple[str, str]
 
 
 def enclosure(zone: str, surfaces: Mapping[str, Surface]) -> list[Polygon] | None:
-    """Faces of a zone as polygons that look into it; none unless every one of them has vertices."""
-    faces = faces_of(zone, surfaces)
-    if not faces or any(surfaces[name].vertices is None for name, _ in faces):
+    """Surfaces of a zone as polygons that point into it; None unless all have vertices."""
+    seen = sides_of_zone(zone, surfaces)
+    if not seen or any(surfaces[name].vertices is None for name, _ in seen):
         return None
-    drawn = outlines({name: surfaces[name] for name, _ in faces})
-    return [drawn[name] if side == "outside" else drawn[name].reversed() for name, side in faces]
+    drawn = outlines({name: surfaces[name] for name, _ in seen})
+    return [drawn[name] if side == "outside" else drawn[name].reversed() for name, side in seen]
 
 
 def derive_surfaces(surfaces: Mapping[str, Surface]) -> dict[str, Surface]:
-    """Give every surface its area and direction, and its faces their lengths and heights."""
+    """Derive area and direction of every surface, and lengths and heights of its sides."""
     drawn, areas = outlines(surfaces), drawn_areas(surfaces)
     return {name: _derived_surface(one, drawn.get(name), areas.get(name)) for name, one in surfaces.items()}
 
 
 def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
-    """Areas of the surfaces that have vertices, less those of the surfaces that lie in them [m2]."""
+    """Areas of the surfaces that have vertices, without the surfaces that lie in them [m2]."""
     drawn = outlines(surfaces)
     if not drawn:
         return {}
@@ -94,7 +94,7 @@ def _derived_surface(surface: Surface, polygon: Polygon | None, area: float | No
     elif surface.azimuth is None:
         shape = {
             "azimuth": derived_number(
-                Surface, "azimuth", 0.0, Remark("not written: the direction does not act here")
+                Surface, "azimuth", 0.0, Remark("not given: the direction has no effect here")
             )
         }
     placed = surface.model_copy(update=shape)
@@ -130,7 +130,7 @@ def _derived_convection(
 
 
 def _length(area: float, tilt: float, polygon: Polygon | None) -> tuple[float, str]:
-    """Height of a vertical face, 4 A/P of a horizontal one [m]; both are the edge of a square."""
+    """Height of a vertical surface, 4 A/P of a horizontal one [m]; without vertices, the edge of a square."""
     if polygon is None:
         return math.sqrt(area), Remark("edge of a square of this area")
     if 45.0 < tilt < 135.0:
@@ -159,7 +159,7 @@ def _usual_roughness(film: type[Tarp | Doe2]) -> dict[str, Number]:
 
 
 def derive_windows(windows: Mapping[str, Window], surfaces: Mapping[str, Surface]) -> dict[str, Window]:
-    """Give every window its area, and its faces and gaps their lengths and heights."""
+    """Derive area of every window, and lengths and heights of its sides and gaps."""
     drawn = window_outlines(windows)
     return {
         name: _derived_window(window, surfaces[window.surface], drawn.get(name))
@@ -195,14 +195,14 @@ def _derived_window(window: Window, wall: Surface, polygon: Polygon | None) -> W
         source = Remark("centroid of the vertices")
         height = derived_number(WindowOutside, "height", float(polygon.centroid[2]), source)
     elif height is None and wall.outside.height is not None:
-        height = derived_number(WindowOutside, "height", wall.outside.height, Remark("that of the wall"))
+        height = derived_number(WindowOutside, "height", wall.outside.height, Remark("height of the wall"))
     update["outside"] = outside.model_copy(update={"convection": films["outside"], "height": height})
     update["inside"] = inside.model_copy(update={"convection": films["inside"]})
     return window.model_copy(update=update)
 
 
 def derive_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> dict[str, Zone]:
-    """Give every zone its volume."""
+    """Derive the volume of every zone."""
     return {
         name: zone if zone.volume is not None else zone.model_copy(update={"volume": _volume(name, surfaces)})
         for name, zone in zones.items()
@@ -211,8 +211,8 @@ def derive_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> 
 
 def _volume(zone: str, surfaces: Mapping[str, Surface]) -> Number:
     at: Location = ("zones", zone, "volume")
-    faces = enclosure(zone, surfaces)
-    if faces is None:
+    seen = enclosure(zone, surfaces)
+    if seen is None:
         refuse(
             fault(
                 at, "nothing", "Volume of air, above 0 [m3]", "Add 'volume:' (or vertices to every surface)."
@@ -221,7 +221,7 @@ def _volume(zone: str, surfaces: Mapping[str, Surface]) -> Number:
     from mascarin.building.geometry import volume
 
     try:
-        return derived_number(Zone, "volume", volume(faces), _FROM_VERTICES)
+        return derived_number(Zone, "volume", volume(seen), _FROM_VERTICES)
     except InputError as error:
         refuse(fault(at, *_sentence(error)))
 
@@ -230,4 +230,4 @@ def _sentence(error: InputError) -> tuple[str, str, str]:
     """Split 'found; expected ...; do ...' into its three parts."""
     found, _, rest = str(error).partition("; expected ")
     expected, _, advice = rest.partition("; ")
-    return found, expected or "a sound geometry", f"{advice[:1].upper()}{advice[1:]}." if advice else ""
+    return found, expected or "a valid geometry", f"{advice[:1].upper()}{advice[1:]}." if advice else ""

@@ -28,6 +28,7 @@ def signature_of(fields: Mapping[str, FieldInfo]) -> inspect.Signature:
                 annotation=type_of(field.annotation),
             )
             for key, field in fields.items()
+            if key != "kind"
         ]
     )
 
@@ -45,7 +46,7 @@ def documented(text: str, fields: Mapping[str, FieldInfo]) -> str:
     text = inspect.cleandoc(text)
     found = _SECTION.search(text)
     summary, rest = (text[: found.start()].rstrip(), text[found.start() :]) if found else (text, "")
-    lines = [line for key, field in fields.items() for line in _entry(key, field)]
+    lines = [line for key, field in fields.items() if key != "kind" for line in _entry(key, field)]
     section = "\n".join(["Parameters", "----------", *lines]) if lines else ""
     return "\n\n".join(piece for piece in (summary, section, rest) if piece)
 

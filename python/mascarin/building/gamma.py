@@ -1,8 +1,8 @@
-"""Gamma of the tanh law: what each published relation gives, and the width of melting that it means.
+"""Gamma of the tanh law by each published relation, and the width of melting that it gives.
 
-The liquid fraction is ``f(T) = 1/2 + 1/2 tanh(gamma (T - Tm) / (4 dT))``. Only gamma / dT acts; the
-half-width ``w = 4 dT / gamma`` says the same in kelvins: half of the melting lies within 0.55 w of Tm, 76 %
-within w, 96 % within 2 w.
+The liquid fraction is ``f(T) = 1/2 + 1/2 tanh(gamma (T - Tm) / (4 dT))``. Only gamma / dT has an
+effect; the half-width ``w = 4 dT / gamma`` is the same in kelvins: half of the
+melting is within 0.55 w of Tm, 76 % within w, 96 % within 2 w.
 
 References
 ----------
@@ -72,7 +72,7 @@ def gamma_equation_3(
 ) -> float:
     """Gamma by equation 3: L / (c_s (Tm - dT)).
 
-    It divides by a temperature in degC: the same material gives another gamma in kelvins.
+    It divides by a temperature in degC: in kelvins the same material has another gamma.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def gamma_from_dsc(
     if peak <= base:
         raise InputError(
             f"peak: found {peak:g} J/(kg K), expected more than the mean {base:g} J/(kg K) of the two "
-            "specific heats: without a peak nothing melts"
+            "specific heats"
         )
     return (peak - base) * 8.0 * delta_t / latent_heat
 
@@ -137,7 +137,7 @@ def gamma_from_dsc(
 def peak_capacity(
     gamma: float, specific_heat: tuple[float, float], latent_heat: float, delta_t: float
 ) -> float:
-    """Largest apparent specific heat of the law: the reverse of `gamma_from_dsc`.
+    """Largest apparent specific heat of the law: the inverse of `gamma_from_dsc`.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def two_valued_gamma(
 ) -> npt.NDArray[np.float64]:
     """The two-valued gamma: one value within dT of the melting temperature, another beyond.
 
-    With dT = 0.01 K the near value acts in a window of 0.02 K: what a simulation sees is the far one.
+    With dT = 0.01 K the near value is used in a window of 0.02 K only; a simulation uses the far one.
 
     Parameters
     ----------

@@ -15,23 +15,23 @@ from mascarin.building.part import Pair, Part, fault, insist
 ISO_15099 = "ISO 15099:2003, 5.3 and annex B"
 _FIT = "Karlsson & Roos 2000, doi:10.1016/S0038-092X(00)00083-9"
 _RATED = "ISO 10292:1994 and EN 673"
-#: Transmitted, reflected and absorbed shares may miss one by the rounding of a table, hemispherical ones by
-#: the few angles they are integrated from [-].
+#: Largest deviation from one of the sum of transmittance, reflectance and absorptance: by the rounding of a
+#: table, and for hemispherical values by the few angles they are integrated from [-].
 SUM_LIMIT, DIFFUSE_LIMIT = 0.006, 0.015
 
 
-class TwoFaces(Pair):
-    """A property of the outer and of the inner face of a pane; short form ``[outside, inside]``."""
+class TwoSides(Pair):
+    """A property of the outer and of the inner side of a pane; short form ``[outside, inside]``."""
 
 
-class PaneEmissivities(TwoFaces):
-    """Long-wave emissivity of the outer and of the inner face; short form ``[outside, inside]``."""
+class PaneEmissivities(TwoSides):
+    """Long-wave emissivity of the outer and of the inner side; short form ``[outside, inside]``."""
 
     outside: q.Emissivity
     inside: q.Emissivity
 
 
-class PaneReflectances(TwoFaces):
+class PaneReflectances(TwoSides):
     """Solar reflectance of a coated pane from outside and from inside; short form ``[outside, inside]``."""
 
     outside: q.Reflectance
@@ -39,32 +39,38 @@ class PaneReflectances(TwoFaces):
 
 
 def _one_or_two(raw: Any) -> str:
-    pair = isinstance(raw, list | tuple | TwoFaces) or (isinstance(raw, Mapping) and "value" not in raw)
+    pair = isinstance(raw, list | tuple | TwoSides) or (isinstance(raw, Mapping) and "value" not in raw)
     return "faces" if pair else "both"
 
 
 _EITHER = Discriminator(_one_or_two)
-EmissivityByFace = Annotated[
+EmissivityBySide = Annotated[
     Annotated[q.Emissivity, Tag("both")] | Annotated[PaneEmissivities, Tag("faces")], _EITHER
 ]
-ReflectanceByFace = Annotated[
+ReflectanceBySide = Annotated[
     Annotated[q.Reflectance, Tag("both")] | Annotated[PaneReflectances, Tag("faces")], _EITHER
 ]
 
 
 class Pane(Part):
-    """A pane that no long-wave radiation passes.
+    """A pane, opaque to long-wave radiation.
 
-    Its solar optics at normal incidence are needed unless the unit has a table of its own. One reflectance
-    means plain glass, which behaves as a homogeneous plate at other angles; two mean a coating. A pane
-    without density and specific heat holds no heat.
+    Its solar optics at normal incidence are needed unless the glazing has a table (`Angular`). One
+    reflectance means plain glass, which behaves as a homogeneous plate at other angles; two mean a coating. A
+    pane without density and specific heat has no heat capacity.
+
+    Examples
+    --------
+    >>> clear = Pane(thickness=0.004, emissivity=0.84, transmittance=0.83, reflectance=0.08)
+    >>> float(clear.conductivity)
+    1.0
     """
 
     thickness: q.PaneThickness
     conductivity: q.Conductivity = Number(1.0, source="EN 673:2011, soda-lime glass")
-    emissivity: EmissivityByFace = Field(description="One value, or [outside, inside]")
+    emissivity: EmissivityBySide = Field(description="One value, or [outside, inside]")
     transmittance: q.Transmittance | None = None
-    reflectance: ReflectanceByFace | None = Field(
+    reflectance: ReflectanceBySide | None = Field(
         None, description="One value for plain glass, or [outside, inside] for coated glass"
     )
     density: q.Density | None = None
@@ -95,29 +101,41 @@ class Pane(Part):
             if total > 1.0:
                 yield fault(
                     ("reflectance",),
-                    f"transmittance {self.transmittance:g} and reflectance {reflectance:g}, {total:g} in all",
-                    "at most 1 in all: the rest is absorbed",
+                    f"transmittance {self.transmittance:g} and reflectance {reflectance:g}, sum {total:g}",
+                    "at most 1 together: the rest is absorbed",
                     "Correct one of them.",
                 )
 
 
 def both(value: Any) -> tuple[float, float]:
-    """Values of the outer and the inner face."""
+    """Values of the outer and of the inner side."""
     if isinstance(value, PaneEmissivities | PaneReflectances):
         return (value.outside, value.inside)
     return (value, value)
 
 
 class FilledGap(Part):
-    """A gap filled with gas: convection by correlation, long-wave radiation between the panes exactly."""
+    """A gap filled with gas: convection by ISO 15099, long-wave radiation between gray panes.
+
+    Examples
+    --------
+    >>> FilledGap(thickness=0.016, gas="argon")
+    FilledGap(thickness=0.016 m, gas=argon, pressure=101325 Pa)
+    """
 
     thickness: q.GapThickness
-    gas: Literal["air", "argon", "krypton", "xenon"] = Field("air", description="What fills it")
+    gas: Literal["air", "argon", "krypton", "xenon"] = Field("air", description="Gas in the gap")
     pressure: q.GapPressure = Number(101325.0, source=f"{ISO_15099}: sealed at sea level")
 
 
 class GivenGap(Part):
-    """A gap of known conductance, convection and radiation together."""
+    """A gap of known conductance, by convection and radiation together.
+
+    Examples
+    --------
+    >>> GivenGap(conductance=5)
+    GivenGap(conductance=5 W/(m2 K))
+    """
 
     conductance: q.GapConductance
 
@@ -133,7 +151,13 @@ Gap = Annotated[
 
 
 class DiffuseOptics(Part):
-    """Optics of a unit for diffuse sun from outside."""
+    """Optics of a glazing for diffuse solar radiation from outside.
+
+    Examples
+    --------
+    >>> DiffuseOptics(transmittance=0.7, absorptance=[0.1])
+    DiffuseOptics(transmittance=0.7, absorptance=[0.1])
+    """
 
     transmittance: q.CurveOptic
     reflectance: q.CurveOptic | None = None
@@ -141,17 +165,23 @@ class DiffuseOptics(Part):
 
 
 class Angular(Part):
-    """Optics of a unit over the angle of incidence, for sun from outside."""
+    """Optics of a glazing over the angle of incidence, for solar radiation from outside.
+
+    Examples
+    --------
+    >>> Angular(angles=[0, 90], transmittance=[0.8, 0], absorptance=[[0.1, 0]])
+    Angular(angles=[0 deg, 90 deg], transmittance=[0.8, 0], absorptance=[[0.1, 0]], transmittance_sc...)
+    """
 
     angles: tuple[q.CurveAngle, ...] = Field(description="Rising from 0 to 90")
     transmittance: tuple[q.CurveOptic, ...] = Field(description="At each angle")
     reflectance: tuple[q.CurveOptic, ...] | None = Field(None, description="At each angle; a check only")
     absorptance: tuple[tuple[q.CurveOptic, ...], ...] = Field(
-        description="Of each pane, outside to inside: one list a pane, a value at each angle"
+        description="Of each pane, outside to inside: one list for each pane, a value at each angle"
     )
     diffuse: DiffuseOptics | None = Field(None, description="Hemispherical values; none: integrated")
-    transmittance_scale: q.OpticScale = Number(1.0, source=Remark("the table as it is"))
-    absorptance_scale: q.OpticScale = Number(1.0, source=Remark("the table as it is"))
+    transmittance_scale: q.OpticScale = Number(1.0, source=Remark("the table without a correction"))
+    absorptance_scale: q.OpticScale = Number(1.0, source=Remark("the table without a correction"))
 
     @model_validator(mode="after")
     def _sound(self) -> Angular:
@@ -162,7 +192,7 @@ class Angular(Part):
                     ("angles",),
                     f"angles {', '.join(f'{angle:g}' for angle in angles)}",
                     "angles that rise from 0 to 90 deg",
-                    "At 90 deg nothing is transmitted and nothing absorbed.",
+                    "At 90 deg transmittance and absorptance are 0.",
                 )
             )
         lengths = {"transmittance": len(self.transmittance)}
@@ -198,20 +228,28 @@ class Angular(Part):
             if total > 1.0 + limit or (back is not None and total < 1.0 - limit):
                 yield fault(
                     ("transmittance",),
-                    f"shares that sum to {total:.3f} ({where})",
-                    "transmitted, reflected and absorbed shares that sum to 1",
+                    f"a sum of {total:.3f} ({where})",
+                    "transmittance, reflectance and absorptance that sum to 1",
                     "Check the row.",
                 )
 
 
 class PaneGlazing(Part):
-    """Panes and the gaps between them, outside to inside."""
+    """A glazing by its panes and the gaps between them, outside to inside.
+
+    Examples
+    --------
+    >>> clear = Pane(thickness=0.004, emissivity=0.84, transmittance=0.83, reflectance=0.08)
+    >>> double = PaneGlazing(panes=[clear, clear], gaps=[FilledGap(thickness=0.016, gas="argon")])
+    >>> round(1 / (0.17 + glazing_resistance(double)), 2)
+    2.58
+    """
 
     kind: Literal["panes"] = "panes"
     panes: tuple[Pane, ...] = Field(description="Outside to inside")
     gaps: tuple[Gap, ...] = Field((), description="Between the panes, outside to inside")
     angular: Angular | None = Field(
-        None, description="Optics of the whole unit; none: calculated from those of the panes"
+        None, description="Optics of the whole glazing; none: calculated from those of the panes"
     )
     source: str | None = Field(None, description="Where the properties come from")
 
@@ -248,21 +286,26 @@ class PaneGlazing(Part):
                     ("panes", index, "transmittance"),
                     "nothing",
                     "solar transmittance of the pane at normal incidence [-]",
-                    "Add 'transmittance:' and 'reflectance:', or an 'angular:' table of the unit.",
+                    "Add 'transmittance:' and 'reflectance:', or an 'angular:' table of the glazing.",
                 )
             if self.angular is not None and pane.transmittance is not None:
                 yield fault(
                     ("panes", index, "transmittance"),
-                    "optics of the pane beside those of the unit",
+                    "optics of the pane beside those of the whole glazing",
                     "one of the two",
                     "Remove 'transmittance:' and 'reflectance:', or 'angular:'.",
                 )
 
 
 class SimpleGlazing(Part):
-    """A unit known by its rated U value and solar heat gain only.
+    """A glazing by its rated U value and solar heat gain.
 
-    Transmittance at normal incidence by Arasteh et al. 2009, change with the angle by Karlsson & Roos 2000.
+    Transmittance at normal incidence by Arasteh et al. 2009, angular dependence by Karlsson & Roos 2000.
+
+    Examples
+    --------
+    >>> float(SimpleGlazing(u_value=1.1, solar_heat_gain=0.6).panes)
+    2.0
     """
 
     kind: Literal["simple"] = "simple"
@@ -270,8 +313,8 @@ class SimpleGlazing(Part):
     solar_heat_gain: q.SolarHeatGain
     panes: q.PaneCount = Number(2.0, source=f"{_FIT}: double glazing", assumed=True)
     category: q.GlassCategory = Number(4.0, source=f"{_FIT}: clear glass without coating", assumed=True)
-    outside_film: q.FilmResistance = Number(0.04, source=_RATED)
-    inside_film: q.FilmResistance = Number(0.13, source=_RATED)
+    outside_film: q.SurfaceResistance = Number(0.04, source=_RATED)
+    inside_film: q.SurfaceResistance = Number(0.13, source=_RATED)
     emissivity: q.Emissivity = Number(0.84, source="EN 673:2011: 0.837, glass without coating")
     source: str | None = Field(None, description="Where the values come from")
 
@@ -283,15 +326,15 @@ class SimpleGlazing(Part):
                 fault(
                     ("u_value",),
                     f"{self.u_value:g} W/(m2 K)",
-                    f"less than {most:.2f} W/(m2 K), which the rated films alone let through",
-                    "Correct it, or describe the unit by 'kind: panes'.",
+                    f"less than {most:.2f} W/(m2 K), the conductance of the rated surface resistances alone",
+                    "Correct it, or describe the glazing by 'kind: panes'.",
                 )
             )
         return self
 
     @property
     def resistance(self) -> float:
-        """From face to face [m2 K/W]."""
+        """Resistance without the surface resistances [m2 K/W]."""
         return 1.0 / self.u_value - self.outside_film - self.inside_film
 
 
@@ -303,8 +346,8 @@ _CONDUCTIVITY = {"air": 0.0248, "argon": 0.0169, "krypton": 0.0089, "xenon": 0.0
 _RADIATION = 5.15
 
 
-def face_resistance(glazing: Glazing) -> float:
-    """Resistance from face to face; gas at 10 degC that does not move.
+def glazing_resistance(glazing: Glazing) -> float:
+    """Resistance between the two surfaces, with gas at 10 degC and without convection.
 
     Parameters
     ----------

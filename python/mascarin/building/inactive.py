@@ -1,6 +1,6 @@
-"""Numbers that no result of a building depends on, and why.
+"""Numbers that no result of a building depends on, each with the reason.
 
-A sensitivity analysis leaves them out, and the parameter table says why moving them would change nothing.
+A sensitivity analysis leaves them out, and the table of parameters gives the reason.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from mascarin.building.convection import (
     Power,
     Tarp,
 )
-from mascarin.building.derived import faces_of
+from mascarin.building.derived import sides_of_zone
 from mascarin.building.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.leaves import leaves
 from mascarin.building.surface import NoLongwave, Side, Surface
-from mascarin.building.window import WindowInside, WindowOutside, windows_of
+from mascarin.building.window import WindowInside, WindowOutside, windows_in
 from mascarin.building.zone import GivenSun
-from mascarin.building.zone_surfaces import closed, zone_faces
+from mascarin.building.zone_surfaces import closed, surfaces_of_zone
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
@@ -34,7 +34,7 @@ Reasons = Iterator[tuple[str, str]]
 
 
 @dataclass(frozen=True)
-class Face:
+class SurfaceSide:
     """One side of a surface and the tilt of its own normal [deg]."""
 
     path: str
@@ -43,7 +43,7 @@ class Face:
 
     @property
     def windy(self) -> bool:
-        """Whether its film depends on wind."""
+        """Whether its heat transfer coefficient depends on wind."""
         film = self.side.convection
         if not self.side.exposed.wind:
             return False
@@ -53,12 +53,12 @@ class Face:
 
     @property
     def sunlit(self) -> bool:
-        """Whether it takes its irradiance from the climate."""
+        """Whether its irradiance comes from the climate."""
         return self.side.sunlit
 
     @property
     def sees_sky(self) -> bool:
-        """Whether it exchanges long-wave with the sky."""
+        """Whether it exchanges long-wave radiation with the sky."""
         if isinstance(self.side, WindowInside) or not self.side.outdoors:
             return False
         view = (1.0 if self.tilt < 180.0 else 0.0) if self.side.sky_view is None else self.side.sky_view
@@ -66,17 +66,17 @@ class Face:
 
 
 def has_height(side: Side | WindowOutside | WindowInside) -> bool:
-    """Tell whether a side says how high it lies above ground."""
+    """Whether a side has a height above ground."""
     return not isinstance(side, WindowInside) and side.height is not None
 
 
 def without_effect(building: Description) -> dict[str, str]:
-    """Paths of the numbers that do not act in this building, each with the reason."""
-    every = faces(building)
+    """Paths of the numbers that have no effect in this building, each with the reason."""
+    every = sides(building)
     found = dict(_unused(building))
     found.update(_in_site(building, every))
-    for face in every:
-        found.update(_on_side(face))
+    for item in every:
+        found.update(_on_side(item))
     found.update(_behind_walls(building))
     for name, surface in building.surfaces.items():
         found.update(_in_direction(building, name, surface))
@@ -85,36 +85,41 @@ def without_effect(building: Description) -> dict[str, str]:
     return found
 
 
-def faces(building: Description) -> list[Face]:
+def sides(building: Description) -> list[SurfaceSide]:
     """Both sides of every surface, in the order of the description."""
-    walls = [face for name, surface in building.surfaces.items() for face in _faces(name, surface)]
-    return [*walls, *(face for name in building.windows for face in _window_faces(building, name))]
+    walls = [item for name, surface in building.surfaces.items() for item in _sides(name, surface)]
+    return [*walls, *(item for name in building.windows for item in _window_sides(building, name))]
 
 
-def _window_faces(building: Description, name: str) -> Iterator[Face]:
+def _window_sides(building: Description, name: str) -> Iterator[SurfaceSide]:
     window = building.windows[name]
     tilt = float(building.surfaces[window.surface].tilt or 0.0)
-    yield Face(f"windows.{name}.outside", window.outside, tilt)
-    yield Face(f"windows.{name}.inside", window.inside, 180.0 - tilt)
+    yield SurfaceSide(f"windows.{name}.outside", window.outside, tilt)
+    yield SurfaceSide(f"windows.{name}.inside", window.inside, 180.0 - tilt)
 
 
 def _behind_walls(building: Description) -> Reasons:
-    """Find absorptances that no sun reaches, and heights of gaps that there are none of."""
+    """Absorptances that no sun reaches, and heights of gaps where no gap is filled."""
     for zone in building.zones:
-        faces = zone_faces(zone, building.surfaces, building.windows)
-        lit = any(face.window is not None for face in faces)
+        seen = surfaces_of_zone(zone, building.surfaces, building.windows)
+        lit = any(item.window is not None for item in seen)
         given = isinstance(building.zones[zone].sun, GivenSun)
-        for face in faces:
-            path = f"surfaces.{face.name}.{face.side}.absorptance"
-            if face.surface is not None and (not lit or given):
-                yield path, "no sun enters the zone" if not lit else "the zone's shares are given"
+        for item in seen:
+            path = f"surfaces.{item.name}.{item.side}.absorptance"
+            if item.surface is not None and (not lit or given):
+                yield (
+                    path,
+                    "no sun enters the zone"
+                    if not lit
+                    else "the distribution of the sun in the zone is given",
+                )
     for name, glazing in building.glazings.items():
         zones = [
             building.zones[str(building.surfaces[window.surface].inside.zone)]
             for window in building.windows.values()
             if window.glazing == name
         ]
-        reason = "the shares of the sun are given where this glazing is"
+        reason = "the distribution of the sun is given where this glazing is"
         if (
             zones
             and all(isinstance(zone.sun, GivenSun) for zone in zones)
@@ -128,10 +133,10 @@ def _behind_walls(building: Description) -> Reasons:
             yield f"windows.{name}.cavity_height", "no gap of this window is filled with gas"
 
 
-def _faces(name: str, surface: Surface) -> Iterator[Face]:
+def _sides(name: str, surface: Surface) -> Iterator[SurfaceSide]:
     tilt = float(surface.tilt or 0.0)
-    yield Face(f"surfaces.{name}.outside", surface.outside, tilt)
-    yield Face(f"surfaces.{name}.inside", surface.inside, 180.0 - tilt)
+    yield SurfaceSide(f"surfaces.{name}.outside", surface.outside, tilt)
+    yield SurfaceSide(f"surfaces.{name}.inside", surface.inside, 180.0 - tilt)
 
 
 def _unused(building: Description) -> Reasons:
@@ -152,43 +157,46 @@ def _unused(building: Description) -> Reasons:
 
 
 def _in_glazing(path: str, glazing: PaneGlazing) -> Reasons:
-    """Find emissivities that face nothing but gaps of a given conductance."""
+    """Emissivities next to gaps of a given conductance only."""
     given = [isinstance(gap, GivenGap) for gap in glazing.gaps]
     for index, pane in enumerate(glazing.panes):
-        faces = {"outside": index > 0 and given[index - 1], "inside": index < len(given) and given[index]}
+        seen = {"outside": index > 0 and given[index - 1], "inside": index < len(given) and given[index]}
         if isinstance(pane.emissivity, PaneEmissivities):
-            idle = [f".{face}" for face, still in faces.items() if still]
+            inactive = [f".{side}" for side, still in seen.items() if still]
         else:
-            idle = [""] if all(faces.values()) else []
-        for which in idle:
+            inactive = [""] if all(seen.values()) else []
+        for which in inactive:
             yield f"{path}.panes.{index}.emissivity{which}", "the conductance of the gap is given"
 
 
-def _in_site(building: Description, every: list[Face]) -> Reasons:
+def _in_site(building: Description, every: list[SurfaceSide]) -> Reasons:
     site = building.site
-    seeing = [face for face in every if face.sees_sky]
-    if not any(face.sunlit and face.tilt > 0.0 for face in every):
-        yield "site.ground_reflectance", "no face takes its irradiance from the climate and sees the ground"
+    seeing = [item for item in every if item.sees_sky]
+    if not any(item.sunlit and item.tilt > 0.0 for item in every):
+        yield (
+            "site.ground_reflectance",
+            "no tilted surface takes its irradiance from the climate",
+        )
     if not seeing:
-        yield from _all_of("site.sky", site.sky, "no face exchanges long-wave with the sky")
+        yield from _all_of("site.sky", site.sky, "no surface exchanges long-wave radiation with the sky")
     if not seeing or site.sky.kind in ("measured", "offset"):
         yield from _all_of("site.cloud", site.cloud, "no emissivity of the sky is used")
-    if not any(face.windy and has_height(face.side) for face in every):
-        reason = "no film depends on wind at the height of its face: mast wind is used as it is"
+    if not any(item.windy and has_height(item.side) for item in every):
+        reason = "no surface with a height depends on wind: the wind at the mast is used"
         yield from _all_of("site.wind", site.wind, reason)
     if not building.zones:
         reason = "there is no zone whose air has a density"
         yield from ((f"site.{key}", reason) for key in ("altitude", "air_density"))
     elif site.air_density is not None:
-        yield "site.altitude", "the density of the air is written"
+        yield "site.altitude", "the density of the air is given"
 
 
-def _on_side(face: Face) -> Reasons:
-    side, path = face.side, face.path
+def _on_side(item: SurfaceSide) -> Reasons:
+    side, path = item.side, item.path
     if side.ground is not None and side.ground.amplitude == 0.0:
         yield f"{path}.ground.coldest_day", "the amplitude is 0"
-    if not face.windy:
-        yield f"{path}.height", "the film does not depend on wind"
+    if not item.windy:
+        yield f"{path}.height", "the surface heat transfer coefficient does not depend on wind"
     if not isinstance(side, WindowInside) and side.outdoors and isinstance(side.longwave, NoLongwave):
         yield f"{path}.emissivity", "longwave is none"
         if side.irradiance is not None:
@@ -204,71 +212,73 @@ def _on_side(face: Face) -> Reasons:
     if isinstance(side.convection, Doe2) and windless:
         yield f"{path}.convection.roughness", "there is no wind on this side"
     if isinstance(side.convection, Power):
-        yield from _in_power(face, side.convection)
+        yield from _in_power(item, side.convection)
 
 
-def _in_power(face: Face, film: Power) -> Reasons:
+def _in_power(item: SurfaceSide, film: Power) -> Reasons:
     for direction, law in (("upward", film.upward), ("downward", film.downward)):
-        path = f"{face.path}.convection.{direction}"
-        # A vertical face always takes the upward law.
-        if direction == "downward" and face.tilt == 90.0:
-            yield from _all_of(path, law, "the face is vertical")
+        path = f"{item.path}.convection.{direction}"
+        # A vertical surface always uses the upward law.
+        if direction == "downward" and item.tilt == 90.0:
+            yield from _all_of(path, law, "the surface is vertical")
             continue
         if law.b == 0.0:
             yield f"{path}.n", "b is 0"
-        if not face.side.exposed.wind:
+        if not item.side.exposed.wind:
             yield from ((f"{path}.{key}", "there is no wind on this side") for key in ("c", "m"))
         elif law.c == 0.0:
             yield f"{path}.m", "c is 0"
 
 
 def _in_direction(building: Description, name: str, surface: Surface) -> Reasons:
-    """Tilt and azimuth act through sun, sky and wind; through buoyancy and view they only choose a case."""
-    faces = list(_faces(name, surface))
-    for window, _ in windows_of(name, building.windows):
-        faces += _window_faces(building, window)
-    sunlit = any(face.sunlit for face in faces)
-    seen = any(side.zone is not None and _by_direction(building, side.zone) for side in surface.sides)
-    buoyant = any(isinstance(face.side.convection, AlamdariHammond | PaperEq5 | Power) for face in faces)
-    reasons = ["which faces of a zone lie in one plane"] if seen else []
+    """Tilt and azimuth act by sun, sky and wind; for buoyancy and view factors they only choose a case."""
+    both = list(_sides(name, surface))
+    for window, _ in windows_in(name, building.windows):
+        both += _window_sides(building, window)
+    sunlit = any(item.sunlit for item in both)
+    by_direction = any(side.zone is not None and _by_direction(building, side.zone) for side in surface.sides)
+    buoyant = any(isinstance(item.side.convection, AlamdariHammond | PaperEq5 | Power) for item in both)
+    reasons = ["which surfaces of a zone lie in one plane"] if by_direction else []
     if surface.tilt in (0.0, 180.0):
         yield f"surfaces.{name}.azimuth", "a horizontal surface has no direction"
     elif not (
-        sunlit or any(face.windy and isinstance(face.side.convection, Tarp | Mowitt | Doe2) for face in faces)
+        sunlit or any(item.windy and isinstance(item.side.convection, Tarp | Mowitt | Doe2) for item in both)
     ):
         yield f"surfaces.{name}.azimuth", _only(reasons)
-    skyward = any(face.sees_sky and _sky_by_tilt(face) for face in faces)
-    tilted = any(isinstance(face.side.convection, Tarp | Doe2 | Iso15099) for face in faces)
+    skyward = any(item.sees_sky and _sky_by_tilt(item) for item in both)
+    tilted = any(isinstance(item.side.convection, Tarp | Doe2 | Iso15099) for item in both)
     if not (sunlit or skyward or tilted):
         yield (
             f"surfaces.{name}.tilt",
-            _only([*reasons, *(["vertical or horizontal film"] if buoyant else [])]),
+            _only([*reasons, *(["vertical or horizontal convection"] if buoyant else [])]),
         )
 
 
-def _sky_by_tilt(face: Face) -> bool:
-    return not isinstance(face.side, WindowInside) and face.side.sky_view is None
+def _sky_by_tilt(item: SurfaceSide) -> bool:
+    return not isinstance(item.side, WindowInside) and item.side.sky_view is None
 
 
 def _only(choices: list[str]) -> str:
-    return f"it only decides: {', '.join(choices)}" if choices else "neither sun, sky, wind nor zone see it"
+    return (
+        f"it only decides: {', '.join(choices)}" if choices else "sun, sky, wind and zone do not depend on it"
+    )
 
 
 def _by_direction(building: Description, zone: str) -> bool:
-    """Tell whether the view factors of a zone are approximated from areas, tilts and azimuths."""
+    """Whether the view factors of a zone are approximated from areas, tilts and azimuths."""
     if isinstance(building.zones[zone].longwave, NoLongwave) or building.zones[zone].view_factors is not None:
         return False
-    return not closed(zone_faces(zone, building.surfaces, building.windows))
+    return not closed(surfaces_of_zone(zone, building.surfaces, building.windows))
 
 
 def _between_faces(building: Description) -> Reasons:
     for name, zone in building.zones.items():
-        faces = faces_of(name, building.surfaces)
-        lone = len(zone_faces(name, building.surfaces, building.windows)) == 1
+        seen = sides_of_zone(name, building.surfaces)
+        lone = len(surfaces_of_zone(name, building.surfaces, building.windows)) == 1
         reason = "the zone has no long-wave exchange" if isinstance(zone.longwave, NoLongwave) else ""
-        reason = reason or ("no other face exchanges with it" if lone else "")
+        reason = reason or ("no other surface exchanges with it" if lone else "")
         if reason:
-            yield from ((f"surfaces.{surface}.{side}.emissivity", reason) for surface, side in faces)
+            yield from ((f"surfaces.{surface}.{side}.emissivity", reason) for surface, side in seen)
             yield f"zones.{name}.longwave.reference", reason
 
 

@@ -1,7 +1,7 @@
-"""Where a run starts from: temperatures that are known, and straight lines to all others.
+"""Initial temperatures: those that are known, and linear interpolation to all others.
 
-Inside a wall a straight line is one over thermal resistance, by the values of the building as described: what
-a wall of constant properties settles to between two temperatures that stay.
+Inside a wall the interpolation is linear in thermal resistance, with the values of the building as described:
+the steady state of a wall of constant properties between two constant temperatures.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ if TYPE_CHECKING:
     from mascarin.building.outputs import Output
     from mascarin.building.surface import Side
 
-#: Films on a face to the weather, and to the air of a room (ISO 6946:2017, horizontal flow). [m2 K/W]
+#: Surface resistances outdoors, and to the air of a room (ISO 6946:2017, horizontal flow). [m2 K/W]
 FILMS: Final = (0.04, 0.13)
-#: A filled gap between panes, near enough for nodes that hold little (ISO 6946:2017, 15 mm). [m2 K/W]
+#: Resistance of a filled gap between panes (ISO 6946:2017, 15 mm); panes have a small heat capacity. [m2 K/W]
 _GAP: Final = 0.17
-#: What rated films leave of a frame's resistance is no less than this, as in the engine. [m2 K/W]
+#: Least resistance of a frame without the rated surface resistances, as in the engine. [m2 K/W]
 _LEAST: Final = 1e-3
-#: Places closer than this are one. [m2 K/W]
+#: Positions closer than this are the same. [m2 K/W]
 _SAME: Final = 1e-9
 
-#: Temperatures of a building lie between these. [degC]
+#: Limits of the temperatures of a building. [degC]
 LIMITS: Final = (-100.0, 200.0)
 Degrees = Annotated[float, Field(gt=LIMITS[0], lt=LIMITS[1], strict=True)]
 
@@ -51,34 +51,34 @@ Faces = Annotated[
 
 
 class GivenStart(Part):
-    """Temperatures at the start. All others lie on straight lines between these and what is beside them."""
+    """Temperatures at the start; all others are interpolated between these and their surroundings."""
 
     zones: dict[str, Degrees] = Field(
         default_factory=dict, description="Zone -> temperature of its air [degC]"
     )
     surfaces: dict[str, Faces] = Field(
         default_factory=dict,
-        description="Surface or window -> temperature throughout, or [outside, inside] of its faces [degC]",
+        description="Surface or window -> one temperature, or [outside, inside] of its two sides [degC]",
     )
     default: Degrees | None = Field(
-        None, description="Air of the zones that are not named; the mean of those that are when absent [degC]"
+        None, description="Air of the zones that are not named; none: the mean of those that are [degC]"
     )
 
     @model_validator(mode="after")
     def _some(self) -> GivenStart:
         if not self.zones and not self.surfaces and self.default is None:
             hint = "Write zones: {room: 21}, or default: 21."
-            refuse(fault(("zones",), "no temperature", "one at least", hint))
+            refuse(fault(("zones",), "no temperature", "at least one", hint))
         return self
 
 
 class StartError(InputError):
-    """A start that cannot be made.
+    """An initial state that is not possible.
 
     Attributes
     ----------
     place : tuple of str
-        Which entry it is about.
+        The entry with the error.
     """
 
     def __init__(self, place: tuple[str, ...], text: str) -> None:
@@ -93,12 +93,12 @@ class Known:
     Attributes
     ----------
     zones : mapping of str to float
-        Of the airs. [degC]
+        Air temperatures. [degC]
     points : mapping of str to sequence of (float, float)
-        By surface or window: thermal resistance from the outside face, and the temperature there.
+        By surface or window: thermal resistance from the outside, and the temperature there.
         [m2 K/W, degC]
     default : float or None
-        Of the other airs; their mean when None. [degC]
+        Air of the other zones; None: the mean of the known ones. [degC]
     words : str
         The same in words.
     """
@@ -111,7 +111,7 @@ class Known:
 
 @dataclass(frozen=True)
 class Ambient:
-    """What surrounds the building at the start.
+    """Surroundings of the building at the start.
 
     Attributes
     ----------
@@ -120,7 +120,7 @@ class Ambient:
     day : float
         Day of the year, from 0.
     columns : mapping of str to float
-        Measured columns. [degC where a side faces them]
+        Measured columns. [degC]
     """
 
     outdoors: float
@@ -130,14 +130,14 @@ class Ambient:
 
 @dataclass(frozen=True)
 class Profile:
-    """Temperatures that a run starts from, in the order of the engine.
+    """Temperatures at the start of a run, in the order of the engine.
 
     Attributes
     ----------
     cells, faces, air : tuple of float
-        Of finite volumes, faces and zone airs; faces follow from the rest and are only guessed. [degC]
+        Of finite volumes, surfaces and zone air; those of surfaces are an initial guess only. [degC]
     words : str
-        Where they come from.
+        Where they come from, in words.
     """
 
     cells: tuple[float, ...]
@@ -148,18 +148,18 @@ class Profile:
 
 @dataclass(frozen=True)
 class Wall:
-    """A surface, window or frame along its thermal resistance, counted from the outside face.
+    """A surface, window or frame along its thermal resistance, from the outside.
 
     Attributes
     ----------
     name : str
-        Of the surface or window; of a frame none.
+        Name of the surface or window; empty for a frame.
     sides : tuple of Side
         Outside, inside.
     layers : tuple of (float, float)
         Thickness, 0 where it has none, and resistance. [m, m2 K/W]
     cells : tuple of float
-        Places of the finite volumes. [m2 K/W]
+        Positions of the finite volumes. [m2 K/W]
     """
 
     name: str
@@ -175,15 +175,15 @@ class Wall:
 
     @property
     def whole(self) -> float:
-        """Resistance from face to face. [m2 K/W]"""
+        """Resistance between the two surfaces. [m2 K/W]"""
         return self.edges[-1]
 
     def middle(self, layer: int) -> float:
-        """Place of the middle of a layer. [m2 K/W]"""
+        """Position of the middle of a layer. [m2 K/W]"""
         return 0.5 * (self.edges[layer] + self.edges[layer + 1])
 
     def at_depth(self, depth: float) -> float:
-        """Place at a depth [m], on the outer side of a layer without thickness. [m2 K/W]"""
+        """Position at a depth [m], on the outer side of a layer without thickness. [m2 K/W]"""
         place, before = 0.0, 0.0
         for thickness, resistance in self.layers:
             part = min(max((depth - before) / thickness, 0.0), 1.0) if thickness else float(before < depth)
@@ -223,7 +223,7 @@ def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int])
         if isinstance(material, Resistance) or layer.thickness is None:
             layers.append((0.0, float(getattr(material, "resistance", 0.0))))
             continue
-        # Of solid and liquid the mean: which of the two it is depends on the profile itself.
+        # The mean of solid and liquid: which of the two it is depends on the profile.
         both = [phase(material.conductivity, one) for one in ("solid", "liquid")]
         resistance = float(layer.thickness) / (0.5 * sum(both))
         count = nodes[surface.construction, layer.name]
@@ -233,7 +233,7 @@ def _opaque(building: Building, name: str, nodes: Mapping[tuple[str, str], int])
 
 
 def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> Wall:
-    """Lay out a window as the engine does: nodes are faces on gaps, and middles of panes that hold heat."""
+    """Nodes of a window as in the engine: pane surfaces at gaps, and middles of panes with heat capacity."""
     if isinstance(glazing, SimpleGlazing):
         films = glazing.outside_film + glazing.inside_film
         return Wall(name, sides, ((0.0, 1.0 / glazing.u_value - films),), ())
@@ -252,7 +252,7 @@ def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> Wall:
 
 
 def given(start: GivenStart, found: Sequence[Wall], building: Building) -> Known:
-    """What a user gave.
+    """Known temperatures as the user gave them.
 
     Raises
     ------
@@ -286,7 +286,7 @@ _SINGULAR: Final = {"zones": "zone", "surfaces": "surface or window"}
 
 
 def located(output: Output, found: Sequence[Wall], building: Building) -> tuple[str, float | None] | None:
-    """Where an output is a temperature of the state: zone and None, or surface and place; else None.
+    """Position of an output that is a temperature of the state: zone and None, or surface and position.
 
     Parameters
     ----------
@@ -316,11 +316,11 @@ def located(output: Output, found: Sequence[Wall], building: Building) -> tuple[
 
 
 def profile(building: Building, found: Sequence[Wall], known: Known, ambient: Ambient) -> Profile:
-    """Temperatures everywhere from those that are known.
+    """All temperatures from those that are known.
 
-    Airs that are not known take the default, or the mean of the others. A wall follows straight lines through
-    the points known in it; a face that is not known has the film of ISO 6946 and what is beside it behind
-    that. Beside an adiabatic face there is nothing: the line ends flat.
+    Air of unknown temperature takes the default, or the mean of the others. In a wall the temperature is
+    linear between the known points; a surface of unknown temperature exchanges heat with its surroundings
+    over the surface resistance of ISO 6946. Towards an adiabatic surface the temperature is constant.
 
     Parameters
     ----------
@@ -329,14 +329,14 @@ def profile(building: Building, found: Sequence[Wall], known: Known, ambient: Am
     found : sequence of Wall
         Its walls.
     known : Known
-        What is known.
+        Known temperatures.
     ambient : Ambient
-        What surrounds it.
+        Surroundings.
 
     Raises
     ------
     StartError
-        There are zones, and no temperature of any air.
+        There are zones, and no air temperature is known.
     """
     import numpy as np
 
@@ -344,7 +344,7 @@ def profile(building: Building, found: Sequence[Wall], known: Known, ambient: Am
     cells: list[float] = []
     faces: list[float] = []
     for wall in found:
-        # The frame of a window bears no name: nothing is known of it.
+        # The frame of a window has no name: nothing is known of it.
         points = _points(wall, known.points.get(wall.name, ()) if wall.name else (), air, ambient)
         places, values = zip(*points, strict=True)
         cells += np.interp(wall.cells, places, values).tolist()
@@ -359,8 +359,8 @@ def _airs(building: Building, known: Known) -> dict[str, float]:
     if rest is None and building.zones:
         raise StartError(
             ("initial",),
-            f"found no temperature of the air in {', '.join(building.zones)}, expected that of one zone at "
-            "least: add it under zones, or give a default",
+            f"found no air temperature in {', '.join(building.zones)}, expected that of at least "
+            "one zone: add it under zones, or give a default",
         )
     return {name: float(known.zones.get(name, rest or 0.0)) for name in building.zones}
 
@@ -368,19 +368,19 @@ def _airs(building: Building, known: Known) -> dict[str, float]:
 def _points(
     wall: Wall, inside: Sequence[tuple[float, float]], air: Mapping[str, float], ambient: Ambient
 ) -> list[tuple[float, float]]:
-    """Places and temperatures that the lines of a wall run through, from outside to inside."""
+    """Positions and temperatures between which a wall is interpolated, from outside to inside."""
     points = _merged(inside)
     outer, inner = (_beside(side, air, ambient) for side in wall.sides)
     if outer is not None and not (points and points[0][0] < _SAME):
         points.insert(0, (-outer[0], outer[1]))
     if inner is not None and not (points and points[-1][0] > wall.whole - _SAME):
         points.append((wall.whole + inner[0], inner[1]))
-    # Between two adiabatic faces nothing but the air of the building is near.
+    # Between two adiabatic sides only the air of the building is known.
     return points or [(0.0, sum(air.values()) / len(air) if air else ambient.outdoors)]
 
 
 def _merged(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Points in order; of several at one place the mean."""
+    """Points in order; the mean of several at one position."""
     together: dict[int, list[tuple[float, float]]] = defaultdict(list)
     for point in points:
         together[round(point[0] / _SAME)].append(point)
@@ -389,7 +389,7 @@ def _merged(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[float, float] | None:
-    """Film of a face and the temperature behind it; None where nothing flows. [m2 K/W, degC]"""
+    """Surface resistance of a side and the temperature behind it; None if adiabatic. [m2 K/W, degC]"""
     if side.adiabatic:
         return None
     if side.outdoors:
@@ -405,9 +405,9 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
 
 
 def _rest(building: Building) -> str:
-    said = "; all else on straight lines between what is known beside it"
+    said = "; all others interpolated linearly in between"
     melts = any(isinstance(material, PhaseChangeMaterial) for material in _used(building))
-    return said + ("; what melts has come from below" if melts else "")
+    return said + ("; phase-change layers on the heating curve" if melts else "")
 
 
 def _used(building: Building) -> Iterator[Any]:

@@ -1,4 +1,4 @@
-"""A walk over a description: every number by its path."""
+"""Every number of a description by its path."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Leaf = tuple[str, Number, str]
 
 
 def leaves(part: Any, path: str = "", source: str | None = None) -> Iterator[Leaf]:
-    """Walk over all numbers of a part: path, number, source."""
+    """All numbers of a part: path, number, source."""
     if isinstance(part, Number):
         yield path, part, part.source or source or ""
         return
@@ -23,7 +23,7 @@ def leaves(part: Any, path: str = "", source: str | None = None) -> Iterator[Lea
 
 
 def steps(part: Any) -> Iterator[tuple[str, Any]]:
-    """Name the pieces of a part, one step of a path each; layers go by name, points by position."""
+    """Pieces of a part, each with its step in a path: layers by name, points by position."""
     if isinstance(part, Part):
         yield from ((key, getattr(part, key)) for key in type(part).model_fields)
     elif isinstance(part, Mapping):

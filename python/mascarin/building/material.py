@@ -82,8 +82,6 @@ class PhaseChangeMaterial(Melting):
     ... )
     >>> board.melting[0] < 23.4 < board.melting[1]
     True
-    >>> PhaseChangeMaterial(product="RT25HC", law="cooling").melting
-    (14.0, 28.0)
     """
 
     model_config = ConfigDict(json_schema_extra=_or_product)
@@ -91,6 +89,34 @@ class PhaseChangeMaterial(Melting):
     kind: Literal["pcm"] = "pcm"
     product: str | None = Field(None, description="Product of the library that the rest comes from")
     source: str | None = Field(None, description="Where the properties come from")
+
+    @classmethod
+    def from_product(cls, product: str, **properties: Any) -> PhaseChangeMaterial:
+        """Take a product of the library.
+
+        Parameters
+        ----------
+        product : str
+            Its name; see `mascarin.materials.search`.
+        **properties
+            What differs from the product, such as ``conductivity=0.2`` or ``law="cooling"``.
+
+        Returns
+        -------
+        PhaseChangeMaterial
+            The material.
+
+        Raises
+        ------
+        InputError
+            If there is no such product, or neither it nor `properties` give a property.
+
+        Examples
+        --------
+        >>> PhaseChangeMaterial.from_product("RT25HC", law="cooling").melting
+        (14.0, 28.0)
+        """
+        return cls(**{"product": product, **properties})
 
     @model_validator(mode="before")
     @classmethod
@@ -101,7 +127,7 @@ class PhaseChangeMaterial(Melting):
     @model_validator(mode="after")
     def _law_fits(self) -> PhaseChangeMaterial:
         insist(*rules.missing_or_inactive(self), *self._curve_of_nothing())
-        insist(*rules.unit_slips(self))
+        insist(*rules.unit_errors(self))
         insist(*rules.falling_enthalpy(self))
         insist(*rules.contradicted_latent_heat(self))
         insist(*rules.crossing_curves(self))

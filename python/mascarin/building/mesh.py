@@ -1,7 +1,7 @@
-"""How many finite volumes each layer gets.
+"""Number of finite volumes of each layer.
 
-A mesh is chosen once for a study and then frozen: one that moved with a parameter would make objectives
-jump. So the numbers that vary are taken at the end of their range that asks for most.
+The mesh is chosen once for all runs of a study: a mesh that changed with a parameter would make objectives
+discontinuous. Numbers that vary are therefore taken at the end of their range that needs most volumes.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
     from mascarin.building.description import Description
     from mascarin.building.surface import Layer
 
-#: A phase-change layer has at least so many volumes, or its melting front moves in jumps.
+#: Least number of volumes of a phase-change layer; with fewer the melting front moves in jumps.
 LEAST_IN_PCM = 4
-#: Heat flux that a melting layer of a building usually carries [W/m2].
+#: Usual heat flux in a melting layer of a building [W/m2].
 MELTING_FLUX = 20.0
-#: The melting range never asks for more volumes than this.
+#: Largest number of volumes because of the melting range.
 MOST_FOR_MELTING = 12
-#: No layer has more volumes than this, unless its ``nodes`` say so.
+#: Largest number of volumes of a layer, unless its ``nodes`` are given.
 MOST_IN_LAYER = 60
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Number of finite volumes by construction and layer, and what is to be said about them."""
+    """Number of finite volumes by construction and layer, with warnings."""
 
     nodes: Mapping[tuple[str, str], int]
     warnings: tuple[str, ...]
@@ -55,7 +55,7 @@ def choose(building: Description, step_seconds: float, ranges: Mapping[str, Inte
     Returns
     -------
     Mesh
-        Nodes of every layer, none for a bare resistance, and warnings where one got too few.
+        Nodes of every layer, 0 for a resistance, and warnings where there are too few.
     """
     worst = _Worst(building, _by_path(building, ranges or {}))
     nodes, warnings = {}, []
@@ -117,8 +117,8 @@ def _of_layer(layer: Layer, path: str, worst: _Worst, step_seconds: float) -> tu
 def diffusion_count(thickness: float, conductivity: float, capacity: float, step_seconds: float) -> int:
     """Volumes of a layer, none thicker than the damping depth of the fastest oscillation of a step.
 
-    A march in steps of ``dt`` carries no period below ``P = 2 dt``; an oscillation of that period has faded
-    to 1/e over ``sqrt(alpha P/pi)``.
+    Steps of ``dt`` resolve no period below ``P = 2 dt``; the amplitude of an oscillation of that period
+    decays to 1/e over ``sqrt(alpha P/pi)``.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def diffusion_count(thickness: float, conductivity: float, capacity: float, step
 
 
 def _melting_count(name: str, material: PhaseChangeMaterial, thickness: float, worst: _Worst) -> int:
-    """Volumes that keep the temperature step between neighbours within the melting range's half-width."""
+    """Volumes for which the temperature difference between neighbors is within the half-width of melting."""
     difference = MELTING_FLUX * thickness / worst.property(name, "conductivity")[0]
     return min(MOST_FOR_MELTING, math.ceil(difference / _least_width(name, material, worst)))
 

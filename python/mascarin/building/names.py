@@ -21,18 +21,18 @@ def _name(text: str) -> str:
         raise problem(
             shown(text),
             "a name of letters, digits, '_' and '-' that starts with a letter",
-            "Dots separate the steps of a parameter path, so names cannot hold them.",
+            "Dots separate the steps of a parameter path, so names cannot contain them.",
         )
     return text
 
 
-#: Name of a part, usable as a step of a parameter path.
+#: Name of a part, which is also a step of a parameter path.
 Name = Annotated[str, AfterValidator(_name)]
 
 
 @contextmanager
 def known_names(description: Any) -> Iterator[None]:
-    """Let the parts read inside refer to the sections of this description."""
+    """Let the parts that are read inside refer to the sections of this description."""
     sections = {}
     for section in ("materials", "constructions", "zones", "surfaces", "schedules", "glazings"):
         named = description.get(section) if isinstance(description, Mapping) else None

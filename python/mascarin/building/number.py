@@ -1,8 +1,8 @@
-"""A number of the description: its value, what is known about it, and the quantity it measures.
+"""A number of a description: its value, what is known about it, and its quantity.
 
 Every numeric leaf of a description is a :class:`Number`. The :class:`Quantity` in its type annotation
-is the one place that holds unit, meaning, hard limits and default range; parser, JSON Schema,
-parameter table and documentation all read it from there.
+is the one place for unit, meaning, limits and default range; the parser, the JSON Schema, the table of
+parameters and the docstrings use it.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
 
 Interval = tuple[float, float]
 
-#: A number as it is written where the comma is the decimal sign.
+#: A number with a decimal comma.
 _COMMA = re.compile(r"[-+]?\d+,\d+")
 
 
 class Remark(str):
-    """In place of a source: why a number was left as it is, or what it follows from; nothing to cite."""
+    """In place of a source: why a default was kept, or what a number was derived from; nothing to cite."""
 
     __slots__ = ()
 
 
 class Number(float):
-    """A float that remembers where it comes from.
+    """A float with a range, a source and a quantity.
 
     Parameters
     ----------
@@ -46,11 +46,17 @@ class Number(float):
     source : str, optional
         Where the value comes from.
     assumed : bool
-        Whether nobody measured or looked it up.
+        Whether it is an assumption, neither measured nor looked up.
     derived : bool
         Whether Mascarin derived it from the rest of the description because the user did not give it.
     quantity : Quantity, optional
-        What the number measures; filled in when the description is validated.
+        Unit and meaning; set when the description is checked.
+
+    Examples
+    --------
+    >>> conductivity = Number(1.75, range=(1.5, 2.0), source="a table")
+    >>> conductivity + 0.25, conductivity.range
+    (2.0, (1.5, 2.0))
     """
 
     __slots__ = ("assumed", "derived", "quantity", "range", "source")
@@ -71,14 +77,14 @@ class Number(float):
         derived: bool = False,
         quantity: Quantity | None = None,
     ) -> Number:
-        """Attach the notes to the value."""
+        """Make the number."""
         self = super().__new__(cls, value)
         self.range, self.source, self.assumed = range, source, assumed
         self.derived, self.quantity = derived, quantity
         return self
 
     def of(self, quantity: Quantity) -> Number:
-        """Give the same number as a value of a quantity."""
+        """The same number as a value of a quantity."""
         return Number(
             self,
             range=self.range,
@@ -90,12 +96,12 @@ class Number(float):
 
     @property
     def structural(self) -> bool:
-        """Whether the number shapes the calculation itself."""
+        """Whether the number changes the structure of the calculation, so that it cannot vary in a run."""
         return self.quantity is not None and isinstance(self.quantity.spread, Fixed)
 
     @property
     def plausible(self) -> Interval:
-        """Lowest and highest plausible value: as written, else by the quantity's default."""
+        """Lowest and highest plausible value: as given, else by the default of the quantity."""
         if self.range is not None:
             return self.range
         if self.quantity is None:
@@ -133,7 +139,7 @@ def _whole(value: float) -> float:
 
 @dataclass(frozen=True)
 class Percent:
-    """Default range of a quantity: so many percent to each side of the value."""
+    """Default range of a quantity: a percentage of the value to each side."""
 
     percent: float
     reason: str
@@ -144,13 +150,13 @@ class Percent:
         return (value - half, value + half)
 
     def schema(self) -> dict[str, Any]:
-        """Give the rule as it stands in the JSON Schema."""
+        """The rule as in the JSON Schema."""
         return {"relative": self.percent / 100.0, "reason": self.reason}
 
 
 @dataclass(frozen=True)
 class Within:
-    """Default range of a quantity: so much to each side of the value, in its unit."""
+    """Default range of a quantity: a distance to each side of the value, in its unit."""
 
     half: float
     reason: str
@@ -160,13 +166,13 @@ class Within:
         return (value - self.half, value + self.half)
 
     def schema(self) -> dict[str, Any]:
-        """Give the rule as it stands in the JSON Schema."""
+        """The rule as in the JSON Schema."""
         return {"absolute": self.half, "reason": self.reason}
 
 
 @dataclass(frozen=True)
 class Span:
-    """Default range of a quantity: two fixed ends, widened where the value lies outside."""
+    """Default range of a quantity: two fixed ends, widened where the value is outside."""
 
     low: float
     high: float
@@ -177,13 +183,13 @@ class Span:
         return (min(self.low, value), max(self.high, value))
 
     def schema(self) -> dict[str, Any]:
-        """Give the rule as it stands in the JSON Schema."""
+        """The rule as in the JSON Schema."""
         return {"low": self.low, "high": self.high, "reason": self.reason}
 
 
 @dataclass(frozen=True)
 class Fixed:
-    """No range: the number shapes the calculation itself, for the stated reason."""
+    """No range: the number changes the structure of the calculation, for the given reason."""
 
     reason: str
 
@@ -192,7 +198,7 @@ class Fixed:
         return (value, value)
 
     def schema(self) -> dict[str, Any]:
-        """Give the rule as it stands in the JSON Schema."""
+        """The rule as in the JSON Schema."""
         return {"structural": True, "reason": self.reason}
 
 
@@ -201,7 +207,7 @@ Spread = Percent | Within | Span | Fixed
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """Hard limits: outside them a value has no meaning."""
+    """Limits outside of which a value has no meaning."""
 
     above: float | None = None
     at_least: float | None = None
@@ -218,11 +224,11 @@ class Limits:
         return math.inf if self.at_most is None else self.at_most
 
     def hold(self, value: float) -> bool:
-        """Tell whether a value lies inside."""
+        """Whether a value is inside."""
         return self.lower <= value <= self.upper and (self.above is None or value > self.above)
 
     def clip(self, interval: Interval) -> Interval:
-        """Cut an interval to the limits; an open end is approached to a thousandth of the other end."""
+        """Cut an interval to the limits; an open end is approached to a thousandth of the interval."""
         low, high = max(interval[0], self.lower), min(interval[1], self.upper)
         if self.above is not None and low <= self.above:
             low = self.above + 1e-3 * (high - self.above)
@@ -239,14 +245,14 @@ class Limits:
         return " and ".join(part for part in parts if part)
 
     def schema(self) -> dict[str, float]:
-        """Give the limits in the words of JSON Schema."""
+        """The limits as in the JSON Schema."""
         words = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
         return {word: value for word, value in words.items() if value is not None}
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a number measures; an annotation of :class:`Number` that pydantic understands.
+    """Unit and meaning of a number; an annotation of :class:`Number` that pydantic understands.
 
     Parameters
     ----------
@@ -257,9 +263,9 @@ class Quantity:
     spread : Percent, Within, Span or Fixed
         The default range and the physical reason for it.
     limits : Limits
-        Hard limits.
+        Limits of the value.
     words : mapping of str to float
-        Words that may stand for a number.
+        Words that may replace a number.
     whole : bool
         Whether only whole numbers have a meaning.
     """
@@ -276,12 +282,12 @@ class Quantity:
         return self.limits.clip(self.spread.around(float(value)))
 
     def read(self, raw: object) -> Number:
-        """Turn what stands in the description into a number.
+        """Turn what a description has into a number.
 
         Raises
         ------
         PydanticCustomError
-            If it is no number, is not finite or lies outside the hard limits.
+            If it is no number, is not finite or is outside the limits.
         """
         if isinstance(raw, Number):
             number = raw
@@ -346,7 +352,7 @@ class Quantity:
 
     @property
     def expectation(self) -> str:
-        """What the description should hold here, as a phrase."""
+        """What is expected here, as a phrase."""
         kind = "a whole number" if self.whole else "a number"
         words = f" or one of {', '.join(self.words)}" if self.words else ""
         limits = f" {self.limits}" if str(self.limits) else ""
@@ -361,7 +367,7 @@ class Quantity:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        """Give the plain and the noted form, and the facts about the quantity."""
+        """The plain form, the form with range and source, and the facts about the quantity."""
         plain: dict[str, Any] = {"type": "integer" if self.whole else "number", **self.limits.schema()}
         words = [{"enum": list(self.words)}] if self.words else []
         return {
@@ -373,7 +379,7 @@ class Quantity:
 
 
 def noted_form(plain: dict[str, Any], words: Sequence[dict[str, Any]] = ()) -> dict[str, Any]:
-    """JSON Schema of a number with notes, given those of the plain number and of words for it."""
+    """JSON Schema of a number with range and source, from those of the plain number and of its words."""
     return {
         "type": "object",
         "properties": {
@@ -396,7 +402,7 @@ def quantity_of(field: FieldInfo) -> Quantity | None:
 
 
 def problem(found: str, expected: str, help_: str) -> PydanticCustomError:
-    """Build the error that carries what was found, what was expected and what to do about it."""
+    """Make an error with what was found, what was expected and what to do."""
     return PydanticCustomError(
         "input",
         "found {found}; expected {expected}. {help}",
@@ -405,7 +411,7 @@ def problem(found: str, expected: str, help_: str) -> PydanticCustomError:
 
 
 def shown(raw: object) -> str:
-    """Render a piece of the description short enough for a message."""
+    """A piece of a description, short enough for a message."""
     if raw is None:
         return "nothing"
     text = repr(raw)

@@ -42,7 +42,7 @@ _ZONE_KINDS: tuple[Kind, ...] = (
     "operative_temperature",
     "globe_temperature",
 )
-#: Units of means: over the step, or whatever other interval, that ends at the time of the record.
+#: Units of means over the interval that ends at the time of the record.
 _MEANS = ("W", "W/m2")
 _SIDES = ("outside", "inside")
 
@@ -51,16 +51,16 @@ _SIDES = ("outside", "inside")
 class Output:
     """A result of a run.
 
-    The mean radiant temperature of a zone is the mean of the temperatures of its faces, weighted by area:
-    no view factors to a point and no emissivities enter. The operative temperature is the mean of air and
+    The mean radiant temperature of a zone is the mean of its surface temperatures, weighted by area; it does
+    not use view factors to a point or emissivities. The operative temperature is the mean of air and
     mean radiant temperature; the globe temperature is that of a black globe of 0.15 m between the two.
 
-    Heating and cooling loads are what ideal plants give and take, neither below 0, as means over the step
-    that ends at the record. Air changes count all outdoor air: infiltration, ventilation and openings.
+    Heating and cooling loads are ideal loads, neither below 0, as means over the step that ends at the
+    record. Air changes include infiltration, ventilation and openings.
 
-    Sun is given as means over the step that ends at the time: on the outside of a surface or window after
-    shading [W/m2], let in by a window or by all windows of a zone, and lost by a zone through its windows
-    again [W].
+    Solar radiation is the mean over the step that ends at the record: incident on a surface or window after
+    shading [W/m2], transmitted by a window or by all windows of a zone, and lost by a zone through its
+    windows [W].
 
     Attributes
     ----------
@@ -73,13 +73,20 @@ class Output:
     zone, surface, sensor : int or None
         Position of the zone, surface or sensor in the description.
     side : int or None
-        0 for an outside face, 1 for an inside face.
+        0 for the outside, 1 for the inside.
     layer : int or None
         Position of the layer, counted from outside.
     interface : int or None
         Number of layers outside the interface, at least 1.
     aliases : tuple of str
         Other names.
+
+    Examples
+    --------
+    >>> from mascarin import examples
+    >>> import mascarin as mc
+    >>> mc.load(examples.FOLDER / "lgi" / "building.yaml").output("room.air_temperature").unit
+    'degC'
     """
 
     name: str
@@ -95,12 +102,12 @@ class Output:
 
     @property
     def mean(self) -> bool:
-        """Whether a record is the mean over the interval that it ends, and no state at its time."""
+        """Whether a record is the mean over the interval before it, and not a state at its time."""
         return self.unit in _MEANS
 
     @property
     def place(self) -> dict[str, int]:
-        """The positions that belong to this kind, by name."""
+        """Positions that are set for this kind, by name."""
         keys = ("zone", "surface", "side", "layer", "interface", "sensor")
         return {key: value for key in keys if (value := getattr(self, key)) is not None}
 
@@ -113,7 +120,7 @@ def outputs(building: Description) -> list[Output]:
         for kind in _ZONE_KINDS
     ]
     for index, (name, zone) in enumerate(building.zones.items()):
-        for which in zone.plants:
+        for which in zone.loads:
             kind: Kind = "heating_load" if which == "heating" else "cooling_load"
             found.append(Output(f"{name}.{kind}", "W", kind, zone=index))
         found.append(Output(f"{name}.air_changes", "1/h", "air_changes", zone=index))

@@ -1,6 +1,6 @@
-"""The language of parameters: every numeric leaf of a description has a path.
+"""Parameters: every number of a description by its path.
 
-Sensitivity, calibration, sweeps and GenOpt files all name numbers by these paths.
+Sensitivity analysis, calibration, sweeps and GenOpt files name numbers by these paths.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One numeric leaf of a building.
+    """One number of a building.
 
     Attributes
     ----------
@@ -29,23 +29,32 @@ class Parameter:
     value : float
         Nominal value. [unit]
     unit : str
-        Unit of all its numbers.
+        Unit of value, limits and range.
     lower, upper : float
-        Hard limits; may be infinite. [unit]
+        Limits; may be infinite. [unit]
     low, high : float
-        Believable range: as written in the description, else by default for the quantity. [unit]
+        Plausible range: as given in the description, else the default of the quantity. [unit]
     description : str
         What the number is.
     source : str or None
         Where the value comes from.
     assumed : bool
-        Whether nobody measured it or looked it up.
+        Whether it is an assumption, neither measured nor looked up.
     structural : bool
-        Whether it shapes the calculation itself, so that changing it means a new plan.
+        Whether it changes the structure of the calculation, so that it cannot vary within a compiled run.
     reason : str or None
-        Why it is structural or has no effect in this building; none: it acts.
+        Why it is structural or has no effect in this building; None: it has an effect.
     range_reason : str
-        Why the range is as wide as it is.
+        Reason for the width of the range.
+
+    Examples
+    --------
+    >>> from mascarin import examples
+    >>> import mascarin as mc
+    >>> cell = mc.load(examples.FOLDER / "lgi" / "building.yaml")
+    >>> conductivity = cell.parameter("materials.energain.conductivity.solid")
+    >>> conductivity.unit, conductivity.varies
+    ('W/(m K)', True)
     """
 
     path: str
@@ -64,23 +73,23 @@ class Parameter:
 
     @property
     def varies(self) -> bool:
-        """Whether a sensitivity analysis can vary it and see something."""
+        """Whether a sensitivity analysis can vary it with an effect."""
         return self.reason is None and self.low < self.high
 
 
 def parameters(building: Description) -> list[Parameter]:
-    """All numeric leaves of a building, in the order of the description."""
-    idle = without_effect(building)
-    return [_parameter(path, number, source, idle.get(path)) for path, number, source in leaves(building)]
+    """All numbers of a building, in the order of the description."""
+    inactive = without_effect(building)
+    return [_parameter(path, number, source, inactive.get(path)) for path, number, source in leaves(building)]
 
 
-def _parameter(path: str, number: Number, source: str, idle: str | None) -> Parameter:
+def _parameter(path: str, number: Number, source: str, inactive: str | None) -> Parameter:
     quantity = number.quantity
     if quantity is None:
         raise TypeError(f"{path} measures no quantity")
     low, high = number.plausible
     if not low < high:
-        idle = idle or "its default range has no width: write a range"
+        inactive = inactive or "its default range has no width: give a range"
     return Parameter(
         path=path,
         value=float(number),
@@ -93,18 +102,18 @@ def _parameter(path: str, number: Number, source: str, idle: str | None) -> Para
         source=source or None,
         assumed=number.assumed,
         structural=number.structural,
-        reason=quantity.spread.reason if number.structural else idle,
-        range_reason=quantity.spread.reason if number.range is None else "written in the description",
+        reason=quantity.spread.reason if number.structural else inactive,
+        range_reason=quantity.spread.reason if number.range is None else "given in the description",
     )
 
 
 def resolve(building: Description, path: str, known: Mapping[str, Any]) -> str:
-    """Find the path that a user means: itself, or one of the short ways to write it.
+    """Find the path that a user means: itself, or a short form of it.
 
     Raises
     ------
     InputError
-        If nothing goes by that path; the text names the nearest ones.
+        If nothing has that path; the text names the nearest ones.
     """
     found = lookup(building, path, known)
     if found is None:
@@ -116,7 +125,7 @@ def resolve(building: Description, path: str, known: Mapping[str, Any]) -> str:
 
 
 def lookup(building: Description, path: str, known: Mapping[str, Any]) -> str | None:
-    """Find the path that a user means, or nothing."""
+    """Find the path that a user means; None if there is none."""
     return next((one for one in (path, *_aliases(building, path)) if one in known), None)
 
 

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 Location = tuple[int | str, ...]
 
 
-_INTERNALS = frozenset(dir(BaseModel))
+#: Names that completion leaves out: those of pydantic, and what only this package uses.
+_INTERNALS = frozenset([*dir(BaseModel), "has_usual_kind", "in_short", "written"])
 _ONE_LINE = 100  # characters
 
 
@@ -78,6 +79,10 @@ class Part(BaseModel):
                 if value is not None:
                     fields[key] = value
         return fields
+
+    def in_short(self) -> str:
+        """The part in a few words, as a row of the part that it belongs to."""
+        return str(getattr(self, "kind", None) or type(self).__name__)
 
     def __dir__(self) -> list[str]:
         """Fields and methods, without those of pydantic."""
@@ -146,7 +151,7 @@ class Part(BaseModel):
 
     @classmethod
     def _meaning(cls, key: str) -> str:
-        """Say what a field holds."""
+        """What a field is for, in words."""
         field = cls.model_fields.get(key)
         if field is None:
             return f"'{key}'"
@@ -218,7 +223,7 @@ def _in_short(value: Any) -> str:
     if isinstance(value, Number):
         return value.with_unit()
     if isinstance(value, Part):
-        return getattr(value, "kind", None) or type(value).__name__
+        return value.in_short()
     if isinstance(value, Mapping):
         return ", ".join(map(str, value)) or "none"
     if isinstance(value, tuple):
@@ -228,20 +233,20 @@ def _in_short(value: Any) -> str:
 
 
 def derived_number(part: type[Part], key: str, value: float, source: str, *, assumed: bool = False) -> Number:
-    """Make the value of a field that the user left open.
+    """Make the value of a field that the user did not give.
 
     Parameters
     ----------
     part : type of Part
-        The kind of part the field belongs to.
+        Class of the part.
     key : str
         Name of the field.
     value : float
         The value. [unit of the field]
     source : str
-        What the value follows from.
+        What the value is derived from.
     assumed : bool
-        Whether it is a guess and no consequence of the description.
+        Whether it is an assumption and does not follow from the description.
     """
     return Number(
         value, source=source, assumed=assumed, derived=True, quantity=quantity_of(part.model_fields[key])
@@ -249,28 +254,28 @@ def derived_number(part: type[Part], key: str, value: float, source: str, *, ass
 
 
 def merged(faults: list[InitErrorDetails]) -> ValidationError:
-    """Bundle several faults of one part."""
+    """One exception with several errors of one part."""
     return ValidationError.from_exception_data("description", faults)
 
 
 def fault(location: Location, found: str, expected: str, help_: str) -> InitErrorDetails:
-    """Describe one fault below the part that is being validated."""
+    """Describe one error below the part that is being checked."""
     return InitErrorDetails(type=problem(found, expected, help_), loc=location, input=None)
 
 
 def refuse(*faults: InitErrorDetails) -> NoReturn:
-    """Raise the faults."""
+    """Raise the errors."""
     raise merged(list(faults))
 
 
 def insist(*faults: InitErrorDetails) -> None:
-    """Raise the faults, if there are any."""
+    """Raise the errors, if there are any."""
     if faults:
         refuse(*faults)
 
 
 def _choice(found: str, options: str) -> PydanticCustomError:
-    """Build the error of a word that is none of the options."""
+    """Make the error of a word that is none of the options."""
     words = options.replace("'", "").replace(" or ", ", ").split(", ") if options else ["a kind"]
     help_ = did_you_mean(found.removeprefix("kind: ").strip("'"), words)
     return problem(found, f"one of {', '.join(words)}" if len(words) > 1 else words[0].lower(), help_)
@@ -288,11 +293,11 @@ class Shorthand:
     Parameters
     ----------
     word : str, optional
-        Key that a bare word stands for; none: no bare word.
+        Key that is meant by a single word; none: no single word.
     number : str, optional
-        Key that a bare number stands for; none: no bare number.
+        Key that is meant by a single number; none: no single number.
     kind : str, optional
-        Kind that goes with a bare number.
+        Kind that a single number implies.
     """
 
     word: str | None = None
@@ -300,7 +305,7 @@ class Shorthand:
     kind: str | None = None
 
     def expand(self, raw: Any) -> Any:
-        """Write the mapping out."""
+        """The whole mapping."""
         if self.number is not None and (is_number(raw) or (isinstance(raw, str) and self.word is None)):
             return {self.number: raw} | ({"kind": self.kind} if self.kind else {})
         if self.word is not None and isinstance(raw, str):
@@ -323,5 +328,5 @@ class Shorthand:
 
 
 def is_number(raw: object) -> bool:
-    """Tell whether a piece of the description is one number, plain or with notes."""
+    """Whether a piece of a description is one number, plain or with range and source."""
     return isinstance(raw, int | float) or (isinstance(raw, Mapping) and "value" in raw)

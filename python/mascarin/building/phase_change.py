@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Final, Literal
 
@@ -11,39 +10,46 @@ from pydantic import Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
+from mascarin.building.curves import as_many, monotone, rising
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, fault, insist
 
-#: Share of the transition cut off at either end of a curve with tails, where hysteresis needs an end.
+#: Fraction of the transition cut off at each end of a curve with tails, where hysteresis needs an end.
 CUT: Final = 1e-3
 
 
 class ClosedLaw(Part):
-    """A law of the liquid fraction in closed form, about the melting temperature."""
+    """A law of the liquid fraction by a formula, about the melting temperature."""
 
-    #: Whether the fraction reaches 0 and 1 only in the infinite.
+    #: Whether the fraction reaches 0 and 1 only at infinity.
     tails: ClassVar[bool] = False
 
     @property
     def half_width(self) -> float:
-        """Half-width of the melting range, or of most of it [K]."""
-        raise TypeError("a law has a width of its own")
+        """Half-width of the melting range [K]."""
+        raise TypeError("each law defines its width")
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, from the melting temperature, tails cut at `CUT` [K]."""
-        raise TypeError("a law has a reach of its own")
+        """Where melting starts and is complete, relative to the melting temperature, without tails [K]."""
+        raise TypeError("each law defines its reach")
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
-        raise TypeError("a law has a fraction of its own")
+        """Liquid fraction at a distance above the melting temperature [K]."""
+        raise TypeError("each law defines its fraction")
 
 
 class TanhLaw(ClosedLaw):
     """Liquid fraction ``(1 + tanh((T - Tm)/w))/2``.
 
-    Either the half-width ``w`` is given, or ``gamma`` and ``delta_t`` of Guichard et al., with which
+    Either the half-width ``w`` is given, or ``gamma`` and ``delta_t`` of Guichard et al. 2016,
     ``w = 4 delta_t/gamma``.
+
+    Examples
+    --------
+    >>> law = TanhLaw(gamma=0.04, delta_t=0.01)
+    >>> law.half_width, law.fraction(0.0)
+    (1.0, 0.5)
     """
 
     tails: ClassVar[bool] = True
@@ -72,21 +78,27 @@ class TanhLaw(ClosedLaw):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, tails cut [K]."""
+        """Where melting starts and is complete, without tails [K]."""
         end = self.half_width * math.atanh(1.0 - 2.0 * CUT)
         return (-end, end)
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
+        """Liquid fraction at a distance above the melting temperature [K]."""
         return 0.5 + 0.5 * math.tanh(above / self.half_width)
 
 
 class SmoothStepLaw(ClosedLaw):
-    """A polynomial between ``Tm - w`` and ``Tm + w``, with one or two continuous derivatives."""
+    """A polynomial between ``Tm - w`` and ``Tm + w``, with one or two continuous derivatives.
+
+    Examples
+    --------
+    >>> SmoothStepLaw(width=1, continuity=2)
+    SmoothStepLaw(width=1 K, continuity=2)
+    """
 
     kind: Literal["smooth_step"] = "smooth_step"
     width: q.EndToMiddle
-    continuity: q.Continuity = Number(1.0, source=Remark("an enthalpy with a continuous capacity"))
+    continuity: q.Continuity = Number(1.0, source=Remark("the enthalpy has a continuous derivative"))
 
     @property
     def half_width(self) -> float:
@@ -99,7 +111,7 @@ class SmoothStepLaw(ClosedLaw):
         return (-self.half_width, self.half_width)
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
+        """Liquid fraction at a distance above the melting temperature [K]."""
         v = _held(0.5 + 0.5 * above / self.width)
         return (
             v * v * (3.0 - 2.0 * v)
@@ -109,7 +121,13 @@ class SmoothStepLaw(ClosedLaw):
 
 
 class GaussianLaw(ClosedLaw):
-    """The latent capacity is a normal distribution about Tm with the standard deviation ``width``."""
+    """The latent capacity is a normal distribution about Tm with the standard deviation ``width``.
+
+    Examples
+    --------
+    >>> GaussianLaw(width=0.8)
+    GaussianLaw(width=0.8 K)
+    """
 
     tails: ClassVar[bool] = True
     kind: Literal["gaussian"] = "gaussian"
@@ -122,28 +140,33 @@ class GaussianLaw(ClosedLaw):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, tails cut [K]."""
+        """Where melting starts and is complete, without tails [K]."""
         from statistics import NormalDist
 
         end = self.width * NormalDist().inv_cdf(1.0 - CUT)
         return (-end, end)
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
+        """Liquid fraction at a distance above the melting temperature [K]."""
         return 0.5 * math.erfc(-above / self.width / math.sqrt(2.0))
 
 
 class GumbelLaw(ClosedLaw):
-    """A skewed law: the latent capacity peaks at Tm and has a long tail on one side.
+    """A skewed law: the latent capacity has its peak at Tm and a long tail on one side.
 
     With the tail towards low temperatures the fraction is ``1 - exp(-exp((T - Tm)/w))``.
+
+    Examples
+    --------
+    >>> GumbelLaw(width=0.8, tail="high")
+    GumbelLaw(width=0.8 K, tail=high)
     """
 
     tails: ClassVar[bool] = True
     kind: Literal["gumbel"] = "gumbel"
     width: q.GumbelScale
     tail: Literal["low", "high"] = Field(
-        "low", description="Where the long tail is: low (melting starts slowly) or high temperatures"
+        "low", description="Side of the long tail: low (melting starts slowly) or high temperatures"
     )
 
     @property
@@ -153,19 +176,25 @@ class GumbelLaw(ClosedLaw):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where melting starts and is complete, tails cut [K]."""
+        """Where melting starts and is complete, without tails [K]."""
         ends = sorted(-self.width * math.log(-math.log(share)) for share in (CUT, 1.0 - CUT))
         return (ends[0], ends[1]) if self.tail == "high" else (-ends[1], -ends[0])
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the peak [K]."""
+        """Liquid fraction at a distance above the peak [K]."""
         sign = 1.0 if self.tail == "low" else -1.0
         left = math.exp(-math.exp(max(min(sign * above / self.width, 30.0), -30.0)))
         return 1.0 - left if self.tail == "low" else left
 
 
 class LinearLaw(ClosedLaw):
-    """The liquid fraction rises straight from 0 at ``Tm - w`` to 1 at ``Tm + w``."""
+    """The liquid fraction is linear from 0 at ``Tm - w`` to 1 at ``Tm + w``.
+
+    Examples
+    --------
+    >>> LinearLaw(width=1)
+    LinearLaw(width=1 K)
+    """
 
     kind: Literal["linear"] = "linear"
     width: q.EndToMiddle
@@ -181,12 +210,18 @@ class LinearLaw(ClosedLaw):
         return (-self.half_width, self.half_width)
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the melting temperature [K]."""
+        """Liquid fraction at a distance above the melting temperature [K]."""
         return _held(0.5 + 0.5 * above / self.width)
 
 
 class TriangleLaw(ClosedLaw):
-    """The latent capacity is a triangle with its peak at Tm."""
+    """The latent capacity is a triangle with its peak at Tm.
+
+    Examples
+    --------
+    >>> TriangleLaw(below=2, above=1)
+    TriangleLaw(below=2 K, above=1 K)
+    """
 
     kind: Literal["triangle"] = "triangle"
     below: q.Flank
@@ -203,7 +238,7 @@ class TriangleLaw(ClosedLaw):
         return (-float(self.below), float(self.above))
 
     def fraction(self, above: float) -> float:
-        """Liquid fraction so far above the peak [K]."""
+        """Liquid fraction at a distance above the peak [K]."""
         rising, falling = _held(1.0 + above / self.below), _held(1.0 - above / self.above)
         total = self.below + self.above
         return (self.below * rising**2 + self.above * (1.0 - falling**2)) / total
@@ -214,7 +249,13 @@ def _held(value: float) -> float:
 
 
 class FractionsLaw(Part):
-    """Measured liquid fraction over temperature, interpolated monotonically; needs a latent heat beside."""
+    """Measured liquid fraction over temperature, interpolated monotonically; needs a latent heat.
+
+    Examples
+    --------
+    >>> FractionsLaw(temperatures=[19, 21, 22], fractions=[0, 0.6, 1])
+    FractionsLaw(temperatures=[19 degC, 21 degC, 22 degC], fractions=[0, 0.6, 1], temperature_shift=0 K)
+    """
 
     tails: ClassVar[bool] = False
     kind: Literal["fractions"] = "fractions"
@@ -225,7 +266,7 @@ class FractionsLaw(Part):
     @model_validator(mode="after")
     def _complete(self) -> FractionsLaw:
         faults = [*rising("temperatures", self.temperatures), *rising("fractions", self.fractions)]
-        faults += _as_many("temperatures", self.temperatures, "fractions", self.fractions)
+        faults += as_many("temperatures", self.temperatures, "fractions", self.fractions)
         ends = [(0, 0.0), (len(self.fractions) - 1, 1.0)] if len(self.fractions) > 1 else []
         faults += [
             fault(
@@ -256,7 +297,7 @@ class FractionsLaw(Part):
 
 
 class _Table(Part):
-    """A measured curve over temperature that holds sensible and latent heat."""
+    """A measured curve over temperature that includes sensible and latent heat."""
 
     temperatures: tuple[q.CurveTemperature, ...]
     melting_range: tuple[q.CurveTemperature, q.CurveTemperature] | None = Field(
@@ -290,11 +331,17 @@ class _Table(Part):
 
     def rise(self, low: float, high: float) -> float:
         """Rise of the specific enthalpy between two temperatures of the table [J/kg]."""
-        raise TypeError("a table has a curve of its own")
+        raise TypeError("each table defines its curve")
 
 
 class TableLaw(_Table):
-    """Measured enthalpy over temperature, interpolated monotonically."""
+    """Measured enthalpy over temperature, interpolated monotonically.
+
+    Examples
+    --------
+    >>> TableLaw(temperatures=[15, 20, 25], enthalpies=[0, 2.0e4, 2.2e5])
+    TableLaw(temperatures=[15 degC, 20 degC, 25 degC], temperature_shift=0 K, enthalpy_scale=1, enth...)
+    """
 
     kind: Literal["table"] = "table"
     enthalpies: tuple[q.CurveEnthalpy, ...]
@@ -307,7 +354,7 @@ class TableLaw(_Table):
         insist(
             *rising("temperatures", self.temperatures),
             *rising("enthalpies", self.enthalpies),
-            *_as_many("temperatures", self.temperatures, "enthalpies", self.enthalpies),
+            *as_many("temperatures", self.temperatures, "enthalpies", self.enthalpies),
             *self._melting_outside(),
         )
         return self
@@ -319,7 +366,13 @@ class TableLaw(_Table):
 
 
 class CapacityLaw(_Table):
-    """Measured apparent specific heat over temperature, interpolated linearly and integrated."""
+    """Measured apparent specific heat over temperature, interpolated linearly and integrated.
+
+    Examples
+    --------
+    >>> CapacityLaw(temperatures=[18, 21, 24], capacities=[2000, 60000, 2000])
+    CapacityLaw(temperatures=[18 degC, 21 degC, 24 degC], temperature_shift=0 K, enthalpy_scale=1, c...)
+    """
 
     kind: Literal["capacity"] = "capacity"
     capacities: tuple[q.CurveCapacity, ...]
@@ -328,7 +381,7 @@ class CapacityLaw(_Table):
     def _monotone(self) -> CapacityLaw:
         insist(
             *rising("temperatures", self.temperatures),
-            *_as_many("temperatures", self.temperatures, "capacities", self.capacities),
+            *as_many("temperatures", self.temperatures, "capacities", self.capacities),
             *self._melting_outside(),
         )
         return self
@@ -361,7 +414,7 @@ Law = Annotated[
     | CapacityLaw,
     Field(discriminator="kind"),
 ]
-#: Laws of the liquid fraction alone: what hysteresis can be made of.
+#: Laws of the liquid fraction alone, which hysteresis needs.
 FractionLaw = Annotated[
     TanhLaw | SmoothStepLaw | GaussianLaw | GumbelLaw | LinearLaw | TriangleLaw | FractionsLaw,
     Field(discriminator="kind"),
@@ -369,15 +422,20 @@ FractionLaw = Annotated[
 
 
 class Hysteresis(Part):
-    """A cooling curve of its own, and what happens on a reversal within the range.
+    """A cooling curve, and what happens at a reversal within the melting range.
 
     ``curve_track`` stays on its curve until all has melted or frozen. ``curve_switch`` keeps the liquid
-    fraction until the other curve is met. ``curve_scale`` follows the other curve, scaled to what is left.
+    fraction until the other curve is reached. ``curve_scale`` follows the other curve, scaled to the rest.
     The law of the material is the heating curve.
 
     References
     ----------
     Barz et al. 2019, J. Build. Perf. Simul. 12(6), doi:10.1080/19401493.2019.1657953
+
+    Examples
+    --------
+    >>> Hysteresis(model="curve_switch", freezing_temperature=18.5).model
+    'curve_switch'
     """
 
     model: Literal["curve_track", "curve_switch", "curve_scale"] = Field(
@@ -395,57 +453,3 @@ class Hysteresis(Part):
         if isinstance(raw, dict) and isinstance(raw.get("model"), str):
             return raw | {"model": raw["model"].replace("-", "_")}
         return raw
-
-
-def rising(key: str, values: tuple[Number, ...]) -> list[InitErrorDetails]:
-    """Find where a column of a table does not rise."""
-    if len(values) < 2:
-        return [fault((key,), f"{len(values)} points", "at least two points", "Complete the table.")]
-    return [
-        fault(
-            (key, i + 1),
-            f"{after:g} after {before:g}",
-            "strictly rising values: heat must raise enthalpy",
-            "Sort the table, remove repeated points; a plateau needs a small slope.",
-        )
-        for i, (before, after) in enumerate(pairwise(values))
-        if not after > before
-    ]
-
-
-def _as_many(
-    one: str, first: tuple[Number, ...], other: str, second: tuple[Number, ...]
-) -> list[InitErrorDetails]:
-    if len(first) == len(second):
-        return []
-    found = f"{len(first)} {one} and {len(second)} {other}"
-    return [fault((), found, "as many of one as of the other", "Complete the table.")]
-
-
-def monotone(x: tuple[Number, ...], y: tuple[Number, ...]) -> Callable[[float], float]:
-    """Monotone cubic through points, as the engine draws it; constant beyond the ends.
-
-    References
-    ----------
-    Fritsch & Butland 1984, SIAM J. Sci. Stat. Comput. 5(2), doi:10.1137/0905021
-    """
-    lengths = [b - a for a, b in pairwise(x)]
-    secants = [(b - a) / length for (a, b), length in zip(pairwise(y), lengths, strict=True)]
-    slopes = [secants[0]]
-    for (left, right), (before, after) in zip(pairwise(lengths), pairwise(secants), strict=True):
-        near, far = 2.0 * right + left, right + 2.0 * left
-        slopes.append((near + far) / (near / before + far / after) if before > 0.0 < after else 0.0)
-    slopes.append(secants[-1])
-
-    def at(place: float) -> float:
-        if place <= x[0]:
-            return float(y[0])
-        for i, length in enumerate(lengths):
-            if place < x[i + 1]:
-                u = (place - x[i]) / length
-                s0, s1, m = slopes[i], slopes[i + 1], secants[i]
-                cubic = (3.0 * m - 2.0 * s0 - s1) + u * (s0 + s1 - 2.0 * m)
-                return float(y[i] + length * u * (s0 + u * cubic))
-        return float(y[-1])
-
-    return at

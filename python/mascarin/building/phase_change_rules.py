@@ -1,4 +1,4 @@
-"""What a phase-change material cannot be: falling enthalpy, curves that cross, numbers in another unit."""
+"""Errors of a phase-change material: falling enthalpy, crossing curves, numbers in another unit."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from mascarin.building.part import Location, fault
 from mascarin.building.phase_change import CUT, CapacityLaw, ClosedLaw, FractionLaw, FractionsLaw, TableLaw
 from mascarin.building.phases import phase
 
-#: How far a latent heat may be from what its table holds [-].
+#: Largest relative difference of a latent heat from that of its table [-].
 AGREEMENT: Final = 0.10
 #: Round-off of a liquid fraction.
 _EPSILON: Final = 1e-9
 _POINTS: Final = 800
 #: (largest or smallest value that can be meant, factor, unit meant, unit written) by property.
-_SLIPS: Final = {
+_UNIT_ERRORS: Final = {
     "conductivity": (60.0, 1e-3, "W/(m K)", "mW/(m K)"),
     "density": (20.0, 1e3, "kg/m3", "g/cm3"),
     "specific_heat": (50.0, 1e3, "J/(kg K)", "kJ/(kg K)"),
@@ -29,7 +29,7 @@ _SLIPS: Final = {
 
 
 def missing_or_inactive(material: Melting) -> list[InitErrorDetails]:
-    """Find what the law needs and is not there, and what could not act beside it."""
+    """What the law needs and is not given, and what has no effect beside it."""
     law, kind = material.law, material.law.kind
     table = isinstance(law, TableLaw | CapacityLaw)
     faults = []
@@ -42,7 +42,7 @@ def missing_or_inactive(material: Melting) -> list[InitErrorDetails]:
             fault(
                 ("melting_temperature",),
                 f"{material.melting_temperature:g}",
-                f"no value: the {kind} law says where it melts",
+                f"no value: the {kind} law includes the melting temperature",
                 "Remove 'melting_temperature:', or vary the law's temperature_shift.",
             )
         )
@@ -71,7 +71,7 @@ def _hysteresis_fits(material: Melting) -> Iterator[InitErrorDetails]:
             yield fault(
                 ("hysteresis", "freezing_temperature"),
                 f"{hysteresis.freezing_temperature:g}",
-                "no value: the fractions law says where it freezes",
+                "no value: the fractions law includes the freezing temperature",
                 "Remove it, or vary the law's temperature_shift.",
             )
         if hysteresis.law is None:
@@ -88,27 +88,34 @@ def _hysteresis_fits(material: Melting) -> Iterator[InitErrorDetails]:
 # --- units --------------------------------------------------------------------------------------------------
 
 
-def unit_slips(material: Melting) -> list[InitErrorDetails]:
-    """Find numbers that no phase-change material has, but would have in another unit."""
+def unit_errors(material: Melting) -> list[InitErrorDetails]:
+    """Numbers that no phase-change material has, but would have in another unit."""
     faults = []
-    for key in _SLIPS:
+    for key in _UNIT_ERRORS:
         held: Any = getattr(material, key)
         if held is None:
             continue
         values = {(): held} if isinstance(held, Number) else {(p,): getattr(held, p) for p in _PHASES}
-        faults += [_slip(key, (key, *part), value) for part, value in values.items() if _odd(key, value)]
+        faults += [
+            _unit_error(key, (key, *part), value)
+            for part, value in values.items()
+            if _implausible(key, value)
+        ]
     law = material.law
     faults += [
         fault(
             path,
             f"{value:g}",
-            "a temperature in degC below 200: nothing in a building melts above",
+            "a temperature in degC below 200",
             f"{value:g} K are {value - 273.15:.2f} degC.",
         )
         for path, value in _temperatures(material)
         if value > 200.0
     ]
-    if isinstance(law, TableLaw | CapacityLaw) and 0.0 < law.rise(*law.melting) < _SLIPS["latent_heat"][0]:
+    if (
+        isinstance(law, TableLaw | CapacityLaw)
+        and 0.0 < law.rise(*law.melting) < _UNIT_ERRORS["latent_heat"][0]
+    ):
         rise = law.rise(*law.melting)
         column = "enthalpies" if isinstance(law, TableLaw) else "capacities"
         unit = "J/kg, not kJ/kg" if column == "enthalpies" else "J/(kg K), not kJ/(kg K)"
@@ -116,7 +123,7 @@ def unit_slips(material: Melting) -> list[InitErrorDetails]:
             fault(
                 ("law", column),
                 f"{rise:g} J/kg over the melting range",
-                "at least 1000 J/kg: what melts takes up heat",
+                "at least 1000 J/kg of latent and sensible heat",
                 f"Write the table in {unit}.",
             )
         )
@@ -137,13 +144,13 @@ def _temperatures(material: Melting) -> Iterator[tuple[Location, float]]:
             yield (*path, "temperatures", 0), law.temperatures[0]
 
 
-def _odd(key: str, value: float) -> bool:
-    limit = _SLIPS[key][0]
+def _implausible(key: str, value: float) -> bool:
+    limit = _UNIT_ERRORS[key][0]
     return value > limit if key == "conductivity" else 0.0 < value < limit
 
 
-def _slip(key: str, path: Location, value: float) -> InitErrorDetails:
-    limit, factor, unit, other = _SLIPS[key]
+def _unit_error(key: str, path: Location, value: float) -> InitErrorDetails:
+    limit, factor, unit, other = _UNIT_ERRORS[key]
     side = "at most" if key == "conductivity" else "at least"
     return fault(
         path,
@@ -157,7 +164,7 @@ def _slip(key: str, path: Location, value: float) -> InitErrorDetails:
 
 
 def falling_enthalpy(material: Melting) -> list[InitErrorDetails]:
-    """Find where ``dH/dT = C_s + D xi + xi' (L + D (T - Tr))`` is not positive."""
+    """Temperature at which ``dH/dT = C_s + D xi + xi' (L + D (T - Tr))`` is not positive."""
     curves = _curves(material)
     solid, liquid = material.heat_capacities
     difference = liquid - solid
@@ -178,7 +185,7 @@ def falling_enthalpy(material: Melting) -> list[InitErrorDetails]:
                     key,
                     f"{found} at {at:.2f} degC",
                     "an enthalpy that rises with temperature and with the liquid fraction",
-                    "The difference of the heat capacities outweighs the latent heat over this width: "
+                    "The difference of the heat capacities exceeds the latent heat over this width: "
                     "check specific_heat of both phases, latent_heat and the width.",
                 )
             ]
@@ -186,12 +193,12 @@ def falling_enthalpy(material: Melting) -> list[InitErrorDetails]:
 
 
 def solid_density(material: Melting) -> float:
-    """Density that the heat is counted by [kg/m3]."""
+    """Density of the solid, to which heat per volume refers [kg/m3]."""
     return phase(material.density, "solid")
 
 
 def contradicted_latent_heat(material: Melting) -> list[InitErrorDetails]:
-    """Find a latent heat that the table beside it does not hold."""
+    """A latent heat that contradicts the table beside it."""
     law = material.law
     if material.latent_heat is None or not isinstance(law, TableLaw | CapacityLaw):
         return []
@@ -204,9 +211,9 @@ def contradicted_latent_heat(material: Melting) -> list[InitErrorDetails]:
         fault(
             ("latent_heat",),
             f"{material.latent_heat:g}",
-            f"{held:g} J/kg within {100 * AGREEMENT:g} %: what the table rises between {low:g} and {high:g} "
-            f"degC less the sensible heat of {0.5 * (solid + liquid):g} J/(kg K)",
-            "Correct the table, its melting_range, specific_heat, or leave latent_heat out: the table acts.",
+            f"{held:g} J/kg within {100 * AGREEMENT:g} %: the rise of the table between {low:g} and {high:g} "
+            f"degC minus the sensible heat of {0.5 * (solid + liquid):g} J/(kg K)",
+            "Correct the table, its melting_range, specific_heat, or remove latent_heat: the table is used.",
         )
     ]
 
@@ -224,7 +231,7 @@ def _curves(
     if cooling is None:
         law, centre = material.law, material.centre
         low, high = law.reach
-        if law.tails:  # beyond thrice the reach nothing is left of them
+        if law.tails:  # beyond three times the reach they are negligible
             low, high = 3.0 * low, 3.0 * high
         return {("law",): (lambda at: law.fraction(at - centre), centre + low, centre + high)}
     return {
@@ -234,7 +241,7 @@ def _curves(
 
 
 def _compact(law: FractionLaw, centre: float) -> tuple[Callable[[float], float], float, float]:
-    """A curve with its tails cut off and the rest stretched to 0..1, as hysteresis takes it."""
+    """A curve without its tails, the rest scaled to 0..1, as hysteresis uses it."""
     low, high = law.reach
 
     def curve(at: float) -> float:
@@ -245,7 +252,7 @@ def _compact(law: FractionLaw, centre: float) -> tuple[Callable[[float], float],
 
 
 def crossing_curves(material: Melting) -> list[InitErrorDetails]:
-    """Find where there is more liquid on heating than on cooling: cycles would make heat useful again."""
+    """Temperature with more liquid on heating than on cooling: cycles would destroy entropy."""
     if material.cooling is None:
         return []
     (heating, *_), (cooling, *_) = _curves(material).values()
@@ -264,16 +271,16 @@ def crossing_curves(material: Melting) -> list[InitErrorDetails]:
 
 
 def unordered_slopes(material: Melting) -> tuple[float, float] | None:
-    """Where small cycles of curve_scale would make entropy vanish.
+    """Temperatures at which small cycles of curve_scale would destroy entropy.
 
-    A cycle between two temperatures melts in proportion to the slopes of the heating curve and freezes in
-    proportion to those of the cooling curve. It melts at higher temperatures than it freezes wherever the
-    ratio of the slopes rises with temperature (the likelihood ratio order of the two curves).
+    In a cycle between two temperatures melting is proportional to the slope of the heating curve, and
+    freezing to that of the cooling curve. Melting is at higher temperatures than freezing where the ratio of
+    the slopes rises with temperature (likelihood ratio order of the two curves).
 
     Returns
     -------
     tuple of float or None
-        First and last temperature between which the ratio falls; none where it nowhere does. [degC]
+        First and last temperature between which the ratio falls; None where it does not. [degC]
     """
     if material.hysteresis is None or material.hysteresis.model != "curve_scale" or material.cooling is None:
         return None

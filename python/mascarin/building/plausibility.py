@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from mascarin.building.derived import drawn_areas, enclosure, faces_of
+from mascarin.building.derived import drawn_areas, enclosure, sides_of_zone
 from mascarin.building.description import Description
 from mascarin.building.geometry import volume as enclosed_volume
 from mascarin.building.material import PhaseChangeMaterial, Resistance
@@ -16,14 +16,14 @@ from mascarin.building.rules import shaded
 from mascarin.building.u_values import time_constant
 from mascarin.errors import InputError
 
-#: SDIRK2 keeps the maximum principle only for steps below so many times the smallest time constant.
+#: SDIRK2 satisfies the maximum principle for steps below this many times the smallest time constant.
 SDIRK2_BOUND = 2.4
-#: Diffusivities of what walls are made of, from dense polymers to copper and silver [m2/s].
+#: Thermal diffusivities of building materials, from dense polymers to copper and silver [m2/s].
 _DIFFUSIVITIES = (1e-8, 2e-4)
 
 
 def warnings(building: Description, mesh: Mesh, step_seconds: float) -> Iterator[str]:
-    """What deserves a second look: the mesh, the step, areas and volumes that do not fit together."""
+    """Warnings: the mesh, the step, areas and volumes that do not fit together."""
     yield from mesh.warnings
     quick = [
         name
@@ -35,16 +35,16 @@ def warnings(building: Description, mesh: Mesh, step_seconds: float) -> Iterator
             f"a step of {step_seconds:g} s is above {SDIRK2_BOUND} times the smallest time constant of "
             f"{', '.join(quick)}: SDIRK2 may overshoot there after a jump (backward-euler never does)"
         )
-    yield from _odd_materials(building)
-    yield from _odd_melting(building)
-    yield from _odd_volumes(building)
-    yield from _odd_faces(building)
-    yield from _odd_areas(building)
+    yield from _implausible_materials(building)
+    yield from _implausible_melting(building)
+    yield from _implausible_volumes(building)
+    yield from _implausible_enclosures(building)
+    yield from _implausible_areas(building)
     yield from _unshaded(building)
 
 
-def _odd_materials(building: Description) -> Iterator[str]:
-    """Find properties that do not go together, as when one of them is in another unit."""
+def _implausible_materials(building: Description) -> Iterator[str]:
+    """Properties that do not fit together, as when one of them is in another unit."""
     low, high = _DIFFUSIVITIES
     for name, material in building.materials.items():
         if isinstance(material, Resistance):
@@ -58,7 +58,7 @@ def _odd_materials(building: Description) -> Iterator[str]:
             where = f"materials.{name}" + (f" ({state})" if isinstance(material, PhaseChangeMaterial) else "")
             if conductivity > 1.0 and weight < 100.0:
                 yield (
-                    f"{where}: nothing of {weight:g} kg/m3 conducts {conductivity:g} W/(m K): "
+                    f"{where}: no material of {weight:g} kg/m3 conducts {conductivity:g} W/(m K): "
                     "write the conductivity in W/(m K), not mW/(m K), and the density in kg/m3"
                 )
             elif not low <= diffusivity <= high:
@@ -68,8 +68,8 @@ def _odd_materials(building: Description) -> Iterator[str]:
                 )
 
 
-def _odd_melting(building: Description) -> Iterator[str]:
-    """Find small cycles that would make entropy vanish, and densities that make the liquid much thicker."""
+def _implausible_melting(building: Description) -> Iterator[str]:
+    """Small cycles that would destroy entropy, and densities that make the liquid much thicker."""
     for name, material in building.materials.items():
         if not isinstance(material, PhaseChangeMaterial):
             continue
@@ -88,12 +88,12 @@ def _odd_melting(building: Description) -> Iterator[str]:
             )
 
 
-def _odd_faces(building: Description) -> Iterator[str]:
-    """Find zones one face of which is larger than all others together: no closed shape has such a face."""
+def _implausible_enclosures(building: Description) -> Iterator[str]:
+    """Zones with a surface larger than all others together: no closed shape has one."""
     for name in building.zones:
         areas = {
             surface: float(building.surfaces[surface].area or 0.0)
-            for surface, _ in faces_of(name, building.surfaces)
+            for surface, _ in sides_of_zone(name, building.surfaces)
             if not building.surfaces[surface].internal_mass
         }
         if not areas:
@@ -102,26 +102,28 @@ def _odd_faces(building: Description) -> Iterator[str]:
         others = sum(areas.values()) - areas[largest]
         if areas[largest] > others * (1.0 + 1e-6):
             yield (
-                f"zones.{name}: the faces cannot enclose it, {largest} has {areas[largest]:.2f} m2 and the "
-                f"others together {others:.2f} m2: add the missing faces, correct the area, or split "
-                f"{largest} if it stands for several walls"
+                f"zones.{name}: the surfaces cannot enclose it, {largest} has {areas[largest]:.2f} m2, all "
+                f"others together {others:.2f} m2: add the missing surfaces, correct the area, or split "
+                f"{largest} if it represents several walls"
             )
 
 
-def _odd_volumes(building: Description) -> Iterator[str]:
+def _implausible_volumes(building: Description) -> Iterator[str]:
     for name, zone in building.zones.items():
         volume = float(zone.volume or 0.0)
-        area = sum(building.surfaces[surface].area or 0.0 for surface, _ in faces_of(name, building.surfaces))
+        area = sum(
+            building.surfaces[surface].area or 0.0 for surface, _ in sides_of_zone(name, building.surfaces)
+        )
         least = (36.0 * math.pi * volume**2) ** (1.0 / 3.0)
         if area < least:
             yield (
-                f"zones.{name}: {area:.2f} m2 of faces cannot enclose {volume:g} m3 "
-                f"(a sphere needs {least:.2f} m2): faces are missing, or the volume is too large"
+                f"zones.{name}: {area:.2f} m2 of surfaces cannot enclose {volume:g} m3 "
+                f"(a sphere needs {least:.2f} m2): surfaces are missing, or the volume is too large"
             )
-        faces = enclosure(name, building.surfaces)
-        if faces is not None:
+        seen = enclosure(name, building.surfaces)
+        if seen is not None:
             try:
-                drawn = enclosed_volume(faces)
+                drawn = enclosed_volume(seen)
             except InputError as error:
                 yield f"zones.{name}: {error}"
                 continue
@@ -132,10 +134,10 @@ def _odd_volumes(building: Description) -> Iterator[str]:
 def _unshaded(building: Description) -> Iterator[str]:
     bare = shaded(building)[1] if building.shades else []
     if bare:
-        yield f"shades: without vertices, {', '.join(bare)} lie in full sun"
+        yield f"shades: without effect on {', '.join(bare)}, which have no vertices"
 
 
-def _odd_areas(building: Description) -> Iterator[str]:
+def _implausible_areas(building: Description) -> Iterator[str]:
     for name, drawn in drawn_areas(building.surfaces).items():
         area = float(building.surfaces[name].area or 0.0)
         if abs(area - drawn) > 0.01 * drawn:

@@ -1,4 +1,4 @@
-"""What a building rests on: the sources of its numbers, and who the methods are by that a run of it uses."""
+"""Sources of the numbers of a building, and of the methods that a run of it uses."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 from mascarin.building.convection import SOURCES
 from mascarin.building.glazing import SOURCES as GLASS
-from mascarin.building.glazing import FilledGap, SimpleGlazing, TwoFaces
-from mascarin.building.inactive import faces, has_height, without_effect
+from mascarin.building.glazing import FilledGap, SimpleGlazing, TwoSides
+from mascarin.building.inactive import has_height, sides, without_effect
 from mascarin.building.leaves import leaves
 from mascarin.building.material import PhaseChangeMaterial
 from mascarin.building.number import Number, Remark
 from mascarin.building.phase_change import FractionsLaw, TableLaw
 from mascarin.building.site import ASHRAE_WIND, CLARK, MARTIN
 from mascarin.building.zone import ASHRAE_OPENING, TracedSun
-from mascarin.building.zone_surfaces import closed, zone_faces
+from mascarin.building.zone_surfaces import closed, surfaces_of_zone
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
@@ -41,19 +41,19 @@ _SKIES = {
     ),
 }
 _SKY_SPLIT = "Walton 1983, NBSIR 83-2655 (split of the sky by height above the horizon)"
-_ENCLOSURE = "Hottel & Sarofim 1967, Radiative Transfer, ch. 3 (exchange between the faces of a zone)"
+_ENCLOSURE = "Hottel & Sarofim 1967, Radiative Transfer, ch. 3 (exchange between the surfaces of a zone)"
 _EXACT_VIEW = "Sparrow 1963, doi:10.1115/1.3686058 (view factors of polygons)"
 _AREA_VIEW = (
     "Carroll 1980, Proc. 2nd Systems Simulation and Economic Analysis Conference, San Diego "
     "(view factors approximated by areas)"
 )
 _ATMOSPHERE = "ICAO Doc 7488, Manual of the ICAO Standard Atmosphere (density of the air)"
-_PLANT = "Hintermueller, Ito & Kunisch 2002, doi:10.1137/S1052623401383558 (loads of ideal plants)"
+_IDEAL_LOADS = "Hintermueller, Ito & Kunisch 2002, doi:10.1137/S1052623401383558 (ideal loads)"
 _SHADOWS = "Sutherland & Hodgman 1974, doi:10.1145/360767.360802 (shadows and sun patches as polygons)"
 _CURVE = "Fritsch & Butland 1984, doi:10.1137/0905021 (monotone interpolation of enthalpy tables)"
 
-#: What marks the text beside an assumed number as the name of a work.
-_NAMES_A_WORK = re.compile(
+#: Marks of a publication in the text beside an assumed number.
+_PUBLICATION = re.compile(
     r"\b(1[89]|20)\d\d\b|\bdoi\b|[A-Z]{2,}|\b(table|sec\.|ch\.|fig\.|eq\.) ?\d|(data|product) sheet"
 )
 
@@ -61,10 +61,10 @@ _NAMES_A_WORK = re.compile(
 def sources(building: Description) -> list[str]:
     """Where the numbers and methods of a building come from, without repetition.
 
-    Only what acts in this building is listed: of its numbers, those on which a result depends; of the
-    methods, those of a run with the default scheme. Remarks on why a number was left at its default are no
-    sources. Beside a number marked as assumed, a text counts where it names a work: by a year, a DOI,
-    capital letters such as ISO, a numbered table or section, a data sheet.
+    Listed are the sources of numbers on which a result depends, and of the methods of a run with the default
+    scheme. Remarks on defaults are not listed. The text beside a number marked as assumed is listed if it
+    names a publication: by a year, a DOI, capital letters such as ISO, a numbered table or section, a data
+    sheet.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ def sources(building: Description) -> list[str]:
 
 
 def _of_numbers(building: Description) -> Iterator[str]:
-    idle = without_effect(building)
+    inactive = without_effect(building)
     if not _sunlit(building):
-        idle |= dict.fromkeys(("site.latitude", "site.longitude"), "no face takes the sun from the climate")
+        inactive |= dict.fromkeys(("site.latitude", "site.longitude"), "no irradiance comes from the climate")
     for path, number, source in leaves(building):
-        # A direction that "only decides" between cases still acts.
-        acts = path not in idle or idle[path].startswith("it only decides")
+        # A direction that "only decides" between cases still has an effect.
+        acts = path not in inactive or inactive[path].startswith("it only decides")
         if acts and _is_source(number, source):
             yield source
 
@@ -93,22 +93,22 @@ def _of_numbers(building: Description) -> Iterator[str]:
 def _is_source(number: Number, source: str) -> bool:
     if not source or isinstance(source, Remark):
         return False
-    return not number.assumed or _NAMES_A_WORK.search(source) is not None
+    return not number.assumed or _PUBLICATION.search(source) is not None
 
 
 def _of_methods(building: Description) -> Iterator[str]:
     yield from _of_sun(building)
     yield from _of_sky(building)
     yield from _of_zones(building)
-    films = (face.side.convection for face in faces(building))
+    films = (item.side.convection for item in sides(building))
     kinds = dict.fromkeys(film.kind for film in films if film is not None)
     yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
-    if any(face.windy and has_height(face.side) for face in faces(building)):
+    if any(item.windy and has_height(item.side) for item in sides(building)):
         yield ASHRAE_WIND
     if building.openings:
         yield ASHRAE_OPENING
-    if any(zone.plants for zone in building.zones.values()):
-        yield _PLANT
+    if any(zone.loads for zone in building.zones.values()):
+        yield _IDEAL_LOADS
     yield from _of_glazings(building)
     if building.shades or any(isinstance(zone.sun, TracedSun) for zone in building.zones.values()):
         yield _SHADOWS
@@ -118,7 +118,7 @@ def _of_methods(building: Description) -> Iterator[str]:
 
 
 def _sunlit(building: Description) -> bool:
-    return any(face.sunlit for face in faces(building))
+    return any(item.sunlit for item in sides(building))
 
 
 def _of_sun(building: Description) -> Iterator[str]:
@@ -133,7 +133,7 @@ def _of_sun(building: Description) -> Iterator[str]:
 
 
 def _of_sky(building: Description) -> Iterator[str]:
-    if not any(face.sees_sky for face in faces(building)):
+    if not any(item.sees_sky for item in sides(building)):
         return
     kind = building.site.sky.kind
     yield from _SKIES.get(kind, ())
@@ -146,12 +146,12 @@ def _of_zones(building: Description) -> Iterator[str]:
     if building.zones and building.site.air_density is None:
         yield _ATMOSPHERE
     for name, zone in building.zones.items():
-        faces = zone_faces(name, building.surfaces, building.windows)
-        if zone.longwave.kind == "none" or len(faces) < 2:
+        seen = surfaces_of_zone(name, building.surfaces, building.windows)
+        if zone.longwave.kind == "none" or len(seen) < 2:
             continue
         yield _ENCLOSURE
         if zone.view_factors is None:
-            yield _EXACT_VIEW if closed(faces) else _AREA_VIEW
+            yield _EXACT_VIEW if closed(seen) else _AREA_VIEW
 
 
 def _of_glazings(building: Description) -> Iterator[str]:
@@ -160,7 +160,7 @@ def _of_glazings(building: Description) -> Iterator[str]:
         if isinstance(glass, SimpleGlazing):
             yield from (GLASS[key] for key in ("simple", "angle"))
             continue
-        coated = [isinstance(pane.reflectance, TwoFaces) for pane in glass.panes]
+        coated = [isinstance(pane.reflectance, TwoSides) for pane in glass.panes]
         if glass.angular is None:
             laws = {"panes": not all(coated), "coated": any(coated)}
             yield from (GLASS[key] for key, acts in laws.items() if acts)

@@ -1,4 +1,4 @@
-"""What must hold between the parts of a building; each rule yields the faults it finds."""
+"""How the parts of a building must fit together; each rule yields the errors it finds."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from mascarin.building.convection import Doe2, Mowitt, Tarp
-from mascarin.building.derived import drawn_areas, faces_of, outlines, shade_outlines, window_outlines
+from mascarin.building.derived import drawn_areas, outlines, shade_outlines, sides_of_zone, window_outlines
 from mascarin.building.material import Resistance
 from mascarin.building.part import fault
 from mascarin.building.schedule import DAYS, Piece
 from mascarin.building.surface import NoLongwave, Side
-from mascarin.building.window import windows_of
+from mascarin.building.window import windows_in
 from mascarin.building.zone import GivenSun, TracedSun
-from mascarin.building.zone_surfaces import ZoneFace, zone_faces
+from mascarin.building.zone_surfaces import ZoneSurface, surfaces_of_zone
 from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:
@@ -28,31 +28,31 @@ if TYPE_CHECKING:
 
 Faults = Iterator["InitErrorDetails"]
 
-#: Row sums of given view factors may miss one by this much; the engine closes the rest [-].
-VIEW_CLOSURE = 0.05
-#: Given shares of the sun may miss one by their rounding; the engine scales them [-].
-SHARE_CLOSURE = 0.02
+#: Largest deviation from one of the row sums of given view factors; the engine corrects the rest [-].
+VIEW_FACTOR_TOLERANCE = 0.05
+#: Largest deviation from one of the sum of given fractions of the sun; the engine scales them [-].
+FRACTION_TOLERANCE = 0.02
 
 
 def faults(building: Description) -> Faults:
-    """All faults between the parts of a building."""
-    yield from _something_to_simulate(building)
+    """All errors between the parts of a building."""
+    yield from _there_are_surfaces(building)
     yield from _one_namespace(building)
     yield from _layers_have_what_they_need(building)
-    yield from _zones_have_faces(building)
+    yield from _zones_have_surfaces(building)
     yield from _emissivities_where_exchange_is(building)
-    yield from _films_suit_their_side(building)
+    yield from _convection_suits_its_side(building)
     yield from _sensors_inside_walls(building)
     yield from _columns_have_one_meaning(building)
-    yield from _view_factors_close(building)
+    yield from _view_factors_sum_to_one(building)
     yield from _schedules_suit_their_use(building)
     yield from _set_points_apart(building)
     yield from _windows_lie_in_walls(building)
-    yield from _sun_finds_faces(building)
-    yield from _shades_find_faces(building)
+    yield from _sun_can_be_absorbed(building)
+    yield from _shades_can_act(building)
 
 
-def _something_to_simulate(building: Description) -> Faults:
+def _there_are_surfaces(building: Description) -> Faults:
     if not building.surfaces:
         yield fault(
             ("surfaces",), "no surfaces", "at least one surface", "Describe the walls under 'surfaces:'."
@@ -73,8 +73,8 @@ def _one_namespace(building: Description) -> Faults:
                 yield fault(
                     (section, name),
                     f"'{name}' also under '{owner[name]}:'",
-                    "a name that no zone, surface, window or sensor shares",
-                    "Rename one: results are called by this name.",
+                    "a name that no other zone, surface, window or sensor has",
+                    "Rename one: results have this name.",
                 )
             owner.setdefault(name, section)
 
@@ -93,14 +93,14 @@ def _layers_have_what_they_need(building: Description) -> Faults:
                     yield fault(
                         (*at, key),
                         f"'{key}' of '{layer.material}'",
-                        "none: the material is a bare resistance",
+                        "none: the material is a resistance",
                         f"Remove '{key}:', or give the material conductivity, density and specific_heat.",
                     )
 
 
-def _zones_have_faces(building: Description) -> Faults:
+def _zones_have_surfaces(building: Description) -> Faults:
     for zone in building.zones:
-        if not faces_of(zone, building.surfaces):
+        if not sides_of_zone(zone, building.surfaces):
             yield fault(
                 ("zones", zone),
                 "a zone that no surface faces",
@@ -124,26 +124,26 @@ def _emissivities_where_exchange_is(building: Description) -> Faults:
             yield fault(
                 (*at, "emissivity"),
                 "nothing",
-                f"long-wave emissivity, above 0 and at most 1 [-]: zone '{side.zone}' exchanges long-wave",
+                f"long-wave emissivity, above 0 and at most 1 [-]: zone '{side.zone}' exchanges radiation",
                 f"Add 'emissivity:', or write 'longwave: none' in zone '{side.zone}'.",
             )
 
 
-def _films_suit_their_side(building: Description) -> Faults:
+def _convection_suits_its_side(building: Description) -> Faults:
     for at, side in _sides(building):
         if isinstance(side.convection, Tarp | Mowitt) and (side.measured or side.ground):
             yield fault(
                 (*at, "convection"),
                 f"'{side.convection.kind}' on a side facing {side.faces}",
-                "a film that suits an imposed temperature: a number, linear_wind, alamdari_hammond or power",
-                "Write the film coefficient of that air.",
+                "a coefficient for a given temperature: a number, linear_wind, alamdari_hammond, power",
+                "Write the surface heat transfer coefficient to that air.",
             )
         if isinstance(side.convection, Doe2) and not side.outdoors:
             yield fault(
                 (*at, "convection"),
                 f"'doe2' on a side facing {side.faces}",
-                "a film without wind",
-                "Write 'tarp', whose buoyant part it has, or a film that suits this side.",
+                "a coefficient without wind",
+                "Write 'tarp', which has the same buoyant part, or another coefficient without wind.",
             )
         if isinstance(side.convection, Tarp) and not side.outdoors:
             for key in ("roughness", "perimeter"):
@@ -151,7 +151,7 @@ def _films_suit_their_side(building: Description) -> Faults:
                     yield fault(
                         (*at, "convection", key),
                         f"'{key}' on a side facing {side.faces}",
-                        "none: it belongs to the wind's part",
+                        "none: only the forced part by wind uses it",
                         f"Remove '{key}:'.",
                     )
 
@@ -165,7 +165,7 @@ def _sensors_inside_walls(building: Description) -> Faults:
                 ("sensors", name, "depth"),
                 f"{sensor.depth:g} m",
                 f"at most {thickness:g} m, the thickness of '{sensor.surface}'",
-                "Depth counts from the outside face.",
+                "Depth is measured from the outside.",
             )
 
 
@@ -181,27 +181,27 @@ def _columns_have_one_meaning(building: Description) -> Faults:
             )
 
 
-def _view_factors_close(building: Description) -> Faults:
+def _view_factors_sum_to_one(building: Description) -> Faults:
     for zone in building.zones:
         given = building.zones[zone].view_factors
         if given is None:
             continue
-        names = face_names(zone_faces(zone, building.surfaces, building.windows))
+        names = surface_names(surfaces_of_zone(zone, building.surfaces, building.windows))
         for row, factors in given.items():
             at = ("zones", zone, "view_factors", row)
             if row not in names:
-                yield fault(at, f"'{row}'", "a face of this zone", did_you_mean(row, names))
+                yield fault(at, f"'{row}'", "a surface of this zone", did_you_mean(row, names))
             for column in factors:
                 if column not in names:
                     yield fault(
-                        (*at, column), f"'{column}'", "a face of this zone", did_you_mean(column, names)
+                        (*at, column), f"'{column}'", "a surface of this zone", did_you_mean(column, names)
                     )
             total = sum(factors.values())
-            if abs(total - 1.0) > VIEW_CLOSURE:
+            if abs(total - 1.0) > VIEW_FACTOR_TOLERANCE:
                 yield fault(
                     at,
                     f"a sum of {total:.3f}",
-                    "view factors from one face that sum to 1",
+                    "view factors from one surface that sum to 1",
                     "Complete the row.",
                 )
         for name in names:
@@ -209,20 +209,20 @@ def _view_factors_close(building: Description) -> Faults:
                 yield fault(
                     ("zones", zone, "view_factors"),
                     f"no row '{name}'",
-                    "a row for each face",
+                    "a row for each surface",
                     f"Add '{name}:'.",
                 )
 
 
-def face_names(faces: list[ZoneFace]) -> list[str]:
-    """Names of the faces of a zone; with the side, or ``frame``, where a part has two."""
-    count: Mapping[str, int] = Counter(face.name for face in faces)
+def surface_names(seen: list[ZoneSurface]) -> list[str]:
+    """Names of the surfaces of a zone; with the side, or ``frame``, where a part has two."""
+    count: Mapping[str, int] = Counter(item.name for item in seen)
     names: list[str] = []
-    for face in faces:
-        if count[face.name] == 1 or (face.name not in names and face.window is not None):
-            names.append(face.name)
+    for item in seen:
+        if count[item.name] == 1 or (item.name not in names and item.window is not None):
+            names.append(item.name)
         else:
-            names.append(f"{face.name}.{'frame' if face.window is not None else face.side}")
+            names.append(f"{item.name}.{'frame' if item.window is not None else item.side}")
     return names
 
 
@@ -237,7 +237,7 @@ def _windows_lie_in_walls(building: Description) -> Faults:
                 (*at, "surface"),
                 f"'{window.surface}', from {wall.outside.faces} to {wall.inside.faces}",
                 "a wall from outdoors (outside) to a zone (inside)",
-                "Put the window into such a wall; sun is followed from outdoors into a zone only.",
+                "Put the window into such a wall: solar radiation can enter only from outdoors into a zone.",
             )
         if window.vertices is None:
             continue
@@ -252,10 +252,10 @@ def _windows_lie_in_walls(building: Description) -> Faults:
             continue
         polygon = window_outlines({name: window})[name]
         if not outline.contains(polygon):
-            yield fault((*at, "vertices"), *_outside_its_wall(polygon, outline))
-        yield from _beside_the_others(building, name, polygon, drawn)
+            yield fault((*at, "vertices"), *_outside_of_its_wall(polygon, outline))
+        yield from _overlaps(building, name, polygon, drawn)
     for name, surface in building.surfaces.items():
-        inside = dict(windows_of(name, building.windows))
+        inside = dict(windows_in(name, building.windows))
         if not inside:
             continue
         gross = float(surface.area or drawn_areas(building.surfaces).get(name, 0.0))
@@ -266,14 +266,12 @@ def _windows_lie_in_walls(building: Description) -> Faults:
                 ("windows", max(areas, key=lambda one: areas[one]), "area"),
                 f"{sum(areas.values()):.2f} m2 of windows ({listed})",
                 f"less than the {gross:.2f} m2 of their wall '{name}'",
-                "The area of a wall is gross: its windows lie in it.",
+                "The area of a wall includes its windows.",
             )
 
 
-def _beside_the_others(
-    building: Description, name: str, polygon: Polygon, walls: dict[str, Polygon]
-) -> Faults:
-    """A window overlaps no window before it, and no wall but its own and what that lies in."""
+def _overlaps(building: Description, name: str, polygon: Polygon, walls: dict[str, Polygon]) -> Faults:
+    """Windows that overlap one before them, or another wall than the one they are in."""
     own = walls[building.windows[name].surface]
     before = takewhile(lambda one: one != name, building.windows)
     others = window_outlines({one: building.windows[one] for one in before})
@@ -283,7 +281,7 @@ def _beside_the_others(
             yield fault(
                 ("windows", name, "vertices"),
                 f"a window that overlaps '{other}'",
-                "windows, doors and walls side by side",
+                "windows, doors and walls that do not overlap",
                 "Move its corners.",
             )
 
@@ -294,7 +292,7 @@ def _window_area(name: str, window: Window) -> float:
     return window_outlines({name: window})[name].area
 
 
-def _outside_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]:
+def _outside_of_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]:
     off = float(max(abs(wall.height_of(window.points))))
     if float(window.normal @ wall.normal) < 0.0:
         return (
@@ -311,13 +309,15 @@ def _outside_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]:
     )
 
 
-def _sun_finds_faces(building: Description) -> Faults:
+def _sun_can_be_absorbed(building: Description) -> Faults:
     for zone, definition in building.zones.items():
-        faces = zone_faces(zone, building.surfaces, building.windows)
-        lit = any(face.window is not None for face in faces)
+        seen = surfaces_of_zone(zone, building.surfaces, building.windows)
+        lit = any(item.window is not None for item in seen)
         sun = definition.sun
         if isinstance(sun, GivenSun):
-            yield from _shares_are_whole(zone, sun, [face.name for face in faces if face.surface is not None])
+            yield from _fractions_sum_to_one(
+                zone, sun, [item.name for item in seen if item.surface is not None]
+            )
         if sun is not None and not lit:
             yield fault(
                 ("zones", zone, "sun"),
@@ -326,32 +326,32 @@ def _sun_finds_faces(building: Description) -> Faults:
                 "Remove 'sun:'.",
             )
         if isinstance(sun, TracedSun):
-            yield from _rays_end_on_faces(zone, faces)
+            yield from _rays_end_on_surfaces(zone, seen)
         if not lit or isinstance(sun, GivenSun):
             continue
-        for face in faces:
-            if face.surface is not None and getattr(face.surface, face.side).absorptance is None:
+        for item in seen:
+            if item.surface is not None and getattr(item.surface, item.side).absorptance is None:
                 yield fault(
-                    ("surfaces", face.name, face.side, "absorptance"),
+                    ("surfaces", item.name, item.side, "absorptance"),
                     "nothing",
                     f"solar absorptance, from 0 to 1 [-]: the sun enters zone '{zone}'",
-                    "Add 'absorptance:', or give shares under 'sun:' in the zone.",
+                    "Add 'absorptance:', or give 'shares' under 'sun:' in the zone.",
                 )
 
 
-def _rays_end_on_faces(zone: str, faces: list[ZoneFace]) -> Faults:
-    bare = ", ".join(f"'{face.name}'" for face in faces if face.polygon is None)
+def _rays_end_on_surfaces(zone: str, seen: list[ZoneSurface]) -> Faults:
+    bare = ", ".join(f"'{item.name}'" for item in seen if item.polygon is None)
     if bare:
         yield fault(
             ("zones", zone, "sun"),
             f"geometry, where {bare} {'have' if ',' in bare else 'has'} no vertices",
-            "vertices on every surface and window of the zone: rays end on them",
+            "vertices of every surface and window of the zone, to trace the beam",
             "Add 'vertices:', or write 'sun: area'.",
         )
 
 
 def shaded(building: Description) -> tuple[list[str], list[str]]:
-    """Faces outdoors in the sun on which shades act, and those without vertices, on which they cannot."""
+    """Sunlit outdoor surfaces on which shades act, and those without vertices, on which they cannot."""
     found: tuple[list[str], list[str]] = ([], [])
     for name, surface in building.surfaces.items():
         if surface.outside.sunlit:
@@ -361,20 +361,20 @@ def shaded(building: Description) -> tuple[list[str], list[str]]:
     return found
 
 
-def _shades_find_faces(building: Description) -> Faults:
+def _shades_can_act(building: Description) -> Faults:
     if not building.shades:
         return
     shade_outlines(building.shades)
     if not shaded(building)[0]:
         yield fault(
             ("shades", next(iter(building.shades))),
-            "a shade where no face in the sun has vertices",
-            "vertices on the walls and windows that it shades",
+            "a shade where no sunlit surface has vertices",
+            "vertices of the walls and windows that it shades",
             "Add 'vertices:' to them, in the same coordinates.",
         )
 
 
-def _shares_are_whole(zone: str, sun: GivenSun, names: list[str]) -> Faults:
+def _fractions_sum_to_one(zone: str, sun: GivenSun, names: list[str]) -> Faults:
     at = ("zones", zone, "sun")
     for name in sun.shares:
         if name not in names:
@@ -382,25 +382,25 @@ def _shares_are_whole(zone: str, sun: GivenSun, names: list[str]) -> Faults:
                 (*at, "shares", name), f"'{name}'", "a surface of this zone", did_you_mean(name, names)
             )
     total = float(sum(sun.shares.values()) + sun.lost)
-    if abs(total - 1.0) > SHARE_CLOSURE:
+    if abs(total - 1.0) > FRACTION_TOLERANCE:
         yield fault(
-            at, f"shares that sum to {total:.3f}", "shares that, with lost, sum to 1", "Complete them."
+            at, f"fractions that sum to {total:.3f}", "fractions that, with lost, sum to 1", "Complete them."
         )
 
 
 def references(building: Description) -> Iterator[tuple[str, tuple[str, ...], str]]:
-    """Whatever follows a schedule: its name, where it is named, and the kind that is needed there."""
+    """Every use of a schedule: its name, the place, and the kind that is needed there."""
     for name, zone in building.zones.items():
         at = ("zones", name)
         for section in ("gains", "ventilation"):
             for key, part in getattr(zone, section).items():
                 if part.schedule is not None:
                     yield part.schedule, (*at, section, key, "schedule"), "fraction"
-        for which, plant in zone.plants.items():
-            if plant.setpoint.schedule is not None:
-                yield plant.setpoint.schedule, (*at, which, "setpoint", "schedule"), "temperature"
-            if plant.schedule is not None:
-                yield plant.schedule, (*at, which, "schedule"), "fraction"
+        for which, loads in zone.loads.items():
+            if loads.setpoint.schedule is not None:
+                yield loads.setpoint.schedule, (*at, which, "setpoint", "schedule"), "temperature"
+            if loads.schedule is not None:
+                yield loads.schedule, (*at, which, "schedule"), "fraction"
     for section, parts in (("air_paths", building.air_paths), ("openings", building.openings)):
         for name, part in parts.items():
             if part.schedule is not None:
@@ -420,11 +420,11 @@ def _schedules_suit_their_use(building: Description) -> Faults:
 
 
 def _set_points_apart(building: Description) -> Faults:
-    """Heating above cooling, at some time of a week, would have both work against each other."""
+    """Times of a week at which the heating set point is above the cooling set point."""
     for name, zone in building.zones.items():
-        if len(zone.plants) < 2:
+        if len(zone.loads) < 2:
             continue
-        heating, cooling = (_week(building, zone.plants[which]) for which in ("heating", "cooling"))
+        heating, cooling = (_week(building, zone.loads[which]) for which in ("heating", "cooling"))
         for (day, heats), (_, cools) in zip(heating, cooling, strict=True):
             crossing = next(_crossings(heats, cools), None)
             if crossing is None:
@@ -440,12 +440,12 @@ def _set_points_apart(building: Description) -> Faults:
             break
 
 
-def _week(building: Description, plant: IdealLoads) -> list[tuple[str, list[Piece]]]:
+def _week(building: Description, loads: IdealLoads) -> list[tuple[str, list[Piece]]]:
     """Pieces of the set point on each day of the week, and on holidays; empty for a measured column."""
-    if plant.setpoint.schedule is None:
-        value = float(plant.setpoint.temperature or 0.0)
+    if loads.setpoint.schedule is None:
+        value = float(loads.setpoint.temperature or 0.0)
         return [(day, [(0.0, 1440.0, value, value)]) for day in (*DAYS, "holidays")]
-    schedule = building.schedules[plant.setpoint.schedule]
+    schedule = building.schedules[loads.setpoint.schedule]
     days = [(day, schedule.pieces(weekday)) for weekday, day in enumerate(DAYS)]
     return [*days, ("holidays", schedule.pieces(0, holiday=True))]
 

@@ -1,4 +1,4 @@
-"""Schedules: how a fraction or a temperature runs through days, weeks and holidays."""
+"""Schedules: a fraction or a temperature over days, weeks and holidays."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from mascarin.building.part import Part, fault, insist
 DAYS: Final = ("monday", "tuesday", "wednesday", "thursday", "friday", "saturday", "sunday")
 """Names of the days of the week, in the order of `datetime.date.weekday`."""
 
-#: Start and end of a piece of a day [min], value at its start and at its end.
+#: Start and end of a part of a day [min], value at its start and at its end.
 Piece = tuple[float, float, float, float]
 
 _DAY_MINUTES: Final = 1440.0
@@ -47,22 +47,34 @@ Holiday = Annotated[str, AfterValidator(_holiday)]
 
 
 class FractionPoint(Part):
-    """A fraction from a time of day on."""
+    """A fraction from a time of day on.
+
+    Examples
+    --------
+    >>> FractionPoint(at="08:00", value=1)
+    FractionPoint(at=08:00, value=1)
+    """
 
     at: ClockTime = Field(description='Time of day, "07:30"')
     value: q.ScheduledFraction
     ramp_to: q.ScheduledFraction | None = Field(
-        None, description="Value reached on a straight line at the next point"
+        None, description="Value that is reached linearly at the next point"
     )
 
 
 class TemperaturePoint(Part):
-    """A temperature from a time of day on."""
+    """A temperature from a time of day on.
+
+    Examples
+    --------
+    >>> TemperaturePoint(at="07:00", value=15, ramp_to=20)
+    TemperaturePoint(at=07:00, value=15 degC, ramp_to=20 degC)
+    """
 
     at: ClockTime = Field(description='Time of day, "07:30"')
     value: q.ScheduledTemperature
     ramp_to: q.ScheduledTemperature | None = Field(
-        None, description="Value reached on a straight line at the next point"
+        None, description="Value that is reached linearly at the next point"
     )
 
 
@@ -70,7 +82,7 @@ Point = FractionPoint | TemperaturePoint
 
 
 class _Days(Part):
-    """Profiles by kind of day; the closest name counts: monday before weekdays before all."""
+    """Profiles by kind of day; the most specific name is used: monday before weekdays before all."""
 
     @model_validator(mode="after")
     def _sound(self) -> _Days:
@@ -100,7 +112,13 @@ class _Days(Part):
 
 
 class FractionDays(_Days):
-    """Profiles of a fraction by kind of day."""
+    """Profiles of a fraction by kind of day.
+
+    Examples
+    --------
+    >>> FractionDays(all=[{"at": "00:00", "value": 0.5}])
+    FractionDays(all=[FractionPoint])
+    """
 
     all: tuple[FractionPoint, ...] | None = None
     weekdays: tuple[FractionPoint, ...] | None = None
@@ -116,7 +134,13 @@ class FractionDays(_Days):
 
 
 class TemperatureDays(_Days):
-    """Profiles of a temperature by kind of day."""
+    """Profiles of a temperature by kind of day.
+
+    Examples
+    --------
+    >>> TemperatureDays(all=[{"at": "00:00", "value": 20}])
+    TemperatureDays(all=[TemperaturePoint])
+    """
 
     all: tuple[TemperaturePoint, ...] | None = None
     weekdays: tuple[TemperaturePoint, ...] | None = None
@@ -136,7 +160,7 @@ class _Schedule(Part):
 
     WAYS: ClassVar = ("value", "days", "column")
 
-    column: str | None = Field(None, description="Measured column that holds the values")
+    column: str | None = Field(None, description="Measured column with the values")
     holidays: tuple[Holiday, ...] = Field(
         (), description='Holidays: "12-25" in every year, or dates such as "2024-05-20"'
     )
@@ -150,10 +174,10 @@ class _Schedule(Part):
                 f"exactly one of {', '.join(self.WAYS)}",
                 "A schedule is one value, profiles of days, or a measured column.",
             )
-        insist(*self._idle_holidays())
+        insist(*self._inactive_holidays())
         return self
 
-    def _idle_holidays(self) -> Iterator[InitErrorDetails]:
+    def _inactive_holidays(self) -> Iterator[InitErrorDetails]:
         profiles = self.profiles
         own = profiles is not None and profiles.profile(0, holiday=True) is not profiles.profile(0)
         if self.holidays and not own:
@@ -170,12 +194,12 @@ class _Schedule(Part):
 
     @property
     def profiles(self) -> FractionDays | TemperatureDays | None:
-        """Profiles by kind of day, if that is what the schedule is made of."""
+        """Profiles by kind of day; None for one value or a column."""
         days: FractionDays | TemperatureDays | None = getattr(self, "days", None)
         return days
 
     def pieces(self, weekday: int, *, holiday: bool = False) -> list[Piece]:
-        """One day as straight pieces; none for a measured column.
+        """One day as linear pieces; none for a measured column.
 
         Parameters
         ----------
@@ -203,12 +227,21 @@ class _Schedule(Part):
         ]
 
     def is_holiday(self, day: date) -> bool:
-        """Tell whether a date is one of the holidays."""
+        """Whether a date is one of the holidays."""
         return f"{day:%m-%d}" in self.holidays or day.isoformat() in self.holidays
 
 
 class FractionSchedule(_Schedule):
-    """A fraction from 0 to 1 over time: its mean over a step acts."""
+    """A fraction from 0 to 1 over time; a run uses its mean over a step.
+
+    Examples
+    --------
+    >>> presence = FractionSchedule(
+    ...     days={"all": [{"at": "00:00", "value": 0}, {"at": "08:00", "value": 1}]}
+    ... )
+    >>> presence.pieces(weekday=0)
+    [(0.0, 480.0, 0.0, 0.0), (480.0, 1440.0, 1.0, 1.0)]
+    """
 
     kind: Literal["fraction"] = "fraction"
     value: q.ScheduledFraction | None = None
@@ -216,7 +249,13 @@ class FractionSchedule(_Schedule):
 
 
 class TemperatureSchedule(_Schedule):
-    """A temperature over time: its value at the end of a step acts."""
+    """A temperature over time; a run uses its value at the end of a step.
+
+    Examples
+    --------
+    >>> float(TemperatureSchedule(value=20).value)
+    20.0
+    """
 
     kind: Literal["temperature"] = "temperature"
     value: q.ScheduledTemperature | None = None
@@ -240,7 +279,7 @@ def _in_order(key: str, points: Sequence[Point]) -> Iterator[InitErrorDetails]:
             (key, 0, "at"),
             f'"{points[0].at}"',
             'the first point of a day at "00:00"',
-            "Say how the day begins.",
+            'Add a point at "00:00".',
         )
     for index in range(1, len(points)):
         if not points[index - 1].at < points[index].at:

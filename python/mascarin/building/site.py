@@ -1,4 +1,4 @@
-"""Where the building stands: position, wind profile, sky, ground."""
+"""The site: position, wind profile, sky, ground."""
 
 from __future__ import annotations
 
@@ -22,10 +22,16 @@ TERRAINS = {"open": (0.14, 270.0), "suburb": (0.22, 370.0), "city": (0.33, 460.0
 
 
 class Wind(Part):
-    """Power-law profile that carries the wind from the mast to a face that has a height."""
+    """Power-law profile of the wind speed, from the mast to a surface with a height.
+
+    Examples
+    --------
+    >>> Wind(terrain="city")
+    Wind(terrain=city, mast_height=10 m, mast_exponent=0.14, mast_layer=270 m, exponent=0.33, layer=...)
+    """
 
     terrain: Literal["open", "suburb", "city", "sea"] = Field(
-        "open", description="Terrain around the building: gives exponent and layer where they are not written"
+        "open", description="Terrain around the building: gives exponent and layer where they are not given"
     )
     mast_height: q.MastHeight = Number(10.0, source="WMO-No. 8: standard height of anemometers")
     mast_exponent: q.WindExponent = Number(0.14, source=f"{ASHRAE_WIND}: open terrain")
@@ -46,14 +52,26 @@ class Wind(Part):
 
 
 class MeasuredSky(Part):
-    """Horizontal infrared of the climate, times a scale."""
+    """Measured horizontal infrared radiation of the climate, times a factor.
+
+    Examples
+    --------
+    >>> MeasuredSky(scale=1.02)
+    MeasuredSky(scale=1.02)
+    """
 
     kind: Literal["measured"] = "measured"
-    scale: q.SkyScale = Number(1.0, source=Remark("the measurement as it is"))
+    scale: q.SkyScale = Number(1.0, source=Remark("the measurement without a correction"))
 
 
 class ClarkAllenSky(Part):
-    """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K."""
+    """Emissivity ``a + b ln(Tdp/273)`` of the clear sky, dew point in K.
+
+    Examples
+    --------
+    >>> ClarkAllenSky()
+    ClarkAllenSky(a=0.787, b=0.764)
+    """
 
     kind: Literal["clark_allen"] = "clark_allen"
     a: q.SkyCoefficient = Number(0.787, source=CLARK)
@@ -61,7 +79,13 @@ class ClarkAllenSky(Part):
 
 
 class MartinBerdahlSky(Part):
-    """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC."""
+    """Emissivity ``a + b (tdp/100) + c (tdp/100)^2`` of the clear sky, dew point in degC.
+
+    Examples
+    --------
+    >>> MartinBerdahlSky()
+    MartinBerdahlSky(a=0.711, b=0.56, c=0.73)
+    """
 
     kind: Literal["martin_berdahl"] = "martin_berdahl"
     a: q.SkyCoefficient = Number(0.711, source=MARTIN)
@@ -70,7 +94,13 @@ class MartinBerdahlSky(Part):
 
 
 class BruntSky(Part):
-    """Emissivity ``a + b sqrt(pw)`` of the clear sky, vapour pressure in hPa."""
+    """Emissivity ``a + b sqrt(pw)`` of the clear sky, vapour pressure in hPa.
+
+    Examples
+    --------
+    >>> BruntSky()
+    BruntSky(a=0.618, b=0.056)
+    """
 
     kind: Literal["brunt"] = "brunt"
     a: q.SkyCoefficient = Number(0.618, source=_LI)
@@ -78,7 +108,13 @@ class BruntSky(Part):
 
 
 class OffsetSky(Part):
-    """Sky temperature a constant depression below the air temperature."""
+    """Sky temperature at a constant difference below the air temperature.
+
+    Examples
+    --------
+    >>> OffsetSky(depression=9)
+    OffsetSky(depression=9 K)
+    """
 
     kind: Literal["offset"] = "offset"
     depression: q.SkyDepression = Number(
@@ -94,7 +130,13 @@ Sky = Annotated[
 
 
 class Cloud(Part):
-    """Factor ``1 + c1 N + c2 N^2 + c3 N^3`` on the clear sky's emissivity, cloud cover N in tenths."""
+    """Factor ``1 + c1 N + c2 N^2 + c3 N^3`` on the clear sky's emissivity, cloud cover N in tenths.
+
+    Examples
+    --------
+    >>> Cloud()
+    Cloud(c1=0.0224, c2=-0.0035, c3=0.00028)
+    """
 
     c1: q.CloudCoefficient = Number(0.0224, source=CLARK)
     c2: q.CloudCoefficient = Number(-0.0035, source=CLARK)
@@ -119,13 +161,11 @@ def _timezone(text: str) -> str:
 def _nearest(text: str) -> str:
     from zoneinfo import available_timezones
 
-    return (
-        did_you_mean(text, available_timezones()) or "Local clock time without a zone cannot place the sun."
-    )
+    return did_you_mean(text, available_timezones()) or "The position of the sun needs a time zone."
 
 
 def utc_offset_minutes(text: str) -> int | None:
-    """Minutes that a fixed zone such as ``UTC+4`` is ahead of UTC; none if the text is no such zone."""
+    """Minutes that a fixed zone such as ``UTC+4`` is ahead of UTC; None for any other text."""
     match = re.fullmatch(r"UTC(?:([+-])(\d{1,2})(?::(\d{2}))?)?", text)
     if match is None:
         return None
@@ -135,14 +175,21 @@ def utc_offset_minutes(text: str) -> int | None:
 
 
 class Site(Part):
-    """Where the building stands."""
+    """Site of the building: position, clock, wind, sky.
+
+    Examples
+    --------
+    >>> site = Site(latitude=48.1, longitude=11.6, altitude=520, timezone="Europe/Berlin")
+    >>> site.diffuse
+    'perez'
+    """
 
     latitude: q.Latitude
     longitude: q.Longitude
     altitude: q.Altitude
     air_density: q.AirDensity | None = None
     timezone: Annotated[str, AfterValidator(_timezone)] = Field(
-        description="Time zone of the building's clock: an IANA name such as Europe/Paris, or UTC+4"
+        description="Time zone of the local clock: an IANA name such as Europe/Paris, or UTC+4"
     )
     ground_reflectance: q.GroundReflectance = Number(
         0.2, source="Liu & Jordan 1963, doi:10.1016/0038-092X(63)90006-9"

@@ -1,4 +1,4 @@
-"""The fabric: layers, constructions, surfaces and what their two sides face, sensors in walls."""
+"""Layers, constructions, surfaces with their two sides, and sensors in walls."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
-from mascarin.building.convection import Convection, Doe2, Mowitt, Tarp
+from mascarin.building.convection import CONVECTION, Convection, Doe2, Mowitt, Tarp
 from mascarin.building.names import ConstructionName, MaterialName, Name, SurfaceName, ZoneName
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, Shorthand, fault, insist, refuse
@@ -18,19 +18,25 @@ FACINGS = ("outdoors", "zone", "ground", "measured", "adiabatic")
 
 
 class Layer(Part):
-    """One layer of a construction."""
+    """One layer of a construction.
+
+    Examples
+    --------
+    >>> Layer(material="concrete", thickness=0.2).name
+    'concrete'
+    """
 
     name: Name = Field(
         "", description="Name within the construction; none: the material's", validate_default=False
     )
     material: MaterialName = Field(description="Name of a material")
-    thickness: q.Thickness | None = Field(None, description="Thickness; none for a bare resistance")
+    thickness: q.Thickness | None = Field(None, description="Thickness; none for a resistance")
     nodes: q.NodeCount | None = Field(None, description="Number of finite volumes; none: chosen by Mascarin")
 
     @model_validator(mode="after")
     def _named(self) -> Layer:
         if self.name in ("outside", "inside"):
-            raise problem(f"the name '{self.name}'", "a name that no face has", "Results are called by it.")
+            raise problem(f"the name '{self.name}'", "another name", "Results have the name of the layer.")
         if not self.name:
             self._fill(name=self.material)
         return self
@@ -41,7 +47,16 @@ class Layer(Part):
 
 
 class Construction(Part):
-    """Layers from outside to inside."""
+    """Layers from outside to inside.
+
+    Examples
+    --------
+    >>> wall = Construction(
+    ...     layers=[Layer(material="wool", thickness=0.1), Layer(material="board", thickness=0.012)]
+    ... )
+    >>> [layer.name for layer in wall.layers]
+    ['wool', 'board']
+    """
 
     layers: tuple[Layer, ...] = Field(description="Layers from outside to inside")
 
@@ -55,7 +70,7 @@ class Construction(Part):
                 fault(
                     ("layers",),
                     f"two layers called '{name}'",
-                    "a name of its own for each layer",
+                    "a different name for each layer",
                     "Add 'name:' to one of them, for instance 'outer' and 'inner'.",
                 )
                 for name in twice
@@ -78,7 +93,7 @@ class Linearised(Part):
 
 
 class NoLongwave(Part):
-    """No exchange of its own: the film is a combined coefficient."""
+    """No separate exchange: the surface heat transfer coefficient includes radiation."""
 
     kind: Literal["none"] = "none"
 
@@ -99,14 +114,19 @@ def _or_temperature(schema: dict[str, Any]) -> None:
 class Ground(Part):
     """Temperature of the ground: ``mean - amplitude cos(2 pi (day - coldest_day)/365)``.
 
-    ``temperature`` may be written for ``mean`` where it is the same all year.
+    ``temperature`` may replace ``mean`` where it is the same all year.
+
+    Examples
+    --------
+    >>> Ground(mean=12, amplitude=4)
+    Ground(mean=12 degC, amplitude=4 K, coldest_day=15 d)
     """
 
     model_config = ConfigDict(json_schema_extra=_or_temperature)
 
     mean: q.GroundTemperature
-    amplitude: q.GroundAmplitude = Number(0.0, source=Remark("not written: the same all year"))
-    coldest_day: q.ColdestDay = Number(15.0, source=Remark("mid-January, for want of better"), assumed=True)
+    amplitude: q.GroundAmplitude = Number(0.0, source=Remark("not given: the same all year"))
+    coldest_day: q.ColdestDay = Number(15.0, source=Remark("not given: mid-January"), assumed=True)
 
     @model_validator(mode="before")
     @classmethod
@@ -118,27 +138,41 @@ class Ground(Part):
 
 
 class Exposure(Part):
-    """What of the weather reaches a side, beside the temperature of the air."""
+    """Which parts of the weather act on a side, beside the air temperature.
 
-    sun: bool = Field(True, description="Sun, from sky and ground alike")
-    wind: bool = Field(True, description="Wind on the film")
+    Examples
+    --------
+    >>> Exposure(sun=False)
+    Exposure(sun=False, wind=True, sky=True)
+    """
+
+    sun: bool = Field(True, description="Solar radiation, from sky and ground")
+    wind: bool = Field(True, description="Wind in the heat transfer coefficient")
     sky: bool = Field(
-        True, description="Long-wave exchange with the sky; without it the partner is at air temperature"
+        True, description="Long-wave exchange with the sky; without it, with surroundings at air temperature"
     )
 
 
 class Side(Part):
-    """One face of a surface: what it faces and how it exchanges heat with that."""
+    """One side of a surface: what it faces, and how it exchanges heat with that.
+
+    Examples
+    --------
+    >>> outdoors = Side(outdoors=True, convection="tarp", emissivity=0.9, absorptance=0.6)
+    >>> indoors = Side(zone="room", convection=3, emissivity=0.9)
+    >>> outdoors.faces, indoors.faces
+    ('outdoors', 'zone')
+    """
 
     outdoors: Literal[True] | None = Field(None, description="Faces the weather: write true")
     zone: ZoneName | None = Field(None, description="Faces the air of this zone")
     ground: Ground | None = Field(None, description="Touches ground of this temperature")
     measured: str | None = Field(
-        None, description="Faces, or without convection is held at, this measured column"
+        None, description="Faces air of this measured column; without convection, has its temperature"
     )
-    adiabatic: Literal[True] | None = Field(None, description="Nothing flows: write true")
+    adiabatic: Literal[True] | None = Field(None, description="No heat flow: write true")
 
-    convection: Convection | None = Field(None, description="Film coefficient: a number, or a correlation")
+    convection: Convection | None = Field(None, description=CONVECTION)
     emissivity: q.Emissivity | None = None
     absorptance: q.Absorptance | None = None
     area_factor: q.AreaFactor | None = None
@@ -149,24 +183,28 @@ class Side(Part):
     )
     irradiance: str | None = Field(None, description="Measured column of the irradiance on this plane [W/m2]")
     exposure: Exposure | None = Field(
-        None, description="What of the weather reaches a side facing outdoors; none: all of it"
+        None, description="Parts of the weather that act on a side facing outdoors; none: all"
     )
 
     @property
     def faces(self) -> str:
-        """Which of the five the side faces."""
+        """Which of the five kinds of surroundings the side faces."""
         return next(name for name in FACINGS if getattr(self, name) is not None)
+
+    def in_short(self) -> str:
+        """What the side faces."""
+        return f"zone {self.zone}" if self.zone else self.faces
 
     @property
     def exposed(self) -> Exposure:
-        """What of the weather reaches it: of nothing but outdoors, nothing."""
+        """Parts of the weather that act on it; none unless it faces outdoors."""
         if not self.outdoors:
             return Exposure(sun=False, wind=False, sky=False)
         return self.exposure or Exposure()
 
     @property
     def sunlit(self) -> bool:
-        """Whether it takes its irradiance from the climate."""
+        """Whether its irradiance comes from the climate."""
         return self.exposed.sun and self.irradiance is None
 
     @model_validator(mode="after")
@@ -175,11 +213,11 @@ class Side(Part):
         if len(given) != 1:
             found = " and ".join(given) or "a side that faces nothing"
             raise problem(found, f"exactly one of {', '.join(FACINGS)}", "A side faces one thing only.")
-        insist(*self._missing(), *self._idle())
+        insist(*self._missing(), *self._inactive())
         return self
 
     def _missing(self) -> list[InitErrorDetails]:
-        """Find what this facing cannot do without; a zone's emissivity depends on the zone."""
+        """What is needed here and not given; whether emissivity is needed depends on the zone."""
         needed = []
         if self.outdoors or self.zone is not None:
             needed.append("convection")
@@ -198,8 +236,8 @@ class Side(Part):
             if getattr(self, key) is None
         ]
 
-    def _idle(self) -> list[InitErrorDetails]:
-        """Find what has been written and could not act here."""
+    def _inactive(self) -> list[InitErrorDetails]:
+        """What is given and has no effect here."""
         air = self.convection is not None and self.adiabatic is None
         acts = {
             "convection": self.adiabatic is None,
@@ -215,15 +253,15 @@ class Side(Part):
             fault(
                 (key,),
                 f"'{key}' on a side facing {self.faces}{self._sheltered(key)}",
-                "only what acts on this side",
-                f"Remove '{key}:': it would change nothing here.",
+                "only what has an effect on this side",
+                f"Remove '{key}:': it has no effect here.",
             )
             for key, active in acts.items()
             if getattr(self, key) is not None and not active
         ] + self._unexposed()
 
     def _sheltered(self, key: str) -> str:
-        """Say what keeps the weather off, where that is why a key does not act."""
+        """The missing part of the weather, where a key has no effect because of it."""
         away = {"absorptance": "sun", "sky_view": "sun or sky", "height": "wind", "irradiance": "sun"}
         return f" without {away[key]}" if self.outdoors and key in away else ""
 
@@ -234,14 +272,28 @@ class Side(Part):
             fault(
                 ("exposure",),
                 f"'exposure' on a side facing {self.faces}",
-                "only what acts on this side",
-                "Remove 'exposure:': no weather reaches this side.",
+                "only what has an effect on this side",
+                "Remove 'exposure:': this side does not face outdoors.",
             )
         ]
 
 
 class Surface(Part):
-    """A plane wall, roof, floor or door between two sides."""
+    """A plane wall, roof, floor or door with two sides.
+
+    Examples
+    --------
+    >>> wall = Surface(
+    ...     construction="shell",
+    ...     area=12,
+    ...     tilt=90,
+    ...     azimuth=180,
+    ...     outside=Side(outdoors=True, convection=15, emissivity=0.9, absorptance=0.6),
+    ...     inside=Side(zone="room", convection=3, emissivity=0.9),
+    ... )
+    >>> float(wall.area)
+    12.0
+    """
 
     construction: ConstructionName = Field(description="Name of a construction")
     vertices: tuple[tuple[q.Coordinate, q.Coordinate, q.Coordinate], ...] | None = Field(
@@ -250,9 +302,9 @@ class Surface(Part):
     area: q.Area | None = None
     tilt: q.Tilt | None = None
     azimuth: q.Azimuth | None = None
-    outside: Side = Field(description="The outer face")
-    inside: Side = Field(description="The inner face")
-    internal_mass: bool = Field(False, description="Whether both sides face the same zone on purpose")
+    outside: Side = Field(description="The outer side")
+    inside: Side = Field(description="The inner side")
+    internal_mass: bool = Field(False, description="Whether both sides face the same zone, as for furniture")
 
     @property
     def sides(self) -> tuple[Side, Side]:
@@ -275,7 +327,7 @@ class Surface(Part):
         ]
 
     def _direction_acts(self) -> bool:
-        """Tell whether sun, wind or the view between the faces of a zone depend on the azimuth."""
+        """Whether solar radiation, wind or the view factors of a zone depend on the azimuth."""
         windy = isinstance(self.outside.convection, Tarp | Mowitt | Doe2) and self.outside.exposed.wind
         sun = windy or any(side.sunlit for side in self.sides)
         seen = any(side.zone is not None for side in self.sides)
@@ -305,7 +357,13 @@ class Surface(Part):
 
 
 class Sensor(Part):
-    """A thermometer in a wall."""
+    """A temperature sensor inside a wall.
+
+    Examples
+    --------
+    >>> float(Sensor(surface="south", depth=0.05).depth)
+    0.05
+    """
 
     surface: SurfaceName = Field(description="Name of a surface")
     depth: q.Depth

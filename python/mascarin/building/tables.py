@@ -1,18 +1,22 @@
-"""The description language as others read it: JSON Schema, table of parameters."""
+"""JSON Schema of the description, and the table of parameters of a building."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Any
+from typing import Any, Final
 
 from pydantic.json_schema import GenerateJsonSchema
 
 from mascarin.building.building import Building
+from mascarin.building.documenting import summary_of
 from mascarin.building.number import Number
+
+USUAL_KIND: Final = "solid"
+"""A material without a kind is a solid."""
 
 
 class _Schema(GenerateJsonSchema):
-    """JSON Schema with the numbers' defaults and without titles that repeat the keys."""
+    """JSON Schema with the defaults of numbers and without titles that repeat the keys."""
 
     def encode_default(self, dft: Any) -> Any:
         return float(dft) if isinstance(dft, Number) else super().encode_default(dft)
@@ -27,13 +31,48 @@ def json_schema() -> dict[str, Any]:
     Returns
     -------
     dict
-        Numbers carry ``unit`` and ``default_range`` beside the words of JSON Schema.
+        Numbers have ``unit`` and ``default_range`` beside the keywords of JSON Schema.
+
+    Examples
+    --------
+    >>> "zones" in json_schema()["properties"]
+    True
     """
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | Building.model_json_schema(
-        schema_generator=_Schema
-    )
+    schema = Building.model_json_schema(schema_generator=_Schema)
+    for part in (schema, *schema["$defs"].values()):
+        for form in (part, *part.get("anyOf", ())):
+            _as_written(form)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | schema
+
+
+def _as_written(form: dict[str, Any]) -> None:
+    """Leave out the sections of the docstring, and require the kind, which only objects may leave out."""
+    if "description" in form:
+        form["description"] = summary_of(form["description"])
+    kind = form.get("properties", {}).get("kind", {})
+    if "const" in kind and kind["const"] != USUAL_KIND and "kind" not in form.get("required", ()):
+        form["required"] = ["kind", *form.get("required", ())]
 
 
 def parameter_table(building: Building) -> list[dict[str, Any]]:
-    """Parameters of a building as rows, one field for each attribute of :class:`Parameter`."""
+    """Parameters of a building as rows.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+
+    Returns
+    -------
+    list of dict
+        One entry for each attribute of `Parameter`.
+
+    Examples
+    --------
+    >>> from mascarin import examples
+    >>> import mascarin as mc
+    >>> rows = parameter_table(mc.load(examples.FOLDER / "lgi" / "building.yaml"))
+    >>> rows[0]["path"]
+    'site.latitude'
+    """
     return [asdict(parameter) for parameter in building.parameters()]

@@ -6,7 +6,7 @@ import math
 
 from mascarin.building.convection import Constant
 from mascarin.building.description import Description
-from mascarin.building.glazing import face_resistance
+from mascarin.building.glazing import glazing_resistance
 from mascarin.building.material import Material, Resistance
 from mascarin.building.mesh import Mesh
 from mascarin.building.phases import phase
@@ -19,9 +19,9 @@ _ISO, _DESCRIBED, _NONE, _CLOSED = "ISO 6946", "described", "no", "adiabatic"
 
 
 def window_u_value(building: Description, window: Window) -> float:
-    """Thermal transmittance of a window with its frame, with the films of ISO 6946.
+    """Thermal transmittance of a window with its frame, with the surface resistances of ISO 6946.
 
-    Gaps that are no given conductances are taken at 0 degC outside and 20 degC inside: conduction of the gas
+    Gaps without a given conductance are taken at 0 degC outside and 20 degC inside: conduction of the gas
     and radiation, without convection.
 
     Parameters
@@ -36,7 +36,7 @@ def window_u_value(building: Description, window: Window) -> float:
     float
         U value. [W/(m2 K)]
     """
-    resistance = face_resistance(building.glazings[window.glazing])
+    resistance = glazing_resistance(building.glazings[window.glazing])
     glass = 1.0 / (_ISO_OUTDOORS + resistance + _ISO_LEVEL)
     if window.frame is None:
         return glass
@@ -47,8 +47,8 @@ def window_u_value(building: Description, window: Window) -> float:
 def u_value(building: Description, surface: Surface) -> float:
     """Thermal transmittance between the two sides.
 
-    A film is taken as described where it is a constant that stands for all heat exchanged on its side;
-    else, also where it varies or radiation is exchanged apart from it, the film of ISO 6946 is taken.
+    A surface resistance is taken as described where the coefficient is a constant that includes radiation;
+    otherwise it is that of ISO 6946.
 
     Parameters
     ----------
@@ -60,11 +60,11 @@ def u_value(building: Description, surface: Surface) -> float:
     Returns
     -------
     float
-        U value; infinite where nothing resists, 0 where a side is adiabatic. [W/(m2 K)]
+        U value; infinite without any resistance, 0 where a side is adiabatic. [W/(m2 K)]
     """
     layers = building.constructions[surface.construction].layers
     resistance = sum(_resistance(building.materials[layer.material], layer.thickness) for layer in layers)
-    resistance += sum(_film(building, side, surface)[0] for side in surface.sides)
+    resistance += sum(_surface_resistance(building, side, surface)[0] for side in surface.sides)
     return 1.0 / resistance if resistance > 0.0 else math.inf
 
 
@@ -74,42 +74,42 @@ def _resistance(material: Material, thickness: float | None) -> float:
     return (thickness or 0.0) / phase(material.conductivity, "solid")
 
 
-def _film(building: Description, side: Side, surface: Surface) -> tuple[float, str]:
-    """Resistance of a film [m2 K/W], and where it was taken from."""
+def _surface_resistance(building: Description, side: Side, surface: Surface) -> tuple[float, str]:
+    """Surface resistance [m2 K/W], and where it comes from."""
     if side.adiabatic:
         return math.inf, _CLOSED
     if side.convection is None:
         return 0.0, _NONE
-    if isinstance(side.convection, Constant) and _stands_alone(building, side):
+    if isinstance(side.convection, Constant) and _without_radiation(building, side):
         conductance = side.convection.coefficient * (side.area_factor or 1.0)
         return (1.0 / conductance if conductance > 0.0 else math.inf), _DESCRIBED
-    return _iso_film(side, surface), _ISO
+    return _iso_resistance(side, surface), _ISO
 
 
-def _stands_alone(building: Description, side: Side) -> bool:
-    """Tell whether no radiation is exchanged beside the film."""
+def _without_radiation(building: Description, side: Side) -> bool:
+    """Whether no radiation is exchanged beside the convection."""
     if side.zone is not None:
         return building.zones[side.zone].longwave.kind == "none"
     return not side.outdoors or (side.longwave is not None and side.longwave.kind == "none")
 
 
-def film_words(building: Description, surface: Surface) -> str:
+def resistance_words(building: Description, surface: Surface) -> str:
     """Where the surface resistances in a U value come from, in words."""
-    outside, inside = (_film(building, side, surface)[1] for side in surface.sides)
+    outside, inside = (_surface_resistance(building, side, surface)[1] for side in surface.sides)
     if _CLOSED in (outside, inside):
         return "adiabatic"
     if outside == inside:
-        return f"{outside} films"
-    return f"{outside} film outside, {inside} film inside"
+        return f"{outside} surface resistances"
+    return f"surface resistances: {outside} outside, {inside} inside"
 
 
-def _iso_film(side: Side, surface: Surface) -> float:
+def _iso_resistance(side: Side, surface: Surface) -> float:
     if side.convection is None:
         return 0.0
     if side.outdoors:
         return _ISO_OUTDOORS
     tilt = float(surface.tilt or 0.0)
-    # Heat is taken to flow outwards, as in the heating season.
+    # Heat flows outwards, as in the heating season.
     return _ISO_UP if tilt < 30.0 else _ISO_DOWN if tilt > 150.0 else _ISO_LEVEL
 
 
@@ -128,9 +128,9 @@ def time_constant(building: Description, construction: str, mesh: Mesh) -> float
     Returns
     -------
     float
-        Infinite where nothing stores heat. [s]
+        Infinite without heat capacity. [s]
     """
-    links: list[float] = [0.0]  # resistance between neighbouring nodes, first and last to the faces
+    links: list[float] = [0.0]  # resistance between neighboring nodes, first and last to the surfaces
     capacities: list[float] = []
     for layer in building.constructions[construction].layers:
         material, nodes = building.materials[layer.material], mesh.nodes[construction, layer.name]
@@ -144,7 +144,7 @@ def time_constant(building: Description, construction: str, mesh: Mesh) -> float
             links[-1] += half
             capacities.append(capacity)
             links.append(half)
-    films = _strongest_films(building, construction)
+    films = _least_surface_resistances(building, construction)
     links[0], links[-1] = links[0] + films[0], links[-1] + films[1]
     return min(
         (
@@ -155,17 +155,17 @@ def time_constant(building: Description, construction: str, mesh: Mesh) -> float
     )
 
 
-def _strongest_films(building: Description, construction: str) -> tuple[float, float]:
-    """Least film resistance outside and inside over the surfaces of a construction [m2 K/W]."""
+def _least_surface_resistances(building: Description, construction: str) -> tuple[float, float]:
+    """Least surface resistance outside and inside over the surfaces of a construction [m2 K/W]."""
     built = [surface for surface in building.surfaces.values() if surface.construction == construction]
-    outside = [_nominal_film(surface.outside, surface) for surface in built]
-    inside = [_nominal_film(surface.inside, surface) for surface in built]
+    outside = [_nominal_resistance(surface.outside, surface) for surface in built]
+    inside = [_nominal_resistance(surface.inside, surface) for surface in built]
     return (min(outside, default=_ISO_OUTDOORS), min(inside, default=_ISO_LEVEL))
 
 
-def _nominal_film(side: Side, surface: Surface) -> float:
+def _nominal_resistance(side: Side, surface: Surface) -> float:
     if side.adiabatic:
         return math.inf
     if isinstance(side.convection, Constant) and side.convection.coefficient > 0.0:
         return 1.0 / side.convection.coefficient
-    return _iso_film(side, surface)
+    return _iso_resistance(side, surface)

@@ -1,4 +1,4 @@
-"""Phase-change layers that had nothing to do in a run."""
+"""Phase-change layers that neither melted nor froze in a run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.building.outputs import Output
 
-#: A liquid fraction that changes by less than this does nothing [-].
+#: Least change of the liquid fraction that counts as melting or freezing [-].
 NOTHING: Final = 0.01
 
 
@@ -30,7 +30,7 @@ def watched(building: Building) -> list[Output]:
 
 
 def warnings(building: Building, records: npt.NDArray[np.float64]) -> list[str]:
-    """Say which layers neither melted nor froze.
+    """Warnings about layers that neither melted nor froze.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def warnings(building: Building, records: npt.NDArray[np.float64]) -> list[str]:
         lines.append(
             f"surfaces.{name}, layer {layer}: stayed {state}, {temperature.min():.2f} to "
             f"{temperature.max():.2f} degC on the mean; it melts from {low:.2f} to {high:.2f} degC{freezes}: "
-            "its latent heat does nothing in this run"
+            "its latent heat has no effect in this run"
         )
     return lines
 

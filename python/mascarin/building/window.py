@@ -1,4 +1,4 @@
-"""Windows in walls, and the shades in front of them."""
+"""Windows in walls, and shades outdoors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field, model_validator
 
 from mascarin.building import quantities as q
-from mascarin.building.convection import Convection
+from mascarin.building.convection import CONVECTION, Convection
 from mascarin.building.glazing import PaneGlazing, both
 from mascarin.building.names import GlazingName, SurfaceName
 from mascarin.building.number import Number
@@ -22,18 +22,30 @@ Vertices = tuple[tuple[q.Coordinate, q.Coordinate, q.Coordinate], ...]
 
 
 class Frame(Part):
-    """The part of a window that is no glass."""
+    """Frame of a window.
+
+    Examples
+    --------
+    >>> Frame(fraction=0.2, u_value=2)
+    Frame(fraction=0.2, u_value=2 W/(m2 K), absorptance=0.5, emissivity=0.9)
+    """
 
     fraction: q.FrameFraction
     u_value: q.FrameU
     absorptance: q.Absorptance = Number(0.5, source="neither white nor black", assumed=True)
-    emissivity: q.Emissivity = Number(0.9, source="ISO 10077-2:2017: painted or anodised", assumed=True)
+    emissivity: q.Emissivity = Number(0.9, source="ISO 10077-2:2017: painted or anodized", assumed=True)
 
 
 class WindowOutside(Part):
-    """The face of a window that sees the weather."""
+    """The outer side of a window.
 
-    convection: Convection = Field(description="Film coefficient: a number, or a correlation")
+    Examples
+    --------
+    >>> WindowOutside(convection="doe2", height=1.5)
+    WindowOutside(convection=doe2, height=1.5 m)
+    """
+
+    convection: Convection = Field(description=CONVECTION)
     sky_view: q.SkyView | None = None
     height: q.Height | None = None
     longwave: OutdoorLongwave | None = Field(
@@ -47,7 +59,7 @@ class WindowOutside(Part):
 
     @property
     def irradiance(self) -> None:
-        """The sun is always the climate's."""
+        """No measured column: irradiance comes from the climate."""
         return
 
     @property
@@ -57,7 +69,7 @@ class WindowOutside(Part):
 
     @property
     def exposed(self) -> Exposure:
-        """To sun, wind and sky."""
+        """To all parts of the weather."""
         return Exposure()
 
     @property
@@ -67,9 +79,15 @@ class WindowOutside(Part):
 
 
 class WindowInside(Part):
-    """The face of a window that sees its zone."""
+    """The inner side of a window.
 
-    convection: Convection = Field(description="Film coefficient: a number, or a correlation")
+    Examples
+    --------
+    >>> WindowInside(convection="iso15099")
+    WindowInside(convection=iso15099)
+    """
+
+    convection: Convection = Field(description=CONVECTION)
 
     @property
     def outdoors(self) -> None:
@@ -78,17 +96,17 @@ class WindowInside(Part):
 
     @property
     def irradiance(self) -> None:
-        """No sun is measured here."""
+        """No measured column."""
         return
 
     @property
     def sunlit(self) -> bool:
-        """Never from outdoors."""
+        """Never."""
         return False
 
     @property
     def exposed(self) -> Exposure:
-        """To nothing outdoors."""
+        """To no part of the weather."""
         return Exposure(sun=False, wind=False, sky=False)
 
     @property
@@ -98,27 +116,46 @@ class WindowInside(Part):
 
 
 class Shade(Part):
-    """An opaque thin polygon outdoors that keeps beam and diffuse sky off the faces behind it.
+    """A thin opaque polygon outdoors that shades beam and diffuse radiation of the sky.
 
-    It acts on every face outdoors that has vertices. It reflects nothing, and has no part in the heat.
+    It acts on every outdoor surface with vertices. It reflects nothing and is not part of the heat balance.
+
+    Examples
+    --------
+    >>> overhang = Shade(vertices=[[0, 0, 3], [4, 0, 3], [4, -1, 3], [0, -1, 3]])
+    >>> len(overhang.vertices)
+    4
     """
 
     vertices: Vertices = Field(description="Corners [x, y, z] in order, in the coordinates of the surfaces")
 
 
 class Window(Part):
-    """A glazing in a wall between outdoors and a zone; its area is taken off the wall's."""
+    """A glazing in a wall between outdoors and a zone; its area is subtracted from the area of the wall.
 
-    surface: SurfaceName = Field(description="Name of the wall it is in")
+    Examples
+    --------
+    >>> window = Window(
+    ...     surface="south",
+    ...     glazing="double",
+    ...     area=1.5,
+    ...     outside=WindowOutside(convection="doe2"),
+    ...     inside=WindowInside(convection="iso15099"),
+    ... )
+    >>> float(window.area)
+    1.5
+    """
+
+    surface: SurfaceName = Field(description="Name of the surface it is in")
     glazing: GlazingName = Field(description="Name of a glazing")
     area: q.WindowArea | None = None
     vertices: Vertices | None = Field(
         None, description="Corners [x, y, z] in the plane of the wall, counter-clockwise seen from outside"
     )
     cavity_height: q.CavityHeight | None = None
-    frame: Frame | None = Field(None, description="Frame; none: all of it is glass")
-    outside: WindowOutside = Field(description="The outer face")
-    inside: WindowInside = Field(description="The inner face")
+    frame: Frame | None = Field(None, description="Frame; none: the whole area is glass")
+    outside: WindowOutside = Field(description="The outer side")
+    inside: WindowInside = Field(description="The inner side")
 
     @model_validator(mode="after")
     def _sized(self) -> Window:
@@ -128,17 +165,17 @@ class Window(Part):
 
 
 def emissivities(glazing: Any) -> tuple[float, float]:
-    """Emissivity of the outermost and of the innermost face [-]."""
+    """Emissivity of the outer side of the first pane and of the inner side of the last one [-]."""
     if isinstance(glazing, PaneGlazing):
         return both(glazing.panes[0].emissivity)[0], both(glazing.panes[-1].emissivity)[1]
     return glazing.emissivity, glazing.emissivity
 
 
-def windows_of(surface: str, windows: Mapping[str, Window]) -> Iterator[tuple[str, Window]]:
+def windows_in(surface: str, windows: Mapping[str, Window]) -> Iterator[tuple[str, Window]]:
     """Windows in a wall."""
     return ((name, window) for name, window in windows.items() if window.surface == surface)
 
 
 def opaque_area(surface: str, gross: float, windows: Mapping[str, Window]) -> float:
-    """What the windows leave of a wall [m2]."""
-    return gross - sum(float(window.area or 0.0) for _, window in windows_of(surface, windows))
+    """Area of a wall without its windows [m2]."""
+    return gross - sum(float(window.area or 0.0) for _, window in windows_in(surface, windows))

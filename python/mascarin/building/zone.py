@@ -1,4 +1,4 @@
-"""Zones: volumes of well-mixed air, what heats and airs them, and how they exchange air."""
+"""Zones: volumes of well-mixed air, their gains, ventilation and ideal loads, and the air between them."""
 
 from __future__ import annotations
 
@@ -18,17 +18,21 @@ ASHRAE_OPENING = (
 
 
 class Infiltration(Part):
-    """Outdoor air that enters unasked: ``constant + temperature |dT| + wind V`` air changes per hour."""
+    """Infiltration: ``constant + temperature |dT| + wind V`` air changes per hour.
 
-    constant: q.AirChange = Number(0.0, source=Remark("not written: airtight"), assumed=True)
-    temperature: q.AirChangePerKelvin = Number(
-        0.0, source=Remark("not written: no stack effect"), assumed=True
-    )
-    wind: q.AirChangePerSpeed = Number(0.0, source=Remark("not written: no effect of wind"), assumed=True)
+    Examples
+    --------
+    >>> Infiltration(constant=0.2, wind=0.05)
+    Infiltration(constant=0.2 1/h, temperature=0 1/(h K), wind=0.05 1/(h m/s))
+    """
+
+    constant: q.AirChange = Number(0.0, source=Remark("not given: airtight"), assumed=True)
+    temperature: q.AirChangePerKelvin = Number(0.0, source=Remark("not given: no stack effect"), assumed=True)
+    wind: q.AirChangePerSpeed = Number(0.0, source=Remark("not given: no effect of wind"), assumed=True)
 
 
 class Radiosity(Part):
-    """Exact grey-diffuse exchange, with the fourth power of temperature."""
+    """Exact exchange between gray, diffuse surfaces, with the fourth power of temperature."""
 
     kind: Literal["radiosity"] = "radiosity"
 
@@ -39,35 +43,56 @@ ZoneLongwave = Annotated[
 
 
 class Gain(Part):
-    """Heat from people, light and machines."""
+    """Internal heat gain from people, light or equipment.
+
+    Examples
+    --------
+    >>> people = Gain(power=200, radiative=0.5, schedule="presence")
+    >>> float(people.radiative)
+    0.5
+    """
 
     power: q.GainPower
-    radiative: q.Radiative = Number(
-        0.0, source=Remark("not written: all of it goes to the air"), assumed=True
+    radiative: q.Radiative = Number(0.0, source=Remark("not given: all of it goes to the air"), assumed=True)
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the power; none: always 1"
     )
-    schedule: ScheduleName | None = Field(None, description="Fraction of the power; none: always all of it")
 
 
 class Ventilation(Part):
-    """Outdoor air let in on purpose, at the density of the site."""
+    """Ventilation with outdoor air; flows are volumes at the density of the site.
+
+    Examples
+    --------
+    >>> float(Ventilation(air_changes=1.5).air_changes)
+    1.5
+    """
 
     air_changes: q.Ventilation | None = None
     flow: q.VolumeFlow | None = None
-    schedule: ScheduleName | None = Field(None, description="Fraction of the flow; none: always all of it")
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the flow; none: always 1"
+    )
 
     @model_validator(mode="after")
     def _sourced(self) -> Ventilation:
         if (self.air_changes is None) == (self.flow is None):
             raise problem(
-                "ventilation without a source of air" if self.flow is None else "air_changes and flow",
-                "exactly one of air_changes [1/h] and flow [m3/s], the outdoor air that comes in",
-                "Say how much air it is, in one of the two ways.",
+                "ventilation without a flow" if self.flow is None else "air_changes and flow",
+                "exactly one of air_changes [1/h] and flow [m3/s]",
+                "Give the flow of outdoor air in one of the two ways.",
             )
         return self
 
 
 class SetPoint(Part):
-    """Air temperature that a plant keeps: a number, or a schedule."""
+    """Set point of ideal heating or cooling: a number, or a schedule.
+
+    Examples
+    --------
+    >>> SetPoint(temperature=20)
+    SetPoint(temperature=20 degC)
+    """
 
     temperature: q.SetPoint | None = None
     schedule: ScheduleName | None = Field(None, description="Schedule of temperature")
@@ -84,35 +109,60 @@ class SetPoint(Part):
 
 
 class IdealLoads(Part):
-    """Ideal heating or cooling: all of it to the air, which it senses, with no loss and no delay."""
+    """Ideal heating or cooling: it acts on the air temperature alone, without losses and without delay.
+
+    Examples
+    --------
+    >>> heating = IdealLoads(setpoint=20, capacity=2000)
+    >>> float(heating.setpoint.temperature)
+    20.0
+    """
 
     setpoint: Annotated[SetPoint, Shorthand(number="temperature")] = Field(
-        description="Air temperature that it keeps: a number, or {schedule: name}"
+        description="Set point of the air temperature: a number, or {schedule: name}"
     )
     capacity: q.Capacity | None = None
     schedule: ScheduleName | None = Field(
-        None, description="Fraction of the capacity that is available; none: always all of it"
+        None, description="Schedule of the available fraction of the capacity; none: always 1"
     )
 
 
 class EvenSun(Part):
-    """Sun spread over all faces, each absorbing by its absorptance; glass lets part of it out again."""
+    """Solar radiation distributed evenly over all surfaces; part of it leaves through the glass again.
+
+    Examples
+    --------
+    >>> EvenSun()
+    EvenSun()
+    """
 
     kind: Literal["area"] = "area"
 
 
 class GivenSun(Part):
-    """Sun by given shares, scaled to a sum of one."""
+    """Solar radiation distributed by given fractions, scaled to a sum of one.
+
+    Examples
+    --------
+    >>> GivenSun(shares={"floor": 0.6, "walls": 0.4})
+    GivenSun(shares=floor, walls, lost=0)
+    """
 
     kind: Literal["shares"] = "shares"
     shares: dict[Name, q.SunShare] = Field(
-        default_factory=dict, description="Share of each surface of the zone, by its name"
+        default_factory=dict, description="Fraction of each surface of the zone, by its name"
     )
-    lost: q.SunShare = Number(0.0, source=Remark("not written: nothing leaves again"))
+    lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
 
 
 class TracedSun(Part):
-    """Beam followed to where its rays end, all else by view factors; needs vertices all round the zone."""
+    """Beam radiation traced to the surfaces, the rest by view factors; needs vertices of all surfaces.
+
+    Examples
+    --------
+    >>> TracedSun()
+    TracedSun()
+    """
 
     kind: Literal["geometry"] = "geometry"
 
@@ -121,48 +171,61 @@ ZoneSun = Annotated[EvenSun | GivenSun | TracedSun, Field(discriminator="kind"),
 
 
 class Zone(Part):
-    """A volume of well-mixed air."""
+    """A volume of well-mixed air.
+
+    Examples
+    --------
+    >>> zone = Zone(volume=30, infiltration=0.5, heating={"setpoint": 20})
+    >>> float(zone.infiltration.constant)
+    0.5
+    """
 
     volume: q.Volume | None = None
     capacity_factor: q.CapacityFactor = Number(1.0, source=Remark("air alone, no furniture"), assumed=True)
     infiltration: Annotated[Infiltration, Shorthand(number="constant")] = Field(
         default_factory=Infiltration,
-        description="Outdoor air that enters unasked: a number, or its three parts",
+        description="Infiltration: a number [1/h], or its three parts",
     )
     longwave: ZoneLongwave = Field(
         default_factory=lambda: Radiosity(kind="radiosity"),
-        description="Long-wave exchange between the faces of the zone",
+        description="Long-wave exchange between the surfaces of the zone",
     )
     sun: ZoneSun | None = Field(
-        None, description="Where the sun that enters through windows lands; none: area"
+        None, description="Distribution of the solar radiation that enters through windows; none: area"
     )
     view_factors: dict[str, dict[str, q.ViewFactor]] | None = Field(
         None,
-        description="View factors from face to face, by surface name (name.outside and name.inside where "
-        "both sides of a surface face the zone); none: from vertices, else an approximation by areas",
+        description="View factors between surfaces, by their names (name.outside and name.inside where both "
+        "sides of a surface face the zone); none: from vertices, else an approximation by areas",
     )
-    gains: dict[Name, Gain] = Field(
-        default_factory=dict, description="Heat from people, light and machines, by name"
-    )
+    gains: dict[Name, Gain] = Field(default_factory=dict, description="Internal heat gains by name")
     ventilation: dict[Name, Ventilation] = Field(
-        default_factory=dict, description="Outdoor air let in on purpose, by name"
+        default_factory=dict, description="Ventilation with outdoor air, by name"
     )
-    heating: IdealLoads | None = Field(None, description="Ideal heating; none: none")
-    cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: none")
+    heating: IdealLoads | None = Field(None, description="Ideal heating; none: no heating")
+    cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: no cooling")
 
     @property
-    def plants(self) -> dict[str, IdealLoads]:
-        """Heating and cooling, as far as there are any."""
+    def loads(self) -> dict[str, IdealLoads]:
+        """Heating and cooling, where there are any."""
         both = {"heating": self.heating, "cooling": self.cooling}
         return {name: plant for name, plant in both.items() if plant is not None}
 
 
 class AirPath(Part):
-    """Air that two zones exchange, as much one way as the other."""
+    """Air that two zones exchange, with the same flow in both directions.
+
+    Examples
+    --------
+    >>> AirPath(between=("office", "corridor"), flow=0.02)
+    AirPath(between=[office, corridor], flow=0.02 m3/s)
+    """
 
     between: tuple[ZoneName, ZoneName] = Field(description="Names of the two zones")
     flow: q.VolumeFlow
-    schedule: ScheduleName | None = Field(None, description="Fraction of the flow; none: always all of it")
+    schedule: ScheduleName | None = Field(
+        None, description="Schedule of the fraction of the flow; none: always 1"
+    )
 
     @model_validator(mode="after")
     def _two(self) -> AirPath:
@@ -172,7 +235,13 @@ class AirPath(Part):
 
 
 class Opening(Part):
-    """An opening to outdoors that wind and buoyancy drive air through."""
+    """An opening to outdoors, with a flow of air by wind and buoyancy.
+
+    Examples
+    --------
+    >>> Opening(zone="attic", area=0.02, height=0.3)
+    Opening(zone=attic, area=0.02 m2, height=0.3 m, discharge=0.65, wind_coefficient=0.3)
+    """
 
     zone: ZoneName = Field(description="Name of the zone")
     area: q.OpeningArea
@@ -180,5 +249,5 @@ class Opening(Part):
     discharge: q.Discharge = Number(0.65, source=ASHRAE_OPENING, assumed=True)
     wind_coefficient: q.WindCoefficient = Number(0.3, source=ASHRAE_OPENING, assumed=True)
     schedule: ScheduleName | None = Field(
-        None, description="Fraction of the area that is open; none: always all of it"
+        None, description="Schedule of the fraction of the area that is open; none: always 1"
     )

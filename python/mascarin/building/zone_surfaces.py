@@ -1,4 +1,4 @@
-"""The faces that a zone sees: surfaces, the glass of windows, their frames; in the order of the engine."""
+"""Surfaces of a zone: opaque surfaces, glass of windows, frames; in the order of the engine."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mascarin.building.derived import faces_of, outlines, window_outlines
+from mascarin.building.derived import outlines, sides_of_zone, window_outlines
 from mascarin.building.window import opaque_area
 
 if TYPE_CHECKING:
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class ZoneFace:
-    """A face of a zone.
+class ZoneSurface:
+    """One surface of a zone.
 
     Attributes
     ----------
@@ -26,13 +26,13 @@ class ZoneFace:
     side : str
         ``outside`` or ``inside``.
     area : float
-        Its own area, without the windows in it, or without the frame. [m2]
+        Area without windows, or without the frame. [m2]
     share : float
-        Share of the polygon's own area: less than 1 for the glass and the frame of a framed window. [-]
+        Fraction of the area of the polygon: less than 1 for glass and frame of a framed window. [-]
     polygon : Polygon or None
-        Outline, as seen from the zone; none where there are no vertices.
+        Outline as seen from the zone; None without vertices.
     surface, window : Surface and Window
-        What it belongs to: one of the two.
+        One of the two: what it is a part of.
     """
 
     name: str
@@ -44,9 +44,11 @@ class ZoneFace:
     window: Window | None
 
 
-def zone_faces(zone: str, surfaces: Mapping[str, Surface], windows: Mapping[str, Window]) -> list[ZoneFace]:
-    """Faces of a zone: of surfaces, of the glass of windows, of their frames."""
-    sides = faces_of(zone, surfaces)
+def surfaces_of_zone(
+    zone: str, surfaces: Mapping[str, Surface], windows: Mapping[str, Window]
+) -> list[ZoneSurface]:
+    """Surfaces of a zone: opaque surfaces, then the glass of windows, then their frames."""
+    sides = sides_of_zone(zone, surfaces)
     inside = [name for name, side in sides if side == "inside"]
     seen = {name: window for name, window in windows.items() if window.surface in inside}
     drawn = outlines({name: surfaces[name] for name, _ in sides}) | window_outlines(seen)
@@ -56,7 +58,7 @@ def zone_faces(zone: str, surfaces: Mapping[str, Surface], windows: Mapping[str,
         return found if found is None or side == "outside" else found.reversed()
 
     found = [
-        ZoneFace(
+        ZoneSurface(
             name,
             side,
             opaque_area(name, float(surfaces[name].area or 0.0), windows),
@@ -67,21 +69,21 @@ def zone_faces(zone: str, surfaces: Mapping[str, Surface], windows: Mapping[str,
         )
         for name, side in sides
     ]
-    parts = [(name, window, 1.0 - frame_share(window)) for name, window in seen.items()]
+    parts = [(name, window, 1.0 - frame_fraction(window)) for name, window in seen.items()]
     parts += [
-        (name, window, frame_share(window)) for name, window in seen.items() if window.frame is not None
+        (name, window, frame_fraction(window)) for name, window in seen.items() if window.frame is not None
     ]
     for name, window, share in parts:
         area = share * float(window.area or 0.0)
-        found.append(ZoneFace(name, "inside", area, share, polygon(name, "inside"), None, window))
+        found.append(ZoneSurface(name, "inside", area, share, polygon(name, "inside"), None, window))
     return found
 
 
-def frame_share(window: Window) -> float:
-    """Share of the frame in the area of a window [-]."""
+def frame_fraction(window: Window) -> float:
+    """Fraction of the frame in the area of a window [-]."""
     return 0.0 if window.frame is None else float(window.frame.fraction)
 
 
-def closed(faces: list[ZoneFace]) -> bool:
-    """Tell whether every face of a zone has an outline."""
-    return bool(faces) and all(face.polygon is not None for face in faces)
+def closed(seen: list[ZoneSurface]) -> bool:
+    """Whether all surfaces of a zone have an outline."""
+    return bool(seen) and all(item.polygon is not None for item in seen)

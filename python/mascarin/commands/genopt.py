@@ -99,7 +99,7 @@ def _optimize(
 ) -> int:
     """Run or check a project."""
     from mascarin.errors import InputError
-    from mascarin.genopt import Options, optimise
+    from mascarin.genopt import Options, optimize
     from mascarin.genopt.run import check as check_project
     from mascarin.genopt.run import interrupted, summary
 
@@ -127,7 +127,7 @@ def _optimize(
         if left:
             _say(left)
     try:
-        outcome = optimise(project, options)
+        outcome = optimize(project, options)
     except KeyboardInterrupt:
         _say(f"interrupted; continue with: mascarin optimize {project} --resume")
         raise

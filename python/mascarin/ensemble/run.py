@@ -197,10 +197,10 @@ def sweep_into(
         kept = Store.begin(folder, _manifest(inputs, found, seed))
         before = kept.done
 
-        def told(done: int) -> object:
+        def count(done: int) -> object:
             return report(before + done, found.count)
 
-        for chunk in _chunks(inputs, found, kept.gaps(), workers, told):
+        for chunk in _chunks(inputs, found, kept.gaps(), workers, count):
             kept.add(chunk, found.part(chunk.first, chunk.first + len(chunk.closure)))
         kept.finish()
     return kept

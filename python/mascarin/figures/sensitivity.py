@@ -92,7 +92,7 @@ def indices(
     title : str
         What the index is, for the axis.
     labeled : bool
-        Whether the names stand at the axis.
+        Whether the axis has the names.
     total : tuple of three ndarray, shape (G,), optional
         Total index with its interval, drawn below the first one. [-]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from matplotlib import dates
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -53,14 +54,19 @@ def draw(
     """
     units = list(dict.fromkeys(unit for _, unit, _ in series))
     axes = _axes(ax, units)
-    local = index.tz_localize(None)
+    # Times in UTC with local labels: a line does not go back where daylight saving time ends.
+    days = dates.date2num(index.tz_convert("UTC").tz_localize(None).to_numpy())  # type: ignore[no-untyped-call]
     for name, unit, values in series:
-        axes[units.index(unit)].plot(local, values, label=name, lw=1.1)
+        axes[units.index(unit)].plot(days, values, label=name, lw=1.1)
     for axis in dict.fromkeys(axes):
         here = [unit for unit, other in zip(units, axes, strict=True) if other is axis]
         axis.set_ylabel(", ".join(here))
         axis.legend(fontsize="small")
         axis.grid(alpha=0.3)
+        locator = dates.AutoDateLocator(tz=index.tz)  # type: ignore[no-untyped-call]
+        axis.xaxis.set_major_locator(locator)
+        formatter = dates.ConciseDateFormatter(locator, tz=index.tz)  # type: ignore[no-untyped-call]
+        axis.xaxis.set_major_formatter(formatter)
     if axes:
         axes[-1].set_xlabel(f"local time ({index.tz})")
     return (axes[0].get_figure(root=True) if axes else None) or Figure()

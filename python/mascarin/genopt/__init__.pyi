@@ -2,6 +2,6 @@ from .loading import load as load
 from .project import Project as Project
 from .run import Options as Options
 from .run import Outcome as Outcome
-from .run import optimise as optimise
+from .run import optimize as optimize
 
 __all__: list[str]

@@ -20,7 +20,7 @@ class Built:
 
     Parameters
     ----------
-    optimiser : Optimizer
+    optimizer : Optimizer
         The search.
     name : str
         The name after ``Main =``.
@@ -32,7 +32,7 @@ class Built:
         Whether GenOpt has no algorithm of this name.
     """
 
-    optimiser: Optimizer
+    optimizer: Optimizer
     name: str
     stop_at_error: bool = True
     counts_equal: bool = False
@@ -80,9 +80,9 @@ def build(project: Project, observer: Observer, workers: int) -> Built:
     space = _space(project, name, rule)
     _check_bounds(project, rule, bounds=rule.bounds or "MultiStart" in keys)
     context = Context(project, space, observer, workers)
-    optimiser = rule.build(context, keys)
+    optimizer = rule.build(context, keys)
     return Built(
-        optimiser, name, keys.get("StopAtError", True), counts_equal=name == "NelderMeadONeill", own=rule.own
+        optimizer, name, keys.get("StopAtError", True), counts_equal=name == "NelderMeadONeill", own=rule.own
     )
 
 

@@ -68,7 +68,6 @@ _GPS_TAIL = (
 _GPS_KEYS = (*_MULTI, *_DECREASE, *_GPS_TAIL)
 _GPS_OPTIONAL = (*_MULTI, *_DECREASE)
 _DAG_KEYS = ("Alpha", "Beta", "Gamma", "K0", "KStar", "LMax", "Kappa", "EpsilonM", "EpsilonX")
-
 ALGORITHMS: Final[dict[str, Algorithm]] = {
     "GPSHookeJeeves": Algorithm(_GPS_KEYS, searches.pattern(HookeJeeves), _GPS_OPTIONAL, mixed=True),
     "GPSCoordinateSearch": Algorithm(
@@ -127,7 +126,7 @@ ALGORITHMS: Final[dict[str, Algorithm]] = {
 }
 """All algorithms by name, GenOpt's own first."""
 
-REMOVED: Final[dict[str, str]] = {
+REMOVED: Final = {
     "MascarinDE": "choose MascarinCMAES for continuous parameters, or PSOCC, which also takes discrete ones "
     "(docs/coming-from-genopt.md)"
 }

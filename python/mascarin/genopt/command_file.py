@@ -166,7 +166,7 @@ def _check_name(project: Project, name: str, place: str) -> None:
     if name in project.names or name in project.functions:
         project.report.error(place, f"the name '{name}' is used twice")
     if name == "stepNumber":
-        project.report.error(place, "the name 'stepNumber' is taken by the step number; choose another")
+        project.report.error(place, "the name 'stepNumber' is reserved for the step number; choose another")
 
 
 def resolve_functions(project: Project) -> None:
@@ -204,7 +204,7 @@ def _try_function(report: Report, place: str, text: str) -> None:
     """Evaluate a function once with ones for its variables."""
     left = re.search(r"%([^%\s]+)%", text)
     if left:
-        report.error(place, f"'{left[0]}' in a function is no parameter, function or cost")
+        report.error(place, f"'{left[0]}' in a function is not a parameter, function or cost")
         return
     try:
         functions.evaluate(text)

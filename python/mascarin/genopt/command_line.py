@@ -123,8 +123,8 @@ def place_word(word: str, values: dict[str, str], folder: Path, own: set[str]) -
     text = functions.substitute(word, values)
     if text.startswith(".") and not re.match(r"\.\d+\Z", text):
         return os.path.normpath(folder / text)
-    # The name of one of the run's own files means that file, whatever lies in the directory from which the
-    # optimisation was started.
+    # The name of a file of the run means that file, also when the directory from which the optimization was
+    # started has a file of the same name.
     literal = text == word and text not in own
     if literal and text and not Path(text).is_absolute() and Path(text).exists():
         return str(Path(text).absolute())

@@ -20,7 +20,7 @@ def no_loose_entries(root: Block, report: Report) -> None:
         Takes errors.
     """
     for entry in root.entries:
-        report.error(entry.place, f"'{entry.key}' stands outside all sections")
+        report.error(entry.place, f"'{entry.key}' is outside all sections")
 
 
 def any_order(

@@ -1,4 +1,4 @@
-"""Evaluates points as GenOpt does: numbers, cache, retries; in parallel and ahead where that helps."""
+"""Evaluates points as GenOpt does: numbers, cache, second tries; several at a time and in advance."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Cache:
         ] = {}
 
     def find(self, group: tuple[object, ...], x: tuple[float, ...]) -> Record | None:
-        """The record of a point, None when it has not been evaluated.
+        """Return the record of a point, None when it has not been evaluated.
 
         Parameters
         ----------
@@ -77,9 +77,9 @@ class Policy:
     workers : int
         Number of runs at a time [-].
     ahead : bool
-        Whether idle workers run points that are likely to be needed.
+        Whether workers without a task run points that will probably be needed.
     penalty : float or None
-        Cost of a failed run; None stops the optimisation.
+        Cost of a failed run; None stops the optimization.
     """
 
     workers: int = 1
@@ -95,7 +95,7 @@ class Evaluator:
     project : Project
         The project.
     built : Built
-        The optimiser, asked for guesses.
+        The search; it predicts points that will be needed.
     run : callable
         Runs one point in a directory.
     policy : Policy
@@ -127,7 +127,7 @@ class Evaluator:
         self.count = 0
         self.runs = 0
         self._pool = ThreadPoolExecutor(policy.workers) if policy.workers > 1 else None
-        self._flying: dict[Key, Future[Record]] = {}
+        self._running: dict[Key, Future[Record]] = {}
         self._ahead: dict[Key, Record] = {}
         self._folders: dict[Key, Path] = {}
         self._ahead_count = 0
@@ -142,7 +142,7 @@ class Evaluator:
         Parameters
         ----------
         points : sequence of Point
-            What the optimiser asks for.
+            What the search needs.
 
         Returns
         -------
@@ -152,21 +152,21 @@ class Evaluator:
         Raises
         ------
         RunFailed
-            When a run fails and failures end the optimisation.
+            When a run fails and failures end the optimization.
         """
         first_batch = self.count == 0
-        step = self._built.optimiser.step_number
+        step = self._built.optimizer.step_number
         seen: dict[tuple[object, ...], int] = {}
         numbers: list[int] = []
-        twins: list[int | None] = []
+        repeats: list[int | None] = []
         needed: list[Record | None] = []
         for i, p in enumerate(points):
-            # Within a batch points are told apart by their own step number too.
+            # Within a batch, points with different step numbers are different points.
             own = (p.step, p.x, p.choices)
-            twin = seen.setdefault(own, i)
-            twins.append(None if twin == i else twin)
-            if twin != i:
-                numbers.append(numbers[twin])
+            first = seen.setdefault(own, i)
+            repeats.append(None if first == i else first)
+            if first != i:
+                numbers.append(numbers[first])
                 needed.append(None)
                 continue
             record = self._cache.find(self._group(p, step), p.x)
@@ -177,7 +177,7 @@ class Evaluator:
         new = [
             (i, replace(p, step=step), numbers[i])
             for i, p in enumerate(points)
-            if twins[i] is None and needed[i] is None
+            if repeats[i] is None and needed[i] is None
         ]
         for (i, p, _), record in zip(new, self._obtain(new, first_batch=first_batch), strict=True):
             needed[i] = record
@@ -185,17 +185,17 @@ class Evaluator:
         fresh = {i for i, _, _ in new}
         out: list[Evaluation] = []
         for i, p in enumerate(points):
-            twin_of = twins[i]
-            record = needed[i if twin_of is None else twin_of]
+            repeated = repeats[i]
+            record = needed[i if repeated is None else repeated]
             if record is not None:
-                # Only a point that is run takes the current step number; others keep the one they carry.
+                # Only a point that is run gets the current step number; others keep theirs.
                 mine = step if i in fresh else p.step
                 out.append(self._evaluation(p, record, numbers[i], mine))
         return out
 
     def _group(self, p: Point, step: int) -> tuple[object, ...]:
-        """What must be identical for two points to share a result."""
-        phase = self._built.optimiser.phase if self._project.discrete else 0
+        """What must be identical for two points to have the same result."""
+        phase = self._built.optimizer.phase if self._project.discrete else 0
         return (step if self._project.settings.write_step else 1, p.choices, phase)
 
     def _evaluation(self, p: Point, record: Record, number: int, step: int) -> Evaluation:
@@ -206,7 +206,7 @@ class Evaluator:
         others = [math.nan] * (len(self._project.objectives) - 1)
         if self._policy.penalty is not None:
             return Evaluation(replace(p, step=step), self._policy.penalty, tuple(others), number, failed=True)
-        # GenOpt records a failure that does not stop it as zeros with the step number the point came with.
+        # GenOpt records a failure that does not stop it with zeros, and with the step number of the point.
         return Evaluation(p, 0.0, tuple(0.0 for _ in others), number, failed=True)
 
     # ------------------------------------------------------------------ runs
@@ -225,14 +225,14 @@ class Evaluator:
                 if records[i].costs is None and first_batch and self._stops():
                     raise RunFailed(records[i].reason)
             else:
-                flying = self._flying.pop(key, None)
-                waiting[i] = flying or self._pool.submit(self._attempt, p, self._folder(number))
+                running = self._running.pop(key, None)
+                waiting[i] = running or self._pool.submit(self._attempt, p, self._folder(number))
         self._wait(waiting)
         records.update((i, future.result()) for i, future in waiting.items())
         out = []
         for i, p, number in new:
             record = records[i]
-            self._settle(self._key(p), number)
+            self._move_folder(self._key(p), number)
             if record.costs is None and not record.replayed:
                 record = self._second_try(record, p, number, first_batch=first_batch)
             record.number = number
@@ -269,11 +269,11 @@ class Evaluator:
         return again
 
     def _stops(self) -> bool:
-        """Whether a failure ends the optimisation."""
+        """Whether a failure ends the optimization."""
         return self._policy.penalty is None and self._built.stop_at_error
 
     def _finish(self, record: Record, p: Point, number: int) -> None:
-        """Log a run and put its files away."""
+        """Log a run and move its files."""
         if not record.replayed:
             self._write(record)
             folder = self._folder(number)
@@ -293,7 +293,7 @@ class Evaluator:
             record.logged = True
 
     def _archive(self, record: Record, folder: Path, number: int) -> None:
-        """Keep the files of a failed run that the optimisation survives."""
+        """Keep the files of a failed run after which the optimization continues."""
         keep = self._project.folder / FAILURES / f"run-{number}"
         if folder.exists():
             if keep.exists():
@@ -313,53 +313,51 @@ class Evaluator:
         shutil.rmtree(folder, ignore_errors=True)
 
     def _check_any(self, records: Sequence[Record]) -> None:
-        """A project whose every run fails is not worth going on with."""
+        """Stop when every run of the first batch fails."""
         if records and not self._any_success and self._policy.penalty is not None:
             reason = records[0].reason
-            raise RunFailed(
-                f"every run of the first batch failed, so the project itself is at fault\n{reason}"
-            )
+            raise RunFailed(f"every run of the first batch failed; correct the project\n{reason}")
 
     def _replayed(self, key: Key) -> Record | None:
-        """Record of an earlier run; a failure counts only where failures are survived."""
+        """Record of an earlier run; a failure counts only where failures do not end the optimization."""
         while (found := self._replay.take(key)) is not None:
             if found.costs is not None or not self._stops():
                 return found
         return None
 
-    # ------------------------------------------------------------------ runs ahead
+    # ------------------------------------------------------------------ runs in advance
 
     def _wait(self, waiting: dict[int, Future[Record]]) -> None:
-        """Wait for the runs that are needed; idle workers run ahead meanwhile."""
+        """Wait for the runs that are needed; other workers run points in advance."""
         open_ = set(waiting.values())
         while open_:
             self._collect()
-            self._look_ahead(len({f for f in open_ if not f.done()} | set(self._flying.values())))
-            done, _ = wait([*open_, *self._flying.values()], return_when=FIRST_COMPLETED)
+            self._look_ahead(len({f for f in open_ if not f.done()} | set(self._running.values())))
+            done, _ = wait([*open_, *self._running.values()], return_when=FIRST_COMPLETED)
             open_ -= done
 
     def _collect(self) -> None:
-        """Take the results of runs ahead that have ended."""
-        for key in [k for k, f in self._flying.items() if f.done() and not f.cancelled()]:
-            record = self._flying.pop(key).result()
+        """Take the results of runs in advance that have ended."""
+        for key in [k for k, f in self._running.items() if f.done() and not f.cancelled()]:
+            record = self._running.pop(key).result()
             self._ahead[key] = record
             if record.costs is not None:
                 self._write(record)
 
     def _look_ahead(self, busy: int) -> None:
-        """Give idle workers points that are likely to be needed."""
-        idle = self._policy.workers - busy
-        if not self._policy.ahead or self._pool is None or idle <= 0:
+        """Give workers without a task points that will probably be needed."""
+        free = self._policy.workers - busy
+        if not self._policy.ahead or self._pool is None or free <= 0:
             return
-        optimiser = self._built.optimiser
-        for p in optimiser.guesses(idle + len(self._flying), self._known):
+        optimizer = self._built.optimizer
+        for p in optimizer.guesses(free + len(self._running), self._known):
             key = self._key(p)
-            if idle > 0 and key not in self._flying and key not in self._ahead:
-                idle -= 1
+            if free > 0 and key not in self._running and key not in self._ahead:
+                free -= 1
                 self._ahead_count += 1
                 folder = self._project.folder / f"{RUN_PREFIX}ahead-{self._ahead_count}"
                 self._folders[key] = folder
-                self._flying[key] = self._pool.submit(self._attempt, p, folder)
+                self._running[key] = self._pool.submit(self._attempt, p, folder)
 
     def _known(self, p: Point) -> float | None:
         """Cost of a point from any source."""
@@ -370,8 +368,8 @@ class Evaluator:
             return self._policy.penalty
         return record.costs[0]
 
-    def _settle(self, key: Key, number: int) -> None:
-        """Give the directory of a run ahead the number under which it is needed."""
+    def _move_folder(self, key: Key, number: int) -> None:
+        """Rename the directory of a run in advance to the number that the run now has."""
         folder = self._folders.pop(key, None)
         if folder is not None and folder.exists():
             target = self._folder(number)
@@ -380,7 +378,7 @@ class Evaluator:
             folder.rename(target)
 
     def close(self, stop: Callable[[], None]) -> None:
-        """End runs that are still going on and remove what they leave.
+        """End runs that have not ended and remove their files.
 
         Parameters
         ----------

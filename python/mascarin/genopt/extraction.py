@@ -23,8 +23,8 @@ def lines_of(text: str) -> list[str]:
     return lines[:-1] if lines[-1] == "" else lines
 
 
-def word_behind(lines: Sequence[str], delimiter: str, column: int, separators: str) -> str | None:
-    """Return the text of the number behind a delimiter.
+def word_after(lines: Sequence[str], delimiter: str, column: int, separators: str) -> str | None:
+    """Return the text of the number after a delimiter.
 
     The last line with the delimiter counts, and in it the last occurrence, unless a column is given.
 

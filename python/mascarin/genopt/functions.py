@@ -98,7 +98,7 @@ _FUNCTIONS: dict[str, tuple[_Function, range]] = {
 
 
 def evaluate(text: str) -> float:
-    """Value of a function object without variables.
+    """Compute the value of a function object without variables.
 
     Parameters
     ----------
@@ -108,22 +108,22 @@ def evaluate(text: str) -> float:
     Returns
     -------
     float
-        The value; infinite or NaN where the mathematics says so.
+        The value; infinite or NaN where it is undefined.
 
     Raises
     ------
     InputError
-        When the text is no such expression.
+        The text is not such an expression.
     """
     position, value = _expression(text, 0)
     if text[position:].strip():
-        msg = f"function '{text}': found '{text[position:].strip()}' behind the closing bracket; remove it"
+        msg = f"function '{text}': found '{text[position:].strip()}' after the closing bracket; remove it"
         raise InputError(msg)
     return value
 
 
 def substitute(text: str, values: Mapping[str, str]) -> str:
-    """Text with every ``%name%`` replaced.
+    """Replace every ``%name%`` in a text.
 
     Parameters
     ----------
@@ -143,14 +143,14 @@ def substitute(text: str, values: Mapping[str, str]) -> str:
 
 
 def resolve(functions: Mapping[str, str], place: Callable[[str], str]) -> dict[str, str]:
-    """Functions with references to each other replaced by text.
+    """Replace references between functions by their text.
 
     Parameters
     ----------
     functions : mapping of str to str
         Text by name.
     place : callable
-        Where a function stands, for messages.
+        File and line of a function, for messages.
 
     Returns
     -------
@@ -160,7 +160,7 @@ def resolve(functions: Mapping[str, str], place: Callable[[str], str]) -> dict[s
     Raises
     ------
     InputError
-        When functions refer to each other in a circle.
+        Functions refer to each other in a circle.
     """
     done = dict(functions)
     for name in functions:
@@ -184,14 +184,14 @@ def _sum(values: tuple[float, ...]) -> float:
 
 
 def _expression(text: str, start: int) -> tuple[int, float]:
-    """Read one number or call; the position behind it and its value."""
+    """Read one number or call; return the position after it and its value."""
     found = _TOKEN.match(text, start)
     if found is None:
         msg = f"function '{text}': a number or a call is missing at its end"
         raise InputError(msg)
     name, bracket, word = found.groups()
     if bracket is not None:
-        msg = f"function '{text}': found '{bracket}' where a number or a call should stand"
+        msg = f"function '{text}': found '{bracket}', expected a number or a call"
         raise InputError(msg)
     if word is not None:
         value = parse_double(word)
@@ -217,7 +217,7 @@ def _arguments(text: str, position: int) -> tuple[int, list[float]]:
         arguments.append(value)
         found = re.compile(r"\s*([,)])").match(text, position)
         if found is None:
-            msg = f"function '{text}': a comma or a closing bracket is missing behind '{text[:position]}'"
+            msg = f"function '{text}': a comma or a closing bracket is missing after '{text[:position]}'"
             raise InputError(msg)
         position = found.end()
         if found[1] == ")":

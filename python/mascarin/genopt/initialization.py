@@ -128,7 +128,7 @@ def _numbered(block: Block, report: Report, kinds: Sequence[str], *, required: s
             continue
         elif number < len(groups):
             report.beyond(
-                entry.place, f"'{entry.key}' stands behind number {len(groups)}", "the numbers must rise"
+                entry.place, f"'{entry.key}' comes after number {len(groups)}", "the numbers must rise"
             )
         if found[1] in groups[number - 1]:
             report.error(entry.place, f"'{entry.key}' is written a second time; remove one")
@@ -167,13 +167,13 @@ def _one_file(project: Project, which: Literal["configuration", "command_file"],
 
 
 def _check_inside(project: Project) -> None:
-    """Input, log and output files must lie under the directory of the initialization file."""
+    """Input, log and output files must be in the directory of the initialization file or below it."""
     for entry in (*project.input, *project.log, *project.output):
         if not entry.path.is_relative_to(project.folder):
             project.report.error(
                 entry.place,
                 f"'{entry.path}' is outside the directory of the initialization file; every run has its own "
-                f"directory below '{project.folder}', so move it there (templates may be anywhere)",
+                f"directory below '{project.folder}': move the file there (templates may be anywhere)",
             )
     for entry in project.template:
         if not entry.path.is_file():

@@ -17,16 +17,16 @@ from mascarin.optimization import Evaluation, Observer
 MAIN_NAME = "OutputListingMain.txt"
 ALL_NAME = "OutputListingAll.txt"
 
-# As many lines as in GenOpt's files, so that scripts which skip a fixed number of lines go on working.
+# The same number of lines as in GenOpt's files, for scripts that skip a fixed number of lines.
 _HEADER = (
     f"Mascarin {__version__}, listing in the format of GenOpt 3.1.1",
     "",
     "Written by 'mascarin optimize'.",
-    "Columns are separated by tabs; the last one has no title and holds the comment.",
+    "Columns are separated by tabs; the last one has no title and contains the comment.",
     "Rows are added as the search proceeds.",
     "",
     "The first number counts simulations; for a repeated point it is the count of simulations so far.",
-    "Then come the counters of iterations and of trials within an iteration,",
+    "The next numbers count iterations, and trials within an iteration,",
     "the step number that penalty and barrier functions may use,",
     "the costs, the continuous and the discrete parameters.",
     "",
@@ -46,7 +46,7 @@ class Row:
     main, sub : int
         Iteration counters [-].
     comment : str
-        What the algorithm says of it.
+        Comment of the algorithm.
     """
 
     evaluation: Evaluation
@@ -83,7 +83,7 @@ class Listings(Observer):
         self._files: list[TextIO] = []
 
     def open(self, algorithm: str, started: dt.datetime) -> None:
-        """Begin both files anew.
+        """Begin both files.
 
         Parameters
         ----------
@@ -220,14 +220,14 @@ class Listings(Observer):
         return "\t".join(cells)
 
     def _count(self, evaluation: Evaluation) -> None:
-        """Stop when one cost comes too often."""
+        """Stop when one cost occurs too often."""
         if self.max_equal is None:
             return
         self._costs[evaluation.cost] += 1
         if self._costs[evaluation.cost] > self.max_equal:
             msg = (
                 f"the cost {evaluation.cost!r} was obtained more than MaxEqualResults = {self.max_equal} "
-                "times; the cost does not depend on the parameters there, so check the simulation or raise "
+                "times; the cost does not depend on the parameters there: check the simulation or increase "
                 "the number"
             )
             raise SolverError(msg)

@@ -41,7 +41,7 @@ def load(path: str | Path, *, lenient: bool = False) -> Project:
     if own and project.objectives != own:
         place = project.objectives[0].place
         project.report.notes.append(
-            f"{place}: ObjectiveFunctionLocation stands in the initialization file too; that one is used"
+            f"{place}: ObjectiveFunctionLocation is also in the initialization file; that one is used"
         )
         project.objectives = own
     if not project.objectives:

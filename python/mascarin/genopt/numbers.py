@@ -13,7 +13,7 @@ _EXACT = 1e22
 
 
 def double_text(value: float) -> str:
-    """Text of a double: decimal between 0.001 and 10 million, else with an exponent like ``1.0E-4``.
+    """Write a double: decimal between 0.001 and 10 million, else with an exponent like ``1.0E-4``.
 
     Parameters
     ----------
@@ -23,13 +23,13 @@ def double_text(value: float) -> str:
     Returns
     -------
     str
-        The shortest digits that give the number back.
+        The shortest digits from which the number can be read again.
     """
     return _layout(value, repr)
 
 
 def single_text(value: float) -> str:
-    """Text of the nearest single-precision number, in the layout of `double_text`.
+    """Write the nearest single-precision number, in the form of `double_text`.
 
     Parameters
     ----------
@@ -39,13 +39,13 @@ def single_text(value: float) -> str:
     Returns
     -------
     str
-        The shortest digits that give the single-precision number back.
+        The shortest digits from which the single-precision number can be read again.
     """
     return _layout(_to_single(value), _single_digits)
 
 
 def single(value: float) -> float:
-    """Value rounded to the decimal text of its nearest single-precision number.
+    """Round a value to the decimal text of its nearest single-precision number.
 
     Mesh points that differ by arithmetic noise become equal, and 0.3 stays 0.3.
 
@@ -81,7 +81,7 @@ def single_rounding(value: float, _index: int) -> float:
 
 
 def parse_double(text: str) -> float | None:
-    """Number written in Java's form.
+    """Read a number in Java's form.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def parse_double(text: str) -> float | None:
     Returns
     -------
     float or None
-        The number, infinite or NaN where the text says so, None where it is no number.
+        The number, also infinite or NaN; None where the text is not a number.
     """
     word = text.strip()
     if _JAVA_NUMBER.match(word):
@@ -101,7 +101,7 @@ def parse_double(text: str) -> float | None:
 
 
 def normalised(text: str) -> str:
-    """Unquoted value as GenOpt keeps it: whole numbers without a fraction, others as `double_text`."""
+    """Write an unquoted value as GenOpt does: whole numbers without a fraction, others as `double_text`."""
     value = parse_double(text) if not text.endswith(tuple("fFdD")) else None
     if value is None or not math.isfinite(value):
         return text

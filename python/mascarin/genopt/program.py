@@ -19,7 +19,7 @@ from pathlib import Path
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import functions
 from mascarin.genopt.command_line import place_word, split_command, variables
-from mascarin.genopt.extraction import lines_of, word_behind
+from mascarin.genopt.extraction import lines_of, word_after
 from mascarin.genopt.numbers import double_text, parse_double
 from mascarin.genopt.project import FileEntry, Objective, Project
 from mascarin.optimization import Point
@@ -105,19 +105,19 @@ class Program:
             mark = f"%{name}%"
             if not any(mark in t for t in (*self._templates, *outputs)) and not self._used_inside(name):
                 project.report.error(
-                    project.function_places[name], f"function '{mark}' is used nowhere; use or remove it"
+                    project.function_places[name], f"function '{mark}' is not used; use or remove it"
                 )
         project.report.raise_if_any()
         return names
 
     def _used_inside(self, name: str) -> bool:
         """Whether another input function was written with this one."""
-        # References are resolved by then, so the text of the function itself is looked for.
+        # References have been replaced by text, so that the text of the function is searched for.
         text = self._project.functions[name]
         return any(text in other for key, other in self._project.functions.items() if key != name)
 
     def _check_program(self) -> None:
-        """The program must exist and relative names must mean what they seem to."""
+        """Check that the program exists, and that file names are not ambiguous."""
         project = self._project
         words = self.command(Path(project.folder) / f"{RUN_PREFIX}1")
         if not words:
@@ -139,7 +139,7 @@ class Program:
                 project.report.beyond(
                     project.command_place,
                     f"'{stale}' has the name of a file of the run, so GenOpt started in this directory would "
-                    "hand it to every run in place of the run's own",
+                    "give it to every run instead of the file of the run",
                     "remove it or start from another directory",
                 )
         project.report.raise_if_any()
@@ -147,7 +147,7 @@ class Program:
     # ------------------------------------------------------------------ one run
 
     def texts(self, point: Point) -> list[str]:
-        """Values of all parameters as they are written into files.
+        """Write the values of all parameters as text.
 
         Parameters
         ----------
@@ -165,24 +165,24 @@ class Program:
         ]
 
     def _values(self, point: Point) -> dict[str, str]:
-        """Text for every name, in the order of replacement."""
+        """Text of every name, in the order of replacement."""
         values = dict(zip(self._project.names, self.texts(point), strict=True))
         if self._project.settings.write_step:
             values["stepNumber"] = str(point.step)
         for name, text in self._project.functions.items():
-            # All variables are known by then: parameters come first in `values`.
+            # All variables are known here, because parameters come first in `values`.
             values[name] = double_text(functions.evaluate(functions.substitute(text, values)))
         return values
 
     def run(self, point: Point, folder: Path) -> Result:
-        """Evaluate one point in a directory of its own.
+        """Evaluate one point in its own directory.
 
         Parameters
         ----------
         point : Point
             The point.
         folder : Path
-            The directory, made anew.
+            The directory; removed first if it exists.
 
         Returns
         -------
@@ -192,7 +192,7 @@ class Program:
         Raises
         ------
         RunFailed
-            When the program or its results are not right; the directory is kept.
+            The program failed or its results cannot be used; the directory is kept.
         """
         began = time.perf_counter()
         if folder.exists():
@@ -211,7 +211,7 @@ class Program:
         return Result(costs, time.perf_counter() - began)
 
     def _inside(self, entry: FileEntry, folder: Path) -> Path:
-        """Where a file of a run lies."""
+        """Path of a file of a run."""
         return folder / entry.path.relative_to(self._project.folder)
 
     def _write_inputs(self, values: dict[str, str], folder: Path) -> None:
@@ -261,14 +261,14 @@ class Program:
                 raise self._failed(folder, f"{text}\nerror stream of the program: {said}" if said else text)
 
     def stop(self) -> None:
-        """End all runs that are still going on."""
+        """End all runs that have not ended."""
         self._closed = True
         with self._lock:
             for process in list(self._running):
                 _end(process)
 
     def _failed(self, folder: Path, text: str) -> RunFailed:
-        """Error with everything needed to look for its cause."""
+        """Error with directory and command of the run."""
         number = folder.name.removeprefix(RUN_PREFIX)
         words = " ".join(self.command(folder))
         return RunFailed(f"run {number}: {text}\nworking directory: '{folder}'\ncommand: {words}")
@@ -276,7 +276,7 @@ class Program:
     # ------------------------------------------------------------------ results
 
     def _read(self, values: dict[str, str], folder: Path) -> tuple[float, ...]:
-        """Costs, after the checks of the log files."""
+        """Check the log files and read the costs."""
         for entry in self._project.log:
             path = self._inside(entry, folder)
             text = self._text(path, folder, "log")
@@ -318,11 +318,11 @@ class Program:
         return value
 
     def _extract(self, o: Objective, delimiter: str, outputs: Sequence[list[str]], folder: Path) -> float:
-        """A number behind its delimiter, from the first file that has it."""
+        """A number after its delimiter, from the first file that has it."""
         known = self._found.get(o.name)
         order = range(len(outputs)) if known is None else [known]
         for i in order:
-            word = word_behind(outputs[i], delimiter, o.column, self._separators)
+            word = word_after(outputs[i], delimiter, o.column, self._separators)
             if word is not None:
                 value = self._number(o, word, self._inside(self._project.output[i], folder), folder)
                 self._found[o.name] = i
@@ -344,7 +344,7 @@ class Program:
                 hint = "write it with E (or accept it with --lenient)"
                 raise self._failed(folder, f"{path}: '{o.name}' is '{word}', a Fortran number; {hint}")
         if value is None:
-            raise self._failed(folder, f"{path}: '{o.name}' is '{word}', which is no number")
+            raise self._failed(folder, f"{path}: '{o.name}' is '{word}', which is not a number")
         if value != value or abs(value) == float("inf"):
             raise self._failed(folder, f"{path}: '{o.name}' is {word}")
         return value
@@ -352,7 +352,7 @@ class Program:
     # ------------------------------------------------------------------ command line
 
     def command(self, folder: Path) -> list[str]:
-        """Words of the command line for a run.
+        """Return the words of the command line of a run.
 
         Parameters
         ----------

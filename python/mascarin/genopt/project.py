@@ -21,9 +21,9 @@ class FileEntry:
     name : str
         Its name.
     save : Path or None
-        Directory that keeps a copy of every run's file.
+        Directory in which the file of every run is kept.
     place : str
-        File and line where it is named.
+        File and line of its name.
     """
 
     folder: Path
@@ -64,7 +64,7 @@ class Objective:
 
 @dataclass(frozen=True)
 class ContinuousInput:
-    """A continuous parameter of the command file; bounds are None where absent."""
+    """A continuous parameter of the command file; bounds are None where they are not given."""
 
     name: str
     initial: float
@@ -96,7 +96,7 @@ class Settings:
 
 @dataclass
 class Project:
-    """Everything the three files say.
+    """Everything in the three files.
 
     Parameters
     ----------
@@ -170,5 +170,5 @@ class Project:
         return [p.name for p in self.continuous] + [p.name for p in self.discrete]
 
     def number_text(self, value: float) -> str:
-        """Text of a continuous value in files and listings."""
+        """Write a continuous value as in files and listings."""
         return single_text(value) if self.number_format == "Float" else double_text(value)

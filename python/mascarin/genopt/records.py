@@ -1,9 +1,10 @@
-"""The record of evaluations: an append-only log to go on from, and a table of everything."""
+"""The record of evaluations: a log from which a run can continue, and a table."""
 
 from __future__ import annotations
 
 import csv
 import hashlib
+import io
 import json
 from collections import defaultdict, deque
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
+from mascarin._io import atomic
 from mascarin.errors import InputError
 from mascarin.genopt.project import Project
 
@@ -36,11 +38,11 @@ class Record:
     reason : str
         Why it failed, empty when it did not.
     number : int
-        Simulation number; 0 for a run that was done ahead and not needed so far [-].
+        Simulation number; 0 for a run in advance that has not been needed [-].
     replayed : bool
         Whether it comes from the log of an earlier run.
     logged : bool
-        Whether it stands in the log.
+        Whether it has been written to the log.
     """
 
     key: Key
@@ -71,7 +73,7 @@ class Record:
 
 
 def fingerprint(project: Project) -> dict[str, str]:
-    """Digest of everything that the result of a run depends on, by what it is.
+    """Compute a digest of everything that the result of a run depends on.
 
     Parameters
     ----------
@@ -81,7 +83,7 @@ def fingerprint(project: Project) -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        Digests; the settings of the algorithm are not among them, they may change.
+        Digests by name; the settings of the algorithm are not included, because they may change.
     """
     parts: dict[str, Any] = {
         "command": [project.command, project.prefix, project.suffix, project.keep_extension],
@@ -104,7 +106,7 @@ def fingerprint(project: Project) -> dict[str, str]:
 
 
 class Log:
-    """The append-only log of runs, one line of JSON each.
+    """The log of runs, one line of JSON each.
 
     Parameters
     ----------
@@ -117,7 +119,7 @@ class Log:
         self._file: TextIO | None = None
 
     def begin(self, digests: Mapping[str, str]) -> None:
-        """Begin a new log; one that is there is kept under another name.
+        """Begin a new log; an existing one is kept under another name.
 
         Parameters
         ----------
@@ -130,7 +132,7 @@ class Log:
         self._put(json.dumps({"format": FORMAT, "project": dict(digests)}))
 
     def resume(self, digests: Mapping[str, str]) -> list[Record]:
-        """Read an earlier log and go on writing to it.
+        """Read an earlier log and continue it.
 
         Parameters
         ----------
@@ -140,18 +142,18 @@ class Log:
         Returns
         -------
         list of Record
-            The runs it holds.
+            The runs in it.
 
         Raises
         ------
         InputError
-            When there is no log, or it belongs to another project.
+            There is no log, or it belongs to another project.
         """
         if not self.path.exists():
             msg = f"there is no log '{self.path}' to resume from; start without --resume"
             raise InputError(msg)
         data = self.path.read_bytes()
-        # A line that was being written when the run was killed has no end: it is dropped.
+        # A line without an end was being written when the run was killed.
         whole = data[: data.rfind(b"\n") + 1]
         lines = whole.decode("utf-8").splitlines()
         if not lines:
@@ -174,7 +176,7 @@ class Log:
         self._put(record.line())
 
     def end(self, reason: str) -> None:
-        """Note that the optimisation came to its end."""
+        """Write that the optimization has ended."""
         self._put(json.dumps({"end": reason}))
 
     def close(self) -> None:
@@ -191,7 +193,7 @@ class Log:
 
 
 def interrupted(path: Path) -> int:
-    """Number of runs in a log whose optimisation did not come to its end.
+    """Count the runs in the log of an optimization that did not end.
 
     Parameters
     ----------
@@ -210,7 +212,7 @@ def interrupted(path: Path) -> int:
 
 
 class Replay:
-    """Results of an earlier run, to be handed out once each.
+    """Results of an earlier run, each to be used once.
 
     Parameters
     ----------
@@ -249,24 +251,26 @@ def write_table(path: Path, project: Project, records: Sequence[Record]) -> None
     Raises
     ------
     InputError
-        When the ending is another one, or Parquet cannot be written here.
+        Another ending, or Parquet cannot be written.
     """
     check_table(path)
     columns = table_columns(project)
     rows = [_row(project, r) for r in records]
     if path.suffix.lower() == ".csv":
-        with path.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(columns)
-            writer.writerows(["" if v is None else v for v in row] for row in rows)
+        text = io.StringIO(newline="")
+        writer = csv.writer(text)
+        writer.writerow(columns)
+        writer.writerows(["" if v is None else v for v in row] for row in rows)
+        atomic.write(path, text.getvalue())
         return
     import pandas as pd
 
-    pd.DataFrame(rows, columns=columns).to_parquet(path, index=False)
+    with atomic.replacing(path) as file:
+        pd.DataFrame(rows, columns=columns).to_parquet(file, index=False)
 
 
 def check_table(path: Path) -> None:
-    """Refuse a table that could not be written at the end.
+    """Check that the table can be written at the end.
 
     Parameters
     ----------
@@ -276,14 +280,14 @@ def check_table(path: Path) -> None:
     Raises
     ------
     InputError
-        With the reason.
+        It cannot; the text has the reason.
     """
     kind = path.suffix.lower()
     if kind not in (".csv", ".parquet"):
         msg = f"'{path}' ends in '{path.suffix}'; expected .csv or .parquet"
         raise InputError(msg)
     if not path.absolute().parent.is_dir():
-        msg = f"'{path.absolute().parent}' is no directory; make it first"
+        msg = f"'{path.absolute().parent}' is not a directory; make it first"
         raise InputError(msg)
     if kind == ".parquet":
         import importlib.util
@@ -294,7 +298,18 @@ def check_table(path: Path) -> None:
 
 
 def table_columns(project: Project) -> list[str]:
-    """Titles of the table; a cost named like a parameter gets a suffix."""
+    """Return the titles of the table; a cost with the name of a parameter gets a suffix.
+
+    Parameters
+    ----------
+    project : Project
+        The project.
+
+    Returns
+    -------
+    list of str
+        Titles.
+    """
     taken = {"simulation", "status", "step_number", "seconds", "attempts", "reason"}
     names = []
     for name, kind in (
@@ -317,7 +332,7 @@ def _row(project: Project, r: Record) -> list[Any]:
 
 
 def _compare(path: Path, line: str, digests: Mapping[str, str]) -> None:
-    """Refuse the log of another project."""
+    """Check that a log belongs to this project."""
     try:
         head = json.loads(line)
         known = head["project"]
@@ -352,7 +367,7 @@ def _record(path: Path, number: int, line: str) -> Record:
             logged=True,
         )
     except (ValueError, KeyError, TypeError) as error:
-        msg = f"{path}:{number}: broken line ({error}); remove it to go on from the others"
+        msg = f"{path}:{number}: broken line ({error}); remove it to continue from the others"
         raise InputError(msg) from error
 
 

@@ -30,26 +30,31 @@ LOG_NAME = "GenOpt.log"
 
 @dataclass(frozen=True)
 class Options:
-    """How a project is run; without any of them as GenOpt would.
+    """How a project is run; the defaults are those of GenOpt.
 
     Parameters
     ----------
     workers : int, optional
         Number of runs at a time; UnitsOfExecution of the command file when absent [-].
     ahead : bool
-        Whether idle workers run points that a sequential algorithm is likely to need.
+        Whether workers without a task run points that a sequential algorithm will probably need.
     penalty : float, optional
-        Cost of a failed run; failures end the optimisation when absent [unit of the cost].
+        Cost of a failed run; failures end the optimization when absent [unit of the cost].
     time_limit : float, optional
         Longest time of one run [s].
     resume : bool
-        Whether to go on from the log of an earlier run.
+        Whether to continue from the log of an earlier run.
     lenient : bool
-        Whether to accept and note what GenOpt cannot run.
+        Whether to accept and report what GenOpt cannot run.
     table : Path, optional
         File that gets all evaluations, ``.csv`` or ``.parquet``.
     progress : bool
         Whether to show progress on standard error.
+
+    Examples
+    --------
+    >>> Options(workers=4, penalty=1e6).workers
+    4
     """
 
     workers: int | None = None
@@ -64,7 +69,7 @@ class Options:
 
 @dataclass
 class Outcome:
-    """The end of an optimisation.
+    """The end of an optimization.
 
     Parameters
     ----------
@@ -77,7 +82,7 @@ class Outcome:
     exhausted : bool
         Whether it ended because of MaxIte.
     lowest : Row or None
-        The lowest point as in the listings, None for algorithms that look for none.
+        The lowest point as in the listings, None for algorithms that do not search for one.
     simulations : int
         Last simulation number [-].
     runs : int
@@ -107,7 +112,7 @@ class Outcome:
         return sum(r.costs is None for r in self.records)
 
     def values(self) -> dict[str, float | str]:
-        """Costs and parameters of the lowest point by name, empty when there is none."""
+        """Return costs and parameters of the lowest point by name; empty when there is none."""
         if self.lowest is None:
             return {}
         e, project = self.lowest.evaluation, self.project
@@ -118,8 +123,8 @@ class Outcome:
         return out
 
 
-def optimise(path: str | Path, options: Options | None = None, *, run: Runner | None = None) -> Outcome:
-    """Run a GenOpt project.
+def optimize(path: str | Path, options: Options | None = None, *, run: Runner | None = None) -> Outcome:
+    r"""Run a GenOpt project.
 
     Parameters
     ----------
@@ -128,21 +133,52 @@ def optimise(path: str | Path, options: Options | None = None, *, run: Runner | 
     options : Options, optional
         How to run it.
     run : callable, optional
-        Stands in for the simulation program: takes a point and a directory, returns a result.
+        Replaces the simulation program: takes a point and a directory, returns a result.
 
     Returns
     -------
     Outcome
-        The end of the optimisation; the listings lie beside the command file.
+        The end of the optimization; the listings are in the folder of the command file.
 
     Raises
     ------
     InputError
-        When the project has errors; nothing has been run.
+        The project has errors; nothing has been run.
     RunFailed
-        When a run of the simulation program fails and failures are not survived.
+        A run of the simulation program failed, and failures end the optimization.
     SolverError
-        When the algorithm cannot go on.
+        The algorithm cannot continue.
+
+    Examples
+    --------
+    A project with two parameters, and a Python function instead of its simulation program.
+
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from mascarin.genopt.program import Result
+    >>> texts = {
+    ...     "opt.ini": '''Simulation { Files { Template { File1 = template.txt; } Input { File1 = in.txt; }
+    ...         Log { File1 = run.log; } Output { File1 = out.txt; } Configuration { File1 = program.cfg; } }
+    ...       ObjectiveFunctionLocation { Name1 = cost; Delimiter1 = "cost ="; } }
+    ...       Optimization { Files { Command { File1 = command.txt; } } }''',
+    ...     "program.cfg": '''SimulationError { ErrorMessage = "error"; } IO { NumberFormat = Double; }
+    ...       SimulationStart { Command = "program"; WriteInputFileExtension = true; }''',
+    ...     "template.txt": "x = %x%\ny = %y%\n",
+    ...     "command.txt": '''Vary { Parameter { Name = x; Min = -1; Ini = 0.9; Max = 1; Step = 0.1; }
+    ...         Parameter { Name = y; Min = -1; Ini = 0.9; Max = 1; Step = 0.1; } }
+    ...       OptimizationSettings { MaxIte = 500; WriteStepNumber = false; UnitsOfExecution = 1; }
+    ...       Algorithm { Main = GPSHookeJeeves; MeshSizeDivider = 2; InitialMeshSizeExponent = 0;
+    ...         MeshSizeExponentIncrement = 1; NumberOfStepReduction = 4; }''',
+    ... }
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> for name, text in texts.items():
+    ...     size = (folder / name).write_text(text)
+    >>> def bowl(point, _):
+    ...     x, y = point.x
+    ...     return Result(((x - 0.3) ** 2 + 2 * (y + 0.4) ** 2,), 0.0)
+    >>> outcome = optimize(folder / "opt.ini", Options(workers=1), run=bowl)
+    >>> outcome.reason, outcome.values()["x"], outcome.values()["y"]
+    ('required accuracy is reached', 0.3, -0.4)
     """
     o = options or Options()
     started = dt.datetime.now().astimezone()
@@ -159,7 +195,7 @@ def optimise(path: str | Path, options: Options | None = None, *, run: Runner | 
     built: Built | None = None
     outcome = Outcome(project, "")
     try:
-        # The listings exist even when the project turns out to be wrong, as GenOpt leaves them.
+        # As with GenOpt, the listings exist even when the project has errors.
         outcome.algorithm = chosen(project)
         listings.open(outcome.algorithm, started)
         workers = o.workers or project.settings.units or os.cpu_count() or 1
@@ -189,7 +225,7 @@ def _runner(program: Program | None) -> Runner:
 
 
 def _stopper(program: Program | None) -> Callable[[], None]:
-    """What ends runs that are going on."""
+    """What ends runs that have not ended."""
     return program.stop if program is not None else lambda: None
 
 
@@ -203,7 +239,7 @@ def _work(
     workers: int,
     stop: Callable[[], None],
 ) -> None:
-    """Drive the optimiser to its end."""
+    """Run the search to its end."""
     log = Log(log_path(project.ini))
     digests = fingerprint(project)
     earlier = log.resume(digests) if o.resume else []
@@ -214,9 +250,9 @@ def _work(
     policy = Policy(workers, o.ahead and workers > 1, o.penalty)
     evaluator = Evaluator(project, built, run, policy, log=log, replay=Replay(earlier), watch=watch)
     try:
-        while points := built.optimiser.ask():
-            built.optimiser.tell(evaluator.evaluate(points))
-        log.end(built.optimiser.reason)
+        while points := built.optimizer.ask():
+            built.optimizer.tell(evaluator.evaluate(points))
+        log.end(built.optimizer.reason)
     finally:
         evaluator.close(stop)
         log.close()
@@ -228,13 +264,13 @@ def _work(
         outcome.warnings = evaluator.notes
         if o.table is not None:
             write_table(o.table, project, outcome.records)
-    outcome.reason = built.optimiser.reason
+    outcome.reason = built.optimizer.reason
     outcome.exhausted = outcome.reason == EXHAUSTED
     outcome.lowest = listings.lowest
 
 
 def log_path(ini: Path) -> Path:
-    """Where the log of evaluations of a project lies.
+    """Return the path of the log of evaluations of a project.
 
     Parameters
     ----------
@@ -244,13 +280,13 @@ def log_path(ini: Path) -> Path:
     Returns
     -------
     Path
-        The log, beside it.
+        The log, in the same folder.
     """
     return ini.absolute().with_suffix(".evaluations.jsonl")
 
 
 def interrupted(ini: Path) -> str:
-    """What to do about an earlier run that did not come to its end.
+    """Return what to do about an earlier run that did not end.
 
     Parameters
     ----------
@@ -266,52 +302,52 @@ def interrupted(ini: Path) -> str:
     if not count:
         return ""
     return (
-        f"note: an earlier run ended after {count} evaluations without coming to its end. Starting anew; "
-        f"stop and add --resume to go on from it (its log is kept as "
+        f"note: an earlier run stopped after {count} evaluations before its end. Starting again; "
+        f"stop and add --resume to continue it (its log is kept as "
         f"'{log_path(ini).with_suffix('.previous.jsonl').name}')"
     )
 
 
 def check(path: str | Path, options: Options | None = None) -> tuple[Project, list[str]]:
-    """Read and check a project without running or writing anything.
+    """Read and check a project; run and write nothing.
 
     Parameters
     ----------
     path : str or Path
         The initialization file.
     options : Options, optional
-        As for `optimise`.
+        As for `optimize`.
 
     Returns
     -------
     tuple of Project and list of str
-        The project, and what it would do in a few lines.
+        The project, and a description of its run in a few lines.
 
     Raises
     ------
     InputError
-        When the project has errors.
+        The project has errors.
     """
     o = options or Options()
     project = load(path, lenient=o.lenient)
     workers = o.workers or project.settings.units or os.cpu_count() or 1
     built = build(project, Listings(project), workers)
     program = Program(project, time_limit=o.time_limit)
-    expected = built.optimiser.expected
+    expected = built.optimizer.expected
     return project, [
         f"{built.name}: {', '.join(project.names)}",
         f"cost: {project.objectives[0].name}",
-        f"simulations: {expected}" if expected else "simulations: as many as it takes",
+        f"simulations: {expected}" if expected else "simulations: until it converges",
         f"workers: {workers}",
         f"first command: {' '.join(program.command(project.folder / (RUN_PREFIX + '1')))}",
     ]
 
 
 class _Watch:
-    """Shows how far an optimisation is."""
+    """Shows the progress of an optimization."""
 
     def __init__(self, project: Project, built: Built) -> None:
-        self._optimiser = built.optimiser
+        self._optimizer = built.optimizer
         self._most = project.settings.max_iterations
         self._progress = Progress("simulations")
         self._done = 0
@@ -323,20 +359,20 @@ class _Watch:
         self._done += 1
         if record.costs is not None and (self._best is None or record.costs[0] < self._best):
             self._best = record.costs[0]
-        left = self._optimiser.remaining
-        exact = self._optimiser.expected is not None
+        left = self._optimizer.remaining
+        exact = self._optimizer.expected is not None
         total = self._done + left if left is not None else max(self._most, self._done)
         about = "" if exact else "about " if left is not None else "at most "
         best = "" if self._best is None else f", lowest {self._name} {self._best:.6g}"
         self._progress.update(self._done, total, f"{self._done} of {about}{total}{best}")
 
     def close(self) -> None:
-        """Wipe the line."""
+        """Remove the line."""
         self._progress.close()
 
 
 def _clean(project: Project, *, saved: bool) -> None:
-    """Remove what an earlier run has left."""
+    """Remove the files of an earlier run."""
     for folder in project.folder.glob(f"{RUN_PREFIX}*"):
         if folder.is_dir():
             shutil.rmtree(folder, ignore_errors=True)
@@ -351,7 +387,7 @@ def _clean(project: Project, *, saved: bool) -> None:
 
 
 def _separators() -> str:
-    """Characters that end a number, as GenOpt's preferences file says."""
+    """Characters that end a number, from GenOpt's preferences file."""
     path = Path.home() / ".genopt3.1.1" / "properties.txt"
     with contextlib.suppress(OSError):
         for line in path.read_text(encoding="latin-1").splitlines():
@@ -362,7 +398,7 @@ def _separators() -> str:
 
 
 def _write_log(project: Project, outcome: Outcome, started: dt.datetime, error: str) -> None:
-    """The log of the whole run."""
+    """Write the log of the whole run."""
     finished = dt.datetime.now().astimezone()
     lines = [
         f"Mascarin {__version__}, log in the format of GenOpt 3.1.1",
@@ -389,7 +425,7 @@ def _write_log(project: Project, outcome: Outcome, started: dt.datetime, error: 
 
 
 def summary(outcome: Outcome) -> list[str]:
-    """The end of an optimisation in a few lines.
+    """Describe the end of an optimization in a few lines.
 
     Parameters
     ----------

@@ -18,14 +18,14 @@ _MOST_ERRORS = 30
 
 @dataclass
 class Report:
-    """Collects what is wrong in a project's files and what GenOpt would have refused.
+    """Collects the errors in the files of a project, and what GenOpt would not have accepted.
 
     Parameters
     ----------
     lenient : bool
-        Whether things that GenOpt cannot run are accepted and noted instead of refused.
+        Whether things that GenOpt cannot run are accepted and reported instead of being errors.
     errors, notes : list of str
-        What was found, each with file and line.
+        Texts, each with file and line.
     """
 
     lenient: bool = False
@@ -45,12 +45,12 @@ class Report:
             self.error(place, f"{text}; {remedy} (or accept it with --lenient)")
 
     def raise_if_any(self) -> None:
-        """Stop with all errors found.
+        """Raise an error with all errors found.
 
         Raises
         ------
         InputError
-            When there is any.
+            There is an error.
         """
         if self.errors:
             raise InputError("\n".join(self.errors))
@@ -67,11 +67,11 @@ class Entry:
     value : str
         The text of the value, without quotes.
     quoted : bool
-        Whether the value stood in quotes.
+        Whether the value was in quotes.
     place : str
         File and line.
     raw : str
-        The value as it was written.
+        The value as written in the file.
     """
 
     key: str
@@ -114,11 +114,11 @@ class Block:
     order: list[Entry | Block] = field(default_factory=list)
 
     def get(self, key: str) -> Entry | None:
-        """First entry of a key, None when there is none."""
+        """Return the first entry of a key, None when there is none."""
         return next((e for e in self.entries if e.key == key), None)
 
     def block(self, name: str) -> Block | None:
-        """First block of a name, None when there is none."""
+        """Return the first block of a name, None when there is none."""
         return next((b for b in self.blocks if b.name == name), None)
 
 
@@ -146,12 +146,12 @@ def read(path: Path, report: Report) -> Block:
     Returns
     -------
     Block
-        A nameless block that holds the whole file.
+        A block without a name that contains the whole file.
 
     Raises
     ------
     InputError
-        When the file cannot be read or its structure is broken.
+        The file cannot be read or has a syntax error.
     """
     try:
         text = path.read_text(encoding="utf-8", errors="surrogateescape")
@@ -210,7 +210,7 @@ class _Reader:
         yield _Token("", "end", line)
 
     def _comment(self, start: int, line: int) -> int:
-        """End of a block comment; what makes GenOpt hang is named."""
+        """End of a block comment; reports what GenOpt cannot read."""
         text = self._text
         end = text.find("*/", start + 2)
         if end < 0:
@@ -218,19 +218,21 @@ class _Reader:
         last = line + text.count("\n", start, end)
         if end > start + 2 and not text[end - 1].isspace():
             self._report.beyond(
-                self._place(last), "no blank before '*/', which makes GenOpt hang", "put a blank before it"
+                self._place(last),
+                "no blank before '*/', with which GenOpt does not end",
+                "put a blank before it",
             )
         if "'" in text[start:end]:
             quote = line + text.count("\n", start, text.index("'", start))
             self._report.beyond(
                 self._place(quote),
-                "apostrophe in a '/* */' comment, which can make GenOpt hang",
+                "apostrophe in a '/* */' comment, with which GenOpt may not end",
                 "remove it, or use '//'",
             )
         return end + 2
 
     def _string(self, start: int, line: int) -> tuple[str, int]:
-        """Text of a quoted string and the position behind it."""
+        """Text of a quoted string and the position after it."""
         text, at, out = self._text, start + 1, []
         while at < len(text) and text[at] not in '"\n':
             if text[at] != "\\":
@@ -270,7 +272,7 @@ class _Reader:
     def _item(self, parent: Block, name: _Token) -> None:
         """One entry or block."""
         if name.kind == "mark":
-            raise self._fail(name.line, f"found '{name.text}' where a keyword should stand")
+            raise self._fail(name.line, f"found '{name.text}', expected a keyword")
         after = self._next()
         if after.text == "=" and after.kind == "mark":
             entry = self._entry(name)
@@ -282,7 +284,7 @@ class _Reader:
             parent.order.append(block)
         else:
             found = after.text or "the end of the file"
-            raise self._fail(after.line, f"expected '=' or '{{' behind '{name.text}', found '{found}'")
+            raise self._fail(after.line, f"expected '=' or '{{' after '{name.text}', found '{found}'")
 
     def _block(self, name: _Token) -> Block:
         """The inside of a block, up to its closing brace."""
@@ -309,7 +311,7 @@ class _Reader:
             found = end.text or "the end of the file"
             raise self._fail(
                 end.line,
-                f"expected ';' behind the value of '{key.text}', found '{found}'; "
+                f"expected ';' after the value of '{key.text}', found '{found}'; "
                 "a value with blanks needs double quotes",
             )
         text = value.text if value.kind == "string" else normalised(value.text)
@@ -319,20 +321,20 @@ class _Reader:
 def ordered(
     block: Block, keys: Sequence[str], report: Report, *, optional: Sequence[str] = (), repeated: bool = False
 ) -> dict[str, Entry]:
-    """Entries of a block by key, checked as GenOpt does: known keys, each once, in a fixed order.
+    """Return the entries of a block by key, checked as by GenOpt: known keys, each once, in order.
 
     Parameters
     ----------
     block : Block
         The block.
     keys : sequence of str
-        All keys it may have, in the order in which they must stand.
+        All keys that it may have, in order.
     report : Report
         Takes errors.
     optional : sequence of str
         Keys that may be missing.
     repeated : bool
-        Whether a key may come again.
+        Whether a key may occur again.
 
     Returns
     -------
@@ -356,8 +358,8 @@ def ordered(
         if position < highest:
             report.beyond(
                 entry.place,
-                f"'{entry.key}' stands behind '{keys[highest]}'",
-                f"GenOpt wants the order {', '.join(keys)}",
+                f"'{entry.key}' comes after '{keys[highest]}'",
+                f"GenOpt needs the order {', '.join(keys)}",
             )
         highest = max(highest, position)
         found.setdefault(entry.key, entry)
@@ -370,7 +372,7 @@ def ordered(
 def expect_blocks(
     block: Block, names: Sequence[str], report: Report, *, optional: Sequence[str] = ()
 ) -> dict[str, Block]:
-    """Blocks inside a block by name, checked for known names in a fixed order, each once.
+    """Return the blocks inside a block by name, checked for known names in order, each once.
 
     Parameters
     ----------
@@ -404,8 +406,8 @@ def expect_blocks(
         if position < highest:
             report.beyond(
                 inner.place,
-                f"section '{inner.name}' stands behind '{names[highest]}'",
-                f"GenOpt wants the order {', '.join(names)}",
+                f"section '{inner.name}' comes after '{names[highest]}'",
+                f"GenOpt needs the order {', '.join(names)}",
             )
         highest = max(highest, position)
         found[inner.name] = inner

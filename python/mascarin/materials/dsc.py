@@ -1,9 +1,9 @@
-"""A material from a calorimeter's file: melting and sensible heat apart, the curve as a table, laws fitted.
+"""A material from a calorimeter file: sensible and latent heat, the curve as a table, fitted laws.
 
 The signal becomes an apparent specific heat. Beside the peak it is that of the solid and of the liquid;
-beneath the peak the sensible heat goes from one to the other with the liquid fraction (Hemminger & Sarge
-1991, J. Thermal Anal. 37, 1455), so that ``h(T, xi) = c_s (T - Tr) + xi [L + (c_l - c_s)(T - Tr)]`` holds
-in the file as it does in the engine. What is left is melting.
+below the peak the sensible heat changes from one to the other with the liquid fraction (Hemminger & Sarge
+1991, J. Thermal Anal. 37, 1455), so that ``h(T, xi) = c_s (T - Tr) + xi [L + (c_l - c_s)(T - Tr)]`` is valid
+for the file as for the engine. The rest is melting.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 EDGE: Final = 0.08
-"""Share of the temperatures at either end that is taken as free of melting, unless a range is given."""
+"""Fraction of the temperatures at each end without melting, unless a range is given."""
 
 MOST_POINTS: Final = 60
 """Points of the curve in a description."""
 
 SLOW: Final = 0.5
-"""A heating rate above this broadens and shifts what a wall, at some kelvins an hour, would show [K/min]."""
+"""A faster heating rate broadens and shifts the curve; walls change by some kelvins an hour [K/min]."""
 
 TAIL: Final = 0.002
-"""Liquid fraction at which melting counts as begun, and short of which as complete."""
+"""Liquid fraction at which melting has started; it is complete this far below one."""
 
 
 @dataclass(frozen=True)
 class Melting:
-    """What one run says.
+    """Results of one run.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class Melting:
     rate : float or None
         Heating rate [K/min].
     fits : tuple of LawFit
-        Laws, the closest first.
+        Fitted laws, the best first.
     """
 
     direction: str
@@ -82,14 +82,14 @@ class Melting:
 
     @property
     def melting_range(self) -> tuple[float, float]:
-        """Where melting has begun and is complete, but for `TAIL` [degC]."""
+        """Temperatures at which melting has started and is complete, within `TAIL` [degC]."""
         low, high = np.interp([TAIL, 1.0 - TAIL], self.fraction, self.temperature)
         return float(low), float(high)
 
 
 @dataclass(frozen=True)
 class DscMaterial:
-    """A material as a calorimeter sees it.
+    """A material as measured by a calorimeter.
 
     Attributes
     ----------
@@ -98,7 +98,7 @@ class DscMaterial:
     runs : tuple of Melting
         Heating first.
     warnings : tuple of str
-        What to keep in mind, and what was decided for the user.
+        Warnings, and decisions that were made for the user.
     """
 
     name: str
@@ -107,7 +107,7 @@ class DscMaterial:
 
     @property
     def main(self) -> Melting:
-        """The run whose curve the material takes: heating where there is one."""
+        """The run whose curve the material uses: heating where there is one."""
         return self.runs[0]
 
     def description(
@@ -117,7 +117,7 @@ class DscMaterial:
         conductivity: float | tuple[float, float] | None = None,
         density: float | tuple[float, float] | None = None,
     ) -> dict[str, Any]:
-        """The material as a building file writes it.
+        """The material as in a building file.
 
         Parameters
         ----------
@@ -160,19 +160,19 @@ class DscMaterial:
         return plain
 
     def report(self) -> str:
-        """What was found, and how well each law fits, as text."""
-        lines = [line for run in self.runs for line in _told(run)]
+        """Results and residuals of each law, as text."""
+        lines = [line for run in self.runs for line in _lines(run)]
         return "\n".join([*lines, *(f"warning: {text}" for text in self.warnings)])
 
     def to_dict(self) -> dict[str, Any]:
-        """What was found as plain data, SI units."""
+        """Results as mappings and lists, in SI units."""
         return {
             "runs": {run.direction: _summary(run) for run in self.runs},
             "warnings": list(self.warnings),
         }
 
     def plot(self, file: str | Path) -> None:
-        """Draw the runs and the closest law: enthalpy above, apparent specific heat below.
+        """Plot the runs and the best law: enthalpy above, apparent specific heat below.
 
         Parameters
         ----------
@@ -193,11 +193,11 @@ def from_dsc(
     specific_heat: tuple[float, float] | None = None,
     melting_range: tuple[float, float] | None = None,
 ) -> DscMaterial:
-    """Make a material from a calorimeter's file.
+    r"""Make a material from a calorimeter file.
 
     The file is CSV with named columns: a temperature, and a heat flow, an apparent specific heat or an
     enthalpy, units in the names (``temperature [degC]``, ``DSC/(mW/mg)``, ``cp heating [J/(g K)]``).
-    Heating and cooling are columns of their own, or one after the other, or told apart by a column
+    Heating and cooling are in different columns, or one after the other, or distinguished by a column
     ``direction``.
 
     Parameters
@@ -205,15 +205,15 @@ def from_dsc(
     path : str or Path
         The file.
     unit : str, optional
-        Unit of the signal, where the file does not say or is wrong.
+        Unit of the signal, where the file has none or a wrong one.
     rate : float, optional
-        Heating rate, where a heat flow comes without a column of time. [K/min]
+        Heating rate, for a heat flow without a column of time. [K/min]
     mass : float, optional
-        Mass of the sample, where the heat flow is that of all of it. [mg]
+        Mass of the sample, for the heat flow of the whole sample. [mg]
     specific_heat : tuple of float, optional
-        Of solid and liquid, where the file's baseline was taken off. [J/(kg K)]
+        Of solid and liquid, where the baseline was subtracted. [J/(kg K)]
     melting_range : tuple of float, optional
-        First and last temperature of melting; outside it everything is sensible. [degC]
+        First and last temperature of melting; outside there is only sensible heat. [degC]
 
     Returns
     -------
@@ -223,7 +223,20 @@ def from_dsc(
     Raises
     ------
     InputError
-        Columns, units or rows cannot be what the file says.
+        Columns, units or rows are not plausible.
+
+    Examples
+    --------
+    >>> import math, tempfile
+    >>> rows = ["temperature [degC],cp [J/(g K)]"]
+    >>> for k in range(281):  # 150 kJ/kg about 24 degC, 2.0 J/(g K)
+    ...     t = 10 + 0.1 * k
+    ...     rows.append(f"{t:.1f},{2 + 150 * 0.5 / 0.8 / math.cosh((t - 24) / 0.8) ** 2:.4f}")
+    >>> file = Path(tempfile.mkdtemp()) / "wax.csv"
+    >>> size = file.write_text("\n".join(rows))
+    >>> wax = from_dsc(file)
+    >>> round(wax.main.latent_heat, -3), wax.main.fits[0].law.name
+    (150000.0, 'tanh')
     """
     file = Path(path)
     for name, value in (("rate", rate), ("mass", mass)):
@@ -252,7 +265,7 @@ def _melting(
         if given is None:
             raise InputError(
                 f"{where}: {scan.direction}: found no sensible heat beside the peak: the baseline was "
-                "taken off; expected specific_heat=(solid, liquid) in J/(kg K)"
+                "subtracted; expected specific_heat=(solid, liquid) in J/(kg K)"
             )
         heat = heat + np.interp(t, [low, high], given)
         solid, liquid = given
@@ -273,7 +286,7 @@ def _melting(
             )
     if scan.rate is not None and scan.rate > SLOW:
         remarks.append(
-            f"{scan.direction}: {scan.rate:g} K/min is faster than any wall: the sample lags behind the "
+            f"{scan.direction}: {scan.rate:g} K/min is faster than any wall: the sample is later than the "
             "oven, which broadens the curve and shifts it in the direction of the run; expect a kelvin "
             "or more, and vary temperature_shift or the melting temperature"
         )
@@ -301,7 +314,7 @@ def _edges(t: Array, span: tuple[float, float] | None, where: str) -> tuple[floa
 def _fractions(
     t: Array, heat: Array, heats: tuple[float, float], edges: tuple[float, float]
 ) -> tuple[Array, float]:
-    """Liquid fraction and latent heat: the baseline follows the fraction, which follows the baseline."""
+    """Liquid fraction and latent heat by iteration: baseline and fraction depend on each other."""
     solid, liquid = heats
     inside = (t > edges[0]) & (t < edges[1])
     fraction = np.clip((t - edges[0]) / (edges[1] - edges[0]), 0.0, 1.0)
@@ -331,12 +344,12 @@ def _latent(t: Array, excess: Array, difference: float, centre: float, guess: fl
 
 
 def _integral(t: Array, y: Array) -> Array:
-    """Integral from the first point on, by trapezia."""
+    """Integral from the first point, by the trapezoidal rule."""
     return np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(t))])
 
 
 def _tangents(t: Array, heat: Array, heats: tuple[float, float]) -> tuple[float, float]:
-    """Extrapolated onset and end: the steepest tangents of the flanks meet the sensible heat."""
+    """Extrapolated onset and end: the steepest tangents of the flanks intersect the sensible heat."""
     slope = np.gradient(heat, t)
     top = int(np.argmax(heat))
     up = int(np.argmax(slope[: top + 1]))
@@ -347,7 +360,7 @@ def _tangents(t: Array, heat: Array, heats: tuple[float, float]) -> tuple[float,
 
 
 def table(run: Melting) -> tuple[list[float], list[float]]:
-    """Enthalpy over temperature as a law of a building file holds it: rising, no more points than needed.
+    """Enthalpy over temperature as a law of a building file: rising, with at most `MOST_POINTS` points.
 
     Parameters
     ----------
@@ -373,7 +386,7 @@ def table(run: Melting) -> tuple[list[float], list[float]]:
 
 
 def _compared(runs: Sequence[Melting]) -> list[str]:
-    """What heating and cooling say together."""
+    """Warnings from the comparison of heating and cooling."""
     if len(runs) < 2:
         return []
     heating, cooling = runs
@@ -391,12 +404,12 @@ def _compared(runs: Sequence[Melting]) -> list[str]:
         )
     if gap < 0.0:
         lines.append(
-            f"freezes {-gap:.1f} K above where it melts, which no material does: check temperatures and lag"
+            f"freezes {-gap:.1f} K above where it melts, which is not possible: check temperatures and lag"
         )
     return lines
 
 
-def _told(run: Melting) -> list[str]:
+def _lines(run: Melting) -> list[str]:
     rate = f" at {run.rate:g} K/min" if run.rate else ""
     low, high = run.melting_range
     return [
@@ -443,7 +456,7 @@ def _listed(value: float | tuple[float, float]) -> float | list[float]:
 
 def _draw(runs: Sequence[Melting], above: Any, below: Any) -> None:
     for number, run in enumerate(runs):
-        colour, best = f"C{number}", run.fits[0]
+        color, best = f"C{number}", run.fits[0]
         for fraction, style, label in (
             (run.fraction, "-", run.direction),
             (best.law.shape(run.temperature, (best.melting_temperature, *best.widths)), ":", best.law.name),
@@ -451,13 +464,13 @@ def _draw(runs: Sequence[Melting], above: Any, below: Any) -> None:
             solid, liquid = run.specific_heat
             over = run.temperature - run.half
             h = solid * over + fraction * (run.latent_heat + (liquid - solid) * over)
-            above.plot(run.temperature, (h - h[0]) / 1000.0, style, color=colour, label=label)
+            above.plot(run.temperature, (h - h[0]) / 1000.0, style, color=color, label=label)
             heat = run.heat if style == "-" else np.gradient(h, run.temperature)
-            below.plot(run.temperature, heat / 1000.0, style, color=colour, label=label)
+            below.plot(run.temperature, heat / 1000.0, style, color=color, label=label)
 
 
 def to_yaml(name: str, material: Mapping[str, Any], comments: Sequence[str] = ()) -> str:
-    """A material as the lines of a building file, comments above it.
+    """A material as text of a building file, with comments above it.
 
     Parameters
     ----------

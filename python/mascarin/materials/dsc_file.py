@@ -1,4 +1,4 @@
-"""A calorimeter's file: found columns, heating and cooling told apart, everything as specific heat."""
+"""Read a calorimeter file: its columns, heating and cooling, everything as apparent specific heat."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ class Scan:
     temperature : ndarray, shape (N,)
         Rising [degC].
     heat : ndarray, shape (N,)
-        Apparent specific heat; about 0 beside the peak where the file's baseline was taken off [J/(kg K)].
+        Apparent specific heat; about 0 beside the peak where the baseline was subtracted [J/(kg K)].
     rate : float or None
-        Heating rate, positive [K/min]; None where nothing says.
+        Heating rate, positive [K/min]; None where it is not known.
     column : Column
-        Where the signal comes from.
+        Column of the signal.
     factor : float
-        From the file's unit to SI.
+        From the unit of the file to SI.
     remarks : tuple of str
-        What was decided on the way.
+        Decisions that were made while reading.
     place : str
         File, and line of the names of its columns.
     """
@@ -59,7 +59,7 @@ class Scan:
 
 @dataclass(frozen=True)
 class Settings:
-    """What the user says of a file because it does not say it itself.
+    """What the user gives because the file does not contain it.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ def read(path: Path, settings: Settings) -> list[Scan]:
         The file, a column, a unit or the order of the rows cannot be used.
     """
     names, table, line = _table(path)
-    # The line of the names, which say what the columns are.
+    # The line of the names of the columns.
     place = f"{path}:{line}"
     columns = [column for k, name in enumerate(names) if (column := column_of(k, name)) is not None]
     if settings.unit is not None:
@@ -129,7 +129,7 @@ def _with_unit(column: Column, unit: str) -> Column:
 
 
 def _table(path: Path) -> tuple[list[str], list[list[str]], int]:
-    """Names of the columns, the rows beneath, and the line of the names."""
+    """Names of the columns, the rows below, and the line of the names."""
     try:
         raw = path.read_bytes()
     except OSError as error:
@@ -177,14 +177,14 @@ def _runs(
     place: str, table: list[list[str]], columns: list[Column], temperature: Column, signal: Column,
     settings: Settings,
 ) -> list[Scan]:  # fmt: skip
-    """The runs that one column of signal holds."""
+    """The runs in one column of the signal."""
     time = next((column for column in columns if column.quantity == "time"), None)
     label = next((column for column in columns if column.quantity == "direction"), None)
     wanted = [temperature, signal, *([time] if time else [])]
     rows, labels = [], []
     for number, row in enumerate(table, start=2):
         if signal.index >= len(row) or not row[signal.index].strip():
-            continue  # a column for heating and one for cooling need not be of one length
+            continue  # columns for heating and for cooling may have different lengths
         rows.append([_number(row, column, number, place) for column in wanted])
         labels.append(row[label.index].strip().casefold() if label else "")
     if len(rows) < LEAST_ROWS:
@@ -213,7 +213,7 @@ def _number(row: list[str], column: Column, number: int, place: str) -> float:
 def _segments(
     temperature: Array, labels: list[str], signal: Column, place: str
 ) -> list[tuple[int, int, str]]:
-    """Where each run begins and ends, and its direction."""
+    """First and last row of each run, and its direction."""
     if signal.direction is not None:
         return [(0, len(temperature), signal.direction)]
     if any(labels):
@@ -241,7 +241,7 @@ def _labelled(labels: list[str], place: str) -> list[tuple[int, int, str]]:
 
 
 def _turning_point(temperature: Array, place: str) -> int:
-    """Row at which heating turns to cooling or the other way; the first or last where it does not."""
+    """Row at which heating changes to cooling or cooling to heating; the first or last if it does not."""
     total = abs(temperature[-1] - temperature[0])
     top, bottom = int(np.argmax(temperature)), int(np.argmin(temperature))
     turn = top if temperature[top] - max(temperature[0], temperature[-1]) > 0.02 * np.ptp(temperature) else 0
@@ -258,8 +258,8 @@ def _turning_point(temperature: Array, place: str) -> int:
         raise InputError(
             f"{place}: row {jump + 3}: found {temperature[jump + 1]:.2f} degC after "
             f"{temperature[jump]:.2f} degC; expected temperatures in the order of the run: rising, "
-            "falling, or one after the other. Restore the order, or give heating and cooling columns of "
-            "their own"
+            "falling, or one after the other. Restore the order, or put heating and cooling into "
+            "different columns"
         )
     return turn
 
@@ -281,13 +281,13 @@ def _scan(
         if heat.mean() < 0.0:
             raise InputError(
                 f"{place}: column '{signal.name}': found an enthalpy that falls with temperature; expected "
-                "it to rise: heat must raise it. Turn its sign"
+                "it to rise. Change its sign"
             )
     else:
         heat = raw * factor
     if signal.quantity == "heat flow" and _upside_down(heat):
         heat = -heat
-        remarks.append(f"{direction}: the peak points down: sign turned so that heat taken up is positive")
+        remarks.append(f"{direction}: the peak points down: sign changed, heat taken up is positive")
     return Scan(direction, t, heat, rate, signal, factor, tuple(remarks), place)
 
 
@@ -297,7 +297,7 @@ def _upside_down(heat: Array) -> bool:
 
 
 def _merged(t: Array, raw: Array) -> tuple[Array, Array]:
-    """Rows of one temperature as one."""
+    """The mean of rows with the same temperature."""
     unique, where = np.unique(np.round(t, 6), return_inverse=True)
     count = np.bincount(where)
     return unique, np.bincount(where, weights=raw) / count
@@ -314,7 +314,7 @@ def _rate(values: Array, time: Column | None) -> float | None:
 def _factor(
     signal: Column, raw: Array, t: Array, settings: Settings, rate: float | None, place: str
 ) -> tuple[float, str]:
-    """From the file's numbers to J/(kg K) or J/kg, and what was taken where the file does not say."""
+    """Factor to J/(kg K) or J/kg, and what was assumed where the file has no unit."""
     unit, remark = signal.unit, ""
     if unit is None:
         if signal.quantity == "heat flow":
@@ -325,7 +325,7 @@ def _factor(
         slope = np.gradient(raw, t) if signal.quantity == "enthalpy" else raw
         grams = float(np.median(np.abs(slope))) < 100.0
         unit = {"specific heat": ("j/kgk", "j/gk"), "enthalpy": ("j/kg", "j/g")}[signal.quantity][grams]
-        remark = f"column '{signal.name}' names no unit: taken as {unit} by the size of its numbers"
+        remark = f"column '{signal.name}' has no unit: {unit} assumed by the size of its numbers"
     factor = UNITS[signal.quantity][unit]
     if signal.quantity != "heat flow":
         return factor, remark

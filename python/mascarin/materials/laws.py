@@ -1,4 +1,4 @@
-"""Shapes of melting with a few numbers, fitted to a measured liquid fraction."""
+"""Laws of melting with a few parameters, fitted to a measured liquid fraction."""
 
 from __future__ import annotations
 
@@ -36,17 +36,17 @@ def gaussian(t: Array, p: tuple[float, ...]) -> Array:
 
 
 def gumbel_low(t: Array, p: tuple[float, ...]) -> Array:
-    """Gumbel's distribution of scale ``w``: peak at ``Tm``, the long tail towards low temperatures."""
+    """Gumbel distribution of scale ``w``: peak at ``Tm``, long tail towards low temperatures."""
     return np.asarray(-np.expm1(-np.exp(np.clip((t - p[0]) / p[1], -700.0, 700.0))))
 
 
 def gumbel_high(t: Array, p: tuple[float, ...]) -> Array:
-    """Gumbel's distribution with the long tail towards high temperatures."""
+    """Gumbel distribution with the long tail towards high temperatures."""
     return np.asarray(np.exp(-np.exp(np.clip(-(t - p[0]) / p[1], -700.0, 700.0))))
 
 
 def linear(t: Array, p: tuple[float, ...]) -> Array:
-    """Straight between ``Tm - w`` and ``Tm + w``."""
+    """Linear between ``Tm - w`` and ``Tm + w``."""
     return np.asarray(np.clip((t - p[0] + p[1]) / (2.0 * p[1]), 0.0, 1.0))
 
 
@@ -61,7 +61,7 @@ def triangle(t: Array, p: tuple[float, ...]) -> Array:
 
 @dataclass(frozen=True)
 class Law:
-    """A shape, and how a building file writes it."""
+    """A shape, and how it is written in a building file."""
 
     name: str
     shape: Shape
@@ -93,7 +93,7 @@ class LawFit:
     widths : tuple of float
         Its widths, in the order of `Law.keys` [K].
     residual : float
-        Root mean square of the liquid fraction's difference over the range in which it changes [-].
+        Root mean square difference of the liquid fraction over the range in which it changes [-].
     largest : float
         Largest difference [-].
     """
@@ -105,18 +105,18 @@ class LawFit:
     largest: float
 
     def description(self) -> dict[str, Any]:
-        """The law as a building file writes it."""
+        """The law as in a building file."""
         widths = {key: round(width, 4) for key, width in zip(self.law.keys, self.widths, strict=True)}
         return self.law.kind | widths
 
 
 def fit(law: Law, temperature: Array, fraction: Array) -> LawFit:
-    """Least squares on the liquid fraction, every kelvin alike.
+    """Least squares on the liquid fraction, with equal weight for every kelvin.
 
     Parameters
     ----------
     law : Law
-        What to fit.
+        The law.
     temperature : ndarray, shape (N,)
         Rising [degC].
     fraction : ndarray, shape (N,)

@@ -1,7 +1,7 @@
-"""The products that come with Mascarin: `products.yaml`, read, found by name, sifted by what they do.
+"""Products that come with Mascarin: the file `products.yaml`, found by name or filtered by properties.
 
-A product is data, not a part of a description: a building file takes one by name (``product: RT25HC``), and
-the description then checks each of its numbers as if the user had written it.
+A building file names a product (``product: RT25HC``); the description then checks each of its numbers as if
+the user had given it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,20 @@ COLLECTION: Final = "as collected in slPCMlib (Barz, Bres & Emhofer 2022, doi:10
 
 @dataclass(frozen=True)
 class Curve:
-    """Liquid fraction over temperature, in steps of `STEP`, from 0 to 1."""
+    """Liquid fraction over temperature, in steps of `STEP`, from 0 to 1.
+
+    Attributes
+    ----------
+    first : float
+        First temperature. [degC]
+    liquid_fraction : tuple of float
+        Liquid fraction at each temperature. [-]
+
+    Examples
+    --------
+    >>> Curve(first=20.0, liquid_fraction=(0.0, 0.5, 1.0)).temperature_at(0.25)
+    20.25
+    """
 
     first: float
     liquid_fraction: tuple[float, ...]
@@ -40,7 +53,7 @@ class Curve:
         return tuple(self.first + STEP * k for k in range(len(self.liquid_fraction)))
 
     def temperature_at(self, fraction: float) -> float:
-        """Temperature at which a fraction is liquid, between the points by a straight line [degC]."""
+        """Temperature at which a fraction is liquid, linear between the points [degC]."""
         points = list(zip(self.temperatures, self.liquid_fraction, strict=True))
         for (t0, f0), (t1, f1) in pairwise(points):
             if f0 <= fraction <= f1 and f1 > f0:
@@ -50,9 +63,26 @@ class Curve:
 
 @dataclass(frozen=True)
 class Product:
-    """A phase-change product; None and empty pairs where the source does not say.
+    """A phase-change product.
 
-    ``raw`` holds the numbers as written, notes included, for use in a description.
+    Attributes
+    ----------
+    name, maker : str
+        Name of the product and of the manufacturer.
+    kind, form : str or None
+        One of `KINDS`, and the form of delivery.
+    source, note : str or None
+        Source of the numbers, and a remark.
+    heating, cooling : Curve or None
+        Liquid fraction on heating and on cooling.
+    raw : mapping
+        The numbers as in the file, with ranges and sources, for use in a description.
+
+    Examples
+    --------
+    >>> one = product("RT25HC")
+    >>> one.melting_temperature, one.pair("density")
+    (24.89, (880.0, 770.0))
     """
 
     name: str
@@ -99,14 +129,14 @@ class Product:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """What a wall needs to know and the source does not say."""
+        """Properties that a wall needs and the source does not give."""
         return tuple(key for key in (*PROPERTIES, "latent_heat") if key not in self.raw)
 
     def enthalpies(self, temperatures: Sequence[float], fractions: Sequence[float]) -> tuple[float, ...]:
         """Specific enthalpy along a curve, above its first point.
 
         ``h(T, xi) = c_s (T - Tm) + xi [L + (c_l - c_s)(T - Tm)]``: a function of temperature and liquid
-        fraction alone, so that heating and cooling curve meet in the liquid as in the solid.
+        fraction alone, so that heating and cooling curve agree in the liquid and in the solid.
 
         Parameters
         ----------
@@ -129,7 +159,7 @@ class Product:
             self.melting_temperature,
         )
         if heats is None or latent is None or centre is None:
-            raise ValueError(f"{self.name}: the enthalpy needs more than is known of it")
+            raise ValueError(f"{self.name}: a property that the enthalpy needs is not known")
         solid, liquid = heats
         values = [
             solid * (t - centre) + xi * (latent + (liquid - solid) * (t - centre))
@@ -165,7 +195,18 @@ def _product(name: str, raw: Mapping[str, Any]) -> Product:
 
 @cache
 def products() -> Mapping[str, Product]:
-    """Every product by its name, in the order of the file."""
+    """Every product by its name, in the order of the file.
+
+    Returns
+    -------
+    mapping of str to Product
+        The library.
+
+    Examples
+    --------
+    >>> "RT25HC" in products()
+    True
+    """
     from ruamel.yaml import YAML
 
     text = FILE.read_text(encoding="utf-8")
@@ -173,17 +214,32 @@ def products() -> Mapping[str, Product]:
 
 
 def plain(name: str) -> str:
-    """A name without what does not count: case, spaces, hyphens."""
+    """A name in lower case, without spaces and hyphens."""
     return re.sub(r"[\s_.-]", "", name).casefold()
 
 
 def product(name: str) -> Product:
-    """One product by its name; case, spaces and hyphens do not count.
+    """One product by its name; case, spaces and hyphens are ignored.
+
+    Parameters
+    ----------
+    name : str
+        The name.
+
+    Returns
+    -------
+    Product
+        The product.
 
     Raises
     ------
     InputError
         There is no such product; the text names the nearest ones.
+
+    Examples
+    --------
+    >>> product("rt 25 hc").name
+    'RT25HC'
     """
     for one in products().values():
         if plain(one.name) == plain(name):
@@ -195,7 +251,7 @@ def product(name: str) -> Product:
 
 
 def suggestion(name: str) -> str:
-    """Sentence that helps with a name that is no product."""
+    """Sentence with the nearest names, for a name that is no product."""
     by_plain = {plain(one): one for one in products()}
     close = did_you_mean(plain(name), by_plain)
     if not close.startswith("Did you mean"):
@@ -206,7 +262,7 @@ def suggestion(name: str) -> str:
 def search(
     query: str = "", *, melting: tuple[float, float] | None = None, kind: str | None = None
 ) -> list[Product]:
-    """Products that fit.
+    """Find products.
 
     Parameters
     ----------
@@ -226,6 +282,11 @@ def search(
     ------
     InputError
         There is no such kind, or the temperatures are in the wrong order.
+
+    Examples
+    --------
+    >>> [one.name for one in search(melting=(22, 24), kind="salt hydrate")]
+    ['savE-HS22', 'ClimSel-C21', 'SP24E']
     """
     if kind is not None and kind not in KINDS:
         raise InputError(f"kind: found '{kind}'; expected a kind of product. {did_you_mean(kind, KINDS)}")
@@ -256,12 +317,12 @@ def curves(one: Product) -> Iterator[tuple[str, Curve]]:
 
 
 def enthalpy_curves(one: Product) -> Iterator[tuple[str, tuple[float, ...], tuple[float, ...]]]:
-    """Enthalpy over temperature, as far as it is known.
+    """Enthalpy over temperature, where it is known.
 
     Yields
     ------
     tuple
-        What the curve is (heating, cooling, or the law of a product without curves), temperatures [degC],
+        Name of the curve (heating, cooling, or the law of a product without curves), temperatures [degC],
         enthalpies [J/kg].
     """
     if {"specific_heat", "latent_heat"} & set(one.missing) or one.melting_temperature is None:
@@ -269,7 +330,7 @@ def enthalpy_curves(one: Product) -> Iterator[tuple[str, tuple[float, ...], tupl
     known = dict(curves(one))
     low = min((curve.temperatures[0] for curve in known.values()), default=0.0) - 2.0
     high = max((curve.temperatures[-1] for curve in known.values()), default=0.0) + 2.0
-    for direction, curve in known.items():  # from one solid to one liquid, where the curves meet
+    for direction, curve in known.items():  # from the solid to the liquid, where the curves meet
         points = (low, *curve.temperatures, high)
         yield direction, points, one.enthalpies(points, (0.0, *curve.liquid_fraction, 1.0))
     if one.heating is None and one.cooling is None and "law" in one.raw:

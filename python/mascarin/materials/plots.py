@@ -1,4 +1,4 @@
-"""Pictures of phase-change products: enthalpy and apparent specific heat over temperature."""
+"""Plots of phase-change products: enthalpy and apparent specific heat over temperature."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MOST: Final = 8
-"""More curves than this in one picture cannot be told apart."""
+"""Largest number of products in one plot."""
 
 FORMATS: Final = (".svg", ".png", ".pdf")
 _STYLES: Final = {"heating": "-", "cooling": "--"}
@@ -27,7 +27,7 @@ def plot(chosen: Sequence[Product], file: Path) -> None:
     chosen : sequence of Product
         At most `MOST`.
     file : Path
-        Picture to write: SVG, PNG or PDF.
+        File to write: SVG, PNG or PDF.
 
     Raises
     ------
@@ -45,12 +45,12 @@ def plot(chosen: Sequence[Product], file: Path) -> None:
 
 
 def with_figure(file: Path, draw: Callable[[Axes, Axes], None]) -> None:
-    """Write a picture of two plots, one above the other, that `draw(above, below)` fills.
+    """Write two plots, one above the other, that `draw(above, below)` fills.
 
     Parameters
     ----------
     file : Path
-        Picture to write: SVG, PNG or PDF.
+        File to write: SVG, PNG or PDF.
     draw : callable
         Takes the two axes.
 
@@ -78,7 +78,7 @@ def with_figure(file: Path, draw: Callable[[Axes, Axes], None]) -> None:
 def _draw(chosen: Sequence[Product], above: Axes, below: Axes) -> None:
     for number, one in enumerate(chosen):
         for what, temperatures, enthalpies in enthalpy_curves(one):
-            colour, style, label = f"C{number}", _STYLES.get(what, "-"), f"{one.name}, {what}"
-            above.plot(temperatures, [h / 1000.0 for h in enthalpies], style, color=colour, label=label)
+            color, style, label = f"C{number}", _STYLES.get(what, "-"), f"{one.name}, {what}"
+            above.plot(temperatures, [h / 1000.0 for h in enthalpies], style, color=color, label=label)
             middles, heats = zip(*capacities(temperatures, enthalpies), strict=True)
-            below.plot(middles, [c / 1000.0 for c in heats], style, color=colour, label=label)
+            below.plot(middles, [c / 1000.0 for c in heats], style, color=color, label=label)

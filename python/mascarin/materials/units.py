@@ -1,4 +1,4 @@
-"""Units of a calorimeter's columns: read from their names, checked against what such numbers can be."""
+"""Units of the columns of a calorimeter file: from their names, and checked for plausible values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 
 from mascarin.errors import InputError
 
-#: Quantity -> unit as written without blanks, brackets and dots -> factor to SI. Heat flow is per kilogram.
+#: Quantity -> unit without blanks, brackets and dots -> factor to SI. Heat flow is per kilogram.
 UNITS: Final[dict[str, dict[str, float]]] = {
     "temperature": {"degc": 1.0, "°c": 1.0, "c": 1.0, "k": 1.0},
     "time": {"s": 1.0, "min": 60.0, "h": 3600.0},
@@ -18,7 +18,7 @@ UNITS: Final[dict[str, dict[str, float]]] = {
 }
 #: Units of heat flow that need the mass of the sample.
 OF_SAMPLE: Final = ("mw", "w", "µw")
-#: What specific heats of solids and liquids can be [J/(kg K)]: metals to water, with room.
+#: Plausible specific heats of solids and liquids [J/(kg K)]: from metals to water, with a margin.
 POSSIBLE_HEAT: Final = (200.0, 12000.0)
 
 _NAMES: Final = {
@@ -33,20 +33,20 @@ _NAMES: Final = {
 
 @dataclass(frozen=True)
 class Column:
-    """What a column of the file holds.
+    """One column of the file.
 
     Attributes
     ----------
     index : int
-        Its place, from 0.
+        Its position, from 0.
     name : str
         Its name in the file.
     quantity : str
         A key of `UNITS`, or ``direction``.
     unit : str or None
-        As in `UNITS`; None where the file does not say.
+        As in `UNITS`; None where the file does not give it.
     direction : str or None
-        ``heating`` or ``cooling``, where the name says so.
+        ``heating`` or ``cooling``, where the name contains it.
     """
 
     index: int
@@ -57,7 +57,7 @@ class Column:
 
 
 def plain_unit(text: str) -> str:
-    """A unit without blanks, brackets and powers: ``J/(g·K)``, ``J g^-1 K^-1`` and ``J/g/K`` are one."""
+    """A unit without blanks, brackets and powers: ``J/(g·K)``, ``J g^-1 K^-1``, ``J/g/K`` become one."""
     bare = text.casefold().replace("μ", "µ").replace("⁻¹", "-1")
     bare = re.sub(r"[\s()\[\]*·.^]", "", bare)
     bare = re.sub(r"(k?g)-1", r"/\1", bare).replace("k-1", "k")
@@ -65,9 +65,9 @@ def plain_unit(text: str) -> str:
 
 
 def column_of(index: int, name: str) -> Column | None:
-    """Understand a column by its name; None where it means nothing here.
+    """Quantity and unit of a column by its name; None for other columns.
 
-    The unit stands in brackets or behind a slash: ``cp [J/(g K)]``, ``Temp./°C``, ``DSC/(mW/mg)``.
+    The unit is in brackets or after a slash: ``cp [J/(g K)]``, ``Temp./°C``, ``DSC/(mW/mg)``.
     """
     text = name.strip().strip('"#').strip()
     found = re.match(r"^(?P<name>[^\[(/]+?)[\s._]*(?:\[(?P<a>.*)\]|\((?P<b>.*)\)|/\s*(?P<c>.+))?$", text)
@@ -87,12 +87,12 @@ def column_of(index: int, name: str) -> Column | None:
 
 
 def check_unit(column: Column, where: str) -> None:
-    """Refuse a unit that is none of its quantity.
+    """Check that a unit belongs to its quantity.
 
     Raises
     ------
     InputError
-        Naming the column, the unit and those that are known.
+        The unit does not; the text has the column, the unit and those that are known.
     """
     known = UNITS.get(column.quantity, {})
     if column.unit is not None and column.unit not in known:
@@ -109,30 +109,30 @@ SHOWN: Final = {
     "specific heat": ("J/(g K)", "kJ/(kg K)", "J/(kg K)"),
     "enthalpy": ("J/g", "kJ/kg", "J/kg"),
 }
-"""Units as they are written to people."""
+"""Units as they are shown in messages."""
 
 
 _CHECK: Final = "Check unit, heating rate and mass, and that the file begins and ends outside the melting"
 
 
 def check_heat(base: float, column: Column, where: str, factor: float) -> None:
-    """Refuse a sensible specific heat that no material has: the unit is another than the file says.
+    """Check that a sensible specific heat is plausible; otherwise the unit in the file is wrong.
 
     Parameters
     ----------
     base : float
-        Specific heat beside the peak, by the unit that was taken [J/(kg K)].
+        Specific heat beside the peak, with the unit that was used [J/(kg K)].
     column : Column
-        Where it comes from.
+        The column.
     where : str
         The file.
     factor : float
-        The factor that was taken from the column's unit to SI.
+        The factor from the unit of the column to SI.
 
     Raises
     ------
     InputError
-        With the unit that would fit, if there is one.
+        It is not; the text has the unit that would fit, if there is one.
     """
     low, high = POSSIBLE_HEAT
     if low <= base <= high:
@@ -152,7 +152,7 @@ def check_heat(base: float, column: Column, where: str, factor: float) -> None:
 
 
 def to_celsius(values: list[float], column: Column, where: str) -> list[float]:
-    """Temperatures in degC; a file without a unit is read by what its numbers can be.
+    """Temperatures in degC; without a unit, degC or K by their size.
 
     Raises
     ------

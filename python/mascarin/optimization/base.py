@@ -41,22 +41,56 @@ class Observer:
     """
 
     def sub(self, evaluation: Evaluation, comment: str) -> None:
-        """After one trial of an iteration."""
+        """After one trial of an iteration.
+
+        Parameters
+        ----------
+        evaluation : Evaluation
+            What was evaluated, with its cost.
+        comment : str
+            What it was for.
+        """
 
     def main(self, evaluation: Evaluation, comment: str) -> None:
-        """After an iteration, with its result."""
+        """After an iteration, with its result.
+
+        Parameters
+        ----------
+        evaluation : Evaluation
+            What was evaluated, with its cost.
+        comment : str
+            What it was for.
+        """
 
     def minimum(self, comment: str) -> None:
-        """After the search, which ends at the point of lowest cost so far."""
+        """After the search, which ends at the point of lowest cost so far.
+
+        Parameters
+        ----------
+        comment : str
+            Why it ended.
+        """
 
     def restart(self) -> None:
         """Before iteration counters start again, because the step number was raised."""
 
     def note(self, text: str) -> None:
-        """A remark during the search."""
+        """A remark during the search.
+
+        Parameters
+        ----------
+        text : str
+            The remark.
+        """
 
     def summary(self, lines: Sequence[str]) -> None:
-        """An overview after the search, as lines of text."""
+        """An overview after the search.
+
+        Parameters
+        ----------
+        lines : sequence of str
+            Lines of text.
+        """
 
 
 class Optimizer(ABC):

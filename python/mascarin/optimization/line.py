@@ -123,7 +123,22 @@ class IntervalSearch(Optimizer):
 class GoldenSection(IntervalSearch):
     """Interval search that keeps the same part of the interval every time.
 
-    Parameters are those of `IntervalSearch`.
+    Parameters
+    ----------
+    space : Space
+        One continuous parameter with bounds; its initial value is not used.
+    points : int
+        Largest number of evaluations. [-]
+    difference : float, optional
+        Ends the search when the costs of the two inner points differ by less. [unit of the cost]
+    text : callable
+        Text of a number in the overview.
+    observer, remember
+        See `Optimizer`.
+
+    References
+    ----------
+    Kiefer (1953), doi:10.1090/S0002-9939-1953-0055639-3.
 
     Examples
     --------
@@ -142,7 +157,22 @@ class GoldenSection(IntervalSearch):
 class FibonacciSearch(IntervalSearch):
     """Interval search by ratios of Fibonacci numbers, which are optimal for a given number of points.
 
-    Parameters are those of `IntervalSearch`.
+    Parameters
+    ----------
+    space : Space
+        One continuous parameter with bounds; its initial value is not used.
+    points : int
+        Largest number of evaluations. [-]
+    difference : float, optional
+        Ends the search when the costs of the two inner points differ by less. [unit of the cost]
+    text : callable
+        Text of a number in the overview.
+    observer, remember
+        See `Optimizer`.
+
+    References
+    ----------
+    Kiefer (1953), doi:10.1090/S0002-9939-1953-0055639-3.
 
     Examples
     --------
@@ -154,8 +184,11 @@ class FibonacciSearch(IntervalSearch):
     """
 
     def _kept(self, done: int) -> float:
-        """Ratio of two neighboring Fibonacci numbers, counted down to one half at the last point."""
-        n = self._points - done + 2
+        """Ratio of two successive Fibonacci numbers, down to 2/3 at the last point.
+
+        The next ratio, 1/2, would evaluate the same point a second time.
+        """
+        n = self._points - done + 3
         return _fibonacci(n) / _fibonacci(n + 1)
 
 
@@ -176,7 +209,10 @@ def golden_points(reduction: float) -> int:
 
 
 def fibonacci_points(reduction: float) -> int:
-    """Number of points of a Fibonacci search.
+    """Number of points of a Fibonacci search, by the rule of GenOpt.
+
+    The number n is the smallest one with 1 / F(n + 2) <= `reduction`. The last interval is twice as long,
+    2 / F(n + 2), because the last point lies in its middle.
 
     Parameters
     ----------
@@ -189,7 +225,7 @@ def fibonacci_points(reduction: float) -> int:
         The number of points [-].
     """
     n = 1
-    while 1.0 / _fibonacci(n + 1) > reduction:
+    while 1.0 / _fibonacci(n + 2) > reduction:
         n += 1
     return n
 

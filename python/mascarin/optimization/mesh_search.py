@@ -31,38 +31,7 @@ Trials = Generator[list[Point], list[Evaluation], list[Evaluation]]
 class MeshSearch(Optimizer):
     """Base of the searches on a mesh that is refined whenever no neighbor is better.
 
-    Parameters
-    ----------
-    space : Space
-        Continuous parameters; discrete ones keep the value of the start.
-    divider : int
-        The mesh is `divider ** -exponent` wide, in steps of the parameters [-].
-    exponent : int
-        First mesh exponent [-].
-    increment : int
-        Added to the exponent at every reduction [-].
-    reductions : int
-        Number of reductions before the search ends [-].
-    starts : sequence of Point, optional
-        Points to start from, one after the other; the initial point of the space when absent.
-    max_evaluations : int, optional
-        Number of evaluations after which the search stops [-].
-    sufficient : SufficientDecrease, optional
-        Condition on a decrease; without it any decrease is accepted.
-    penalty : bool
-        Whether the cost depends on the step number, which then rises with every reduction.
-    discrete_moves : bool
-        Whether discrete parameters are tried at other values; else they keep the value of the start.
-    rounding : callable, optional
-        Rounded value for a value and its parameter's index; `decimal_rounding` when absent.
-    text : callable
-        Text of a number in comments.
-    observer, remember
-        See `Optimizer`.
-    counted : int
-        Number of evaluations that another search has made before; the limit counts them. [-]
-    report_minimum : bool
-        Whether the observer is told of the minimum at the end.
+    Parameters are those of `PatternSearch`.
     """
 
     def __init__(
@@ -221,9 +190,9 @@ class MeshSearch(Optimizer):
                 f"Set N = {self.step_number + 1}; Phi = {self._text(after)}; t = {by}; "
                 f"Delta = {self._text(self._delta)}."
             )
-        comment = f"{self._failed} Reduce step size to '{self._text(self._delta)}'."
-        self._both(best, comment)
-        best = yield from self._raise_step(best, comment)
+        # As in GenOpt, the failed iteration is reported once, after the counters have started again, and
+        # without the new step size.
+        best = yield from self._raise_step(best, self._failed)
         return exponent, best
 
     def _raise_step(self, best: Evaluation, comment: str) -> _Batch:

@@ -17,7 +17,40 @@ from mascarin.optimization.space import Evaluation, Point
 class PatternSearch(MeshSearch):
     """Base of the pattern searches: a search on a mesh that can predict the next points.
 
-    Parameters are those of `MeshSearch`; `HookeJeeves` and `CoordinateSearch` are two such searches.
+    `HookeJeeves` and `CoordinateSearch` are two such searches.
+
+    Parameters
+    ----------
+    space : Space
+        Continuous parameters; discrete ones keep the value of the start.
+    divider : int
+        The mesh is `divider ** -exponent` wide, in steps of the parameters [-].
+    exponent : int
+        First mesh exponent [-].
+    increment : int
+        Added to the exponent at every reduction [-].
+    reductions : int
+        Number of reductions before the search ends [-].
+    starts : sequence of Point, optional
+        Points to start from, one after the other; the initial point of the space when absent.
+    max_evaluations : int, optional
+        Number of evaluations after which the search stops [-].
+    sufficient : SufficientDecrease, optional
+        Condition on a decrease; without it any decrease is accepted.
+    penalty : bool
+        Whether the cost depends on the step number, which then rises with every reduction.
+    discrete_moves : bool
+        Whether discrete parameters are tried at other values; else they keep the value of the start.
+    rounding : callable, optional
+        Rounded value for a value and its parameter's index; `decimal_rounding` when absent.
+    text : callable
+        Text of a number in comments.
+    observer, remember
+        See `Optimizer`.
+    counted : int
+        Number of evaluations that another search has made before; the limit counts them. [-]
+    report_minimum : bool
+        Whether the observer is told of the minimum at the end.
 
     Examples
     --------
@@ -26,7 +59,20 @@ class PatternSearch(MeshSearch):
     """
 
     def guesses(self, limit: int, known: Known) -> list[Point]:
-        """Neighbors that this search would try next, and the next points of later starts."""
+        """Neighbors that this search would try next, and the next points of later starts.
+
+        Parameters
+        ----------
+        limit : int
+            Largest number of points wanted. [-]
+        known : callable
+            Cost of a point that has been evaluated, None for another.
+
+        Returns
+        -------
+        list of Point
+            At most `limit` points that are neither known nor pending.
+        """
         skip = set(self._pending)
         shadows = self._follow(known)
         ahead = chain(
@@ -79,7 +125,12 @@ class PatternSearch(MeshSearch):
 class HookeJeeves(PatternSearch):
     """Pattern search that first repeats the last successful move.
 
-    Parameters are those of `MeshSearch`.
+    Parameters
+    ----------
+    space, divider, exponent, increment, reductions, starts, max_evaluations, sufficient
+        As in `PatternSearch`.
+    penalty, discrete_moves, rounding, text, observer, remember, counted, report_minimum
+        As in `PatternSearch`.
 
     References
     ----------
@@ -108,7 +159,12 @@ class HookeJeeves(PatternSearch):
 class CoordinateSearch(PatternSearch):
     """Pattern search that only tries the neighbors of the current point.
 
-    Parameters are those of `MeshSearch`.
+    Parameters
+    ----------
+    space, divider, exponent, increment, reductions, starts, max_evaluations, sufficient
+        As in `PatternSearch`.
+    penalty, discrete_moves, rounding, text, observer, remember, counted, report_minimum
+        As in `PatternSearch`.
 
     Examples
     --------

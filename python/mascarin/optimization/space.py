@@ -161,7 +161,13 @@ class Space:
         return tuple(c.name for c in self.continuous) + tuple(d.name for d in self.discrete)
 
     def feasible(self, x: Iterable[float]) -> bool:
-        """Whether continuous values lie within their bounds."""
+        """Whether continuous values lie within their bounds.
+
+        Parameters
+        ----------
+        x : iterable of float
+            Values in the order of the space. [units of the parameters]
+        """
         return all(c.lower <= v <= c.upper for c, v in zip(self.continuous, x, strict=True))
 
     def require_start(self) -> None:

@@ -101,7 +101,13 @@ class SwarmRules:
         return 2.0 * k / abs(2.0 - phi - math.sqrt(phi * (phi - 4.0))) if phi > 4.0 else k
 
     def neighborhood(self, i: int) -> list[int]:
-        """Particles that particle `i` knows, in order. [-]"""
+        """Particles that a particle knows, in order.
+
+        Parameters
+        ----------
+        i : int
+            Number of the particle, from 0. [-]
+        """
         n = self.size
         if self.topology == "gbest":
             return list(range(n))
@@ -113,7 +119,13 @@ class SwarmRules:
         return [(r % side) * side + c % side for r, c in near]
 
     def weight(self, generation: int) -> float:
-        """Inertia in a generation, falling linearly [-]."""
+        """Inertia weight of a generation, decreasing linearly. [-]
+
+        Parameters
+        ----------
+        generation : int
+            Number of the generation, from 1. [-]
+        """
         first, last = self.inertia
         return first - (first - last) * (generation - 1) / (self.generations - 1)
 
@@ -318,10 +330,12 @@ class SwarmThenPattern(ParticleSwarm):
         The swarm.
     mesh : tuple of int
         Divider and exponent of the mesh [-].
-    increment, reductions, sufficient, max_evaluations, text
+    increment, reductions
         The pattern search; see `PatternSearch`.
     restarts : tuple of int, optional
         Number of starts of the pattern search and seed; the first start is the swarm's best [-].
+    sufficient, max_evaluations, text
+        The pattern search; see `PatternSearch`.
     penalty, fresh_step, rounding, observer, remember
         See `ParticleSwarm`.
 

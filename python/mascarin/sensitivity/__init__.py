@@ -11,16 +11,12 @@ from mascarin.sensitivity.building_analysis import factors_of, sensitivity_analy
 from mascarin.sensitivity.factors import Factor
 from mascarin.sensitivity.methods import METHODS, MethodName, collector, plan, run
 from mascarin.sensitivity.result import Sensitivity
-from mascarin.sensitivity.salib import MorrisSensitivity
-from mascarin.sensitivity.spectral import SpectralSensitivity
 
 __all__ = [
     "METHODS",
     "Factor",
     "MethodName",
-    "MorrisSensitivity",
     "Sensitivity",
-    "SpectralSensitivity",
     "collector",
     "factors_of",
     "plan",

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from mascarin.errors import InputError, SolverError
-from mascarin.progress import ProgressOption, reporting
+from mascarin.progress import reporting
 from mascarin.sensitivity.factors import DistributionName, Factor
 from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
-from mascarin.simulation.options import Scheme, TimeLike
+from mascarin.simulation.options import described
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather.times import seconds_of
 
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from mascarin.building import Building
+    from mascarin.progress import ProgressOption
     from mascarin.simulation.initial import Initial
+    from mascarin.simulation.options import Scheme, TimeLike
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
@@ -74,6 +76,14 @@ def factors_of(
     InputError
         Unknown or structural path, a range beyond the limits of the parameter, a path in two groups, or no
         parameter left.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> [factor] = factors_of(box(), ranges={"materials.concrete.density": (2200, 2500)},
+    ...                       only=["materials.concrete.density"])
+    >>> factor.low, factor.high, factor.unit
+    (2200, 2500, 'kg/m3')
     """
     spans = {path: checked_range(building, path, span) for path, span in _resolved(building, ranges).items()}
     shapes = _resolved(building, distributions)
@@ -95,21 +105,13 @@ def factors_of(
     return found
 
 
+@described
 def sensitivity_analysis(
     building: Building,
     climate: Climate,
     *,
     vary: Vary | None = None,
     method: MethodName = "spectral",
-    distributions: Mapping[str, DistributionName] | None = None,
-    groups: Mapping[str, Sequence[str]] | None = None,
-    leave_out: Sequence[str] = (),
-    replicates: int = 8,
-    samples: int | None = None,
-    order: int | None = None,
-    seed: int = 0,
-    confidence: float = 0.95,
-    interval: str | float = "1h",
     parameters: Mapping[str, float] | None = None,
     outputs: Sequence[str] | None = None,
     start: TimeLike | None = None,
@@ -120,36 +122,48 @@ def sensitivity_analysis(
     first_period: str | float = "1d",
     measurements: Measurements | None = None,
     progress: ProgressOption = None,
+    interval: str | float = "1h",
+    distributions: Mapping[str, DistributionName] | None = None,
+    groups: Mapping[str, Sequence[str]] | None = None,
+    leave_out: Sequence[str] = (),
+    replicates: int = 8,
+    samples: int | None = None,
+    order: int | None = None,
+    seed: int = 0,
+    confidence: float = 0.95,
 ) -> Sensitivity:
     """Find which parameters of a building matter for its outputs.
 
     Parameters
     ----------
-    building, climate
-        As in `mascarin.simulate`.
+    building : Building
+        The building.
+    climate : Climate
+        Its weather.
     vary : sequence of str, or mapping of str to (float, float) or None, optional
         Paths that vary, or path -> (low, high); None for the range of the building. Default: every active
         parameter with a range. [unit of each]
     method : str
         ``spectral`` (default), ``rbd-fast``, ``sobol`` or ``morris``; all but the first need SALib.
+    <run options>
+    interval : str or float
+        Spacing of the outputs that are analyzed. [s]
     distributions : mapping of str to str, optional
         Distributions by path: ``uniform`` (default), ``sine``, ``log-uniform``, ``triangular``, ``normal``.
     groups : mapping of str to sequence of str, optional
         Name -> paths that are analyzed together.
     leave_out : sequence of str
-        Paths that keep their value.
-    replicates, samples, order, seed
-        As in `mascarin.sensitivity.plan`.
+        Paths that keep their value; those in `parameters` do so too.
+    replicates : int
+        Independent repetitions, at least 3; the intervals come from their spread. [-]
+    samples : int, optional
+        Size of a replicate, see `mascarin.sensitivity.plan`. [-]
+    order : int, optional
+        Harmonics that are attributed to a parameter (spectral, RBD-FAST). [-]
+    seed : int
+        Seed of the random numbers; the same seed gives the same result.
     confidence : float
         Of the intervals. [-]
-    interval : str or float
-        Spacing of the outputs that are analyzed. [s]
-    parameters : mapping of str to float, optional
-        Values by path that replace those of the building; these parameters do not vary. [unit of each]
-    outputs, start, end, step, scheme, initial, first_period, measurements
-        As in `mascarin.simulate`.
-    progress : bool or callable, optional
-        See `mascarin.progress.ProgressOption`.
 
     Returns
     -------
@@ -163,30 +177,20 @@ def sensitivity_analysis(
     SolverError
         A run failed; the text names its parameters.
 
+    References
+    ----------
+    Saltelli A. et al. (2008), Global Sensitivity Analysis: The Primer. https://doi.org/10.1002/9780470725184
+
     Examples
     --------
-    >>> import numpy as np, pandas as pd
     >>> import mascarin as mc
-    >>> from mascarin.examples import FOLDER
-    >>> wall = mc.load(FOLDER / "wall_bench" / "building.yaml")
-    >>> wave = np.sin(np.arange(96) * np.pi / 24)
-    >>> logged = pd.DataFrame(
-    ...     {"T_ext": 18 + 6 * wave, "Pyr": 300 * np.maximum(wave, 0), "Tint_2": np.full(96, 22.0)},
-    ...     index=pd.date_range("2024-09-05", periods=96, freq="30min"),
-    ... )
-    >>> climate = mc.Climate.from_table(
-    ...     logged, timezone="UTC+2", columns={"air_temperature": "T_ext"},
-    ...     absent=["wind_speed", "wind_direction", "dew_point", "global_horizontal",
-    ...             "diffuse_horizontal", "direct_normal"],
-    ... )
+    >>> from mascarin.examples import box, box_climate
     >>> found = mc.sensitivity_analysis(
-    ...     wall, climate, outputs=["facade.interface_1_temperature"], method="morris", step="30min",
-    ...     vary={"materials.concrete.conductivity": (0.8, 1.4),
-    ...           "surfaces.facade.inside.convection.coefficient": None},
-    ...     measurements=mc.Measurements.from_table(logged, timezone="UTC+2"),
+    ...     box(), box_climate(), outputs=["room.air_temperature"], method="morris", step="1h",
+    ...     vary={"surfaces.facade.outside.absorptance": (0.3, 0.9), "materials.concrete.density": None},
     ... )
-    >>> found.ranking("facade.interface_1_temperature", 1)
-    ['surfaces.facade.inside.convection.coefficient']
+    >>> found.ranking("room.air_temperature", 1)
+    ['surfaces.facade.outside.absorptance']
     """
     given = {building.parameter(path).path: value for path, value in (parameters or {}).items()}
     only, ranges = _chosen(building, vary, given)
@@ -196,18 +200,17 @@ def sensitivity_analysis(
     )  # fmt: skip
     runs = plan(chosen, method, replicates=replicates, samples=samples, order=order, seed=seed)
     simulation = Simulation(
-        building, climate, step=step, start=start, end=end, outputs=outputs, scheme=scheme, initial=initial,
-        first_period=first_period, measurements=measurements,
+        building, climate, parameters=parameters, outputs=outputs, start=start, end=end, step=step,
+        scheme=scheme, initial=initial, first_period=first_period, measurements=measurements,
         ranges={factor.path: (factor.low, factor.high) for factor in chosen},
     )  # fmt: skip
     every = max(1, round(seconds_of(interval, "interval") / simulation.step_seconds))
     taken = collector(
         runs, [output.name for output in simulation.outputs], [output.unit for output in simulation.outputs]
     )
-    base = simulation.vector(given)
     with reporting(progress, "sensitivity analysis") as report:
         for first, x in batches(runs, _BATCH):
-            taken.add(first, run_samples(simulation, runs.paths, x, first, every=every, base=base))
+            taken.add(first, run_samples(simulation, runs.paths, x, first, every=every))
             report(first + len(x), len(runs))
     return replace(taken.result(confidence=confidence), times=simulation.index[::every])
 
@@ -259,7 +262,6 @@ def run_samples(
     *,
     start: int = 0,
     every: int = 1,
-    base: Array | None = None,
 ) -> Array:
     """Run consecutive members of a plan.
 
@@ -275,8 +277,6 @@ def run_samples(
         Number of the first run, for messages.
     start, every : int
         First recorded row and spacing of the recorded rows, in steps.
-    base : ndarray, optional
-        Vector of all parameters, for those that do not vary; default that of the building. [unit of each]
 
     Returns
     -------
@@ -288,7 +288,7 @@ def run_samples(
     SolverError
         A run failed; the text names its parameters.
     """
-    vectors = np.tile(simulation.vector({}) if base is None else base, (len(samples), 1))
+    vectors = np.tile(simulation.vector({}), (len(samples), 1))
     vectors[:, [simulation.position(path) for path in paths]] = samples
     records, _, failures = simulation.ensemble(vectors, record_from=start, record_every=every)
     if failures:

@@ -28,7 +28,7 @@ physical. [-]"""
 class Factor:
     """One uncertain parameter.
 
-    Attributes
+    Parameters
     ----------
     path : str
         Path of the parameter.

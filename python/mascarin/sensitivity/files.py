@@ -117,7 +117,7 @@ def day(result: SpectralSensitivity, output: str, *, hour: ArrayLike | None = No
 
 
 def tornado(result: Sensitivity, output: str, *, top: int = 15) -> Figure:
-    """Draw the effects of the most influential parameters, and their indices with intervals beside them.
+    """Draw the effects of the most influential parameters, and their indices with intervals to the right.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ class Sensitivity:
 
     Made by `mascarin.sensitivity_analysis`, or by `mascarin.sensitivity.run` for any model.
 
-    Attributes
+    Parameters
     ----------
     method : str
         Name of the method.
@@ -374,17 +374,17 @@ class Sensitivity:
         rows = []
         for output in shown:
             s = self.output_index(output)
-            for k, i in enumerate(self.strongest(output, each)):
-                interval = f"({self.low[i, s]:.3f}-{self.high[i, s]:.3f})"
-                rows.append(
-                    (
-                        output if k == 0 else "",
-                        f"{self._label} {self.index[i, s]:.3f} {interval}  {self.names[i]}",
-                    )
-                )
+            rows += [
+                (output if k == 0 else "", f"{self._described(int(i), s)}  {self.names[i]}")
+                for k, i in enumerate(self.strongest(output, each))
+            ]
         if len(shown) < len(self.outputs):
             rows.append(("others", ", ".join(self.outputs[len(shown) :])))
         return [*rows, *(("warning", text) for text in self.warnings)]
+
+    def _described(self, i: int, s: int) -> str:
+        """The index of parameter i and output s with its interval."""
+        return f"S1 {self.index[i, s]:.3f} ({self.low[i, s]:.3f}-{self.high[i, s]:.3f})"
 
     @property
     def _label(self) -> str:

@@ -221,9 +221,9 @@ class CompiledRun:
             A step or the repeated first period did not converge.
         """
         options = self.options(None, record_from, record_every)
-        told = _of_total(progress, len(positions))
+        report = _of_total(progress, len(positions))
         with translated(self.dated):
-            raw, slopes = self.plan.jacobian(vector, list(positions), self.forcing, options, told)
+            raw, slopes = self.plan.jacobian(vector, list(positions), self.forcing, options, report)
         return self.readings.values(raw), self.readings.slopes(raw, slopes)
 
     def trajectory(

@@ -96,7 +96,7 @@ def require_set_points_apart(
 
     def set_point(zone: str, which: str) -> Array:
         """Set points at the ends of the steps, shape (members, 1) or (1, steps). [degC]"""
-        loads = building.zones[zone].plants[which]
+        loads = building.zones[zone].loads[which]
         if loads.setpoint.schedule is None:
             return vectors[:, [positions[f"zones.{zone}.{which}.setpoint.temperature"]]]
         place = len(CHANNELS) + list(channels).index(f"schedule {loads.setpoint.schedule}")

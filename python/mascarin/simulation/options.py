@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from datetime import datetime
@@ -117,6 +118,13 @@ class RunOptions:
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
+def _wrapped(text: str) -> list[str]:
+    return textwrap.wrap(
+        text, 100, initial_indent="    ", subsequent_indent="    ", break_long_words=False,
+        break_on_hyphens=False,
+    )  # fmt: skip
+
+
 def described(function: F) -> F:
     """Put the description of the options into a docstring, in place of the line ``<run options>``.
 
@@ -129,7 +137,7 @@ def described(function: F) -> F:
     lines = []
     for name, (kind, description) in TABLE.items():
         if name in has:
-            lines += [f"{name} : {kind}", f"    {description}"]
+            lines += [f"{name} : {kind}", *_wrapped(description)]
     text = inspect.cleandoc(text)
     function.__doc__ = text.replace("<run options>", "\n".join(lines))
     return function

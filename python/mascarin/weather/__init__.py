@@ -23,7 +23,7 @@ from mascarin.weather.climate import Climate
 from mascarin.weather.columns import Column
 from mascarin.weather.measurements import Measurements
 from mascarin.weather.schedules import scheduled
-from mascarin.weather.site import Place, SiteLike
+from mascarin.weather.site import Place
 from mascarin.weather.steps import STAGES
 from mascarin.weather.summary import summary
 from mascarin.weather.timezones import parse_timezone
@@ -39,7 +39,6 @@ __all__ = [
     "Column",
     "Measurements",
     "Place",
-    "SiteLike",
     "parse_timezone",
     "scheduled",
     "summary",

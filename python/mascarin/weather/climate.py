@@ -38,6 +38,11 @@ class Climate(RecordView[WeatherRecord]):
     rule in `mascarin.weather`. Columns are the channels of `mascarin.weather.CHANNELS` that were found, then
     measured columns by their own names.
 
+    Parameters
+    ----------
+    record : WeatherRecord
+        The columns with their origin; use one of the functions above.
+
     Examples
     --------
     >>> import pandas as pd
@@ -54,8 +59,6 @@ class Climate(RecordView[WeatherRecord]):
     def __init__(self, record: WeatherRecord) -> None:
         super().__init__(record)
         self._completed: dict[tuple[float, float], Climate] = {}
-
-    # ------------------------------------------------------------------ readers
 
     @classmethod
     def from_epw(
@@ -92,8 +95,8 @@ class Climate(RecordView[WeatherRecord]):
 
         Notes
         -----
-        Stamps of EPW files mark the end of an hour: radiation is the mean of the hour before, all other
-        quantities are values at the stamp ("EnergyPlus Auxiliary Programs", Data Dictionary).
+        Stamps mark the end of an hour: radiation is the mean of the hour before, all other quantities are
+        values at the stamp ("EnergyPlus Auxiliary Programs", Data Dictionary).
 
         Examples
         --------
@@ -343,8 +346,6 @@ class Climate(RecordView[WeatherRecord]):
         )  # fmt: skip
         return cls(replace(record, check_sun=check_sun)).completed()
 
-    # ------------------------------------------------------------------ what it holds
-
     @property
     def site(self) -> Place | None:
         """Where the weather was measured, if known."""
@@ -393,8 +394,6 @@ class Climate(RecordView[WeatherRecord]):
         [12.0, 13.0, 14.0, 16.0]
         """
         return Climate(filled(self.record, longest, columns, hold_end=True))
-
-    # ------------------------------------------------------------------ what needs the sun
 
     def completed(self, site: SiteLike | None = None) -> Climate:
         """The climate with all channels that can be derived from the others and the sun.

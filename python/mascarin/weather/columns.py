@@ -78,7 +78,25 @@ class Column:
 
     @classmethod
     def of(cls, given: object, where: str) -> Column:
-        """Column from its short form (a name) or a mapping with the attributes as keys."""
+        """Column from its short form.
+
+        Parameters
+        ----------
+        given : Column, str or mapping
+            A column, its name, or a mapping with the attributes as keys.
+        where : str
+            Place of the column, for the error.
+
+        Returns
+        -------
+        Column
+            The column.
+
+        Raises
+        ------
+        InputError
+            A key is unknown, or the name is missing.
+        """
         if isinstance(given, Column):
             return given
         if isinstance(given, str):
@@ -132,7 +150,15 @@ class Column:
         return values * self.scale + self.offset
 
     def sentence(self, name: str, unit: str) -> str:
-        """What was done, for the provenance; empty where nothing was."""
+        """What was done, for the provenance; empty where nothing was.
+
+        Parameters
+        ----------
+        name : str
+            Quantity.
+        unit : str
+            Its unit.
+        """
         parts = []
         if self.unit is not None and self.unit != unit:
             parts.append(f"{self.unit} to {unit}")

@@ -33,6 +33,11 @@ class Measurements(RecordView[Record]):
 
     Made by `from_table`; never changed afterwards. Times follow the rule in `mascarin.weather`.
 
+    Parameters
+    ----------
+    record : Record
+        The columns with their origin; use `from_table`.
+
     Examples
     --------
     >>> import pandas as pd

@@ -102,6 +102,22 @@ def scheduled(
     ------
     InputError
         A measured column is unknown, or a value in it is missing or impossible.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> from mascarin.weather import Climate
+    >>> index = pd.date_range("2024-06-01", periods=4, freq="1h", tz="UTC")
+    >>> climate = Climate.from_table(
+    ...     pd.DataFrame({"T": [12.0, 13.0, 15.0, 16.0]}, index=index),
+    ...     columns={"air_temperature": "T"},
+    ...     absent=["radiation", "dew_point", "wind_speed", "wind_direction"],
+    ... )
+    >>> from datetime import UTC
+    >>> from mascarin.building import TemperatureSchedule
+    >>> night = TemperatureSchedule(value=18.0)
+    >>> scheduled(climate, {"night": night}, UTC, index[0], index[2], 3600.0, "backward-euler").ravel()
+    array([18., 18.])
     """
     steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme)
     out = np.empty((*steps.stage.shape, len(schedules)))

@@ -19,6 +19,19 @@ def summary(climate: Climate) -> dict[str, Any]:
     -------
     dict
         Values that JSON can hold.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> from mascarin.weather import Climate
+    >>> index = pd.date_range("2024-06-01", periods=4, freq="1h", tz="UTC")
+    >>> climate = Climate.from_table(
+    ...     pd.DataFrame({"T": [12.0, 13.0, 15.0, 16.0]}, index=index),
+    ...     columns={"air_temperature": "T"},
+    ...     absent=["radiation", "dew_point", "wind_speed", "wind_direction"],
+    ... )
+    >>> summary(climate)["range"]
+    '2024-06-01 00:00 .. 2024-06-01 04:00 (UTC)'
     """
     place = climate.site
     return {

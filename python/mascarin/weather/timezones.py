@@ -42,6 +42,11 @@ def parse_timezone(text: object, where: str = "timezone") -> tzinfo:
     ------
     InputError
         The text is missing or does not name a time zone.
+
+    Examples
+    --------
+    >>> parse_timezone("Indian/Reunion").key, str(parse_timezone("UTC+4"))
+    ('Indian/Reunion', 'UTC+4')
     """
     if not isinstance(text, str) or not text.strip():
         raise InputError(f"{where}: a time zone is required, found {text!r}; {_WANTED}.")

@@ -20,6 +20,6 @@ def measured_columns(building: Description) -> list[str]:
 
 
 def used_schedules(building: Description) -> list[str]:
-    """Names of the schedules that something in the building follows, in the order of the description."""
+    """Names of the schedules that are used in the building, in the order of the description."""
     used = {name for name, _, _ in references(building)}
     return [name for name in building.schedules if name in used]

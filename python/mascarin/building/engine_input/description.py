@@ -31,7 +31,7 @@ from mascarin.building.site import Site
 
 @dataclass(frozen=True)
 class EngineDescription:
-    """What the engine needs to know.
+    """A building as the engine reads it.
 
     Attributes
     ----------

@@ -16,12 +16,12 @@ Ids = Callable[[str], int]
 
 
 def below(ids: Mapping[str, int], path: str) -> Ids:
-    """Ids of the leaves below a path."""
+    """Ids of the numbers below a path."""
     return lambda key: ids[f"{path}.{key}"]
 
 
 def deeper(ids: Ids, path: str) -> Ids:
-    """Ids below a path of the part that ``ids`` speaks of."""
+    """Ids below a path of the part that ``ids`` belongs to."""
     return lambda key: ids(f"{path}.{key}")
 
 
@@ -33,7 +33,7 @@ def each(
 
 
 def fields_of(part: Any, ids: Ids, prefix: str = "") -> Json:
-    """Write a part whose fields bear the names of the border: its kind and the ids of its numbers."""
+    """Describe a part whose fields have the same names in the engine: its kind and the ids of its numbers."""
     written = {"kind": part.kind} if hasattr(part, "kind") else {}
     for key in type(part).model_fields:
         number = getattr(part, key)

@@ -8,7 +8,7 @@ from typing import Any
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, below, corners, deeper, fields_of
 from mascarin.building.engine_input.surfaces import describe_convection
-from mascarin.building.glazing import Angular, FilledGap, GivenGap, Glazing, Pane, SimpleGlazing, TwoFaces
+from mascarin.building.glazing import Angular, FilledGap, GivenGap, Glazing, Pane, SimpleGlazing, TwoSides
 from mascarin.building.window import Window
 
 
@@ -36,7 +36,7 @@ def describe_glazing(name: str, glazing: Glazing, ids: Ids) -> Json:
 
 def both_sides(value: Any, ids: Ids, key: str) -> list[int]:
     """Ids of a property of the outside and of the inside of a pane."""
-    if isinstance(value, TwoFaces):
+    if isinstance(value, TwoSides):
         return [ids(f"{key}.outside"), ids(f"{key}.inside")]
     return [ids(key)] * 2
 
@@ -53,7 +53,7 @@ def _pane(pane: Pane, ids: Ids) -> Json:
         written["optics"] = {
             "transmittance": ids("transmittance"),
             "reflectance": both_sides(pane.reflectance, ids, "reflectance"),
-            "coated": isinstance(pane.reflectance, TwoFaces),
+            "coated": isinstance(pane.reflectance, TwoSides),
         }
     return written
 

@@ -18,9 +18,9 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class OpenEdge:
-    """A piece of edge that no second face closes."""
+    """A piece of an edge that belongs to one polygon only."""
 
-    face: str
+    polygon: str
     start: tuple[float, float, float]
     end: tuple[float, float, float]
 
@@ -32,7 +32,7 @@ class OpenEdge:
     def __str__(self) -> str:
         a = ", ".join(f"{c:.3f}" for c in self.start)
         b = ", ".join(f"{c:.3f}" for c in self.end)
-        return f"{self.face}: from ({a}) to ({b}), {self.length:.3f} m"
+        return f"{self.polygon}: from ({a}) to ({b}), {self.length:.3f} m"
 
 
 def parents(polygons: Sequence[Polygon]) -> list[int | None]:
@@ -70,7 +70,7 @@ def parents(polygons: Sequence[Polygon]) -> list[int | None]:
 
 
 def net_areas(polygons: Sequence[Polygon]) -> Array:
-    """Areas without what lies in the polygons as surfaces of their own.
+    """Areas without the other surfaces that lie in the polygons.
 
     Parameters
     ----------
@@ -96,32 +96,32 @@ def net_areas(polygons: Sequence[Polygon]) -> Array:
         if left <= 0.0:
             raise InputError(
                 f"surface '{polygon.name}': the surfaces in it leave {left:.3f} m2 of {polygon.area:.3f} m2; "
-                "expected a rest; give the surfaces side by side instead"
+                "expected more than 0; describe the surfaces side by side instead"
             )
     return net
 
 
-def open_edges(faces: Sequence[Polygon]) -> list[OpenEdge]:
-    """Pieces of edges where a shell of faces is not closed.
+def open_edges(polygons: Sequence[Polygon]) -> list[OpenEdge]:
+    """Pieces of edges where the polygons do not enclose a volume.
 
-    In a closed shell of faces that all look inward every piece of an edge is walked once in either direction.
-    Faces that lie in another face are left out: their parent covers them.
+    Where polygons that all point inward enclose a volume, every piece of an edge occurs once in each
+    direction. Polygons that lie in another one are left out.
 
     Parameters
     ----------
-    faces : sequence of Polygon
-        Faces of a zone, all normals into the zone (or all out of it).
+    polygons : sequence of Polygon
+        Surfaces of a zone, all normals into the zone (or all out of it).
 
     Returns
     -------
     list of OpenEdge
-        Empty if the shell is closed within :data:`TOLERANCE`.
+        Empty if the volume is closed within :data:`TOLERANCE`.
     """
-    shell = [f for f, parent in zip(faces, parents(faces), strict=True) if parent is None]
+    shell = [f for f, parent in zip(polygons, parents(polygons), strict=True) if parent is None]
     edges = [
-        (face.name, face.points[i], face.points[(i + 1) % len(face.points)])
-        for face in shell
-        for i in range(len(face.points))
+        (polygon.name, polygon.points[i], polygon.points[(i + 1) % len(polygon.points)])
+        for polygon in shell
+        for i in range(len(polygon.points))
     ]
     gaps = []
     for name, start, end in edges:
@@ -132,7 +132,7 @@ def open_edges(faces: Sequence[Polygon]) -> list[OpenEdge]:
 def _uncovered(
     start: Array, end: Array, edges: Sequence[tuple[str, Array, Array]]
 ) -> list[tuple[Array, Array]]:
-    """Pieces of one edge whose directed cover by all edges on its line does not cancel."""
+    """Pieces of one edge that the edges on its line do not cover once in each direction."""
     length = float(np.linalg.norm(end - start))
     along = (end - start) / length
     pieces: list[tuple[float, float, int]] = []
@@ -152,13 +152,13 @@ def _uncovered(
     return open_pieces
 
 
-def volume(faces: Sequence[Polygon]) -> float:
-    """Volume enclosed by the faces of a zone (divergence theorem).
+def volume(polygons: Sequence[Polygon]) -> float:
+    """Volume enclosed by the surfaces of a zone (divergence theorem).
 
     Parameters
     ----------
-    faces : sequence of Polygon
-        All faces of the zone, normals into the zone. Faces within a face (a door in a wall) may be listed.
+    polygons : sequence of Polygon
+        All surfaces of the zone, normals into the zone; also those within another one (a door in a wall).
 
     Returns
     -------
@@ -168,51 +168,51 @@ def volume(faces: Sequence[Polygon]) -> float:
     Raises
     ------
     InputError
-        The faces leave gaps, or look out of the zone.
+        There are gaps between the polygons, or they point out of the zone.
     """
-    gaps = open_edges(faces)
+    gaps = open_edges(polygons)
     if gaps:
         shown = "; ".join(str(gap) for gap in gaps[:6])
         more = f"; and {len(gaps) - 6} more" if len(gaps) > 6 else ""
         raise InputError(
-            f"the faces do not close the zone: {len(gaps)} open edges ({shown}{more}); "
-            "expected every edge to be shared by two faces; complete the vertices or give the volume"
+            f"the surfaces do not enclose the zone: {len(gaps)} open edges ({shown}{more}); "
+            "expected every edge to belong to two surfaces; complete the vertices or give the volume"
         )
-    origin = faces[0].points[0]
+    origin = polygons[0].points[0]
     total = 0.0
-    for face, parent in zip(faces, parents(faces), strict=True):
+    for polygon, parent in zip(polygons, parents(polygons), strict=True):
         if parent is None:
-            total -= face.area * float((face.points[0] - origin) @ face.normal) / 3.0
+            total -= polygon.area * float((polygon.points[0] - origin) @ polygon.normal) / 3.0
     if total <= 0.0:
         raise InputError(
-            f"the faces enclose {total:.3f} m3: their normals point out of the zone; "
+            f"the surfaces enclose {total:.3f} m3: their normals point out of the zone; "
             "expected the vertices of every surface counter-clockwise seen from outside"
         )
     return total
 
 
-def check_convex(faces: Sequence[Polygon]) -> None:
-    """Check that every face sees every other one completely.
+def check_convex(polygons: Sequence[Polygon]) -> None:
+    """Check that no polygon hides a part of another one.
 
     Parameters
     ----------
-    faces : sequence of Polygon
-        Faces of a zone, normals into the zone.
+    polygons : sequence of Polygon
+        Surfaces of a zone, normals into the zone.
 
     Raises
     ------
     InputError
-        A corner lies behind a face.
+        A corner is behind a polygon.
     """
-    for face in faces:
-        for other in faces:
-            heights = face.height_of(other.points)
+    for polygon in polygons:
+        for other in polygons:
+            heights = polygon.height_of(other.points)
             worst = int(np.argmin(heights))
             if heights[worst] < -TOLERANCE:
                 raise InputError(
                     f"the zone is not convex: vertex {worst + 1} of '{other.name}' lies "
-                    f"{-heights[worst]:.3f} m behind '{face.name}'; exact view factors need a convex zone; "
-                    "split the zone or give its view_factors"
+                    f"{-heights[worst]:.3f} m behind '{polygon.name}'; exact view factors need a convex "
+                    "zone; split the zone or give its view_factors"
                 )
 
 

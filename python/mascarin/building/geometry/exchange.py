@@ -39,35 +39,35 @@ Array = npt.NDArray[np.float64]
 CLOSURE_LIMIT = 1e-6
 
 
-def exchange_areas(faces: Sequence[Polygon]) -> Array:
-    """Exchange areas A_i F_ij between the faces of a convex zone.
+def exchange_areas(polygons: Sequence[Polygon]) -> Array:
+    """Exchange areas A_i F_ij between the polygons of a convex zone.
 
-    A face that lies in another one takes its part from the parent: the row of a wall is that of the whole
-    outline less those of its door and windows.
+    A polygon that lies in another one is subtracted from it: the row of a wall is that of its whole outline
+    minus those of its door and windows.
 
     Parameters
     ----------
-    faces : sequence of Polygon
-        Faces of a convex zone, normals into the zone.
+    polygons : sequence of Polygon
+        Surfaces of a convex zone, normals into the zone.
 
     Returns
     -------
     array, shape (n, n)
-        Symmetric, zero between faces of one plane. [m2]
+        Symmetric, zero between polygons in one plane. [m2]
 
     Raises
     ------
     InputError
         The zone is not convex.
     """
-    check_convex(faces)
-    n = len(faces)
+    check_convex(polygons)
+    n = len(polygons)
     gross = np.zeros((n, n))
     for i in range(n):
         for j in range(i + 1, n):
-            gross[i, j] = gross[j, i] = _exchange_area(faces[i], faces[j])
+            gross[i, j] = gross[j, i] = _exchange_area(polygons[i], polygons[j])
     algebra = np.eye(n)
-    for child, parent in enumerate(parents(faces)):
+    for child, parent in enumerate(parents(polygons)):
         if parent is not None:
             algebra[parent, child] = -1.0
     net = algebra @ gross @ algebra.T
@@ -75,13 +75,13 @@ def exchange_areas(faces: Sequence[Polygon]) -> Array:
     return symmetric
 
 
-def view_factors(faces: Sequence[Polygon]) -> Array:
-    """View factors F_ij (from i to j) between the faces of a closed convex zone.
+def view_factors(polygons: Sequence[Polygon]) -> Array:
+    """View factors F_ij (from i to j) between the polygons of a closed convex zone.
 
     Parameters
     ----------
-    faces : sequence of Polygon
-        All faces of the zone, normals into the zone. Faces within a face may be listed.
+    polygons : sequence of Polygon
+        All surfaces of the zone, normals into the zone; also those within another one.
 
     Returns
     -------
@@ -93,14 +93,14 @@ def view_factors(faces: Sequence[Polygon]) -> Array:
     InputError
         The zone is not convex or not closed.
     """
-    factors: Array = exchange_areas(faces) / net_areas(faces)[:, None]
+    factors: Array = exchange_areas(polygons) / net_areas(polygons)[:, None]
     sums = factors.sum(axis=1)
     worst = int(np.argmax(np.abs(sums - 1.0)))
     if abs(sums[worst] - 1.0) > CLOSURE_LIMIT:
-        gaps = "; ".join(str(gap) for gap in open_edges(faces)[:4])
-        reason = f"open edges: {gaps}" if gaps else "coordinates agree only roughly"
+        gaps = "; ".join(str(gap) for gap in open_edges(polygons)[:4])
+        reason = f"open edges: {gaps}" if gaps else "the coordinates are not exact"
         raise InputError(
-            f"the view factors from '{faces[worst].name}' sum to {sums[worst]:.7f}; expected 1 within "
+            f"the view factors from '{polygons[worst].name}' sum to {sums[worst]:.7f}; expected 1 within "
             f"{CLOSURE_LIMIT:g} in a closed zone ({reason}); correct the vertices or give its view_factors"
         )
     return factors

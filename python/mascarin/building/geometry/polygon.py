@@ -42,7 +42,7 @@ class Polygon:
 
     @classmethod
     def of(cls, name: str, vertices: Sequence[Sequence[float]]) -> Polygon:
-        """Make a polygon and check that it is one.
+        """Make a polygon and check it.
 
         Parameters
         ----------
@@ -103,7 +103,7 @@ class Polygon:
                 if _cross_properly(flat[i], flat[(i + 1) % n], flat[j], flat[(j + 1) % n]):
                     raise InputError(
                         f"surface '{self.name}': edge {i + 1} crosses edge {j + 1}; "
-                        "expected the corners in the order in which one walks around the surface"
+                        "expected the corners in order around the surface"
                     )
 
     @cached_property
@@ -158,7 +158,7 @@ class Polygon:
         return float(np.linalg.norm(np.roll(self.points, -1, axis=0) - self.points, axis=1).sum())
 
     def reversed(self) -> Polygon:
-        """The same outline seen from the other side."""
+        """The same outline with the opposite normal."""
         return Polygon(self.name, self.vertices[::-1])
 
     def in_plane(self, points: Array) -> Array:
@@ -204,7 +204,7 @@ class Polygon:
         return not crossing and other.area < self.area + TOLERANCE * self.perimeter
 
     def overlaps(self, other: Polygon) -> bool:
-        """Whether two polygons of one plane share more than edges and corners."""
+        """Whether two polygons in one plane have more in common than edges and corners."""
         if not coplanar(self, other):
             return False
         if self.contains(other) or other.contains(self):
@@ -219,7 +219,7 @@ class Polygon:
 
 @lru_cache(maxsize=4096)
 def _checked(name: str, corners: tuple[tuple[float, float, float], ...]) -> Polygon:
-    """Check a polygon: once, for a description asks for each of its own many times."""
+    """Check a polygon once: the same polygons are needed many times for one description."""
     polygon = Polygon(name, corners)
     polygon._check()
     return polygon
@@ -241,7 +241,7 @@ def _cross_properly(a: Array, b: Array, c: Array, d: Array) -> bool:
 
 
 def _pieces(outline: Array, other: Array) -> list[Array]:
-    """Middles of the pieces into which the lines of one polygon's edges cut the edges of another."""
+    """Middles of the pieces of the edges of one polygon, cut by the lines of the edges of another."""
     middles = []
     for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         cuts = [0.0, 1.0]

@@ -11,7 +11,7 @@ CapacityFactor = Annotated[
     Number,
     Quantity(
         "-",
-        "Heat capacity of air and contents over that of the air alone",
+        "Heat capacity of air and contents divided by that of the air",
         Span(1, 5, "empty to furnished"),
         POSITIVE,
     ),
@@ -30,7 +30,7 @@ AirChangePerKelvin = Annotated[
     Quantity(
         "1/(h K)",
         "Air changes with outdoors for each kelvin between inside and outside",
-        Span(0, 0.02, "stack effect over one storey of a leaky wall"),
+        Span(0, 0.02, "stack effect over one story of a leaky wall"),
         Limits(at_least=0, at_most=100),
     ),
 ]
@@ -64,14 +64,14 @@ VolumeFlow = Annotated[
 ]
 OpeningArea = Annotated[
     Number,
-    Quantity("m2", "Free area of the opening", Percent(20, "meshes, blades, how far it is opened"), POSITIVE),
+    Quantity("m2", "Free area of the opening", Percent(20, "meshes, blades, opening angle"), POSITIVE),
 ]
 OpeningHeight = Annotated[
     Number,
     Quantity(
         "m",
         "Vertical distance between the middle of the opening and the neutral level",
-        Percent(30, "the neutral level shifts with every other leak"),
+        Percent(30, "the neutral level depends on all leaks"),
         Limits(at_least=0, at_most=500),
     ),
 ]
@@ -88,7 +88,7 @@ WindCoefficient = Annotated[
     Number,
     Quantity(
         "-",
-        "Effectiveness of the opening against the wind at the mast",
+        "Effectiveness of the opening for the wind at the mast",
         Span(
             0.05,
             0.6,

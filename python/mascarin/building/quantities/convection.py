@@ -7,21 +7,21 @@ from typing import Annotated
 from mascarin.building.number import Limits, Number, Percent, Quantity, Span
 from mascarin.building.quantities.common import NOT_NEGATIVE, POSITIVE
 
-Film = Annotated[
+HeatTransferCoefficient = Annotated[
     Number,
     Quantity(
         "W/(m2 K)",
-        "Film coefficient",
-        Percent(50, "published coefficients for the same face differ by half"),
+        "Surface heat transfer coefficient",
+        Percent(50, "published coefficients for the same surface differ by half"),
         Limits(at_least=0, at_most=1e5),
     ),
 ]
-FilmPerSpeed = Annotated[
+HeatTransferCoefficientPerSpeed = Annotated[
     Number,
     Quantity(
         "W/(m2 K)/(m/s)",
-        "Rise of the film coefficient with wind speed",
-        Percent(50, "published slopes run from 2 to 6"),
+        "Increase of the surface heat transfer coefficient with wind speed",
+        Percent(50, "published slopes are 2 to 6"),
         Limits(at_least=0, at_most=1e3),
     ),
 ]
@@ -38,14 +38,14 @@ ConvectionLength = Annotated[
     Number,
     Quantity(
         "m",
-        "Characteristic length: height of a vertical face, 4 area/perimeter of a horizontal one",
-        Percent(25, "faces are no free plates"),
+        "Characteristic length: height of a vertical surface, 4 area/perimeter of a horizontal one",
+        Percent(25, "surfaces are no free plates"),
         POSITIVE,
     ),
 ]
 Perimeter = Annotated[
     Number,
-    Quantity("m", "Perimeter met by the wind", Percent(20, "whether neighbouring faces count"), POSITIVE),
+    Quantity("m", "Perimeter exposed to wind", Percent(20, "whether neighboring surfaces count"), POSITIVE),
 ]
 Roughness = Annotated[
     Number,
@@ -78,7 +78,7 @@ PowerBuoyant = Annotated[
     Quantity(
         "W/(m2 K^(n+1))",
         "Coefficient b of a + b |dT|^n + c V^m",
-        Span(0, 3, "stable air to an upward plume; published values run from 0.5 to 2.3"),
+        Span(0, 3, "stable air to an upward plume; published values are 0.5 to 2.3"),
         NOT_NEGATIVE,
     ),
 ]

@@ -14,7 +14,7 @@ Tilt = Annotated[
     Quantity(
         "deg",
         "Tilt of the outside normal: 0 up, 90 vertical, 180 down",
-        Within(2, "a spirit level on a real roof"),
+        Within(2, "spirit level on a roof"),
         Limits(at_least=0, at_most=180),
     ),
 ]
@@ -23,7 +23,7 @@ Azimuth = Annotated[
     Quantity(
         "deg",
         "Azimuth of the outside normal, clockwise from north",
-        Within(5, "a compass beside steel, a plan's north"),
+        Within(5, "compass near steel, north of the plan"),
         Limits(at_least=-360, at_most=360),
     ),
 ]
@@ -32,19 +32,19 @@ Coordinate = Annotated[
     Quantity(
         "m",
         "Coordinate of a vertex: x east, y north, z up",
-        Fixed("shapes the geometry; vary area, tilt, azimuth"),
+        Fixed("fixes the geometry; vary area, tilt, azimuth"),
     ),
 ]
 ViewFactor = Annotated[
     Number,
-    Quantity("-", "View factor from one face to another", Fixed("shapes the exchange factors"), FRACTION),
+    Quantity("-", "View factor from one surface to another", Fixed("fixes the exchange factors"), FRACTION),
 ]
 Height = Annotated[
     Number,
     Quantity(
         "m",
-        "Height of the face above ground, for the wind profile",
-        Percent(25, "which point of the face stands for it"),
+        "Height of the surface above ground, for the wind profile",
+        Percent(25, "which point of the surface is meant"),
         POSITIVE,
     ),
 ]
@@ -52,8 +52,8 @@ Depth = Annotated[
     Number,
     Quantity(
         "m",
-        "Depth of the sensor from the outside face",
-        Within(0.01, "where a probe ends up when a hole is drilled"),
+        "Depth of the sensor from the outside",
+        Within(0.01, "position of a probe in a drilled hole"),
         NOT_NEGATIVE,
     ),
 ]

@@ -9,20 +9,18 @@ from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE
 
 GainPower = Annotated[
     Number,
-    Quantity("W", "Heat at full schedule", Percent(30, "name plates against what is drawn"), NOT_NEGATIVE),
+    Quantity("W", "Heat at a schedule of 1", Percent(30, "rated and actual power differ"), NOT_NEGATIVE),
 ]
 Radiative = Annotated[
     Number,
-    Quantity(
-        "-", "Part of the heat that is radiated", Within(0.2, "handbooks give ranges as wide"), FRACTION
-    ),
+    Quantity("-", "Radiative fraction of the heat", Within(0.2, "range in handbooks"), FRACTION),
 ]
 SetPoint = Annotated[
     Number,
     Quantity(
         "degC",
-        "Air temperature that the plant keeps",
-        Within(1, "a thermostat's place, offset and switching difference"),
+        "Set point of the air temperature",
+        Within(1, "position, offset and hysteresis of a thermostat"),
         Limits(at_least=-60, at_most=90),
     ),
 ]
@@ -30,8 +28,8 @@ Capacity = Annotated[
     Number,
     Quantity(
         "W",
-        "Most heat that the plant gives or takes",
-        Percent(20, "rated against site conditions"),
+        "Maximum heating or cooling power",
+        Percent(20, "rated and actual conditions differ"),
         NOT_NEGATIVE,
     ),
 ]

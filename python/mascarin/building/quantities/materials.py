@@ -14,11 +14,11 @@ Conductivity = Annotated[
 Density = Annotated[
     Number, Quantity("kg/m3", "Density", Percent(10, "batch and moisture"), Limits(above=0, at_most=25000))
 ]
-# Lead and gold, the lowest in use, have 130 J/(kg K); a value in kJ/(kg K) lies far below the limit.
+# The lowest are lead and gold, 130 J/(kg K); a value in kJ/(kg K) is far below the limit.
 SpecificHeat = Annotated[
     Number, Quantity("J/(kg K)", "Specific heat", Percent(10, TABLES), Limits(at_least=100, at_most=20000))
 ]
-# A phase may have next to none of its own where the latent heat or the enthalpy table holds it all.
+# It may be close to zero where the latent heat or the enthalpy table includes it.
 PhaseSpecificHeat = Annotated[
     Number, Quantity("J/(kg K)", "Specific heat", Percent(10, TABLES), Limits(above=0, at_most=20000))
 ]
@@ -27,7 +27,7 @@ Resistance = Annotated[
     Quantity(
         "m2 K/W",
         "Thermal resistance",
-        Percent(50, "air spaces and contacts depend on how they were closed"),
+        Percent(50, "air spaces and contacts depend on workmanship"),
         Limits(above=0, at_most=100),
     ),
 ]
@@ -44,8 +44,8 @@ MeltingTemperature = Annotated[
     Number,
     Quantity(
         "degC",
-        "Temperature of melting: half is liquid, or (triangle, gumbel) the capacity peaks",
-        Within(1, "calorimeters at another rate and sample mass than the wall's"),
+        "Melting temperature: half is liquid, or (triangle, gumbel) the capacity has its peak",
+        Within(1, "calorimeters at another rate and sample mass than in the wall"),
         TEMPERATURE,
     ),
 ]
@@ -54,7 +54,7 @@ MeltingWidth = Annotated[
     Quantity(
         "K",
         "Half-width w of the melting range: liquid fraction (1 + tanh((T - Tm)/w))/2",
-        Percent(50, "the width seen by a calorimeter depends on its heating rate"),
+        Percent(50, "the width measured by a calorimeter depends on its heating rate"),
         Limits(above=0, at_most=100),
     ),
 ]
@@ -63,7 +63,7 @@ Gamma = Annotated[
     Quantity(
         "-",
         "Steepness gamma of the melting curve; only gamma/delta_t acts, w = 4 delta_t/gamma",
-        Percent(50, "as for the width it stands for"),
+        Percent(50, "as for the width"),
         Limits(above=0, at_most=1e4),
     ),
 ]
@@ -72,7 +72,7 @@ DeltaT = Annotated[
     Quantity(
         "K",
         "Interval delta T of the melting curve; only gamma/delta_t acts, w = 4 delta_t/gamma",
-        Percent(10, "a convention that goes with gamma"),
+        Percent(10, "a convention, given with gamma"),
         Limits(above=0, at_most=100),
     ),
 ]
@@ -81,11 +81,11 @@ FreezingTemperature = Annotated[
     Quantity(
         "degC",
         "Temperature about which the material freezes, where hysteresis gives it a cooling curve",
-        Within(1, "calorimeters at another rate and sample mass than the wall's"),
+        Within(1, "calorimeters at another rate and sample mass than in the wall"),
         TEMPERATURE,
     ),
 ]
-_WIDTH = Percent(50, "the width seen by a calorimeter depends on its heating rate")
+_WIDTH = Percent(50, "the width measured by a calorimeter depends on its heating rate")
 EndToMiddle = Annotated[
     Number,
     Quantity("K", "From the middle of the melting range to either end", _WIDTH, Limits(above=0, at_most=100)),
@@ -122,7 +122,7 @@ CurveFraction = Annotated[
     Quantity(
         "-",
         "Liquid fraction of a point of the curve",
-        Fixed("shapes the curve; vary temperature_shift instead"),
+        Fixed("fixes the curve; vary temperature_shift instead"),
         Limits(at_least=0, at_most=1),
     ),
 ]
@@ -131,7 +131,7 @@ CurveCapacity = Annotated[
     Quantity(
         "J/(kg K)",
         "Apparent specific heat of a point of the curve, sensible heat included",
-        Fixed("shapes the curve; vary enthalpy_scale instead"),
+        Fixed("fixes the curve; vary enthalpy_scale instead"),
         Limits(above=0),
     ),
 ]
@@ -140,7 +140,7 @@ CurveTemperature = Annotated[
     Quantity(
         "degC",
         "Temperature of a point of the enthalpy curve",
-        Fixed("shapes the curve; vary temperature_shift instead"),
+        Fixed("fixes the curve; vary temperature_shift instead"),
         TEMPERATURE,
     ),
 ]
@@ -149,7 +149,7 @@ CurveEnthalpy = Annotated[
     Quantity(
         "J/kg",
         "Specific enthalpy of a point of the curve",
-        Fixed("shapes the curve; vary enthalpy_scale instead"),
+        Fixed("fixes the curve; vary enthalpy_scale instead"),
     ),
 ]
 TemperatureShift = Annotated[
@@ -157,7 +157,7 @@ TemperatureShift = Annotated[
     Quantity(
         "K",
         "Shift of the enthalpy curve towards higher temperatures",
-        Within(1, "calorimeters at another rate and sample mass than the wall's"),
+        Within(1, "calorimeters at another rate and sample mass than in the wall"),
         Limits(at_least=-100, at_most=100),
     ),
 ]
@@ -168,7 +168,10 @@ EnthalpyScale = Annotated[
 Thickness = Annotated[
     Number,
     Quantity(
-        "m", "Thickness of the layer", Percent(5, "manufacturing and laying"), Limits(above=0, at_most=20)
+        "m",
+        "Thickness of the layer",
+        Percent(5, "manufacturing and installation"),
+        Limits(above=0, at_most=20),
     ),
 ]
 NodeCount = Annotated[
@@ -176,7 +179,7 @@ NodeCount = Annotated[
     Quantity(
         "-",
         "Number of finite volumes in the layer",
-        Fixed("shapes the mesh"),
+        Fixed("fixes the mesh"),
         Limits(at_least=1, at_most=1000),
         whole=True,
     ),

@@ -12,7 +12,7 @@ Latitude = Annotated[
     Quantity(
         "deg",
         "Latitude, north positive",
-        Fixed("acts through the sun's path in the forcing"),
+        Fixed("acts through the position of the sun in the forcing"),
         Limits(at_least=-90, at_most=90),
     ),
 ]
@@ -21,7 +21,7 @@ Longitude = Annotated[
     Quantity(
         "deg",
         "Longitude, east positive",
-        Fixed("acts through the sun's path in the forcing"),
+        Fixed("acts through the position of the sun in the forcing"),
         Limits(at_least=-180, at_most=180),
     ),
 ]
@@ -29,8 +29,8 @@ Altitude = Annotated[
     Number,
     Quantity(
         "m",
-        "Altitude above sea level; gives the density of the air where none is written",
-        Within(50, "height of the plot against the station's; 50 m are 0.6 % of pressure"),
+        "Altitude above sea level; gives the density of the air where none is given",
+        Within(50, "height of the site and of the station; 50 m are 0.6 % of pressure"),
         Limits(at_least=-500, at_most=9000),
     ),
 ]
@@ -38,7 +38,7 @@ AirDensity = Annotated[
     Number,
     Quantity(
         "kg/m3",
-        "Density of the air in the zones and of the air that enters them",
+        "Density of the air in the zones and of the air that flows into them",
         Percent(3, "10 K of temperature or 30 hPa of weather"),
         Limits(above=0, at_most=3),
     ),
@@ -48,15 +48,13 @@ GroundReflectance = Annotated[
     Quantity(
         "-",
         "Solar reflectance of the ground",
-        Span(0.1, 0.35, "wet asphalt to dry concrete; snow lies outside and has to be written"),
+        Span(0.1, 0.35, "wet asphalt to dry concrete; snow is outside and must be given"),
         FRACTION,
     ),
 ]
 MastHeight = Annotated[
     Number,
-    Quantity(
-        "m", "Height of the anemometer", Percent(20, "masts of 8 to 12 m are all called 10 m"), POSITIVE
-    ),
+    Quantity("m", "Height of the anemometer", Percent(20, "masts of 8 to 12 m are named 10 m"), POSITIVE),
 ]
 WindExponent = Annotated[
     Number,
@@ -84,7 +82,7 @@ SkyScale = Annotated[
     Quantity(
         "-",
         "Factor on the measured infrared of the sky",
-        Within(0.05, "calibration of a pyrgeometer, and its own body's radiation"),
+        Within(0.05, "calibration of a pyrgeometer, and the radiation of its body"),
         POSITIVE,
     ),
 ]
@@ -92,8 +90,8 @@ SkyDepression = Annotated[
     Number,
     Quantity(
         "K",
-        "Outdoor air temperature less sky temperature",
-        Span(3, 20, "overcast to clear and dry; the annual means of ISO 13790 run from 9 to 13 K"),
+        "Outdoor air temperature minus sky temperature",
+        Span(3, 20, "overcast to clear and dry; annual means of ISO 13790 are 9 to 13 K"),
         Limits(at_least=-10, at_most=60),
     ),
 ]

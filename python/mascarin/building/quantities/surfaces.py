@@ -13,9 +13,7 @@ Emissivity = Annotated[
 ]
 Absorptance = Annotated[
     Number,
-    Quantity(
-        "-", "Solar absorptance", Within(0.1, "soiling and fading; colours are judged by eye"), FRACTION
-    ),
+    Quantity("-", "Solar absorptance", Within(0.1, "soiling and fading; colors are judged by eye"), FRACTION),
 ]
 AreaFactor = Annotated[
     Number,
@@ -27,14 +25,15 @@ AreaFactor = Annotated[
     ),
 ]
 SkyView = Annotated[
-    Number, Quantity("-", "Fraction of the sky seen", Within(0.1, "trees and neighbours"), FRACTION)
+    Number,
+    Quantity("-", "Fraction of the sky that is visible", Within(0.1, "trees and neighbors"), FRACTION),
 ]
 ReferenceTemperature = Annotated[
     Number,
     Quantity(
         "degC",
         "Temperature about which long-wave exchange is linearised",
-        Within(5, "the mean of the period is not known beforehand; 1 K is 1 % of the coefficient"),
+        Within(5, "mean of the period is not known in advance; 1 K is 1 % of the coefficient"),
         TEMPERATURE,
     ),
 ]
@@ -47,7 +46,7 @@ GroundAmplitude = Annotated[
     Quantity(
         "K",
         "Annual amplitude of the ground's temperature",
-        Span(0, 5, "metres deep to just below the floor"),
+        Span(0, 5, "meters deep to just below the floor"),
         Limits(at_least=0, at_most=60),
     ),
 ]

@@ -16,7 +16,10 @@ PaneThickness = Annotated[
 GapThickness = Annotated[
     Number,
     Quantity(
-        "m", "Width of the gap", Within(1e-3, "spacers, and panes that bend"), Limits(above=0, at_most=0.5)
+        "m",
+        "Width of the gap",
+        Within(1e-3, "spacers, and bending of the panes"),
+        Limits(above=0, at_most=0.5),
     ),
 ]
 GapPressure = Annotated[
@@ -42,14 +45,14 @@ Transmittance = Annotated[
     Quantity(
         "-",
         "Solar transmittance of the pane at normal incidence",
-        Percent(3, "batch, and dirt"),
+        Percent(3, "batch and dirt"),
         Limits(at_least=1e-3, at_most=1),
     ),
 ]
 Reflectance = Annotated[
     Number,
     Quantity(
-        "-", "Solar reflectance of the pane at normal incidence", Percent(10, "batch, and dirt"), FRACTION
+        "-", "Solar reflectance of the pane at normal incidence", Percent(10, "batch and dirt"), FRACTION
     ),
 ]
 CurveAngle = Annotated[
@@ -65,7 +68,7 @@ CurveOptic = Annotated[
     Number,
     Quantity(
         "-",
-        "Share of the sun at a point of a table of optics",
+        "Transmittance, reflectance or absorptance at a point of a table",
         Fixed("a point of a measured curve; vary transmittance_scale and absorptance_scale instead"),
         FRACTION,
     ),
@@ -73,7 +76,7 @@ CurveOptic = Annotated[
 OpticScale = Annotated[
     Number,
     Quantity(
-        "-", "Factor on a table of optics", Within(0.03, "batch, and dirt"), Limits(above=0, at_most=1.5)
+        "-", "Factor on a table of optics", Within(0.03, "batch and dirt"), Limits(above=0, at_most=1.5)
     ),
 ]
 GlazingU = Annotated[
@@ -87,7 +90,7 @@ SolarHeatGain = Annotated[
     Quantity(
         "-",
         "Total solar heat gain of the glazing at normal incidence",
-        Within(0.03, "rounding, and dirt"),
+        Within(0.03, "rounding and dirt"),
         Limits(above=0, at_most=0.95),
     ),
 ]
@@ -95,8 +98,8 @@ PaneCount = Annotated[
     Number,
     Quantity(
         "-",
-        "Number of panes, for the change with the angle",
-        Within(0.5, "not always told"),
+        "Number of panes, for the angular dependence",
+        Within(0.5, "often not given"),
         Limits(at_least=1, at_most=6),
     ),
 ]
@@ -104,16 +107,16 @@ GlassCategory = Annotated[
     Number,
     Quantity(
         "-",
-        "Category of glass, for the change with the angle: 4 clear, below coated, above tinted",
-        Within(1.0, "not always told"),
+        "Category of glass, for the angular dependence: 4 clear, below coated, above tinted",
+        Within(1.0, "often not given"),
         Limits(at_least=1, at_most=10),
     ),
 ]
-FilmResistance = Annotated[
+SurfaceResistance = Annotated[
     Number,
     Quantity(
         "m2 K/W",
-        "Film resistance that a rated U value contains",
+        "Surface resistance that a rated U value contains",
         Percent(10, "standards differ"),
         Limits(above=0, at_most=1),
     ),
@@ -129,8 +132,8 @@ FrameFraction = Annotated[
     Number,
     Quantity(
         "-",
-        "Share of the frame in the window's area",
-        Within(0.05, "profiles of one name differ"),
+        "Fraction of the frame in the area of the window",
+        Within(0.05, "profiles of the same name differ"),
         Limits(above=0, at_most=0.9),
     ),
 ]
@@ -138,8 +141,8 @@ FrameU = Annotated[
     Number,
     Quantity(
         "W/(m2 K)",
-        "U value of the frame, air to air, with films of 0.17 m2 K/W in all",
-        Percent(10, "profiles of one name differ"),
+        "U value of the frame, air to air, with surface resistances of 0.17 m2 K/W in total",
+        Percent(10, "profiles of the same name differ"),
         Limits(above=0, at_most=5.8),
     ),
 ]
@@ -147,8 +150,8 @@ SunShare = Annotated[
     Number,
     Quantity(
         "-",
-        "Share of the sun let into the zone",
-        Percent(20, "it changes with the height of the sun"),
+        "Fraction of the solar radiation that enters the zone",
+        Percent(20, "it changes with the position of the sun"),
         FRACTION,
     ),
 ]

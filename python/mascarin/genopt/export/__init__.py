@@ -1,7 +1,7 @@
 """A study as a GenOpt project, so that another program can identify its parameters.
 
 `writing` writes the project; `case` is the compiled study that each evaluation runs. Nothing is imported
-here: an evaluation is a process of its own and must start quickly.
+here, because each evaluation is a new process and must start quickly.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Algorithms that a project may ask for, each as lines of the section ``Algorithm`` in GenOpt's order."""
+"""The algorithms for exported projects, each as lines of the section ``Algorithm``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ INTERVALS: Final = 4
 
 @dataclass(frozen=True)
 class Plan:
-    """How long and from where to search.
+    """Starts and limits of a search.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Plan:
     seed : int
         Of the random numbers.
     reductions : int
-        How often the step is halved before a pattern search ends. [-]
+        Number of times that the step is halved before a pattern search ends. [-]
     budget : int or None
         Largest number of evaluations. [-]
     """
@@ -147,23 +147,28 @@ ALGORITHMS: Final[dict[str, Algorithm]] = {
     "mesh": Algorithm("Mesh", _all, intervals=True),
     "parametric": Algorithm("Parametric", _all, intervals=True),
 }
-"""Every algorithm by our name."""
+"""All algorithms by the names of the option ``--algorithm``."""
 
 
 def chosen(name: str, parameters: int) -> Algorithm:
-    """The algorithm of a name, ours or GenOpt's.
+    """Return the algorithm of a name.
 
     Parameters
     ----------
     name : str
-        Key of `ALGORITHMS`, or a name that GenOpt knows.
+        Key of `ALGORITHMS`, or GenOpt's name.
     parameters : int
         Number of parameters to vary. [-]
+
+    Returns
+    -------
+    Algorithm
+        The algorithm.
 
     Raises
     ------
     InputError
-        It is not known, or does not go with the number of parameters.
+        It is not known, or needs another number of parameters.
     """
     by_name = {**ALGORITHMS, **{a.main: a for a in ALGORITHMS.values()}}
     if name not in by_name:
@@ -175,7 +180,7 @@ def chosen(name: str, parameters: int) -> Algorithm:
     if algorithm.single and parameters != 1:
         raise InputError(
             f"--algorithm {name}: searches along one parameter, and the study identifies {parameters}; "
-            "choose hooke-jeeves, or leave one parameter in the study's identification"
+            "choose hooke-jeeves, or identify only one parameter"
         )
     if algorithm.several and parameters < 2:
         raise InputError(

@@ -1,8 +1,8 @@
-"""A study compiled for evaluations one at a time, each in a process of its own.
+"""A study compiled for single evaluations, each in its own process.
 
-A case holds what the engine needs for the identification period, the measured series, and the cost. It is
-kept as one file of plain arrays beside the project, so that an evaluation reads neither the weather nor
-the description again. It is used only as long as every file that it was made from is the same.
+A case contains the compiled run of the identification period, the measured series, and the cost. It is saved
+as one file of plain arrays beside the project, so that an evaluation reads neither the weather nor the
+description again. It is used as long as no file that it was made from has changed.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ _ARRAYS: Final = ("forcing", "values", "positions", "place", "measured", "mask")
 
 @dataclass(frozen=True)
 class Costs:
-    """What one evaluation gives.
+    """Result of one evaluation.
 
     Attributes
     ----------
     total : float
-        What is minimised: the sum of the others. [unit of the cost]
+        The minimized cost: the sum of the others. [unit of the cost]
     parts : dict of str to float
         Cost of each sensor by its name, then that of the priors when there are any. [unit of the cost]
     kept : tuple of str
@@ -89,7 +89,7 @@ class Case:
     positions : ndarray of int, shape (F,)
         Positions of the free parameters in the parameter vector. [-]
     place : ndarray, shape (n,)
-        Where the compared instants lie. [steps]
+        Positions of the compared instants. [steps]
     parameters : tuple of FitParameter, length F
         The free parameters.
     sensors : tuple of FitSensor
@@ -99,7 +99,7 @@ class Case:
     step : float
         Time between the instants. [s]
     inputs : dict
-        What it was made from, see `inputs_of`.
+        Files and version that it was made from, see `inputs_of`.
     """
 
     run: CompiledRun
@@ -120,12 +120,12 @@ class Case:
 
     @cached_property
     def problem(self) -> CalibrationProblem:
-        """The identification as calibration sees it."""
+        """The calibration problem."""
         return CalibrationProblem(self.parameters, self.sensors, self._model, step=self.step)
 
     @cached_property
     def _reasons(self) -> list[str]:
-        """Why the members of the last batch failed."""
+        """Reasons why members of the last batch failed."""
         return []
 
     def _model(self, x: Array) -> Array:
@@ -163,8 +163,8 @@ class Case:
             if not low <= x[k] <= high:
                 unit = f" {parameter.unit}" if parameter.unit else ""
                 raise InputError(
-                    f"{parameter.path}: found {x[k]:g}, expected {low:g} .. {high:g}{unit}, which is what it "
-                    "can be at all: narrow Min and Max of the command file"
+                    f"{parameter.path}: found {x[k]:g}, expected {low:g} .. {high:g}{unit}: "
+                    "narrow Min and Max of the command file"
                 )
         return x, tuple(path for path in known if path not in given)
 
@@ -199,7 +199,7 @@ class Case:
     # --- the file -----------------------------------------------------------------------------------------
 
     def save(self, path: Path) -> None:
-        """Write the case; the file appears when it is complete, also beside others that write it."""
+        """Write the case; the file appears when it is complete, also with several writers."""
         header = {
             "format": _FORMAT,
             "run": self.run.header(),
@@ -228,17 +228,17 @@ class Case:
 
 
 def open_case(path: Path, study: str) -> Case | None:
-    """Read a kept case, None when there is none or when anything it was made from has changed.
+    """Read a saved case; None when there is none, or when a file that it was made from has changed.
 
     Parameters
     ----------
     path : Path
         File of the case.
     study : str
-        The study it must belong to: absolute path of its file.
+        Absolute path of the file of the study.
     """
     try:
-        # From memory, because numpy leaves the file open when it turns out to be no archive.
+        # From memory, because numpy leaves the file open when it is no archive.
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
             header = json.loads(file["header"].tobytes())
             inputs = header["inputs"]
@@ -247,7 +247,7 @@ def open_case(path: Path, study: str) -> Case | None:
             arrays = {name: file[name] for name in _ARRAYS}
         return _case(header, arrays)
     except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
-        # Whatever is wrong with it, it can be made again.
+        # A file that cannot be read is made again.
         return None
 
 
@@ -283,7 +283,7 @@ def _parameter(fields: Mapping[str, Any]) -> FitParameter:
 
 
 def inputs_of(study: str, files: Sequence[str] | Mapping[str, Any]) -> dict[str, Any]:
-    """What a case depends on.
+    """All that a case depends on.
 
     Parameters
     ----------
@@ -295,12 +295,12 @@ def inputs_of(study: str, files: Sequence[str] | Mapping[str, Any]) -> dict[str,
     Returns
     -------
     dict
-        Version and state of the program, the study, where data are looked for, and the hash of each file.
+        Version and state of the program, study, folder of the data, and the hash of each file.
 
     Raises
     ------
     OSError
-        A file is gone.
+        A file no longer exists.
     """
     return {
         "version": __version__,
@@ -312,7 +312,7 @@ def inputs_of(study: str, files: Sequence[str] | Mapping[str, Any]) -> dict[str,
 
 
 def _program_state() -> str:
-    """Hash of sizes and times of all code: a case outlives no other version, not even one under work."""
+    """Hash of sizes and times of all code: a case is made again after every change of the program."""
     digest = hashlib.sha256()
     stack, found = [str(_PACKAGE)], []
     while stack:

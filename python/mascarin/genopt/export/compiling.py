@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 def compiled(study: Path, kept: Path | None = None) -> Case:
-    """The case of a study: the kept one while it is valid, else a new one, which is then kept.
+    """The case of a study: the saved one if it is valid, else a new one, which is then saved.
 
     Parameters
     ----------
     study : Path
         The study file.
     kept : Path, optional
-        Where the case is kept.
+        File of the case.
 
     Raises
     ------

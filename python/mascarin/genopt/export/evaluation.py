@@ -1,4 +1,4 @@
-"""One evaluation of a study for an optimisation program: files in, files out."""
+"""One evaluation of a study for an optimization program: files in, files out."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 
 def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = None) -> list[str]:
-    """Evaluate the parameters of one file and write the costs to another.
+    """Evaluate the parameters of one file and write the costs to another one.
 
     Parameters
     ----------
     parameters : Path
         Parameter file.
     out : Path
-        File for the costs; one from before is removed first, so that a failure leaves none.
+        File for the costs; an existing one is removed first, so that there is none after a failure.
     log : Path
-        File for what was done, or for what went wrong; always written.
+        File for the result or the reason of a failure; always written.
     study : Path, optional
-        The study, in place of that of the project that the parameter file names.
+        The study; default: that of the project that the parameter file names.
 
     Returns
     -------
@@ -36,7 +36,7 @@ def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = 
     Raises
     ------
     InputError
-        Something given cannot be used.
+        An input cannot be used.
     SolverError
         The building cannot be simulated with these values.
     """
@@ -44,9 +44,9 @@ def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = 
         raise InputError(f"'{parameters}', '{out}' and '{log}' must be three different files")
     try:
         out.unlink(missing_ok=True)
-        lines, remarks = _evaluated(parameters, study)
+        lines, notes = _evaluated(parameters, study)
         out.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
-        _write_log(log, [*lines, *remarks])
+        _write_log(log, [*lines, *notes])
     except MascarinError as error:
         _write_log(log, _failure(str(error)))
         raise
@@ -57,7 +57,7 @@ def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = 
 
 
 def _evaluated(parameters: Path, study: Path | None) -> tuple[list[str], list[str]]:
-    """Lines of the result, and remarks for the log."""
+    """Lines of the result, and notes for the log."""
     request = read_parameters(parameters)
     try:
         costs = _case(request.project, study, parameters).evaluate(request.values)
@@ -65,8 +65,8 @@ def _evaluated(parameters: Path, study: Path | None) -> tuple[list[str], list[st
         if str(parameters) in str(error):
             raise
         raise InputError(f"{parameters}: {error}") from None
-    remarks = [f"kept the value of the study: {', '.join(costs.kept)}"] if costs.kept else []
-    return result_lines(costs), remarks
+    notes = [f"kept the value of the study: {', '.join(costs.kept)}"] if costs.kept else []
+    return result_lines(costs), notes
 
 
 def _case(project: Path | None, study: Path | None, parameters: Path) -> Case:
@@ -74,33 +74,33 @@ def _case(project: Path | None, study: Path | None, parameters: Path) -> Case:
 
     if study is None and project is None:
         raise InputError(
-            f"{parameters}: names no study; add a line 'project = FOLDER' as 'mascarin genopt' does, or "
-            "give --study"
+            f"{parameters}: found no study; add a line 'project = FOLDER' as 'mascarin genopt' does, or give "
+            "--study"
         )
     if study is not None or project is None:
         kept, chosen = None, study
     else:
         kept, chosen = project / COMPILED, read_settings(project)
     if chosen is None:
-        raise InputError(f"{parameters}: names no study")
+        raise InputError(f"{parameters}: found no study")
     if kept is not None:
         case = open_case(kept, str(chosen.resolve()))
         if case is not None:
             return case
-    # Only here, because it imports everything that reads studies.
+    # Imported here, because it imports everything that reads studies.
     from mascarin.genopt.export.compiling import compiled
 
     return compiled(chosen, kept)
 
 
 def _failure(text: str) -> list[str]:
-    """What the log says of a failure; the mark stands on the first line, which optimisation programs show."""
+    """Lines of the log after a failure; the mark is in the first line, which optimization programs show."""
     first, *others = text.splitlines() or [""]
     return [f"{FAILURE}: {first}", *others]
 
 
 def _write_log(log: Path, lines: list[str]) -> None:
-    # A log that cannot be written must not hide what was to be written there.
+    # A log that cannot be written must not hide the error that it would contain.
     with contextlib.suppress(OSError):
         text = "\n".join([f"mascarin {__version__} cost", *lines])
         log.write_text(text + "\n", encoding="utf-8", newline="\n")

@@ -1,4 +1,4 @@
-"""The files between an optimisation program and one evaluation: parameters in, costs and a log out."""
+"""The files between an optimization program and one evaluation: parameters in, costs and a log out."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from mascarin._io import atomic
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ RESULT: Final = "result.txt"
 LOG: Final = "log.txt"
 SETTINGS: Final = "coupling.json"
 COMPILED: Final = "compiled.npz"
-#: Stands in the log of an evaluation that failed, and nowhere else.
+#: Mark in the log of an evaluation that failed.
 FAILURE: Final = "MASCARIN ERROR"
 
 _FORMAT: Final = 1
@@ -27,7 +28,7 @@ _PROJECT: Final = "project"
 
 @dataclass(frozen=True)
 class Request:
-    """What a parameter file asks for.
+    """The content of a parameter file.
 
     Attributes
     ----------
@@ -43,6 +44,16 @@ class Request:
 
 def read_parameters(path: Path) -> Request:
     """Read a parameter file: lines ``path = value``, and ``project = folder`` relative to the file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Request
+        Values and project.
 
     Raises
     ------
@@ -69,21 +80,21 @@ def read_parameters(path: Path) -> Request:
         if not (name and equals and value):
             raise InputError(f"{where}: found '{text}', expected 'path = value'")
         if name in values or (name == _PROJECT and project is not None):
-            raise InputError(f"{where}: '{name}' stands here a second time; remove one of the two lines")
+            raise InputError(f"{where}: '{name}' occurs a second time; remove one of the two lines")
         if name == _PROJECT:
             project = path.parent / value
         else:
             values[name] = _number(value, f"{where}: {name}")
     if not values:
-        raise InputError(f"{path}: holds no parameter; expected lines 'path = value'")
+        raise InputError(f"{path}: found no parameter, expected lines 'path = value'")
     return Request(values, project)
 
 
 def _number(text: str, where: str) -> float:
     if text.startswith("%") and text.endswith("%"):
         raise InputError(
-            f"{where}: found {text}, which the optimisation program should have replaced by a number; name "
-            "the parameter in the command file exactly as it is written between the percent signs"
+            f"{where}: found {text}, which the optimization program should have replaced by a number; write "
+            "the name of the parameter in the command file exactly as between the percent signs"
         )
     try:
         value = float(text)
@@ -95,7 +106,7 @@ def _number(text: str, where: str) -> float:
 
 
 def write_settings(folder: Path, study: str) -> None:
-    """Write which study a project belongs to.
+    """Write the study to which a project belongs.
 
     Parameters
     ----------
@@ -105,16 +116,26 @@ def write_settings(folder: Path, study: str) -> None:
         The study file, relative to the project where possible, or the name of one that is shipped.
     """
     text = json.dumps({"mascarin_coupling": _FORMAT, "study": study}, indent=1, ensure_ascii=False)
-    (folder / SETTINGS).write_text(text + "\n", encoding="utf-8")
+    atomic.write(folder / SETTINGS, text + "\n")
 
 
 def read_settings(folder: Path) -> Path:
-    """The study file that a project belongs to.
+    """Return the study file to which a project belongs.
+
+    Parameters
+    ----------
+    folder : Path
+        The project.
+
+    Returns
+    -------
+    Path
+        The study file.
 
     Raises
     ------
     InputError
-        The folder is no such project, or its study has gone.
+        The folder is not such a project, or its study does not exist.
     """
     from mascarin.examples import STUDIES
 
@@ -125,13 +146,13 @@ def read_settings(folder: Path) -> Path:
     except OSError as error:
         raise InputError(
             f"{path}: cannot be read ({error.strerror}); expected what 'mascarin genopt' has written into "
-            "the project's folder: write the project again, or name the study with --study"
+            "the project's folder: write the project again, or give the study with --study"
         ) from None
     except (ValueError, KeyError, TypeError):
         name = None
     if not isinstance(name, str):
         raise InputError(
-            f"{path}: is not what 'mascarin genopt' writes; write the project again with --force"
+            f"{path}: was not written by 'mascarin genopt'; write the project again with --force"
         )
     study = folder / name
     if study.is_file():
@@ -139,13 +160,24 @@ def read_settings(folder: Path) -> Path:
     if name in STUDIES:
         return STUDIES[name]
     raise InputError(
-        f"{path}: study: found '{name}', but there is no such file from here; correct the path, which is "
+        f"{path}: study: found '{name}', but there is no such file; correct the path, which is "
         "relative to the project's folder, or write the project again"
     )
 
 
 def result_lines(costs: Costs) -> list[str]:
-    """Costs as an optimisation program extracts them: at the start of a line, with all digits."""
+    """Write costs as an optimization program extracts them: at the start of a line, with all digits.
+
+    Parameters
+    ----------
+    costs : Costs
+        The costs.
+
+    Returns
+    -------
+    list of str
+        Lines.
+    """
     return [
         f"cost= {costs.total!r}",
         *(f"cost_{name}= {value!r}" for name, value in costs.parts.items()),

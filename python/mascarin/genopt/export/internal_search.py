@@ -1,4 +1,4 @@
-"""Runs a project of a study inside this process: the same search, no program started for each point."""
+"""Runs the project of a study in this process: the same search, without a program for each point."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mascarin.errors import InputError, MascarinError
-from mascarin.genopt import Options, Outcome, optimise
+from mascarin.genopt import Options, Outcome, optimize
 from mascarin.genopt.export.compiling import compiled
 from mascarin.genopt.export.exchange import COMPILED, read_settings
 from mascarin.genopt.loading import load
@@ -27,7 +27,7 @@ def search(initialization: Path, options: Options | None = None) -> Outcome:
     initialization : Path
         The initialization file.
     options : Options, optional
-        As for any project. One worker is used where none are given: the engine itself works in parallel.
+        As for any project. Default: one worker, because the engine itself works in parallel.
 
     Returns
     -------
@@ -37,9 +37,9 @@ def search(initialization: Path, options: Options | None = None) -> Outcome:
     Raises
     ------
     InputError
-        The project is not one of a study, or asks for other costs or discrete parameters.
+        The project is not one of a study, or has other costs, functions or discrete parameters.
     """
-    return optimise(initialization, options or Options(workers=1), run=_runner(initialization))
+    return optimize(initialization, options or Options(workers=1), run=_runner(initialization))
 
 
 def _runner(initialization: Path) -> Callable[[Point, Path], Result]:

@@ -1,9 +1,9 @@
 """Writes a study's identification as a GenOpt project.
 
-No command word is a file and no file is named by an absolute path: the program finds its files in the
-directory in which it is started. So the project works below folders with blanks in their names, which GenOpt
-itself would tear apart, and no file of the directory from which GenOpt is started is taken for one of the
-run's.
+The command has no file names and no file has an absolute path: the program finds its files in the directory
+in which it is started. So the project also works in folders with blanks in their names, at which GenOpt
+would split the command, and GenOpt cannot use a file of the directory from which it is started instead of a
+file of the run.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decima
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from mascarin._io import atomic
 from mascarin.errors import InputError
 from mascarin.genopt.export.algorithms import INTERVALS, Algorithm, Plan, chosen
 from mascarin.genopt.export.exchange import (
@@ -36,15 +37,15 @@ if TYPE_CHECKING:
 
 INITIALIZATION: Final = "opt.ini"
 _CONFIGURATION, _COMMAND, _TEMPLATE, _README = "mascarin.cfg", "command.txt", "template.txt", "README.txt"
-#: What this module writes, and nothing else is ever overwritten.
+#: What this module writes; no other file is overwritten.
 FILES: Final = (INITIALIZATION, _CONFIGURATION, _COMMAND, _TEMPLATE, _README, SETTINGS, COMPILED)
 
-#: Digits that survive GenOpt's rounding of coordinates to single precision.
+#: Digits that GenOpt's rounding of coordinates to single precision keeps.
 _DIGITS: Final = 6
-#: First step of a search, as a share of the range.
+#: First step of a search, as a part of the range.
 _STEP: Final = 0.1
 _REDUCTIONS: Final = 10
-#: MaxIte of a study without a budget: pattern searches end by themselves long before.
+#: MaxIte of a study without a budget; pattern searches end long before.
 _UNLIMITED: Final = 100_000
 _WORD: Final = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*\Z")
 _SEEDS: Final = 2**31
@@ -52,18 +53,18 @@ _SEEDS: Final = 2**31
 
 @dataclass(frozen=True)
 class Options:
-    """What may be chosen beyond the study.
+    """Options of an export.
 
     Attributes
     ----------
     algorithm : str
-        Our name or GenOpt's, see `mascarin.genopt.export.algorithms`.
+        Name of `mascarin.genopt.export.algorithms`, or GenOpt's name.
     starts, evaluations, seed : int, optional
-        In place of starts, budget and seed of the study's identification. [-]
+        They replace starts, budget and seed of the study's identification. [-]
     reductions : int
-        How often a pattern search halves its step. [-]
+        Number of times that a pattern search halves its step. [-]
     program : str, optional
-        How the simulation program is started, instead of ``mascarin`` or its full path.
+        Command of the simulation program; default ``mascarin`` or its full path.
     force : bool
         Whether to write into a folder that is not empty.
     """
@@ -79,7 +80,7 @@ class Options:
 
 @dataclass(frozen=True)
 class Variable:
-    """A parameter as the command file has it: short decimal numbers, the bounds rounded inwards."""
+    """A parameter of the command file: short decimal numbers, the bounds rounded inwards."""
 
     name: str
     initial: Decimal
@@ -99,7 +100,7 @@ def write_project(study: str, out: Path, options: Options | None = None) -> Path
     out : Path
         Folder of the project.
     options : Options, optional
-        What may be chosen beyond the study.
+        Options of the export.
 
     Returns
     -------
@@ -138,7 +139,7 @@ def write_project(study: str, out: Path, options: Options | None = None) -> Path
     }
     out.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
-        (out / name).write_text(text, encoding="utf-8", newline="\n")
+        atomic.write(out / name, text)
     write_settings(out, _reference(study, path, out))
     case.save(out / COMPILED)
     return out / INITIALIZATION
@@ -155,8 +156,8 @@ def _check_folder(out: Path, *, force: bool) -> None:
         if there:
             listed = ", ".join(there[:3]) + (", ..." if len(there) > 3 else "")
             raise InputError(
-                f"{out}: the folder is not empty (it holds {listed}); expected an empty or a new one. Choose "
-                f"another -o, or give --force to overwrite {', '.join(FILES)} and leave the rest"
+                f"{out}: the folder is not empty (it has {listed}), expected an empty or a new one. Choose "
+                f"another -o, or give --force to overwrite {', '.join(FILES)} and keep the rest"
             )
 
 
@@ -185,12 +186,12 @@ def _check_sensors(names: Sequence[str], study: Path) -> None:
             )
         if name == "priors":
             raise InputError(
-                f"{study}: sensors.{name}: the project calls the cost of the priors so; rename the sensor"
+                f"{study}: sensors.{name}: this is the name of the cost of the priors; rename the sensor"
             )
 
 
 def variable(parameter: FitParameter, study: Path, *, intervals: bool = False) -> Variable:
-    """A parameter of the identification as GenOpt varies it.
+    """Convert a parameter of the identification to one of GenOpt.
 
     Parameters
     ----------
@@ -200,6 +201,11 @@ def variable(parameter: FitParameter, study: Path, *, intervals: bool = False) -
         The study file, for texts.
     intervals : bool
         Whether the step is a number of intervals.
+
+    Returns
+    -------
+    Variable
+        The parameter of the command file.
 
     Raises
     ------
@@ -232,7 +238,7 @@ def _short(value: float, rounding: str, digits: int = _DIGITS) -> Decimal:
 def _program(given: str | None) -> str:
     """How the simulation program is started.
 
-    GenOpt starts it without a shell and looks for it on the path; a full path is written only where it must.
+    GenOpt starts it without a shell and searches for it on the path; a full path is written only if needed.
     """
     if given is None:
         if shutil.which("mascarin") is not None:
@@ -240,7 +246,7 @@ def _program(given: str | None) -> str:
         beside = shutil.which("mascarin", path=str(Path(sys.executable).parent))
         if beside is None:
             raise InputError(
-                "the program 'mascarin' is not on the path, so GenOpt could not start it; add its folder "
+                "the program 'mascarin' is not on the path and GenOpt could not start it; add its folder "
                 "to PATH, or give its full path with --program"
             )
         given = Path(beside).as_posix()
@@ -253,7 +259,7 @@ def _program(given: str | None) -> str:
 
 
 def _reference(given: str, path: Path, out: Path) -> str:
-    """How the project names its study: relative to its folder, by the name of a shipped one, or in full."""
+    """Reference to the study: relative to the folder, by the name of a shipped one, or absolute."""
     from mascarin.examples import STUDIES
 
     if STUDIES.get(given) == path:
@@ -261,7 +267,7 @@ def _reference(given: str, path: Path, out: Path) -> str:
     try:
         return Path(os.path.relpath(path.resolve(), out.resolve())).as_posix()
     except ValueError:
-        # Another drive of Windows: there is no way from here to there.
+        # On another drive of Windows there is no relative path.
         return path.resolve().as_posix()
 
 
@@ -301,7 +307,7 @@ SimulationError {{
 IO {{
   NumberFormat = Double;
 }}
-// The program finds its files in the directory of the run: no word here is a file.
+// The program finds its files in the directory of the run: the command has no file names.
 SimulationStart {{
   Command = "{program} cost";
   WriteInputFileExtension = true;
@@ -349,13 +355,13 @@ or with GenOpt itself
     java -cp genopt.jar genopt.GenOpt {INITIALIZATION}
 The program 'mascarin' must be on the PATH. Start either in this folder.
 
-{INITIALIZATION:<15} initialization file: which files there are, and where the costs stand
-{_CONFIGURATION:<15} configuration file: how one simulation is started, and how it says that it failed
+{INITIALIZATION:<15} initialization file: the files, and where the costs are
+{_CONFIGURATION:<15} configuration file: how one simulation is started, and the mark of a failure
 {_COMMAND:<15} command file: {count} parameters with their bounds, and the algorithm {algorithm.main}
 {_TEMPLATE:<15} template of {PARAMETERS}, the input of one simulation
 {SETTINGS:<15} where the study is, relative to this folder
-{COMPILED:<15} the study compiled; made anew whenever a file of the study changes, and may be deleted
+{COMPILED:<15} the compiled study; made again when the study changes; may be deleted
 
 One simulation is 'mascarin cost': it reads {PARAMETERS}, runs the identification period, and writes {RESULT}
-and {LOG}. The cost '{case.cost}' is the sum over the sensors {sensors}; the listings have each of them too.
+and {LOG}. The cost '{case.cost}' is the sum over the sensors {sensors}; the listings have each of them.
 """

@@ -84,6 +84,10 @@ class MorrisSensitivity(Sensitivity):
             "squared_effects_high": self.high,
         }
 
+    def _described(self, i: int, s: int) -> str:
+        size = f"{self.mu_star[i, s]:.3g} ± {self.mu_star_conf[i, s]:.2g}"
+        return f"mu* {size} {self.units[s]}".rstrip()
+
     @property
     def _label(self) -> str:
         return "part of the squared effects"

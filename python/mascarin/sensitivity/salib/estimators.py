@@ -18,7 +18,7 @@ _LEFT_OUT: Final = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """What one replicate tells of one output.
+    """The result of one replicate for one output.
 
     Attributes
     ----------

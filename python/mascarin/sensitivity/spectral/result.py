@@ -106,7 +106,20 @@ class SpectralSensitivity(Sensitivity):
         )
 
     def peaks(self, output: str, replicate: int = 0) -> list[Peak]:
-        """Return the lines of one replicate above the threshold, by rising frequency."""
+        """Return the lines of one replicate above the threshold, by rising frequency.
+
+        Parameters
+        ----------
+        output : str
+            Which output.
+        replicate : int
+            Which replicate, from 0.
+
+        Returns
+        -------
+        list of Peak
+            With their names, where the other replicates confirm them.
+        """
         return list(self.spectrum(output, replicate).peaks)
 
     def indices_by_hour(self, output: str, hour: ArrayLike | None = None) -> tuple[Floats, Floats, Floats]:

@@ -114,7 +114,7 @@ def run_one(case: Case, climate: Climate, step: str | float = STEP) -> Year:
 
 def _run_own(building: Building, climate: Climate, step: str | float) -> dict[str, Array]:
     wanted = [f"{zone}.air_temperature" for zone in building.zones]
-    wanted += [f"{name}.{plant}_load" for name, zone in building.zones.items() for plant in zone.plants]
+    wanted += [f"{name}.{plant}_load" for name, zone in building.zones.items() for plant in zone.loads]
     return _simulate(building, climate, step, wanted)[0]
 
 
