@@ -11,6 +11,7 @@ mod linearisation;
 mod nested;
 pub(crate) mod newton;
 mod readings;
+mod remainder;
 mod residual;
 #[cfg(test)]
 mod residual_tests;
