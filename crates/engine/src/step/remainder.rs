@@ -126,4 +126,17 @@ impl<S: Real> NonlinearLaws<S> {
         }
         largest
     }
+
+    /// As [`Self::excess`], with all melting curves evaluated.
+    #[inline(always)]
+    pub(crate) fn excess_evaluated(
+        &self,
+        stage: &Stage<'_, S>,
+        change: S,
+        system: &BuildingSystem<'_, S>,
+        places: [&Unknowns<S>; 2],
+    ) -> S {
+        let walls = &stage.model.parts.nonlinear_walls;
+        self.excess(stage, change, system, places).max(self.evaluate(stage, walls, system, places[1]))
+    }
 }

@@ -90,7 +90,6 @@ fn slopes_of_loads_with_gas_in_a_gap() {
 
 /// Across stages that the nested iteration solves, slopes are those of differences, where these do not depend on their step.
 #[test]
-#[ignore = "a known fault of the engine, see docs/engine.md: the nested iteration may accept what is no solution"]
 fn slopes_across_nested_stages() {
     for scheme in SCHEMES {
         let mut compared = 0;
