@@ -3,7 +3,7 @@
 //! A law differs from its tangent by half its second derivative times the square of the change. For most laws this is
 //! estimated, without evaluating them once more: the second derivative of a melting curve `tanh` is at most twice its slope
 //! over its width, that of natural convection (powers up to 4/3 of the temperature difference) a third of its slope over
-//! the difference. Melting curves whose slope jumps are evaluated at the solution, once all else is small.
+//! the difference. All other melting curves are evaluated at the solution, once all else is small.
 
 use crate::building::coefficients::Boundary;
 use crate::building::ids::SurfaceId;
