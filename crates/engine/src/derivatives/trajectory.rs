@@ -17,6 +17,7 @@ use crate::run::control::RunControl;
 use crate::run::march::{Run, march_observed};
 use crate::run::options::Options;
 use crate::step::Stepper;
+use crate::step::history::History;
 use crate::step::stage_solutions::{Solution, read_solution};
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
@@ -30,12 +31,20 @@ pub struct Trajectory {
     pub run: Run<f64>,
     /// Everything that was done to the state.
     moves: Vec<Action>,
-    /// States before the stretches that are run again.
-    starts: Vec<State<f64>>,
+    /// What the stretches that are run again start from.
+    starts: Vec<Start>,
     /// Actions in each of them.
     length: usize,
     /// What follows them.
     last: Stretch,
+}
+
+/// What a stretch starts from.
+#[derive(Debug)]
+struct Start {
+    state: State<f64>,
+    /// What its first step is guessed from: with it the stretch made again has the same bits.
+    history: History<f64>,
 }
 
 /// Actions in a row, each with the numbers of the state before it and of its solution.
@@ -85,18 +94,23 @@ impl Trajectory {
         let mut stepper = Stepper::new(plan, numbers, options.scheme);
         stepper.known.start();
         let mut before = stepper.begin(&options.initial);
-        let mut start = before.clone();
+        let mut start = Start { state: before.clone(), history: stepper.history() };
+        let mut next = start.history.clone();
         let length = stretch(&before, weather.steps(), options, bytes);
         let (mut moves, mut starts, mut last) = (Vec::new(), Vec::new(), Stretch::default());
         last.states.reserve(before.count() * length.min(weather.steps() + 1));
         let run = march_observed(stepper, &weather, options, watch, |stepper, reached, made| {
             if last.ends.len() == length {
-                starts.push(core::mem::replace(&mut start, before.clone()));
+                let follows = Start { state: before.clone(), history: next.clone() };
+                starts.push(core::mem::replace(&mut start, follows));
                 last = Stretch::default();
             }
             moves.push(made);
             last.push(&before, stepper, &reached.load);
             before.copy_from(reached);
+            if last.ends.len() == length {
+                next = stepper.history();
+            }
             Ok(())
         })?;
         Ok(Self { run, moves, starts, length, last })
@@ -153,12 +167,13 @@ fn again(
     numbers: &[f64],
     weather: &Weather<'_>,
     options: &Options,
-    start: &State<f64>,
+    start: &Start,
     moves: &[Action],
 ) -> Result<Stretch, EngineError> {
     let mut stepper = Stepper::new(plan, numbers, options.scheme);
     stepper.known.start();
-    let (mut before, mut state, mut unused) = (start.clone(), start.clone(), Ledger::new());
+    stepper.set_history(&start.history);
+    let (mut before, mut state, mut unused) = (start.state.clone(), start.state.clone(), Ledger::new());
     let mut made = Stretch::default();
     for step in moves {
         before.copy_from(&state);

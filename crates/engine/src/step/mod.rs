@@ -4,6 +4,7 @@ mod accept;
 mod energy;
 mod guess;
 mod halving;
+pub(crate) mod history;
 pub(crate) mod ideal_loads;
 pub(crate) mod known_solution;
 mod limiter;
