@@ -30,35 +30,33 @@ impl<S: Real> StageSolver<'_, S> {
         self.iterate.copy_from(&outer);
         outer.cells.fill(S::constant(SOLID));
         for _ in 0..MAX_ITERATIONS {
-            let change = self.solve_convex(stage, &outer.cells);
+            let Some(change) = self.solve_convex(stage, &outer.cells) else { return false };
             let places = [&outer, &self.solution];
-            let found = change.lt(enough) & self.distance(model, &outer).lt(enough);
-            if found.any() {
-                let excess = self.nonlinear.excess_evaluated(stage, change, &self.system, places);
-                if excess.lt(S::zero()).any() {
-                    self.counters.nested += 1;
-                    self.accept_change(change);
-                    return self.finish(stage).any();
-                }
+            let moved = self.distance(model, &outer);
+            if moved.lt(enough).any()
+                && self.nonlinear.excess_evaluated(stage, change, &self.system, places).lt(S::zero()).any()
+            {
+                self.counters.nested += 1;
+                self.accept_change(change);
+                return self.finish(stage).any();
             }
             outer.copy_from(&self.solution);
         }
         false
     }
 
-    /// Newton's iteration with the second function along its tangent at the outer cells. Gives its last change [K]; small where
-    /// it has converged.
-    fn solve_convex(&mut self, stage: &Stage<'_, S>, outer: &[S]) -> S {
-        let mut change = S::zero();
+    /// Newton's iteration with the second function along its tangent at the outer cells. The last change [K]; none where it
+    /// does not converge.
+    fn solve_convex(&mut self, stage: &Stage<'_, S>, outer: &[S]) -> Option<S> {
         for _ in 0..MAX_ITERATIONS {
             self.solve_linearised(stage, Some(outer));
-            change = self.change(stage.model);
-            self.iterate.copy_from(&self.solution);
+            let change = self.change(stage.model);
             if change.lt(S::constant(TOLERANCE)).any() {
-                break;
+                return Some(change);
             }
+            self.iterate.copy_from(&self.solution);
         }
-        change
+        None
     }
 }
 

@@ -148,7 +148,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
         for iteration in 0..MAX_ITERATIONS {
             self.solve_linearised(stage, None);
             let change = self.change(stage.model);
-            active = active & !self.accepts(change, self.excess(stage, change), iteration);
+            active = active & !accepts(change, self.excess(stage, change), iteration);
             if active.any() && iteration + 1 == MAX_ITERATIONS {
                 // The last change is kept: the error names it.
                 break;
@@ -196,13 +196,6 @@ impl<'a, S: Real> StageSolver<'a, S> {
     #[inline(always)]
     pub(super) fn excess(&self, stage: &Stage<'_, S>, change: S) -> S {
         self.nonlinear.excess(stage, change, &self.system, [&self.iterate, &self.solution])
-    }
-
-    /// Where a solution is accepted: what the tangents leave out is small, or after many iterations the change.
-    #[inline(always)]
-    pub(super) fn accepts(&self, change: S, excess: S, iteration: usize) -> S::Mask {
-        let small = change.lt(S::constant(TOLERANCE)) & S::Mask::splat(iteration >= PATIENCE);
-        excess.lt(S::zero()) | small
     }
 
     /// Notes the last change of an accepted stage.
@@ -274,6 +267,13 @@ impl<'a, S: Real> StageSolver<'a, S> {
             iterations: MAX_ITERATIONS,
         }
     }
+}
+
+/// Where a solution is accepted: what the tangents leave out is small, or after many iterations the change.
+#[inline(always)]
+pub(super) fn accepts<S: Real>(change: S, excess: S, iteration: usize) -> S::Mask {
+    let small = change.lt(S::constant(TOLERANCE)) & S::Mask::splat(iteration >= PATIENCE);
+    excess.lt(S::zero()) | small
 }
 
 /// What the linear system of a stage is made of.

@@ -84,12 +84,11 @@ impl<S: Real> NonlinearLaws<S> {
         let mut largest = (change * change).scale(EMISSION) - accepted;
         let by_difference = accepted.scale(1.0 / CONVECTION);
         for &(surface, zone) in &self.convective {
-            let [before, after] = match zone {
-                Some(zone) => [old, new].map(|at| at.surfaces[surface] - at.air[zone]),
-                None => {
-                    let outdoors = stage.conditions.surfaces[surface].temperature;
-                    [old, new].map(|at| at.surfaces[surface] - outdoors)
-                }
+            let [before, after] = if let Some(zone) = zone {
+                [old, new].map(|at| at.surfaces[surface] - at.air[zone])
+            } else {
+                let outdoors = stage.conditions.surfaces[surface].temperature;
+                [old, new].map(|at| at.surfaces[surface] - outdoors)
             };
             let moved = after - before;
             let most = (after.abs() + S::constant(LEAST_DIFFERENCE)) * by_difference;

@@ -6,7 +6,7 @@ use crate::error::EngineError;
 use crate::linear::unknowns::line;
 use crate::number::real::{Mask, Real};
 use crate::step::halving::Part;
-use crate::step::newton::Search;
+use crate::step::newton::{Search, accepts};
 use crate::step::stage::Stage;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -70,7 +70,7 @@ impl<S: Real> Stepper<'_, S> {
             let Swept { mut energy, change, excess } =
                 self.sweep(state, weather, Sweep { part, length, number, active })?;
             // The first sweep adds up no heat: it is never the last.
-            let still = self.solver.accepts(change, excess, number) & S::Mask::splat(number > 0);
+            let still = accepts(change, excess, number) & S::Mask::splat(number > 0);
             let still = still | S::Mask::splat(whole);
             let (air, load) = (&self.solver.solution.air, &mut self.solver.start.load);
             let found = self.ideal_loads.correct(air, load, active, further > 0);
