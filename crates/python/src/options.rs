@@ -53,6 +53,9 @@ pub struct RunOptions {
     probes: String,
     record_from: usize,
     record_every: usize,
+    /// Whether residuals are evaluated; not where it is left out.
+    #[pyo3(default)]
+    residuals: bool,
 }
 
 impl RunOptions {
@@ -73,7 +76,7 @@ impl RunOptions {
             probes,
             record_from: self.record_from,
             record_every: self.record_every,
-            residuals: false,
+            residuals: self.residuals,
         })
     }
 }

@@ -166,5 +166,7 @@ pub fn describe_run<'py>(
     result.set_item("nested", run.counters.nested)?;
     result.set_item("halvings", run.counters.halvings)?;
     result.set_item("reversals", run.counters.reversals)?;
+    result.set_item("largest_change", run.counters.largest_change)?;
+    result.set_item("largest_residual", run.counters.largest_residual)?;
     Ok(result)
 }

@@ -17,6 +17,7 @@ use crate::run::control::RunControl;
 use crate::run::march::{Run, march_observed};
 use crate::run::options::Options;
 use crate::step::Stepper;
+use crate::step::history::History;
 use crate::step::stage_solutions::{Solution, read_solution};
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
@@ -30,12 +31,20 @@ pub struct Trajectory {
     pub run: Run<f64>,
     /// All actions of the run.
     actions: Vec<Action>,
-    /// States at the start of the stretches that are run again.
-    starts: Vec<State<f64>>,
+    /// Starts of the stretches that are run again.
+    starts: Vec<Start>,
     /// Number of actions in each of these stretches.
     length: usize,
     /// The last stretch, which is kept.
     last: Stretch,
+}
+
+/// Start of a stretch.
+#[derive(Debug)]
+struct Start {
+    state: State<f64>,
+    /// Results from which its first step is guessed: with them the stretch that is run again has the same bits.
+    history: History<f64>,
 }
 
 /// Successive actions: the numbers of the state before each of them and of its solution.
@@ -85,18 +94,23 @@ impl Trajectory {
         let mut stepper = Stepper::new(plan, numbers, options.scheme);
         stepper.known.start();
         let mut before = stepper.begin(&options.initial);
-        let mut start = before.clone();
+        let mut start = Start { state: before.clone(), history: stepper.history() };
+        let mut next = start.history.clone();
         let length = stretch(&before, weather.steps(), options, bytes);
         let (mut actions, mut starts, mut last) = (Vec::new(), Vec::new(), Stretch::default());
         last.states.reserve(before.count() * length.min(weather.steps() + 1));
         let run = march_observed(stepper, &weather, options, watch, |stepper, reached, action| {
             if last.ends.len() == length {
-                starts.push(core::mem::replace(&mut start, before.clone()));
+                let follows = Start { state: before.clone(), history: next.clone() };
+                starts.push(core::mem::replace(&mut start, follows));
                 last = Stretch::default();
             }
             actions.push(action);
             last.push(&before, stepper, &reached.load);
             before.copy_from(reached);
+            if last.ends.len() == length {
+                next = stepper.history();
+            }
             Ok(())
         })?;
         Ok(Self { run, actions, starts, length, last })
@@ -153,12 +167,13 @@ fn run_again(
     numbers: &[f64],
     weather: &Weather<'_>,
     options: &Options,
-    start: &State<f64>,
+    start: &Start,
     actions: &[Action],
 ) -> Result<Stretch, EngineError> {
     let mut stepper = Stepper::new(plan, numbers, options.scheme);
     stepper.known.start();
-    let (mut before, mut state, mut unused) = (start.clone(), start.clone(), Ledger::new());
+    stepper.set_history(&start.history);
+    let (mut before, mut state, mut unused) = (start.state.clone(), start.state.clone(), Ledger::new());
     let mut stretch = Stretch::default();
     for action in actions {
         before.copy_from(&state);

@@ -9,6 +9,7 @@ use crate::linear::product::{PlainMatrix, SameKind};
 use crate::linear::tridiagonal::Tridiagonal;
 use crate::linear::wall_linearisation::PhaseChange;
 use crate::number::real::Real;
+use crate::physics::pcm::PcmMemory;
 
 pub use crate::linear::tridiagonal::{Condensed, Link};
 pub use crate::linear::wall_linearisation::{Iterate, Start, Storage, StorageRule};
@@ -153,6 +154,30 @@ impl<S: Real> WallSystem<S> {
         let left = if i == 0 { surfaces[0] } else { self.storage[i - 1].change };
         let right = if i == self.storage.len() { surfaces[1] } else { self.storage[i].change };
         self.links[i].flux(left, right)
+    }
+
+    /// What the tangents of melting curves leave out of the balances of cells at the solution, estimated: the largest
+    /// [W/m2].
+    #[inline(always)]
+    pub(crate) fn estimated_remainder(&self) -> S {
+        self.phase_change.estimated_remainder(&self.storage, &self.rate)
+    }
+
+    /// The same evaluated, to rounding: the largest [W/m2]. Cells at the start of the step have a memory.
+    #[inline(always)]
+    pub(crate) fn remainder(
+        &self,
+        wall: &WallCoefficients<S>,
+        memory: &[PcmMemory<S>],
+        surfaces: [S; 2],
+    ) -> S {
+        self.phase_change.remainder(
+            wall,
+            memory,
+            (&self.storage, &self.rate),
+            #[inline(always)]
+            |link| self.link_flux(link, surfaces),
+        )
     }
 
     /// Liquid fraction of a phase-change cell at the solution, along the last tangent.

@@ -95,6 +95,9 @@ pub(super) struct PhaseChange<S> {
     /// Properties of the phase-change cells at the iterate; of other cells nothing.
     points: Vec<PcmPoint<S>>,
     layers: Vec<PcmLayer>,
+    /// Of each layer: the slope of its enthalpy per slope of its liquid fraction, over the width of its melting curve
+    /// [J/(m3 K)]; zero where its curve has to be evaluated.
+    curvatures: Vec<S>,
     /// Links between two cells of one law, and those between such a cell and a surface.
     inner_links: Vec<PcmLink<S>>,
     surface_links: Vec<PcmLink<S>>,
@@ -240,6 +243,7 @@ impl<S: Real> PhaseChange<S> {
         let mut all = Self {
             points: vec![PcmPoint::zero(); n],
             layers: Vec::new(),
+            curvatures: Vec::new(),
             inner_links: Vec::new(),
             surface_links: Vec::new(),
             series_links: Vec::new(),
@@ -254,6 +258,8 @@ impl<S: Real> PhaseChange<S> {
                 _ => all.layers.push(PcmLayer { law: of_cell, cells: cell..cell + 1 }),
             }
         }
+        let curvature = |layer: &PcmLayer| wall.pcm[layer.law].curvature().unwrap_or(S::zero());
+        all.curvatures = all.layers.iter().map(curvature).collect();
         if n == 0 {
             return all;
         }
@@ -332,6 +338,47 @@ impl<S: Real> PhaseChange<S> {
                 storage[i] = Storage::tangent(temperature, enthalpy, capacity);
             }
         }
+    }
+
+    /// See [`WallSystem::estimated_remainder`](super::wall::WallSystem::estimated_remainder).
+    #[inline(always)]
+    pub(super) fn estimated_remainder(&self, storage: &[Storage<S>], rate: &[S]) -> S {
+        let mut largest = S::zero();
+        for (layer, curvature) in self.layers.iter().zip(&self.curvatures) {
+            for i in layer.cells.clone() {
+                let change = storage[i].change;
+                largest =
+                    largest.max(*curvature * self.points[i].fraction_slope * rate[i] * (change * change));
+            }
+        }
+        largest
+    }
+
+    /// See [`WallSystem::remainder`](super::wall::WallSystem::remainder); `flux`: along a link.
+    #[inline(always)]
+    pub(super) fn remainder(
+        &self,
+        wall: &WallCoefficients<S>,
+        memory: &[PcmMemory<S>],
+        (storage, rate): (&[Storage<S>], &[S]),
+        flux: impl Fn(usize) -> S,
+    ) -> S {
+        /// Rounding of a temperature, by which enthalpies may differ [K].
+        const ROUNDING: f64 = 1e-14;
+        let mut largest = S::zero();
+        for layer in &self.layers {
+            for i in layer.cells.clone() {
+                let (held, old) = (&storage[i], &self.points[i]);
+                let new = wall.pcm[layer.law].at(held.reference + held.change, &memory[i]);
+                let enthalpy = (new.enthalpy - held.at_solution()).abs();
+                let rounding = new.capacity.max(held.capacity).scale(ROUNDING);
+                let conductivity = new.conductivity - old.conductivity - old.conductivity_slope * held.change;
+                let heat = flux(i).abs().max(flux(i + 1).abs());
+                let flow = (conductivity * heat / old.conductivity).abs();
+                largest = largest.max((enthalpy - rounding).max(S::zero()) * rate[i] + flow);
+            }
+        }
+        largest
     }
 
     /// Liquid fraction of a phase-change cell at the last linearisation.

@@ -93,7 +93,7 @@ impl<S: Real> Unknowns<S> {
             for ((guess, (&from, &to)), (cell, memory)) in self.cells[cells].iter_mut().zip(ends).zip(laws) {
                 *guess = line(from, to, ratio);
                 if let Matter::Pcm(law) = cell.matter {
-                    *guess = numbers.pcm[law].limit(to, *guess, memory).0;
+                    *guess = numbers.pcm[law].limit(to, *guess, memory);
                 }
             }
         }

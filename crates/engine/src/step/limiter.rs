@@ -3,26 +3,21 @@
 use crate::building::coefficients::Matter;
 use crate::linear::unknowns::line;
 use crate::linear::wall::StorageRule;
-use crate::number::real::{Mask, Real};
-use crate::step::newton::StageSolver;
+use crate::number::real::Real;
+use crate::step::newton::{PATIENCE, StageSolver};
 use crate::step::stage::Stage;
 use crate::step::state::blend;
 
-/// Iterations after which every third moves half of the step only, so that the iteration leaves a cycle.
-const PATIENCE: usize = 20;
-
 impl<S: Real> StageSolver<'_, S> {
-    /// Moves the iterate of the active lanes to the solution, limited where it would cross a melting range. True where it
-    /// was limited.
+    /// Moves the iterate of the active lanes to the solution, limited where it would cross a melting range.
     #[inline(always)]
-    pub(super) fn advance(&mut self, stage: &Stage<'_, S>, active: S::Mask, iteration: usize) -> S::Mask {
+    pub(super) fn advance(&mut self, stage: &Stage<'_, S>, active: S::Mask, iteration: usize) {
         if iteration >= PATIENCE && iteration.is_multiple_of(3) {
             self.damp();
         }
         let model = stage.model;
         // The apparent capacity is a constant of the step: there is nothing to cross.
         let limits = stage.storage == StorageRule::Enthalpy;
-        let mut limited = S::Mask::splat(false);
         for &surface in &model.parts.linearised {
             let old = self.iterate.surfaces[surface];
             self.iterate.surfaces[surface] = S::select(active, self.solution.surfaces[surface], old);
@@ -34,17 +29,12 @@ impl<S: Real> StageSolver<'_, S> {
             let laws = numbers.cells.iter().zip(&stage.state.memory[cells.clone()]);
             for ((old, &new), (cell, memory)) in moves.zip(laws) {
                 let target = match cell.matter {
-                    Matter::Pcm(law) if limits => {
-                        let (target, crosses) = numbers.pcm[law].limit(*old, new, memory);
-                        limited = limited | crosses;
-                        target
-                    }
+                    Matter::Pcm(law) if limits => numbers.pcm[law].limit(*old, new, memory),
                     Matter::Pcm(_) | Matter::Solid { .. } => new,
                 };
                 *old = S::select(active, target, *old);
             }
         }
-        limited
     }
 
     /// Halves the step that Newton's iteration takes: it then leaves a cycle.

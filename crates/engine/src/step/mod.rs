@@ -4,6 +4,7 @@ mod accept;
 mod energy;
 mod guess;
 mod halving;
+pub(crate) mod history;
 pub(crate) mod ideal_loads;
 pub(crate) mod known_solution;
 mod limiter;
@@ -11,6 +12,7 @@ mod linearisation;
 mod nested;
 pub(crate) mod newton;
 mod readings;
+mod remainder;
 mod residual;
 #[cfg(test)]
 mod residual_tests;

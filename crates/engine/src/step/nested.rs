@@ -30,16 +30,12 @@ impl<S: Real> StageSolver<'_, S> {
         self.iterate.copy_from(&outer);
         outer.cells.fill(S::constant(SOLID));
         for _ in 0..MAX_ITERATIONS {
-            let mut change = S::zero();
-            for _ in 0..MAX_ITERATIONS {
-                self.solve_linearised(stage, Some(&outer.cells));
-                change = self.change(model);
-                self.iterate.copy_from(&self.solution);
-                if change.lt(enough).any() {
-                    break;
-                }
-            }
-            if self.distance(model, &outer).lt(enough).any() {
+            let Some(change) = self.solve_convex(stage, &outer.cells) else { return false };
+            let places = [&outer, &self.solution];
+            let moved = self.distance(model, &outer);
+            if moved.lt(enough).any()
+                && self.nonlinear.excess_evaluated(stage, change, &self.system, places).lt(S::zero()).any()
+            {
                 self.counters.nested += 1;
                 self.accept_change(change);
                 return self.finish(stage).any();
@@ -47,6 +43,20 @@ impl<S: Real> StageSolver<'_, S> {
             outer.copy_from(&self.solution);
         }
         false
+    }
+
+    /// Newton's iteration with the second function along its tangent at the outer cells. The last change [K]; none where it
+    /// does not converge.
+    fn solve_convex(&mut self, stage: &Stage<'_, S>, outer: &[S]) -> Option<S> {
+        for _ in 0..MAX_ITERATIONS {
+            self.solve_linearised(stage, Some(outer));
+            let change = self.change(stage.model);
+            if change.lt(S::constant(TOLERANCE)).any() {
+                return Some(change);
+            }
+            self.iterate.copy_from(&self.solution);
+        }
+        None
     }
 }
 

@@ -1,8 +1,8 @@
 //! Newton's iteration for one stage: `H(T) - length f(T) = H_start` for all cells, surfaces and airs at once.
 //!
 //! Every law is linearised about the iterate ([`Linearisation`]), the linear system solved ([`BuildingSystem`]) and the
-//! iterate moved to its solution, limited where a melting range would be crossed ([`super::limiter`]), until the change is
-//! small. The solution is that of the last linear solve, so that every flux can be evaluated at the values it used.
+//! iterate moved to its solution, limited where a melting range would be crossed ([`super::limiter`]), until what the
+//! tangents leave out is small ([`super::remainder`]). The solution is that of the last linear solve, so that every flux can be evaluated at the values it used.
 
 use crate::building::model::Model;
 use crate::error::EngineError;
@@ -11,16 +11,14 @@ use crate::linear::laws::StageInputs;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
 use crate::step::linearisation::Linearisation;
+use crate::step::remainder::NonlinearLaws;
 use crate::step::scheme::Tableau;
 use crate::step::stage::{Stage, StageStart};
 
-/// Largest change of a temperature in the last Newton iteration [K]. Convergence is quadratic: the error left is of the
-/// order of its square, and does not depend on the size of the building.
+/// Largest change of a temperature in the last iteration, where many have not brought the residual down [K].
 pub(super) const TOLERANCE: f64 = 1e-6;
-/// A solution is accepted without another iteration to confirm it where the next change is predicted to be below this [K].
-const PREDICTED: f64 = 1e-8;
-/// The prediction holds only for changes below this share of the melting range, and of 1 K.
-const PREDICTABLE: f64 = 0.05;
+/// Iterations after which every third moves half of the step only, so that the iteration leaves a cycle.
+pub(super) const PATIENCE: usize = 20;
 /// Iterations before a step is given to the nested iteration, and rounds of that one before it is halved.
 pub(super) const MAX_ITERATIONS: usize = 60;
 
@@ -61,8 +59,7 @@ pub(crate) struct StageSolver<'a, S: Real> {
     pub(crate) iterate: Unknowns<S>,
     /// Solution of the last linear solve.
     pub(crate) solution: Unknowns<S>,
-    /// Largest change from which the next one is predicted [K].
-    predictable: S,
+    pub(super) nonlinear: NonlinearLaws<S>,
     /// Lanes whose iteration failed: their numbers mean nothing any more.
     pub(crate) failed: S::Mask,
     pub(crate) counters: Counters<S>,
@@ -73,15 +70,13 @@ impl<'a, S: Real> StageSolver<'a, S> {
         let plan = model.plan;
         let linearisation = Linearisation::new(model, tableau.weights.len());
         let unknowns = Unknowns::zero(plan.n_cells, plan.surfaces.len(), plan.zones.len());
-        let laws = model.coefficients.walls.iter().flat_map(|wall| &wall.pcm);
-        let narrowest = laws.fold(S::one(), |narrowest, law| narrowest.min(law.width()));
         Self {
             system: BuildingSystem::new(model, &linearisation.laws, tableau.diagonal),
             linearisation,
             start: StageStart::new(model),
             iterate: unknowns.clone(),
             solution: unknowns,
-            predictable: narrowest.scale(PREDICTABLE),
+            nonlinear: NonlinearLaws::new(model),
             failed: S::Mask::splat(false),
             counters: Counters {
                 iterations: 0,
@@ -117,6 +112,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
     #[inline(always)]
     fn begin(&mut self, stage: &Stage<'_, S>) {
         self.linearisation.set_wind(stage.model, stage.conditions, false);
+        self.nonlinear.begin(stage);
         let Self { linearisation, system, start, iterate, .. } = self;
         system.begin_stage(&inputs(stage, linearisation, start), iterate, stage.index(), &stage.state.cells);
     }
@@ -149,19 +145,16 @@ impl<'a, S: Real> StageSolver<'a, S> {
         active = active & !self.failed;
         // Numbers with derivatives make one more iteration at the solution: it gives their slopes.
         let mut further = S::DERIVATIVES;
-        // The change before this one; zero where the next does not follow from it.
-        let mut before = S::zero();
         for iteration in 0..MAX_ITERATIONS {
             self.solve_linearised(stage, None);
             let change = self.change(stage.model);
-            active = active & !self.converged(change, before);
+            active = active & !accepts(change, self.excess(stage, change), iteration);
             if active.any() && iteration + 1 == MAX_ITERATIONS {
                 // The last change is kept: the error names it.
                 break;
             }
             if active.any() {
-                let limited = self.advance(stage, active, iteration);
-                before = S::select(limited, S::zero(), change);
+                self.advance(stage, active, iteration);
             } else if further {
                 further = false;
                 self.advance(stage, S::Mask::splat(true), 0);
@@ -199,13 +192,10 @@ impl<'a, S: Real> StageSolver<'a, S> {
         Err(self.not_converged(stage, lanes))
     }
 
-    /// Where changes are small, or the next is predicted to be: Newton's iteration squares them.
+    /// What the tangents leave out at the solution, less what is accepted, see [`NonlinearLaws::excess`] [W/m2].
     #[inline(always)]
-    pub(super) fn converged(&self, change: S, before: S) -> S::Mask {
-        let small = change.lt(S::constant(TOLERANCE));
-        // e2 = e1 (e1/e0)^2
-        let predicted = (change * change * change).lt((before * before).scale(PREDICTED));
-        small | (predicted & change.lt(self.predictable) & before.lt(S::constant(f64::MAX)))
+    pub(super) fn excess(&self, stage: &Stage<'_, S>, change: S) -> S {
+        self.nonlinear.excess(stage, change, &self.system, [&self.iterate, &self.solution])
     }
 
     /// Notes the last change of an accepted stage.
@@ -277,6 +267,13 @@ impl<'a, S: Real> StageSolver<'a, S> {
             iterations: MAX_ITERATIONS,
         }
     }
+}
+
+/// Where a solution is accepted: what the tangents leave out is small, or after many iterations the change.
+#[inline(always)]
+pub(super) fn accepts<S: Real>(change: S, excess: S, iteration: usize) -> S::Mask {
+    let small = change.lt(S::constant(TOLERANCE)) & S::Mask::splat(iteration >= PATIENCE);
+    excess.lt(S::zero()) | small
 }
 
 /// What the linear system of a stage is made of.

@@ -1,6 +1,6 @@
 //! The residual of the stages of a step, on demand: the heat balances at the solution, all laws evaluated there.
 //!
-//! Newton's iteration is stopped by changes of temperature. The residual of the balances measures the error of a solution
+//! Newton's iteration estimates it from its last change. The residual of the balances measures the error of a solution
 //! independently of the iteration.
 
 use crate::balance::flow_index::FlowIndex;
@@ -20,6 +20,9 @@ pub(crate) struct StageResiduals<S> {
     pub(super) cells: Vec<S>,
     /// Largest residual of each stage [W].
     pub(super) stages: [S; 2],
+    /// Largest residual of each stage over its largest heat flow density [-].
+    #[cfg(test)]
+    pub(super) relative: [S; 2],
     /// Of all stages so far, with the laws as linearised for the last linear solve: the largest residual over the largest heat
     /// flow density [-]; and how many stages these were.
     #[cfg(test)]
@@ -32,6 +35,8 @@ impl<S: Real> Default for StageResiduals<S> {
             first: Default::default(),
             cells: Vec::new(),
             stages: [S::zero(); 2],
+            #[cfg(test)]
+            relative: [S::zero(); 2],
             #[cfg(test)]
             linear: (S::zero(), 0),
         }
@@ -81,7 +86,12 @@ impl<S: Real> StageResiduals<S> {
             laws: &linearisation.laws,
             load: &solver.start.load,
         };
-        self.stages[index] = balances.residual(&held, &cells, surfaces, air).largest_heat(model);
+        let residual = balances.residual(&held, &cells, surfaces, air);
+        #[cfg(test)]
+        {
+            self.relative[index] = residual.largest() / residual.largest_flow;
+        }
+        self.stages[index] = residual.largest_heat(model);
         if index == 0 {
             let mut enthalpy = state.enthalpy.clone();
             for &w in &model.parts.nonlinear_walls {

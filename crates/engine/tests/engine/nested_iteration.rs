@@ -11,7 +11,6 @@ const SCHEMES: [Scheme; 2] = [Scheme::BackwardEuler, Scheme::Sdirk2];
 
 /// Without hysteresis the enthalpy of a state is that of its temperatures.
 #[test]
-#[ignore = "a known fault of the engine, see docs/engine.md: the nested iteration may accept what is no solution"]
 fn enthalpies_are_those_of_the_temperatures() {
     let mut wrong = Vec::new();
     for scheme in SCHEMES {
@@ -41,22 +40,28 @@ fn enthalpies_are_those_of_the_temperatures() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Steps that Newton's iteration alone does not solve end near where 64 short ones end.
+/// Steps that Newton's iteration alone does not solve are solved: of some 1e4 W, less than 1 mW is missing in their balances. With backward Euler, which
+/// keeps the maximum principle, they end near where 64 short ones end.
 #[test]
-#[ignore = "a known fault of the engine, see docs/engine.md: the nested iteration may accept what is no solution"]
-fn difficult_steps_end_near_short_ones() {
-    let mut wrong = Vec::new();
+fn difficult_steps_are_solved() {
+    let mut nested = 0;
     for scheme in SCHEMES {
         for step in steps(scheme, false) {
-            let short =
-                try_run(&step.plan, &values(&step.plan), &step.rows.repeat(64), &step.options(64)).unwrap();
-            let surfaces = step.run.state.surfaces.iter().zip(short.state.surfaces.iter());
-            let apart = surfaces.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-            if apart > 5.0 {
-                let (halved, nested) = (step.run.counters.halvings, step.run.counters.nested);
-                wrong.push(format!("{} (halved {halved}, nested {nested}): {apart} K", step.name));
+            let (plan, numbers) = (&step.plan, values(&step.plan));
+            let options = Options { residuals: true, ..step.options(1) };
+            let run = try_run(plan, &numbers, &step.rows, &options).unwrap();
+            let missing = run.counters.largest_residual.unwrap();
+            // A cell on the very edge of its melting range is accepted by its change, 1e-6 K.
+            assert!(missing < 1e-3, "{}: {missing:e} W are missing", step.name);
+            nested += run.counters.nested;
+            if scheme == Scheme::Sdirk2 {
+                continue;
             }
+            let short = try_run(plan, &numbers, &step.rows.repeat(64), &step.options(64)).unwrap();
+            let surfaces = run.state.surfaces.iter().zip(short.state.surfaces.iter());
+            let apart = surfaces.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+            assert!(apart < 5.0, "{}: {apart} K", step.name);
         }
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(nested > 2, "the nested iteration solved {nested} stages only");
 }

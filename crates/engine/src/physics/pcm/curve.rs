@@ -210,15 +210,6 @@ impl<S: Real> Curve<S> {
         }
     }
 
-    /// Where the slope has a large jump, if anywhere [degC].
-    #[inline(always)]
-    pub(super) fn kinks(&self) -> Option<[S; 2]> {
-        matches!(self.shape, Shape::Linear | Shape::Measured(_)).then(
-            #[inline(always)]
-            || self.support(),
-        )
-    }
-
     /// Temperatures between which the compact curve rises [degC].
     #[inline(always)]
     fn support(&self) -> [S; 2] {
@@ -326,15 +317,9 @@ fn measured<S: Real>(segments: &Segments, read: S) -> CurvePoint<S> {
     }
 }
 
-/// Whether a temperature lies between two others.
+/// Limits a step that crosses a temperature and is longer than a width to that temperature.
 #[inline(always)]
-pub(super) fn crosses<S: Real>(from: S, to: S, place: S) -> S::Mask {
-    (from.lt(place) & place.lt(to)) | (to.lt(place) & place.lt(from))
-}
-
-/// Limits a step that crosses a temperature and is longer than a width to that temperature; true where it was limited.
-#[inline(always)]
-pub(super) fn limit_at<S: Real>(from: S, to: S, place: S, width: S) -> (S, S::Mask) {
-    let limited = crosses(from, to, place) & width.lt((to - from).abs());
-    (S::select(limited, place, to), limited)
+pub(super) fn limit_at<S: Real>(from: S, to: S, place: S, width: S) -> S {
+    let crosses = (from.lt(place) & place.lt(to)) | (to.lt(place) & place.lt(from));
+    S::select(crosses & width.lt((to - from).abs()), place, to)
 }

@@ -4,7 +4,7 @@
 //! start; that function never falls. Sources: Barz et al. (2019), J. Build. Perf. Simul. 12(6),
 //! doi:10.1080/19401493.2019.1657953; Barz et al. (2021), J. Energy Storage 34, doi:10.1016/j.est.2020.101907.
 
-use super::curve::{Curve, crosses, limit_at};
+use super::curve::{Curve, limit_at};
 use crate::input::description::{HysteresisModel, MeltingCurve};
 use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
@@ -219,26 +219,15 @@ impl<S: Real> Hysteresis<S> {
 
     /// See [`PcmCoefficients::limit`](super::PcmCoefficients::limit).
     #[inline(never)]
-    pub(super) fn limit(&self, from: S, to: S, memory: &PcmMemory<S>) -> (S, S::Mask) {
+    pub(super) fn limit(&self, from: S, to: S, memory: &PcmMemory<S>) -> S {
         S::vectorised(
             #[inline(always)]
-            || self.limited(from, to, memory),
+            || {
+                let [freezing, melting] = self.peaks(memory);
+                let to = limit_at(from, to, freezing, self.cooling.width());
+                limit_at(from, to, melting, self.heating.width())
+            },
         )
-    }
-
-    #[inline(always)]
-    fn limited(&self, from: S, to: S, memory: &PcmMemory<S>) -> (S, S::Mask) {
-        let [freezing, melting] = self.peaks(memory);
-        let (to, first) = limit_at(from, to, freezing, self.cooling.width());
-        let (to, second) = limit_at(from, to, melting, self.heating.width());
-        let [colder, warmer] = self.thresholds(memory);
-        let mut unpredictable = first | second | crosses(from, to, colder) | crosses(from, to, warmer);
-        for curve in [&self.heating, &self.cooling] {
-            if let Some([low, high]) = curve.kinks() {
-                unpredictable = unpredictable | crosses(from, to, low) | crosses(from, to, high);
-            }
-        }
-        (to, unpredictable)
     }
 
     /// Half-width of the narrower curve [K].

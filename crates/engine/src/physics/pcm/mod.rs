@@ -15,8 +15,8 @@ mod table;
 
 use crate::input::description::{ParamId, PcmLaw};
 use crate::input::values::Values;
-use crate::number::real::{Mask, Real};
-use curve::{Curve, CurvePoint, crosses, limit_at};
+use crate::number::real::Real;
+use curve::{Curve, CurvePoint, limit_at};
 use hysteresis::Hysteresis;
 use table::Table;
 
@@ -263,18 +263,23 @@ impl<S: Real> PcmCoefficients<S> {
 
     /// Limits a Newton step across the steep part of the enthalpy curve: a step that crosses its inflection and is longer
     /// than a half-width ends on the inflection, from where Newton's method converges monotonically.
-    /// True where the next change cannot be predicted from this one: the step was limited, or the slope jumps within it.
     #[inline(always)]
-    pub fn limit(&self, from: S, to: S, memory: &PcmMemory<S>) -> (S, S::Mask) {
-        let (peak, width, kinks) = match &self.law {
-            Law::Melting(_, curve) => (curve.peak(), curve.width(), curve.kinks()),
-            Law::Table(table) => (table.peak(), table.width(), Some(table.ends())),
+    pub fn limit(&self, from: S, to: S, memory: &PcmMemory<S>) -> S {
+        let (peak, width) = match &self.law {
+            Law::Melting(_, curve) => (curve.peak(), curve.width()),
+            Law::Table(table) => (table.peak(), table.width()),
             Law::Hysteresis(_, hysteresis) => return hysteresis.limit(from, to, memory),
         };
-        let (to, limited) = limit_at(from, to, peak, width);
-        let jumps = kinks
-            .map_or(S::Mask::splat(false), |[low, high]| crosses(from, to, low) | crosses(from, to, high));
-        (to, limited | jumps)
+        limit_at(from, to, peak, width)
+    }
+
+    /// Heat of melting over the width of the melting curve [J/(m3 K)]: half of the second derivative of the enthalpy is at most
+    /// this times the slope of the liquid fraction. None where the curve has no such bound: all but `tanh`.
+    pub(crate) fn curvature(&self) -> Option<S> {
+        match &self.law {
+            Law::Melting(latent, curve) if curve.tanh().is_some() => Some(latent.heat / curve.width()),
+            Law::Melting(..) | Law::Table(_) | Law::Hysteresis(..) => None,
+        }
     }
 
     /// Half-width of the melting range [K].

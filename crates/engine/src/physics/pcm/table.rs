@@ -76,10 +76,4 @@ impl<S: Real> Table<S> {
     pub(super) fn width(&self) -> S {
         S::constant(0.5 * (self.liquidus - self.solidus))
     }
-
-    /// Ends of the table, where the capacity jumps [degC].
-    #[inline(always)]
-    pub(super) fn ends(&self) -> [S; 2] {
-        [self.curve.first(), self.curve.last()].map(|end| S::constant(end) + self.shift)
-    }
 }

@@ -36,6 +36,14 @@ impl<S: Real> Limits<S> {
     }
 }
 
+/// What the guess of the next step is made from.
+#[derive(Debug, Clone)]
+pub(crate) struct LoadHistory<S> {
+    first: Option<Unknowns<S>>,
+    outdoor: [S; 2],
+    earlier: Vec<S>,
+}
+
 /// The ideal loads of a building and the search for them in one step.
 #[derive(Debug, Clone)]
 pub(crate) struct IdealLoads<S: Real> {
@@ -109,6 +117,24 @@ impl<S: Real> IdealLoads<S> {
             let next = S::select(S::zero().lt(next * now), next, S::zero());
             loads[zone] = next.min(limits.most[0]).max(-limits.most[1]);
         }
+    }
+
+    /// Results of the last step, from which the next step is guessed.
+    pub(crate) fn history(&self) -> LoadHistory<S> {
+        LoadHistory {
+            first: self.solved.first().cloned(),
+            outdoor: self.outdoor,
+            earlier: self.earlier.clone(),
+        }
+    }
+
+    /// Sets the results of the last step.
+    pub(crate) fn set_history(&mut self, history: &LoadHistory<S>) {
+        if let (Some(solved), Some(first)) = (self.solved.first_mut(), &history.first) {
+            solved.copy_from(first);
+        }
+        self.outdoor = history.outdoor;
+        self.earlier.clone_from(&history.earlier);
     }
 
     /// Marks the lanes that start with a load, or whose air is expected outside its set points.

@@ -6,7 +6,7 @@ use crate::error::EngineError;
 use crate::linear::unknowns::line;
 use crate::number::real::{Mask, Real};
 use crate::step::halving::Part;
-use crate::step::newton::Search;
+use crate::step::newton::{Search, accepts};
 use crate::step::stage::Stage;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -34,8 +34,8 @@ struct Swept<S: Real> {
     energy: Power<S>,
     /// Largest change of a temperature in any stage [K].
     change: S,
-    /// Where the change was limited.
-    limited: S::Mask,
+    /// Largest excess of a stage, see [`NonlinearLaws::excess`](crate::step::remainder::NonlinearLaws::excess) [W/m2].
+    excess: S,
 }
 
 impl<S: Real> Stepper<'_, S> {
@@ -65,16 +65,13 @@ impl<S: Real> Stepper<'_, S> {
     ) -> Result<Power<S>, EngineError> {
         let mut active = S::Mask::splat(true);
         let mut further = self.further_sweeps();
-        let mut before = S::zero();
         for number in 0..MAX_SWEEPS {
             let whole = number >= SINGLE_SWEEPS;
-            let Swept { mut energy, change, limited } =
+            let Swept { mut energy, change, excess } =
                 self.sweep(state, weather, Sweep { part, length, number, active })?;
-            before = S::select(limited, S::zero(), before);
             // The first sweep adds up no heat: it is never the last.
-            let still = self.solver.converged(change, before) & S::Mask::splat(number > 0);
+            let still = accepts(change, excess, number) & S::Mask::splat(number > 0);
             let still = still | S::Mask::splat(whole);
-            before = change;
             let (air, load) = (&self.solver.solution.air, &mut self.solver.start.load);
             let found = self.ideal_loads.correct(air, load, active, further > 0);
             let moving = active & !(found & still) & !self.solver.failed;
@@ -145,7 +142,7 @@ impl<S: Real> Stepper<'_, S> {
     ) -> Result<Swept<S>, EngineError> {
         let tableau = self.scheme.tableau();
         let (weights, length_of_stage) = (tableau.weights, tableau.diagonal * length);
-        let (mut energy, mut change, mut limited) = (Power::none(), S::zero(), S::Mask::splat(false));
+        let (mut energy, mut change, mut excess) = (Power::none(), S::zero(), -S::one());
         let (again, responds) = (number > 0, self.ideal_loads.finds_responses(number, active));
         if again {
             self.solver.start.begin(&self.model, state);
@@ -177,12 +174,13 @@ impl<S: Real> Stepper<'_, S> {
                 place: (part.step, index + 1),
             };
             if again {
-                limited = limited | solver.advance(&stage, active, 0);
+                solver.advance(&stage, active, 0);
             }
             let search = if number < SINGLE_SWEEPS { Search::Once } else { Search::Whole(active) };
             let sound = solver.solve(&stage, search)?;
             known.keep(&solver.solution);
-            change = change.max(S::select(sound, solver.change(model), S::constant(f64::INFINITY)));
+            let moved = S::select(sound, solver.change(model), S::constant(f64::INFINITY));
+            (change, excess) = (change.max(moved), excess.max(solver.excess(&stage, moved)));
             if responds {
                 ideal_loads.respond(model, &solver.system, index, (length_of_stage, tableau.ratio));
             }
@@ -194,7 +192,7 @@ impl<S: Real> Stepper<'_, S> {
                 self.add_heat(weight * length, &mut energy);
             }
         }
-        Ok(Swept { energy, change, limited })
+        Ok(Swept { energy, change, excess })
     }
 
     /// Brings the airs to their set points by the loads of the last stage, and adds its heat.

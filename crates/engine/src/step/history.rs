@@ -1,0 +1,26 @@
+//! What the guesses of a step are made from beside its state: with it a run goes on with the same bits.
+
+use crate::number::real::Real;
+use crate::step::guess::Guess;
+use crate::step::ideal_loads::loads::LoadHistory;
+use crate::step::stepper::Stepper;
+
+/// What the guesses of the next step are made from beside the state.
+#[derive(Debug, Clone)]
+pub(crate) struct History<S> {
+    guess: Guess<S>,
+    loads: LoadHistory<S>,
+}
+
+impl<S: Real> Stepper<'_, S> {
+    /// What the guesses of the next step are made from.
+    pub(crate) fn history(&self) -> History<S> {
+        History { guess: self.guess.clone(), loads: self.ideal_loads.history() }
+    }
+
+    /// The next step goes on from another run.
+    pub(crate) fn set_history(&mut self, history: &History<S>) {
+        self.guess.clone_from(&history.guess);
+        self.ideal_loads.set_history(&history.loads);
+    }
+}
