@@ -55,9 +55,9 @@ class Plan:
     def simulate(self, values: _Array, forcing: _Array, options: dict[str, Any]) -> dict[str, Any]:
         """One run: records (rows x probes), ledger [J], counters.
 
-        `largest_change` is the largest change of a temperature in the last iteration of an accepted stage [K].
-        `largest_residual` is the largest residual of a heat balance in an accepted stage, all laws evaluated there
-        [W]; None unless `options["residuals"]` is true, with which a run takes longer.
+        `largest_change` is the largest change of a temperature in the last iteration of an accepted stage.
+        [K] `largest_residual` is the largest residual of a heat balance in an accepted stage, all laws
+        evaluated there; None unless `options["residuals"]` is true, with which a run takes longer. [W]
         """
 
     def ensemble(

@@ -191,7 +191,7 @@ def assumptions(building: Description) -> Iterator[str]:
             yield f"{path} = {number:g} {unit} ({source or 'no source'})"
     outdoors = [item.side for item in every_side(building) if item.side.outdoors]
     if outdoors and "sky" not in building.site.model_fields_set:
-        yield "site.sky: martin_berdahl, because none is given"
+        yield "site.sky: infrared of the weather file, else martin_berdahl, because none is given"
     if any(not side.irradiance for side in outdoors) and "diffuse" not in building.site.model_fields_set:
         yield "site.diffuse: perez, because none is given"
     for name in building.zones:

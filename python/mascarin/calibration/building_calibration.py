@@ -19,6 +19,7 @@ from mascarin.errors import InputError
 from mascarin.progress import ProgressOption
 from mascarin.simulation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
+from mascarin.simulation.sky import with_sky_of
 from mascarin.validation.observation import observe
 from mascarin.validation.sensors import Sensor, SensorUncertainty
 from mascarin.weather.times import seconds_of
@@ -148,6 +149,7 @@ def calibrate(
     from mascarin.weather.timezones import moment
 
     chosen = building.replace(dict(parameters)) if parameters else building
+    chosen = with_sky_of(chosen, climate, [p if isinstance(p, str) else p.path for p in vary])
     named = {name: s if isinstance(s, Sensor) else Sensor(s) for name, s in sensors.items()}
     free = _parameters(chosen, vary)
     lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))

@@ -22,6 +22,7 @@ from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.simulation.compiling import with_parameters
 from mascarin.simulation.options import RunOptions, described
+from mascarin.simulation.sky import with_sky_of
 from mascarin.weather import summary
 
 if TYPE_CHECKING:
@@ -218,6 +219,7 @@ def _prepared(
     The first structure is compiled, so that what cannot be used is found before anything is run.
     """
     building = with_parameters(building, options.parameters)
+    building = with_sky_of(building, climate, [str(path) for path in samples])
     members = read_members(building, samples)
     inputs = EnsembleInputs(
         building=building,

@@ -17,6 +17,7 @@ from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
 from mascarin.simulation.options import described
 from mascarin.simulation.simulation import Simulation
+from mascarin.simulation.sky import with_sky_of
 from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
@@ -193,6 +194,7 @@ def sensitivity_analysis(
     ['surfaces.facade.outside.absorptance']
     """
     given = {building.parameter(path).path: value for path, value in (parameters or {}).items()}
+    building = with_sky_of(building, climate, [*given, *(vary or ())])
     only, ranges = _chosen(building, vary, given)
     chosen = factors_of(
         building, ranges=ranges, distributions=distributions, groups=groups,

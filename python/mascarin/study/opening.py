@@ -15,6 +15,7 @@ from pydantic import ValidationError
 from mascarin.building import Building, load
 from mascarin.building.reading import explained
 from mascarin.errors import InputError
+from mascarin.simulation.sky import with_sky_of
 from mascarin.study.description import StudyFile, StudyPlan, read_study
 from mascarin.study.inputs import filled, find, open_climate, open_measurements, require_one_clock
 from mascarin.study.locations import Faults, Places
@@ -97,6 +98,7 @@ def from_file(path: Path) -> Inputs:
     with faults.kept():
         read = open_measurements(file, beside, building, places, Places(described))
     faults.raise_all(path)
+    building = _with_sky(building, climate, file)
     quality = read.quality() + _weather_quality(file, climate)
     longest = file.measurements.fill_gaps
     if longest is not None:
@@ -109,6 +111,14 @@ def from_file(path: Path) -> Inputs:
         "climate": climate.sha256 or "",
     }
     return Inputs(file, building, climate, read, quality, places, hashes, path)
+
+
+def _with_sky(building: Building, climate: Climate, plan: StudyPlan) -> Building:
+    """Take the infrared radiation of the weather, unless the study names a parameter of a sky model."""
+    named: list[str] = list(plan.identification.parameters) if plan.identification else []
+    if plan.sensitivity:
+        named += [*plan.sensitivity.ranges, *plan.sensitivity.distributions, *plan.sensitivity.leave_out]
+    return with_sky_of(building, climate, named)
 
 
 def from_objects(
@@ -141,6 +151,7 @@ def from_objects(
     places, faults = Places(), Faults()
     check_names(checked, building, places, faults)
     faults.raise_all(places.file)
+    building = _with_sky(building, climate, checked)
     quality = measurements.quality()
     read = _masked(measurements, checked, quality)
     hashes = {
