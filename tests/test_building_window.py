@@ -82,7 +82,7 @@ def test_windows_together_exceed_their_wall() -> None:
         ("glazing: clear", "glazing: claer", r"'claer'[\s\S]*Did you mean 'clear'"),
         ("absorptance: 0.4}", "}", r"surfaces\.rest\.inside\.absorptance[\s\S]*the sun enters zone 'room'"),
         ("gaps: [{conductance: 5.208}]", "gaps: []", r"0 gaps between 2 panes"),
-        ("reflectance: 0.075", "reflectance: 0.3", r"sum 1\.134[\s\S]*at most 1 together"),
+        ("reflectance: 0.075", "reflectance: 0.3", r"sum 1\.134[\s\S]*a sum of at most 1"),
         (
             "    area: 4\n",
             "    vertices: [[0, 0, 1], [1, 0, 1], [1, 0, 2], [0, 0, 2]]\n",

@@ -185,7 +185,7 @@ def test_impossible_objectives_are_named(setting: Setting) -> None:
         setting.sweep(SOME, objectives={"none": lambda run: run[JOINT]})
     with pytest.raises(InputError, match="objective 'lost' failed: KeyError"):
         setting.sweep(SOME, objectives={"lost": lambda run: run["room"]})
-    with pytest.raises(InputError, match="'closure' is the name of something else"):
+    with pytest.raises(InputError, match="'closure' is a variable of every result"):
         setting.sweep(SOME, objectives={"closure": warmest})
 
 

@@ -285,7 +285,7 @@ def test_what_keeps_from_an_aim_is_the_parameter_left_out(
     blind = done.content["sensors"]["core"]["blind"]["fitted"]["sd"]
     assert found["sd"]["core"] == pytest.approx(blind, rel=1e-4)
     assert found["every"]["sd"]["core"] < 0.5 * blind
-    assert any(n["title"] == "Aims that are not met" and "the equations can do it" in n["text"]
+    assert any(n["title"] == "Aims that are not met" and "the equations are sufficient" in n["text"]
                for n in done.content["notes"])  # fmt: skip
     reached = sum(a["passed"] for a in done.content["aims"])
     assert f"aims reached: {reached} of {len(done.content['aims'])}" in done.said

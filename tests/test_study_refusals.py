@@ -52,7 +52,7 @@ CASES = {
         "  starts: 2",
         "  method: emcee\n  cost: sd",
         "cost: sd",
-        ("identification.cost", "nll, the only cost that emcee knows"),
+        ("identification.cost", "nll, the only cost that emcee supports"),
     ),
     "profiles of what is no likelihood": Refused(
         "  starts: 2",

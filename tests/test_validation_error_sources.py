@@ -54,14 +54,14 @@ def test_an_error_that_no_parameter_explains_remains() -> None:
     missed = Verdict("sd", "air", "blind", "sd", found.sd[0], 0.1, "degC", passed=False)
     (sentence,) = explain_missed_aims([missed], found, "blind")
     assert sentence.startswith("air: the standard deviation is 0.28")
-    assert "no values of parameters do it" in sentence
+    assert "no parameter values reach the aim" in sentence
     assert explain_missed_aims([missed], found, "corroboration") == []
 
 
 def test_an_aim_within_reach_of_the_equations_is_reported() -> None:
     found = _found(0.3 * EFFECTS["sky"] + NOISE)
     missed = Verdict("sd", "roof", "blind", "sd", found.sd[1], 0.1, "degC", passed=False)
-    assert "the equations can do it" in explain_missed_aims([missed], found, "blind")[0]
+    assert "the equations are sufficient" in explain_missed_aims([missed], found, "blind")[0]
 
 
 def test_a_constant_offset_is_not_attributed_to_a_parameter() -> None:

@@ -44,12 +44,12 @@ def test_the_same_region_passes(denver: Climate, site: Site) -> None:
     [
         (
             Site(latitude=-39.83),
-            r"^725650TYCST.epw: the weather is of latitude 39.83 deg \(DENVER.*\), the building stands at "
+            r"^725650TYCST.epw: the weather is of latitude 39.83 deg \(DENVER.*\), the building is at "
             r"latitude -39.83 deg \(opposite sign\).*Correct site: latitude in",
         ),
         (Site(longitude=104.65), "longitude 104.65 deg .opposite sign"),
         (Site(longitude=-108.0), "longitude -108 deg; expected a difference of at most 2 deg"),
-        (Site(altitude=165.0), "altitude 1650 m .*, the building stands at altitude 165 m; .* at most 500 m"),
+        (Site(altitude=165.0), "altitude 1650 m .*, the building is at altitude 165 m; .* at most 500 m"),
         (Site(timezone="UTC+4"), r"clock is UTC-7 .*time zone is UTC\+4 .*expected the same winter time"),
         (Site(timezone="Europe/Paris"), r"Europe/Paris \(winter time UTC\+1\).*Correct site: timezone"),
     ],

@@ -26,7 +26,7 @@ EXIT_OK: Final = 0
 EXIT_CRITERION: Final = 1
 EXIT_INPUT: Final = InputError.exit_code
 EXIT_SOLVER: Final = SolverError.exit_code
-EXIT_DEFECT: Final = 70  # a defect of Mascarin itself, so that it is not mistaken for a result
+EXIT_DEFECT: Final = 70  # an internal error of Mascarin: a code that no result has
 EXIT_INTERRUPTED: Final = 130
 
 

@@ -114,7 +114,7 @@ def write(path: Path, content: str | bytes) -> Path:
 
 
 def remove_drafts(folder: Path) -> None:
-    """Remove what killed processes left half written in a folder that this process has locked."""
+    """Remove incomplete files of killed processes from a folder that this process has locked."""
     for draft in folder.glob(f"*{PART}"):
         if draft.is_dir():
             shutil.rmtree(draft, ignore_errors=True)
@@ -130,7 +130,7 @@ def _usual_mode() -> int:
 
 
 def _flush_folder(folder: Path) -> None:
-    """Make the renaming itself last, where the system lets a folder be flushed."""
+    """Flush the renaming to the disk, on systems that can flush a folder."""
     with contextlib.suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
         try:

@@ -87,7 +87,7 @@ def page(
 
 
 def svg(figure: Figure) -> str:
-    """Draw a figure as an SVG element that can stand inside HTML."""
+    """Draw a figure as an SVG element for use inside HTML."""
     buffer = io.StringIO()
     figure.savefig(buffer, format="svg")
     return re.sub(r"^.*?(?=<svg)", "", buffer.getvalue(), count=1, flags=re.DOTALL)

@@ -1,4 +1,4 @@
-"""The building: a description that is checked, with what can be asked of it."""
+"""The building: a checked description with its parameters, outputs and checks."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ class Building(Description):
 
     @classmethod
     def from_dict(cls, description: Mapping[str, Any]) -> Self:
-        """Make a building from a mapping that holds what a YAML file would hold.
+        """Make a building from a mapping with the content of a YAML file.
 
         Parameters
         ----------
@@ -163,7 +163,7 @@ class Building(Description):
             raise explained(error, plain, name) from None
 
     def to_dict(self) -> dict[str, Any]:
-        """What a YAML file of this building holds: mappings, lists, texts and numbers.
+        """Content of a YAML file of this building: mappings, lists, texts and numbers.
 
         Returns
         -------

@@ -56,7 +56,7 @@ def _sentences(fault: dict[str, Any]) -> str:
 
 
 def _place(location: Place, plain: Any) -> Place:
-    """Drop from pydantic's location what is not in the file, such as the kinds of a union."""
+    """Remove from pydantic's location the steps that are not in the file, such as the kinds of a union."""
     place: list[str | int] = []
     # An error in the whole description has an empty location.
     for step, following in zip(location, (*location, None)[1:], strict=True):
@@ -72,12 +72,12 @@ def _place(location: Place, plain: Any) -> Place:
 
 
 def _lacks(plain: Any, key: str, place: list[str | int]) -> bool:
-    """Whether a location ends in a key that should be here, not in the kind of what is here."""
+    """Whether the last step of a location is a missing key, and not the kind of the part."""
     return isinstance(plain, Mapping) and place[-1:] != [key] and key not in _kinds(plain)
 
 
 def _kinds(plain: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Kinds that pydantic may take a mapping for: a material without a kind is a solid or a product."""
+    """Kinds as which pydantic may read a mapping: a material without a kind is a solid or a product."""
     return (plain.get("kind", "solid"), *(["pcm"] if "product" in plain else []))
 
 

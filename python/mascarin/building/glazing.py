@@ -102,7 +102,7 @@ class Pane(Part):
                 yield fault(
                     ("reflectance",),
                     f"transmittance {self.transmittance:g} and reflectance {reflectance:g}, sum {total:g}",
-                    "at most 1 together: the rest is absorbed",
+                    "a sum of at most 1: the rest is absorbed",
                     "Correct one of them.",
                 )
 
@@ -266,7 +266,7 @@ class PaneGlazing(Part):
                 ("gaps",),
                 f"{len(self.gaps)} gaps between {len(self.panes)} panes",
                 f"{len(self.panes) - 1}",
-                "One gap lies between two panes.",
+                "There is one gap between two panes.",
             )
         table = self.angular
         diffuse = table.diffuse.absorptance if table is not None and table.diffuse is not None else None

@@ -151,7 +151,7 @@ class PhaseChangeMaterial(Melting):
         ]
 
     def written(self, *, keep_derived: bool = False) -> dict[str, Any]:
-        """What a file would hold: the product, and only what differs from it."""
+        """Content of a file: the product, and only what differs from it."""
         if self.product is None:
             # A law taken from a material with a product keeps its numbers.
             return super().written(keep_derived=True)
@@ -167,7 +167,7 @@ class PhaseChangeMaterial(Melting):
 
 
 def _beside_product(law: Law) -> Any:
-    """What a file would hold of a law beside a product: all of it, or what differs from the product."""
+    """Content of a file for a law beside a product: the whole law, or what differs from the product."""
     if not any(number.derived for _, number, _ in leaves(law)):
         return law.written()
     fields = {key: written_value(getattr(law, key)) for key in law.model_fields_set - {"kind", "curve"}}
@@ -187,7 +187,10 @@ def _only_compared(number: Number) -> Number:
     if number.quantity is None:
         return number
     return number.of(
-        replace(number.quantity, spread=Fixed("the table holds it; it is only compared with it"))
+        replace(
+            number.quantity,
+            spread=Fixed("the table includes it; this value is only a check"),
+        )
     )
 
 

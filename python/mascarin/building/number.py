@@ -109,7 +109,7 @@ class Number(float):
         return self.quantity.default_range(self)
 
     def to_plain(self) -> Any:
-        """The number as a file would hold it: a word, a plain number, or a mapping with range and source."""
+        """The number as in a file: a word, a plain number, or a mapping with range and source."""
         word = self._word()
         notes: dict[str, Any] = {"value": word or _whole(self)}
         if self.range is not None:

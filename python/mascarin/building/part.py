@@ -1,4 +1,4 @@
-"""What the parts of a description have in common: immutable, no unknown keys, errors that say what to do."""
+"""Base of the parts of a description: immutable, no unknown keys, errors with what to do."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Part(BaseModel):
         cls.__doc__ = documented(cls.__doc__ or "", cls.model_fields)
 
     def to_dict(self) -> dict[str, Any]:
-        """What a YAML file would hold: mappings, lists, texts and numbers.
+        """Content of a YAML file: mappings, lists, texts and numbers.
 
         Returns
         -------

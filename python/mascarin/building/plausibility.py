@@ -1,4 +1,4 @@
-"""Warnings about what is probably wrong in a building: units, areas, volumes, mesh and time step."""
+"""Warnings about probable errors in a building: units, areas, volumes, mesh and time step."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _implausible_melting(building: Description) -> Iterator[str]:
             yield (
                 f"materials.{name}.hysteresis: between {odd[0]:.2f} and {odd[1]:.2f} degC the heating curve "
                 "flattens faster than the cooling curve: with curve_scale a small cycle there would melt "
-                "colder than it freezes. Take curves of one shape and width, or curve_switch"
+                "at a lower temperature than it freezes. Take curves of one shape and width, or curve_switch"
             )
         solid, liquid = (phase(material.density, state) for state in ("solid", "liquid"))
         if abs(solid / liquid - 1.0) > 0.25:

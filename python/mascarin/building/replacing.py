@@ -75,14 +75,14 @@ def put(plain: dict[str, Any], part: Part, path: Sequence[str], value: Any) -> N
 
 
 def _kind_of(part: Any, beside: Any) -> dict[str, Any]:
-    """What has to be written of a part so that one of its values can be."""
+    """What must be written with a value of a part, so that the part can be read: its kind."""
     kind = getattr(part, "kind", None)
-    # The law of a product is found by the product, not by its kind.
+    # The product determines the law; it needs no kind.
     return {} if kind is None or getattr(beside, "product", None) is not None else {"kind": kind}
 
 
 def _index(pieces: Any, step: str) -> Any:
-    """Key of a step in a mapping or list; layers of a list go by name."""
+    """Key of a step in a mapping or list; layers of a list are found by name."""
     if not isinstance(pieces, list | tuple):
         return step if step in pieces else None
     for index, piece in enumerate(pieces):

@@ -304,7 +304,7 @@ def _outside_of_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]
         return f"a corner {off:.3f} m off the plane of '{wall.name}'", "corners in that plane", "Move it."
     return (
         f"corners outside the outline of '{wall.name}'",
-        "a window that lies in its wall",
+        "a window inside its wall",
         "Compare the coordinates of both.",
     )
 

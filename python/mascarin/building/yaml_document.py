@@ -105,7 +105,7 @@ class _Document:
                 "",
                 f"text that is no YAML: {error.problem}",
                 "valid YAML 1.2",
-                "Indent with spaces: YAML knows no tabs there."
+                "Indent with spaces: YAML does not allow tabs there."
                 if "\\t" in str(error.problem)
                 else "Check indentation, colons and quotes near this line.",
             )

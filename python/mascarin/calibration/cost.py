@@ -6,7 +6,7 @@ name            cost of a sensor                                    remarks
 nll             negative log-likelihood of independent normal       with the uncertainty of the sensors;
                 errors                                              parameters may have priors
 sd              standard deviation of the residuals                 the cost of the reference study; does not
-                                                                    see a bias
+                                                                    include the bias
 rmse            root mean square error                              in the unit of the sensor
 rmse_over_range root mean square error over the measured range [%]  does not depend on the zero of a
                                                                     temperature scale

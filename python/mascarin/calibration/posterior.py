@@ -1,10 +1,10 @@
 """Sample of the posterior distribution of the parameters, by emcee.
 
 The likelihood of independent errors gives intervals that are much too narrow where errors are autocorrelated.
-Its shape is kept here, curved valleys and bounds included, but it is stretched about its maximum, so that its
+Here its shape is kept, with curved valleys and bounds, but it is scaled about its maximum, so that its
 curvature there gives the covariance estimated from the autocorrelated residuals: at a position z it is
 evaluated at ``z0 + C (z - z0)``, with the symmetric C for which ``C H C`` is the inverse of that covariance,
-H being the curvature for independent errors. Priors, and the uniform one over the range, are not stretched.
+H being the curvature for independent errors. Priors, and the uniform one over the range, are not scaled.
 
 References
 ----------
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 METHOD: Final = (
-    "quantiles of a posterior sample (emcee), its likelihood stretched to the covariance estimated from the "
+    "quantiles of a posterior sample (emcee), its likelihood scaled to the covariance estimated from the "
     "autocorrelated residuals; the estimates are the most probable values"
 )
 """How the intervals are computed, for reports."""

@@ -14,7 +14,7 @@ METHODS: Final[tuple[MethodName, ...]] = (
 )  # fmt: skip
 
 WITH_SQUARES: Final = ("least-squares", "emcee")
-"""Methods that minimize a sum of squares, and so know the cost ``nll`` only."""
+"""Methods that minimize a sum of squares, and therefore support the cost ``nll`` only."""
 
 FINEST: Final = 24
 """Largest number of halvings with which the points of a pattern search are exact binary numbers."""

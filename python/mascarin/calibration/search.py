@@ -56,7 +56,7 @@ def solve(
         evolution strategy): any cost, repeated until two sequences have reached the same minimum.
         ``emcee``: least squares, then a sample of the posterior distribution about its minimum.
     cost : str
-        What is minimized, see `mascarin.calibration.cost`; least squares and emcee know ``nll`` only.
+        What is minimized, see `mascarin.calibration.cost`; least squares and emcee support ``nll`` only.
     seed : int
         Of all random numbers. The same problem, seed and rules give the same result.
     rules : Rules, optional

@@ -231,7 +231,7 @@ def _prepared(
     )
     clash = set(inputs.objectives) & {"member", "closure", "failure", "samples"}
     if clash:
-        raise InputError(f"objectives: '{clash.pop()}' is the name of something else; choose another")
+        raise InputError(f"objectives: '{clash.pop()}' is a variable of every result; choose another name")
     whole = hashlib.sha256(inputs.compiled(_first_structure(members)).identity.encode())
     whole.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives)]).encode())
     return replace(inputs, identity=whole.hexdigest()), members

@@ -65,7 +65,7 @@ def elsewhere(
 
 
 class _Dispatcher:
-    """Sends chunks to an executor, and lost ones again."""
+    """Sends chunks to an executor; chunks that were lost are sent again."""
 
     def __init__(
         self,

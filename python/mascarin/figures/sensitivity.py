@@ -330,6 +330,6 @@ def _points(ax: Axes, x: Floats, low: Floats, high: Floats, y: Floats, color: st
 
 
 def _bare(ax: Axes) -> None:
-    """Leave only the axes that carry numbers."""
+    """Show only the axes with numbers."""
     ax.spines[["top", "right"]].set_visible(False)
     ax.tick_params(labelsize=8)

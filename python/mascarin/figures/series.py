@@ -73,7 +73,7 @@ def draw(
 
 
 def _axes(ax: Axes | Sequence[Axes] | None, units: Sequence[str]) -> list[Axes]:
-    """One axes for each unit; the same one may stand for several."""
+    """One axes for each unit; the same axes may be used for several units."""
     if ax is None:
         if in_notebook():
             import matplotlib.pyplot  # noqa: F401 (lets the notebook show figures)

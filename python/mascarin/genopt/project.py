@@ -1,4 +1,4 @@
-"""A GenOpt project: everything that its three files say."""
+"""A GenOpt project: the content of its three files."""
 
 from __future__ import annotations
 

@@ -274,7 +274,7 @@ def _melting(
     if not height > 0.2 * max(solid, liquid):
         raise InputError(
             f"{where}: {scan.direction}: found no peak above the sensible heat ({heat.max():.4g} against "
-            f"{max(solid, liquid):.4g} J/(kg K)); expected a run through the melting"
+            f"{max(solid, liquid):.4g} J/(kg K)); expected a run through the whole melting range"
         )
     fraction, latent = _fractions(t, heat, (solid, liquid), (low, high))
     steepest = 0.03 * height
@@ -286,7 +286,7 @@ def _melting(
             )
     if scan.rate is not None and scan.rate > SLOW:
         remarks.append(
-            f"{scan.direction}: {scan.rate:g} K/min is faster than any wall: the sample is later than the "
+            f"{scan.direction}: {scan.rate:g} K/min is faster than in any wall: the sample lags behind the "
             "oven, which broadens the curve and shifts it in the direction of the run; expect a kelvin "
             "or more, and vary temperature_shift or the melting temperature"
         )

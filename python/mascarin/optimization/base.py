@@ -149,7 +149,7 @@ class Optimizer(ABC):
         """The algorithm itself, as a generator of batches."""
 
     def guesses(self, limit: int, known: Known) -> list[Point]:
-        """Points that are likely to be asked for next, for processors that have nothing else to do.
+        """Points that the search will probably need next, for processors without other work.
 
         Evaluating them does not change the result of the search, only the time that it takes.
 

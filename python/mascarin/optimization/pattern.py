@@ -50,7 +50,7 @@ class PatternSearch(MeshSearch):
     counted : int
         Number of evaluations that another search has made before; the limit counts them. [-]
     report_minimum : bool
-        Whether the observer is told of the minimum at the end.
+        Whether the minimum is reported to the observer at the end.
 
     Examples
     --------

@@ -31,7 +31,7 @@ class SwarmRules:
     Parameters
     ----------
     topology : str
-        Which particles a particle knows: all (`gbest`), neighbors in a ring (`lbest`) or in a square
+        Neighborhood of a particle: all (`gbest`), neighbors in a ring (`lbest`) or in a square
         grid (`vonNeumann`).
     neighbors : int
         Reach to either side in a ring [-].
@@ -101,7 +101,7 @@ class SwarmRules:
         return 2.0 * k / abs(2.0 - phi - math.sqrt(phi * (phi - 4.0))) if phi > 4.0 else k
 
     def neighborhood(self, i: int) -> list[int]:
-        """Particles that a particle knows, in order.
+        """Particles in the neighborhood of a particle, in order.
 
         Parameters
         ----------

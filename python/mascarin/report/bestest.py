@@ -201,7 +201,7 @@ def _sun(found: Found) -> list[dict[str, Any]]:
         ("incident_solar", "Solar irradiation of each plane over the year, case 600", "kWh/m2"),
         ("transmitted_solar", "Solar radiation through the window over the year", "kWh/m2"),
         ("transmissivity", "Solar transmittance of the window over the year", "-"),
-        ("shading_coefficient", "Share that the shades keep off", "-"),
+        ("shading_coefficient", "Fraction of the solar radiation blocked by the shades", "-"),
     )
     figures = []
     for start, title, unit in kinds:

@@ -64,7 +64,7 @@ def _policy(*scripts: str) -> str:
 
 
 def _json(content: Mapping[str, Any]) -> Markup:
-    """JSON that cannot end the element it stands in."""
+    """JSON without characters that would end its HTML element."""
     raw = json.dumps(content, separators=(",", ":"), allow_nan=False)
     safe = raw.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
     return Markup(safe)  # noqa: S704  (escaped above)

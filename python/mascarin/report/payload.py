@@ -10,7 +10,7 @@ from mascarin.report.series import Series, moment
 
 
 def check(study: Mapping[str, Any], series: Series) -> None:
-    """Check what a report cannot do without.
+    """Check the content that every report needs.
 
     Raises
     ------

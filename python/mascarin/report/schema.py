@@ -48,7 +48,7 @@ class Period(TypedDict, total=False):
 
 
 class Model(TypedDict, total=False):
-    """A variant whose results are compared: nominal, fitted, and whatever else the study ran."""
+    """A model whose results are compared: nominal, fitted, or a variant."""
 
     label: str
     note: str
@@ -68,7 +68,7 @@ class ParameterEntry(TypedDict, total=False):
     label: str
     at_bound: bool
     reason: str
-    """Why the estimate lies on a bound, or is not identifiable."""
+    """Why the estimate is on a bound, or is not identifiable."""
     source: str
     reference_nominal: float
     reference_fitted: float
@@ -189,7 +189,7 @@ class Spectrum(TypedDict, total=False):
 
 
 class DayShares(TypedDict, total=False):
-    """Shares over the hours of the day."""
+    """First-order indices over the hours of the day."""
 
     hours: list[float]
     paths: list[str]
@@ -242,7 +242,7 @@ class Shortfall(TypedDict, total=False):
 
 
 class LedgerTerm(TypedDict, total=False):
-    """One entry of the energy ledger."""
+    """One term of the energy balance."""
 
     label: str
     value: float

@@ -183,14 +183,14 @@ def moment(text: str) -> datetime:
     Raises
     ------
     InputError
-        It is not ISO 8601 or carries an offset.
+        It is not ISO 8601 or has an offset.
     """
     try:
         time = datetime.fromisoformat(text)
     except (TypeError, ValueError) as error:
         raise InputError(f"time '{text}': expected ISO 8601, e.g. 2012-09-20T00:00") from error
     if time.tzinfo is not None:
-        raise InputError(f"time '{text}' carries an offset; expected local time of the study's zone")
+        raise InputError(f"time '{text}' has an offset; expected local time of the study's zone")
     return time
 
 

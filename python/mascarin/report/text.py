@@ -123,7 +123,7 @@ def day(time: datetime) -> str:
 
 
 def plain_path(path: str) -> str:
-    """Last parts of a parameter path that tell it from others: what it belongs to, and the property."""
+    """Last steps of a parameter path that distinguish it from others: the part, and its property."""
     for ending, words_for_it in _ENDINGS.items():
         path = path.removesuffix(ending) + words_for_it if path.endswith(ending) else path
     words = [

@@ -1,4 +1,4 @@
-"""The one rule for times in xarray and NetCDF: coordinate ``time`` in UTC, ``local_time`` along it."""
+"""Times in xarray and NetCDF: coordinate ``time`` in UTC, ``local_time`` along it."""
 
 from __future__ import annotations
 

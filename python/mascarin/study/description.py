@@ -218,7 +218,7 @@ class IdentificationPlan(Part):
     cost: Literal["nll", "sd", "rmse", "rmse_over_range", "cv_rmse"] = Field(
         "nll",
         description="Cost function; least-squares, emcee and priors need nll; cv_rmse is that of ASHRAE "
-        "Guideline 14, and stands for rmse_over_range where a sensor is in degC",
+        "Guideline 14, read as rmse_over_range where a sensor is in degC",
     )
     independent: Duration | None = Field(
         None,
@@ -235,7 +235,7 @@ class IdentificationPlan(Part):
             expected = "nll, the likelihood of which profiles are made"
             insist(fault(("profiles",), self.cost, expected, "Write cost: nll, or leave profiles out."))
         if self.method in WITH_SQUARES:
-            expected = f"nll, the only cost that {self.method} knows"
+            expected = f"nll, the only cost that {self.method} supports"
             insist(fault(("cost",), self.cost, expected, "Write method: hooke-jeeves, or leave cost out."))
         weighed = [path for path, free in self.parameters.items() if free is not None and free.prior]
         if weighed:

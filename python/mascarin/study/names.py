@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def check_names(plan: StudyPlan, building: Building, places: Places, faults: Faults) -> None:
-    """Check that everything that is called by a name exists.
+    """Check that everything that is referred to by a name exists.
 
     Parameters
     ----------

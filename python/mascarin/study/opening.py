@@ -216,7 +216,7 @@ def _plain(value: Any) -> Any:
 
 
 def _weather_quality(file: StudyFile, climate: Climate) -> list[Stretch]:
-    """Suspicious values of measured weather, unless it stands in the table of the measurements."""
+    """Suspicious values of measured weather, unless it is in the table of the measurements."""
     weather = file.climate.measured
     if weather is None or weather.table == file.measurements.table:
         return []

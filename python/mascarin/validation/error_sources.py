@@ -1,10 +1,10 @@
-"""Sources of the remaining error: parameters that are off, or equations that are missing.
+"""Sources of the remaining error: wrong parameter values, or missing equations.
 
 The error of a fitted model on days that were not used in the fit is explained by the effects of its
 parameters, for all sensors together. Where a few parameters explain it, the data of the identification did
 not determine them; where all parameters together do not explain it, no values of parameters help, and the
 cause is in the equations or in the weather. Everything is linear about the fitted model, and the fit is not
-changed: the days remain blind.
+changed: these days are not used for the calibration.
 
 A change of a parameter has a normal prior about the fitted value, with a standard deviation of a quarter of
 its range, and stays inside the range. The error that remains is always computed on days that were not used to
@@ -216,9 +216,9 @@ def explain_missed_aims(aims: Iterable[Verdict], found: ErrorSources, period: st
             continue
         floor, unit = found.floor(aim.sensor), aim.unit.replace("degC", "K")
         if floor <= aim.limit:
-            why = "the equations can do it, but the data of the identification do not determine these values"
+            why = "the equations are sufficient, but the identification data do not determine these values"
         else:
-            why = "no values of parameters do it: the cause is in the equations or in the weather data"
+            why = "no parameter values reach the aim: the cause is in the equations or in the weather data"
         sentences.append(
             f"{aim.sensor}: the standard deviation is {aim.value:.3f} {unit}, the aim is {aim.limit:g} "
             f"{unit}. With all {len(found.every.paths)} parameters adjusted to these days {floor:.3f} {unit} "

@@ -1,4 +1,4 @@
-"""Analysis of residuals: what the difference of simulation and measurement says about the model.
+"""Analysis of residuals: what the difference of simulation and measurement shows about the model.
 
 The residuals of an adequate model are white noise: not autocorrelated, without a daily pattern, not
 correlated with the sun or the wind. `analyze_residuals` computes this for one sensor; `diagnose` puts it into
@@ -71,7 +71,7 @@ class DriverCorrelation:
 
     @property
     def significant(self) -> bool:
-        """Whether the correlation is larger than chance would make it (95 %)."""
+        """Whether the correlation is significant (95 %)."""
         return abs(self.correlation) > self.limit
 
 

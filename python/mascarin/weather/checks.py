@@ -134,7 +134,7 @@ def _filling(record: Record) -> str:
 
 def _correction(record: Record, unit: str) -> str:
     if record.of_year:
-        return "correct the file, whose format knows no other unit, or choose a period without such values"
+        return "correct the file, whose format allows no other unit, or choose a period without such values"
     if not unit:
         return (
             "convert the column to degC or W/m2 in the file (in Python: the column's unit, unit='K'), "

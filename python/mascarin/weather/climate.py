@@ -76,8 +76,8 @@ class Climate(RecordView[WeatherRecord]):
         path : str or Path
             The file; hourly, one year.
         typical : bool, optional
-            True: the year stands for any year and is repeated at its end. False: it is the calendar year
-            written in the file. Default: True where the months of the file come from different years.
+            True: a typical year, which represents any year and is repeated at its end. False: the calendar
+            year in the file. Default: True where the months of the file come from different years.
         year : int, optional
             Year by which a typical file is labeled; default 2001.
         elsewhere : bool
@@ -287,7 +287,8 @@ class Climate(RecordView[WeatherRecord]):
             means, or `instant` where all values are those at the stamp. It may be left out for frames of
             `read_epw`, `read_tmy3` and `get_era5`, whose stamps are known.
         typical : bool, optional
-            True: a year that stands for any year. Default: True where months come from different years.
+            True: a typical year, which represents any year. Default: True where months come from different
+            years.
         timezone : str, optional
             IANA name or fixed offset of the local time; default that of the stamps.
         absent : iterable or mapping

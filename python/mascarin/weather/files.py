@@ -1,4 +1,4 @@
-"""Files of tables: CSV and Parquet, as they stand in the file."""
+"""Files of tables: CSV and Parquet, without any change."""
 
 from __future__ import annotations
 
@@ -129,6 +129,6 @@ def _separator(path: Path, skip_lines: int) -> str:
     if counts[best] == 0:
         raise InputError(
             f"{path.name}: no separator found in the header {header.strip()[:40]!r}, expected the names of "
-            "columns; state separator, or skip_lines if the header stands further down."
+            "columns; state separator, or skip_lines if the header is further down."
         )
     return best

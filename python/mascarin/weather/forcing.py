@@ -35,7 +35,7 @@ def require_period(record: WeatherRecord, steps: Steps) -> None:
     InputError
         The period is not covered, or a value in it is impossible.
     """
-    hint = " (in Python, a year that stands for any other: typical=True)" if record.of_year else ""
+    hint = " (in Python, if it is a typical year: typical=True)" if record.of_year else ""
     record.grid.require(steps.first, steps.last, record.file, hint)
     for name in SOURCE_CHANNELS:
         if name in record.data.columns:

@@ -38,7 +38,7 @@ class Grid:
     zone : datetime.tzinfo
         Time zone; a fixed offset where the grid is periodic.
     periodic : bool
-        A year of 365 days that stands for any year.
+        A typical year of 365 days, which represents any year.
     """
 
     start: float

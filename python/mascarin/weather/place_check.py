@@ -58,7 +58,7 @@ def _require_near(record: WeatherRecord, site: SiteLike) -> None:
         ("longitude", float(site.longitude), place.longitude, abs((east + 180.0) % 360.0 - 180.0) > _FAR),
     ]
     height = getattr(site, "altitude", None)
-    # A table whose altitude was not stated carries 0.
+    # A table without a stated altitude has 0.
     if height is not None and (record.of_year or place.altitude != 0.0):
         away.append(("altitude", float(height), place.altitude, abs(float(height) - place.altitude) > _HIGH))
     for name, here, there, far in away:
@@ -68,7 +68,7 @@ def _require_near(record: WeatherRecord, site: SiteLike) -> None:
         sign = " (opposite sign)" if abs(here + there) <= limit else ""
         raise InputError(
             f"{record.file}: the weather is of {name} {there:g} {unit}{_called(record)}, the building "
-            f"stands at {name} {here:g} {unit}{sign}; expected a difference of at most {limit:g} {unit}. "
+            f"is at {name} {here:g} {unit}{sign}; expected a difference of at most {limit:g} {unit}. "
             f"{_remedy(record, name)}"
         )
 

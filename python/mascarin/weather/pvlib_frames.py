@@ -42,7 +42,7 @@ _NAMES: Final[Mapping[str, tuple[str, ...]]] = {
     "infrared": ("longwave_down", "lw", "lwd", "ghi_infrared", "IR(h)"),
     "cloud_cover": ("opaque_sky_cover", "OpqCld (tenths)", "total_sky_cover", "TotCld (tenths)"),
 }
-# Numbers that stand for "no value" in frames of EPW and TMY3 files, by name.
+# Numbers that mark a missing value in frames of EPW and TMY3 files, by name.
 _CODES: Final[Mapping[str, float]] = {
     "temp_air": 99.9,
     "temp_dew": 99.9,
@@ -296,7 +296,7 @@ def _periodic(record: WeatherRecord, *, late: bool) -> WeatherRecord:
         closing[name] = float(values[0])
         data[name] = values
     note = (
-        f"{_WHERE}: one typical year of 365 days; it stands for any year, is repeated at its end, and 29 "
+        f"{_WHERE}: one typical year of 365 days; it represents any year, is repeated at its end, and 29 "
         "February takes the values of 28 February."
     )
     grid = replace(record.grid, periodic=True)

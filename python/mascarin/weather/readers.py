@@ -282,7 +282,7 @@ def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, 
 
 
 def _number(text: str, what: str, where: str, line: int, code: float) -> float:
-    """The number of an entry; `code` is how the format says that there is none."""
+    """The number of an entry; `code` marks a missing value in this format."""
     try:
         number, wanted = float(text), "a finite number"
     except ValueError:
@@ -290,7 +290,7 @@ def _number(text: str, what: str, where: str, line: int, code: float) -> float:
     if not math.isfinite(number):
         raise InputError(
             f"{where}:{line}: {what} is {text.strip()!r}, expected {wanted}; correct it, or "
-            f"write {code:.15g}, which stands for no value, and choose a period without this hour."
+            f"write {code:.15g}, which marks a missing value, and choose a period without this hour."
         )
     return number
 

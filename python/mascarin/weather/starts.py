@@ -68,7 +68,7 @@ def to_starts(
     note += f"means: {', '.join(means)}; " if means else "no means; "
     note += "all other columns are values at the stamp"
     note += ", means moved to the start" if late and means else ""
-    held = "the first also stands for the start" if late else "the last also stands for the end"
+    held = "the first is also used at the start" if late else "the last is also used at the end"
     note += f"; of these {held} of the record."
     return columns, closing, grid, note
 

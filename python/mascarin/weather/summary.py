@@ -1,4 +1,4 @@
-"""What reports and files of results say of a climate."""
+"""Description of a climate for reports and files of results."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from mascarin.weather.climate import Climate
 
 
 def summary(climate: Climate) -> dict[str, Any]:
-    """What a report prints of a climate: file, hash, range, step, site and provenance.
+    """Description of a climate for a report: file, hash, range, step, site and provenance.
 
     Parameters
     ----------

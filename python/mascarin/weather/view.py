@@ -1,4 +1,4 @@
-"""What climates and measurements have in common: columns on a regular grid of times."""
+"""Base of climates and measurements: columns on a regular grid of times."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ R = TypeVar("R", bound=Record)
 
 
 class RecordView(Generic[R]):
-    """Base of `Climate` and `Measurements`: a record, with what one reads from it.
+    """Base of `Climate` and `Measurements`: a record with its columns, times and origin.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ class RecordView(Generic[R]):
         return f"{type(self).__name__} of {self.file!r}"
 
     def _rows(self) -> list[tuple[str, str]]:
-        """What a short description says."""
+        """Content of the short description."""
         grid = self._record.grid
         missing = int(self.data.isna().to_numpy().sum())
         return [

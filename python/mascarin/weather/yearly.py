@@ -50,7 +50,7 @@ def record_of_year(read: Year, typical: bool | None, year: int | None, elsewhere
             values, lines, count = {k: v[keep] for k, v in values.items()}, lines[keep], 8760
             notes.append(f"{read.where}: 29 February left out of the typical year.")
         notes.append(
-            f"{read.where}: one typical year of 365 days, labeled {label}; it stands for any year, is "
+            f"{read.where}: one typical year of 365 days, labeled {label}; it represents any year, is "
             "repeated at its end, and 29 February takes the values of 28 February."
         )
     else:
@@ -71,8 +71,8 @@ def _check_length(count: int, year: int, where: str) -> None:
     if count != days * 24:
         raise InputError(
             f"{where}: the year {year} has a 29 February and the file has none; add that day, or write "
-            "a year without one, such as 2023, in every row (in Python: typical=True, if the year "
-            "stands for any)."
+            "a year without one, such as 2023, in every row (in Python: typical=True, if it is a "
+            "typical year)."
         )
 
 

@@ -98,7 +98,7 @@ def view_weights(building: Description, zone: str) -> list[list[float]]:
         return [[0.5 * (there + back) for there, back in zip(*pair, strict=True)] for pair in both_ways]
     if not closed(seen):
         return []
-    # Glass and frame of a window lie in one polygon and do not exchange radiation.
+    # Glass and frame of a window are in one polygon and do not exchange radiation.
     outlines = {item.name: item.polygon for item in seen if item.polygon is not None}
     polygons = list(outlines.values())
 

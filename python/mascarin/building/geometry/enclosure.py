@@ -1,4 +1,4 @@
-"""Enclosures of polygons: what lies in what, net areas, gaps between edges, the enclosed volume."""
+"""Enclosures of polygons: polygons inside others, net areas, gaps between edges, the enclosed volume."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def parents(polygons: Sequence[Polygon]) -> list[int | None]:
 
 
 def net_areas(polygons: Sequence[Polygon]) -> Array:
-    """Areas without the other surfaces that lie in the polygons.
+    """Areas without the other surfaces inside the polygons.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Plane polygons: areas, directions, and whether one lies in another.
+"""Plane polygons: areas, directions, and whether one is inside another.
 
 Coordinates are in metres with x to the east, y to the north and z up. The vertices of a surface run
 counter-clockwise when it is seen from outside, so that the normal by the right-hand rule is the outside

@@ -47,7 +47,7 @@ def content(study: Mapping[str, Any], _series: Series) -> list[dict[str, Any]] |
 
 
 def _fill(value: float | None, limit: float | None) -> float:
-    """How much of a limit is used up, in percent of the bar (the limit at 75 %)."""
+    """Value relative to its limit, in percent of the bar (the limit is at 75 %)."""
     if value is None or not limit:
         return 0.0
     return round(min(100.0, 75.0 * abs(float(value)) / abs(float(limit))), 1)

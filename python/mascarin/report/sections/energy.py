@@ -32,7 +32,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
 
 
 def ledger_bars(ledger: Mapping[str, Any]) -> Markup | None:
-    """Terms of the energy ledger as bars about zero.
+    """Terms of the energy balance as bars about zero.
 
     Parameters
     ----------

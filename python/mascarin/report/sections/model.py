@@ -50,7 +50,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
 
 
 def _built_so(building: Mapping[str, Any], construction: str) -> list[str]:
-    """Surfaces of a construction; none where it is but the one that bears its name."""
+    """Surfaces of a construction; none if the only one has the same name."""
     names = [
         text.plain_path(str(surface.get("name")))
         for surface in building.get("surfaces", [])

@@ -1,7 +1,7 @@
 r"""Spectral sensitivity analysis: every parameter varies at its own frequency over the runs.
 
 In each replicate parameter i follows its search curve at an integer frequency :math:`w_i` with a random
-phase :math:`\phi_i`, while the run number k goes once round the circle, :math:`s_k = 2 \pi k / N`. The
+phase :math:`\phi_i`, while the run number k passes once around the circle, :math:`s_k = 2 \pi k / N`. The
 Fourier transform of an output over the runs then has the part that is due to i alone on the lines
 :math:`w_i, 2 w_i, \dots, M w_i`. Frequencies are assigned again at random in every replicate: a harmonic or
 an interaction that falls on the line of another parameter in one replicate does not in the next.

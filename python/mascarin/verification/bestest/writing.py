@@ -61,7 +61,7 @@ def _header(case: Case) -> str:
     own = f"# {case.change[0].upper()}{case.change[1:]}.\n" if not against else ""
     return (
         f"# ANSI/ASHRAE Standard 140-2020, building thermal fabric, case {case.name}.\n{own}{against}"
-        "# What the standard leaves open and what was chosen, for all cases alike: docs/bestest.md.\n"
+        "# Choices that the standard leaves open, the same for all cases: docs/bestest.md.\n"
         "# Coordinates: x east, y north, z up [m], inside dimensions, origin: south-west floor corner.\n"
         "# Written by mascarin.verification.bestest.writing from the table of cases; a test compares.\n"
         f"name: Standard 140 case {case.name}\n"
