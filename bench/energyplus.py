@@ -25,9 +25,10 @@ import numpy.typing as npt
 import pandas as pd
 
 from mascarin.building import Building
-from mascarin.building.derived import enclosure, faces_of, outlines
+from mascarin.building.derived import enclosure, outlines, sides_of_zone
 from mascarin.building.geometry import Polygon, parents, view_factors
-from mascarin.building.material import PhaseChangeMaterial, Resistance, phase
+from mascarin.building.material import PhaseChangeMaterial, Resistance
+from mascarin.building.phases import phase
 from mascarin.building.surface import Side, Surface
 from mascarin.weather import CHANNELS, Climate
 
@@ -272,7 +273,7 @@ def _add_zones(model: Objects, building: Building) -> None:
         }
         polygons = enclosure(name, building.surfaces)
         assert polygons is not None
-        names = [face_name(surface, side) for surface, side in faces_of(name, building.surfaces)]
+        names = [face_name(surface, side) for surface, side in sides_of_zone(name, building.surfaces)]
         factors = view_factors(polygons)
         model.setdefault("ZoneProperty:UserViewFactors:BySurfaceName", {})[f"{name} view"] = {
             "zone_or_zonelist_or_space_or_spacelist_name": name,

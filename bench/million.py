@@ -1,7 +1,7 @@
 """Memory that a million objectives take: the LGI cell swept into a store, and its table read back.
 
 Memory depends on the members that are held, not on the period: series are reduced in stretches of a fixed
-size (`mascarin/sweep/work.py`). So the period is short, and the samples are as many as they would be. The
+size (`mascarin/ensemble/work.py`). So the period is short, and the samples are as many as they would be. The
 largest resident memory is the process's own, as the system counts it: Python, samples, store and table.
 
     python bench/million.py [--members 1000000] [--days 1] [--step 1h] [--write docs/speed.md]

@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import os
+import random
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+import hypothesis.core
 import pytest
 
 if TYPE_CHECKING:
@@ -14,6 +16,21 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 
 os.environ["MPLBACKEND"] = "Agg"  # no window opens in a test
+
+
+SEED = "MASCARIN_TEST_SEED"
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Give all workers one seed for random examples, so that a failure can be repeated."""
+    given = config.getoption("--hypothesis-seed", default=None)
+    seed = os.environ.setdefault(SEED, str(given or random.SystemRandom().randrange(2**32)))
+    hypothesis.core.global_force_seed = int(seed)  # type: ignore[assignment]
+
+
+def pytest_report_header() -> str:
+    """Print the seed at the head of the report."""
+    return f"seed of random examples: {os.environ[SEED]} (repeat with {SEED}={os.environ[SEED]})"
 
 
 def unavailable(reason: str) -> NoReturn:

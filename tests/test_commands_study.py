@@ -171,7 +171,7 @@ def test_a_step_refuses_what_a_study_refuses(
     (tmp_path / "file").write_text("mine", encoding="utf-8")
     code, _, said = run(capsys, command, str(bench.study), "-o", str(tmp_path / "file"))
     assert code == 2
-    assert "is a file; expected a folder" in said
+    assert "found a file, expected a folder" in said
 
 
 def test_a_posterior_sample_with_profiles(

@@ -244,7 +244,7 @@ def test_a_gain_that_ends_within_a_step_keeps_its_heat() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"zones.room.ventilation": {"fan": {"schedule": "office"}}}, "ventilation without a source of air"),
+        ({"zones.room.ventilation": {"fan": {"schedule": "office"}}}, "found: ventilation without a flow"),
         ({"zones.room.cooling": {"setpoint": 15}}, "found: heating to 20 degC, above cooling to 15 degC"),
         ({"zones.room.gains.lamp": {"power": 5, "schedule": "ofice"}}, "Did you mean 'office'"),
         ({"zones.room.gains.lamp": {"power": 5, "schedule": "warm"}}, "a schedule of kind fraction"),

@@ -120,17 +120,17 @@ class FractionDays(_Days):
     FractionDays(all=[FractionPoint])
     """
 
-    all: tuple[FractionPoint, ...] | None = None
-    weekdays: tuple[FractionPoint, ...] | None = None
-    weekends: tuple[FractionPoint, ...] | None = None
-    monday: tuple[FractionPoint, ...] | None = None
-    tuesday: tuple[FractionPoint, ...] | None = None
-    wednesday: tuple[FractionPoint, ...] | None = None
-    thursday: tuple[FractionPoint, ...] | None = None
-    friday: tuple[FractionPoint, ...] | None = None
-    saturday: tuple[FractionPoint, ...] | None = None
-    sunday: tuple[FractionPoint, ...] | None = None
-    holidays: tuple[FractionPoint, ...] | None = None
+    all: tuple[FractionPoint, ...] | None = Field(None, description="Profile of all days")
+    weekdays: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Monday to Friday")
+    weekends: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Saturday and Sunday")
+    monday: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Mondays")
+    tuesday: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Tuesdays")
+    wednesday: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Wednesdays")
+    thursday: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Thursdays")
+    friday: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Fridays")
+    saturday: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Saturdays")
+    sunday: tuple[FractionPoint, ...] | None = Field(None, description="Profile of Sundays")
+    holidays: tuple[FractionPoint, ...] | None = Field(None, description="Profile of holidays")
 
 
 class TemperatureDays(_Days):
@@ -142,17 +142,17 @@ class TemperatureDays(_Days):
     TemperatureDays(all=[TemperaturePoint])
     """
 
-    all: tuple[TemperaturePoint, ...] | None = None
-    weekdays: tuple[TemperaturePoint, ...] | None = None
-    weekends: tuple[TemperaturePoint, ...] | None = None
-    monday: tuple[TemperaturePoint, ...] | None = None
-    tuesday: tuple[TemperaturePoint, ...] | None = None
-    wednesday: tuple[TemperaturePoint, ...] | None = None
-    thursday: tuple[TemperaturePoint, ...] | None = None
-    friday: tuple[TemperaturePoint, ...] | None = None
-    saturday: tuple[TemperaturePoint, ...] | None = None
-    sunday: tuple[TemperaturePoint, ...] | None = None
-    holidays: tuple[TemperaturePoint, ...] | None = None
+    all: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of all days")
+    weekdays: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Monday to Friday")
+    weekends: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Saturday and Sunday")
+    monday: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Mondays")
+    tuesday: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Tuesdays")
+    wednesday: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Wednesdays")
+    thursday: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Thursdays")
+    friday: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Fridays")
+    saturday: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Saturdays")
+    sunday: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of Sundays")
+    holidays: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of holidays")
 
 
 class _Schedule(Part):

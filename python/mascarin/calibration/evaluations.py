@@ -153,9 +153,17 @@ class Evaluator:
         return np.stack([self._residuals[k] for k in self._evaluated(x, keep=True)])
 
     def slopes(self, x: Floats) -> Floats:
-        """Compute exact derivatives of the residuals at one parameter vector (P,), shape (T, S, P), once.
+        """Compute exact derivatives of the residuals, once for each parameter vector.
 
-        [unit of the sensor / unit of the parameter]
+        Parameters
+        ----------
+        x : ndarray, shape (P,)
+            Values of the parameters. [unit of each]
+
+        Returns
+        -------
+        ndarray, shape (T, S, P)
+            Derivatives. [unit of the sensor / unit of the parameter]
         """
         key = np.ascontiguousarray(x, dtype=np.float64).tobytes()
         if key not in self._slopes:

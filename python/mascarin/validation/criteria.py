@@ -50,6 +50,17 @@ _WORDS: Final = {
 class Criterion(BaseModel):
     """One limit on one metric, for some or all sensors and periods.
 
+    Parameters
+    ----------
+    metric : str
+        What is limited, such as ``rmse``.
+    limit : float
+        Largest size of the metric, itself allowed. [unit of the metric]
+    sensors, periods : sequence of str, optional
+        Sensors and periods it applies to. Default: all.
+    name : str, optional
+        A name for the report.
+
     Examples
     --------
     >>> Criterion(metric="rmse", limit=0.5, sensors=("room",)).describe("degC")
