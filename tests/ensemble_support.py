@@ -38,7 +38,7 @@ def always_deadly(run: xr.Dataset) -> xr.DataArray:
 
 
 class Forgetful(Executor):
-    """Runs work at once, and loses every third piece of it."""
+    """Runs each chunk at once, and loses every third one."""
 
     def __init__(self) -> None:
         self.given = 0

@@ -473,7 +473,7 @@ def _add_energy(study: dict[str, Any]) -> None:
 
 
 def wall() -> tuple[dict[str, Any], Series]:
-    """A study of a single wall with two sensors, in the fewest words; one sensor has a dead stretch."""
+    """A study of a single wall with two sensors, as short as possible; one sensor is stuck for some time."""
     rng = np.random.default_rng(1)
     n = 10 * 1440
     hour = np.arange(n) / 60.0

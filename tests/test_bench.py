@@ -49,7 +49,7 @@ def test_the_program_written_by_hand_agrees_with_the_engine() -> None:
 
 
 @pytest.mark.usefixtures("bench")
-def test_energyplus_is_told_the_same_cell() -> None:
+def test_energyplus_gets_the_same_cell() -> None:
     import cell
     import energyplus  # type: ignore[import-not-found]
 
@@ -106,7 +106,7 @@ def test_weather_for_energyplus(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("bench")
 def test_the_page_beside_energyplus_holds_the_recorded_numbers(repository: Path) -> None:
-    """Tables and numbers were written by one run, and the numbers say what the page says in words."""
+    """Tables and numbers were written by one run, and the numbers agree with the text of the page."""
     import energyplus_pcm  # type: ignore[import-not-found]
 
     numbers = json.loads(energyplus_pcm.NUMBERS.read_text(encoding="utf-8"))
@@ -129,7 +129,7 @@ def test_the_page_beside_energyplus_holds_the_recorded_numbers(repository: Path)
 
 
 @pytest.mark.usefixtures("bench")
-def test_every_table_of_the_page_of_speed_has_its_place(repository: Path) -> None:
+def test_every_table_of_the_page_on_speed_can_be_written(repository: Path) -> None:
     import page  # type: ignore[import-not-found]
 
     text = (repository / "docs" / "speed.md").read_text(encoding="utf-8")
@@ -146,7 +146,7 @@ def test_every_table_of_the_page_of_speed_has_its_place(repository: Path) -> Non
 
 
 @pytest.mark.usefixtures("bench")
-def test_the_engine_alone_is_handed_what_a_run_is(tmp_path: Path) -> None:
+def test_the_engine_alone_gets_the_input_of_a_run(tmp_path: Path) -> None:
     import engine_cases  # type: ignore[import-not-found]
     import engine_speed  # type: ignore[import-not-found]
 

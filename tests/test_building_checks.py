@@ -17,7 +17,7 @@ from mascarin.simulation.linear_model import state_space
 
 
 def test_u_value_of_a_wall() -> None:
-    """0.2 m of concrete at 1.75 W/(m K) between the film resistances 0.04 and 0.13 m2K/W of ISO 6946."""
+    """0.2 m of concrete at 1.75 W/(m K) between the surface resistances 0.04 and 0.13 m2K/W of ISO 6946."""
     building = room()
     assert u_value(building, building.surfaces["south"]) == pytest.approx(1 / (0.04 + 0.2 / 1.75 + 0.13))
 
@@ -29,7 +29,7 @@ def test_u_value_of_a_floor_on_the_ground() -> None:
 
 
 def test_a_given_coefficient_is_used_where_it_includes_radiation() -> None:
-    """Outdoors without long-wave of its own a constant film stands for all; with it, only ISO 6946 does."""
+    """Outdoors without separate long-wave exchange the constant coefficient is used, otherwise ISO 6946."""
     combined = parse(
         ROOM.replace("emissivity: 0.9, absorptance", "longwave: none, emissivity: 0.9, absorptance"), "x"
     )
@@ -67,7 +67,7 @@ def test_density_of_the_air_is_that_of_the_engine() -> None:
 
 
 def test_the_engine_uses_the_same_density() -> None:
-    """The air's rate of change by its films goes with 1/density; air changes do not depend on it."""
+    """The part of the air's rate by convection is proportional to 1/density, that by air changes is not."""
     linear = parse(
         ROOM.replace("emissivity: 0.9, absorptance", "longwave: none, emissivity: 0.9, absorptance"), "x"
     ).replace({"zones.room.longwave": "none"})

@@ -103,7 +103,7 @@ def weather(channels: list[str], steps: int) -> npt.NDArray[np.float64]:
 
 @pytest.mark.parametrize("case", range(len(everything())))
 def test_the_engine_agrees(case: int) -> None:
-    """Moved within its range, every number changes a result or the ledger, or a reason says why not."""
+    """Each number, varied within its range, changes a result or the energy balance, or has a reason."""
     building = everything()[case]
     engine = building.to_engine(900)
     derived = ("operative_temperature", "globe_temperature")

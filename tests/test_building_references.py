@@ -37,7 +37,7 @@ def test_of_an_assumed_number_only_a_publication_is_cited() -> None:
 
 
 def test_only_active_numbers_and_methods_are_cited() -> None:
-    """A sky that nothing sees, a sun that nothing takes from the climate, an unused material."""
+    """No surface exchanges with the sky, no irradiance comes from the climate, one material is not used."""
     measured = parse(ROOM.replace("absorptance: 0.6", "absorptance: 0.6, irradiance: G"), "x")
     assert cites(measured, "Reda", "Perez", "Kasten", "Liu & Jordan", "Kopp") == [False] * 5
     blind = parse(ROOM.replace("absorptance: 0.6", "absorptance: 0.6, longwave: none"), "x")

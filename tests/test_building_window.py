@@ -106,7 +106,7 @@ def test_errors_of_windows(old: str, new: str, said: str) -> None:
 
 
 def test_steady_heat_through_a_window(climate: Climate) -> None:
-    """Two panes, a given gap and two constant films in series, nothing radiating: U = 2.10 W/(m2 K)."""
+    """Two panes, a given gap and two constant coefficients in series, no radiation: U = 2.10 W/(m2 K)."""
     still = box(
         zones__room__longwave="none",
         windows__pane__outside__longwave="none",
@@ -226,7 +226,7 @@ def sums(building: Building, climate: Climate, *names: str) -> tuple[Any, list[f
 
 
 def test_a_black_room_absorbs_all_sun_and_a_white_one_none(climate: Climate) -> None:
-    """What falls on black faces stays, as no window sees another; white ones send all of it back."""
+    """Black surfaces absorb all radiation, as no window faces another one; white ones reflect all of it."""
     names = ("room.transmitted_solar", "room.lost_solar")
     run, (let_in, lost) = sums(drawn(1.0), climate, *names)
     assert let_in > 1e8
@@ -239,13 +239,13 @@ def test_a_black_room_absorbs_all_sun_and_a_white_one_none(climate: Climate) -> 
 
 
 def test_a_gray_room_loses_sun_by_area_and_reflectance(climate: Climate) -> None:
-    """The shares of Standard 140 lose 3.5 % at an absorptance of 0.6."""
+    """With the solar fractions of Standard 140, 3.5 % is lost at an absorptance of 0.6."""
     _, (let_in, lost) = sums(drawn(0.6), climate, "room.transmitted_solar", "room.lost_solar")
     assert 0.02 < lost / let_in < 0.05
 
 
 def test_a_screen_in_front_of_a_window_leaves_ground_radiation(climate: Climate) -> None:
-    """All sky is hidden; the ground gives 0.2 of the global radiation to a face that half sees it."""
+    """No sky is visible; the ground with view factor 0.5 reflects 0.2 of the global radiation."""
     wide = [[-500, -0.01, -500], [500, -0.01, -500], [500, -0.01, 500], [-500, -0.01, 500]]
     _, (behind,) = sums(drawn(shades={"screen": {"vertices": wide}}), climate, "one.incident_solar")
     _, (roof,) = sums(drawn(), climate, "roof.incident_solar")

@@ -24,7 +24,7 @@ EXACT = Rules(starts=2, slopes="exact")
 
 
 def model(x: Floats) -> Floats:
-    """A decay and a wave, seen by two sensors."""
+    """A decay and a sinusoid, measured by two sensors."""
     rate, size, offset = (x[:, k, None] for k in range(3))
     decay = size * np.exp(-rate * TIME)
     return np.stack([decay + offset, offset * np.cos(TIME) + decay**2], axis=2)
@@ -124,7 +124,7 @@ def test_other_methods_take_exact_slopes_for_their_intervals() -> None:
 
 
 class Killed(BaseException):
-    """Stands for the process being killed."""
+    """Simulates that the process is killed."""
 
 
 def test_interrupted_between_slopes_it_continues_and_ends_the_same(tmp_path: Path) -> None:

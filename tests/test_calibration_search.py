@@ -265,7 +265,7 @@ def test_bias_costs_without_intervals() -> None:
 
 
 class Killed(BaseException):
-    """Stands for the process being killed."""
+    """Simulates that the process is killed."""
 
 
 @pytest.mark.parametrize("method", ["least-squares", "hooke-jeeves"])

@@ -31,7 +31,7 @@ def test_the_cases_are_listed_with_their_files(capsys: pytest.CaptureFixture[str
         (["195", "--weather", "no.epw", "-o", "not/there"], "--out: found"),
     ],
 )
-def test_what_cannot_be_run_is_told_before(
+def test_input_that_cannot_be_run_is_refused_before_the_runs(
     words: list[str], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["bestest", *words]) == 2
@@ -73,7 +73,7 @@ def test_a_case_of_the_user_runs_like_the_others(
     assert "mine.yaml" in page
 
 
-def test_a_file_of_the_user_that_is_wrong_is_told_by_line(
+def test_an_error_in_a_file_of_the_user_names_the_line(
     data_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     mine = tmp_path / "mine.yaml"

@@ -140,7 +140,7 @@ def test_validate_ends_with_0_when_every_criterion_is_kept(
 def test_a_run_may_start_from_a_temperature_that_is_given(
     bench: Bench, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The state at the start is said, and a wrong one is seen after a warm-up of a day."""
+    """The initial state is printed, and an error of it is still visible after a warm-up of a day."""
     study = bench.folder / "cold.yaml"
     starts, errors = [], []
     for initial in ("repeat", "12.5", "-20"):

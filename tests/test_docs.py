@@ -4,7 +4,7 @@ In each page the fenced blocks are taken in order, in one empty folder and one P
 
 - ``python`` is executed;
 - ``console``: lines ``$ mascarin ...`` run on the command line and must succeed, and every line
-  shown beneath must be in what the command prints (``...`` stands for anything);
+  shown beneath must be in what the command prints (``...`` matches any text);
 - ``yaml`` must be YAML.
 
 A comment directly above a fence changes that:
@@ -54,7 +54,7 @@ def blocks(page: Path) -> Iterator[Block]:
 
 
 def run_console(block: Block, capsys: pytest.CaptureFixture[str]) -> None:
-    """Run each ``$ mascarin`` line and hold the lines beneath against what it prints."""
+    """Run each ``$ mascarin`` line and compare the lines below it with its output."""
     text = block.text.replace("\\\n", " ")
     for chunk in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
         command, *shown = chunk.splitlines()

@@ -56,7 +56,7 @@ def members(name: str, value: Any) -> Iterator[str]:
 
 
 def one_line(item: str, value: Any) -> bool:
-    """Whether a method says everything, its arguments included, in one line."""
+    """Whether one line describes a method completely, with its arguments."""
     owner, _, name = item.rpartition(".")
     return owner in PUBLIC and "\n" not in (inspect.getdoc(getattr(value, name)) or "").strip()
 

@@ -1,4 +1,4 @@
-"""The LGI cell as an example: complete, true to its geometry, and honest about what it assumes."""
+"""The LGI cell as an example: complete, with the stated geometry, and with all assumptions marked."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ def test_the_identified_cell_holds_on_days_it_has_not_seen(tmp_path: Path) -> No
     assert all(verdict.passed for verdict in judged(study, run)[run.label])
 
 
-def test_the_study_chooses_its_film_outside_on_the_identification_period() -> None:
+def test_the_study_selects_the_outside_convection_in_the_identification_period() -> None:
     study = Study.from_yaml(STUDIES["lgi"])
     assert study.candidates == [None, "TARP outside", "linear in the wind"]
     paths = set(study.plan_of("linear in the wind").parameters)

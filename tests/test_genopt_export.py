@@ -282,7 +282,7 @@ def listed(folder: Path) -> list[tuple[object, ...]]:
 
 
 def in_process(study: Study, reductions: int, starts: int, seed: int) -> tuple[Rows, Evaluator]:
-    """The pattern search driven by hand on the study's own problem, without any project."""
+    """The pattern search on the problem of the study, called directly without a project."""
     lower, upper = [0.02, 0.2], [0.06, 0.8]
     space = box([INSULATION, ABSORPTANCE], [0.04, 0.5], lower, upper, [0.004, 0.06])
 

@@ -12,7 +12,7 @@ from mascarin.genopt.listing import Listings
 
 
 def refused(ini: Path) -> str:
-    """What is said of a project that cannot be used, with its algorithm."""
+    """Message for a project that cannot be used, with its algorithm."""
     with pytest.raises(InputError) as caught:
         built(ini)
     return str(caught.value)

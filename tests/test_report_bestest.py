@@ -50,7 +50,7 @@ def test_drawings_say_what_they_show(html: str) -> None:
     assert any(text.startswith("Annual heating, low mass. 600: 4.380 of 3.993 to 4.504;") for text in said)
 
 
-def test_what_lies_outside_has_the_digits_of_its_range(html: str) -> None:
+def test_a_value_outside_has_as_many_digits_as_its_range(html: str) -> None:
     lines = re.findall(r"<li>(\w+: [^<]* outside of the range [^<]*)</li>", html)
     assert lines
     for line in lines:

@@ -208,7 +208,7 @@ def test_an_impossible_start_is_refused(linear: Building, climate: Climate, init
 # --- ensembles and derivatives ---
 
 
-def test_all_members_start_alike_and_the_start_is_constant_for_derivatives(
+def test_all_members_have_the_same_initial_state_and_derivatives_treat_it_as_constant(
     linear: Building, climate: Climate
 ) -> None:
     path = "materials.foam.conductivity"

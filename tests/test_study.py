@@ -267,7 +267,7 @@ def test_exact_slopes_find_the_same_wall(quick: Bench, capsys: pytest.CaptureFix
 def test_what_keeps_from_an_aim_is_the_parameter_left_out(
     quick: Bench, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The sun that the wall takes up is wrong in the description, and nobody identifies it."""
+    """The absorptance of the wall is wrong in the description and is not identified."""
     text = quick.study.read_text("utf-8")
     for path in ("surfaces.wall.outside.absorptance", "materials.brick.conductivity"):
         assert f"    {path}:\n" in text
@@ -292,7 +292,7 @@ def test_what_keeps_from_an_aim_is_the_parameter_left_out(
 
 
 def _left(done: Done) -> str:
-    """What the report says in its section on the rest; nothing where there is none."""
+    """Text of the report section on the sources of remaining error; empty where there is none."""
     page = (done.out / "report.html").read_text(encoding="utf-8")
     if 'id="error-sources"' not in page:
         return ""
@@ -417,8 +417,8 @@ def test_two_studies_do_not_share_a_folder(quick: Bench, capsys: pytest.CaptureF
     Workspace(out, study.inputs()).__exit__()
 
 
-def test_when_it_was_run_is_told_beside_the_results(done: Done) -> None:
-    """The results are the same to the byte each time; the moment and the time it took stand by themselves."""
+def test_date_and_run_time_are_in_a_separate_file(done: Done) -> None:
+    """The results are the same to the byte each time; date and run time are in run.json."""
     run = json.loads((done.out / "run.json").read_text(encoding="utf-8"))
     assert run["run_time"] > 0.0
     assert run["created"].endswith("+00:00")
@@ -427,7 +427,7 @@ def test_when_it_was_run_is_told_beside_the_results(done: Done) -> None:
 
 
 @pytest.mark.filterwarnings("always::UserWarning")
-def test_a_manifest_that_nobody_can_read_is_other_work(
+def test_an_unreadable_manifest_counts_as_that_of_another_study(
     quick: Bench, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = quick.folder / "out" / ".work"
@@ -624,7 +624,7 @@ def test_the_wall_bench_holds_on_blind_days(wall: Done, data_dir: Path) -> None:
     assert wall.content["ledger"]["closure"] <= 1e-10
 
 
-def test_no_estimate_of_the_wall_bench_lies_on_a_bound_unexplained(wall: Done) -> None:
+def test_every_estimate_of_the_wall_bench_on_a_bound_has_a_reason(wall: Done) -> None:
     for path, entry in wall.content["parameters"].items():
         low, high = entry["range"]
         on_bound = min(entry["fitted"] - low, high - entry["fitted"]) <= 1e-3 * (high - low)

@@ -22,7 +22,7 @@ FREE = STUDY[STUDY.index("    materials.insulation.conductivity:") :]
 
 
 class Refused(NamedTuple):
-    """A text of the study in another form, and what must be said about it."""
+    """A changed text of the study, and the expected message."""
 
     before: str
     after: str
@@ -503,7 +503,7 @@ def bench(tmp_path: Path, table: Path) -> Bench:
 
 
 def refusal(bench: Bench, capsys: pytest.CaptureFixture[str]) -> str:
-    """What a study says that must be refused, with nothing left behind."""
+    """Message of a study that must be refused; no file may remain."""
     before = sorted(bench.folder.rglob("*"))
     code = cli.main(["study", str(bench.study), "-o", str(bench.folder / "out")])
     printed = capsys.readouterr()
@@ -588,7 +588,9 @@ def test_a_table_is_refused_before_a_study_runs(
         assert part in said
 
 
-def test_a_dead_sensor_that_nobody_masks_is_refused(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_stuck_sensor_that_is_not_masked_is_refused(
+    bench: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
     bench.edit("mask: [stuck]", "mask: []")
     table = pd.read_csv(bench.table)
     dead(table, "core")

@@ -190,7 +190,7 @@ def test_series_that_cannot_be_analyzed_are_refused() -> None:
 
 
 def test_the_cross_correlation_is_given_at_every_lag() -> None:
-    """A residual that is the sun two hours later goes with it most at two hours."""
+    """A residual that follows the sun with a lag of two hours has its strongest correlation at two hours."""
     late = np.roll(SUN, 8) / 900.0
     found = analyze_residuals(np.zeros(HOUR.size), late, step=STEP, hour=HOUR, drivers={"sun": SUN}).to_dict()
     values = found["cross_correlation"]["sun"]

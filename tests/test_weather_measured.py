@@ -241,7 +241,7 @@ def test_lgi_record_is_read_whole(repository: Path) -> None:
 
 
 def logger(folder: Path, row: int, name: str, entry: float, **options: Any) -> Climate:
-    """Two days of hours, one entry changed; row 0 stands in line 2."""
+    """Two days of hours, one entry changed; row 0 is in line 2."""
     index = pd.date_range("2024-06-01", periods=48, freq="1h")
     frame = pd.DataFrame({"T": 20.0, "RH": 60.0, "d": 90.0, "L": 300.0}, index=index)
     frame.loc[index[row], name] = entry

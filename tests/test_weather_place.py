@@ -12,7 +12,7 @@ from mascarin.weather.place_check import require_place
 
 @dataclass(frozen=True)
 class Site:
-    """What a building says of its place."""
+    """Place of a building."""
 
     latitude: float = 39.83
     longitude: float = -104.65
@@ -68,7 +68,7 @@ def test_weather_from_elsewhere_can_be_wanted(data_dir: Path) -> None:
         Climate.from_epw(path).forcing(site, "2001-01-01", "2001-01-02", 3600.0)
 
 
-def test_a_table_is_held_to_what_it_says_of_itself(denver: Climate) -> None:
+def test_a_table_is_checked_by_its_stated_place(denver: Climate) -> None:
     table = replace(denver.record, of_year=False, site=Place(39.83, -104.65))
     # Its clock may be any, and an altitude that was not stated is not compared.
     require_place(table, Site(timezone="UTC"))

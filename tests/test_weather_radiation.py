@@ -39,7 +39,7 @@ def clear() -> ClearSky:
 
 
 def reconstruction_errors(clear: ClearSky, minutes: int, basis: Basis) -> dict[str, float]:
-    """Root mean square difference from the true course [W/m2]; means are checked on the way."""
+    """Root mean square difference from the true time series [W/m2]; also checks the means."""
     means = {name: clear.means(getattr(clear, name), minutes) for name in ("direct", "diffuse", "total")}
     sky = from_means(clear.sun, 0.0, 60.0 * minutes, means["direct"], means["diffuse"], means["total"], basis)
     names = {"direct": sky.direct_normal, "diffuse": sky.diffuse_horizontal, "total": sky.global_horizontal}

@@ -28,10 +28,10 @@ class EngineSolverError(Exception):
     """A step or a warm-up that did not converge."""
 
 class EngineDefect(Exception):
-    """A defect of the engine itself: it stopped on a panic."""
+    """An internal error of the engine (a panic)."""
 
 def _panic(message: str) -> None:
-    """Panic on purpose, so that tests can see what becomes of a defect of the engine."""
+    """Panic on purpose, to test how an internal error of the engine is handled."""
 
 @final
 class Plan:
@@ -84,7 +84,7 @@ class Plan:
 
 @final
 class Trajectory:
-    """A run that keeps what its derivatives in reverse need."""
+    """A run with the stored states that its derivatives in reverse mode need."""
 
     def __new__(
         cls, plan: Plan, values: _Array, forcing: _Array, options: dict[str, Any], memory: int
@@ -92,7 +92,7 @@ class Trajectory:
         """A run that keeps about `memory` bytes."""
 
     def run(self) -> dict[str, Any]:
-        """What `Plan.simulate` gives."""
+        """The result of `Plan.simulate`."""
 
     def pull(self, weights: _Array) -> _Array:
         """Slopes by all parameters of the sum of weights (rows x probes) times records."""
