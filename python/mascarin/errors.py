@@ -9,7 +9,7 @@ from collections.abc import Iterable
 class MascarinError(Exception):
     """Root of the errors that Mascarin raises on purpose.
 
-    The text says where (file and line, path in the description, column), what was found, what
+    The text states where (file and line, path in the description, column), what was found, what
     was expected and what to do: it is shown to the user as it stands.
     """
 
@@ -29,7 +29,7 @@ class InputError(MascarinError):
 
 
 class SolverError(MascarinError):
-    """A calculation did not converge; the text says when, where and with which residual."""
+    """A calculation did not converge; the text states when, where and with which residual."""
 
     exit_code = 3
 

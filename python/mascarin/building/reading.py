@@ -56,7 +56,7 @@ def parse(text: str, name: str) -> Building:
     text : str
         The text.
     name : str
-        Stands for the file in messages.
+        Name of the file in messages.
 
     Returns
     -------

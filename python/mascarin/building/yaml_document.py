@@ -57,7 +57,7 @@ def read(path: str | Path, kind: type[AnyPart], what: str, *, blanks: bool = Tru
 
 
 def parse_as(kind: type[AnyPart], text: str, name: str, *, blanks: bool = True) -> AnyPart:
-    """Read a description of any kind from YAML text; ``name`` stands for the file in messages."""
+    """Read a description of any kind from YAML text; ``name`` is the name of the file in messages."""
     document = _Document(name, blanks=blanks)
     plain = document.read(text)
     try:
@@ -67,12 +67,12 @@ def parse_as(kind: type[AnyPart], text: str, name: str, *, blanks: bool = True) 
 
 
 def plain(text: str, name: str) -> Any:
-    """Read YAML text as mappings, lists, texts and numbers; ``name`` stands for the file in messages."""
+    """Read YAML text as mappings, lists, texts and numbers; ``name`` is the name of the file in messages."""
     return _Document(name).read(text)
 
 
 def lines(text: str, name: str) -> Mapping[Place, int]:
-    """Line of each key and value of YAML text, by place; ``name`` stands for the file in messages."""
+    """Line of each key and value of YAML text, by place; ``name`` is the name of the file in messages."""
     document = _Document(name, blanks=True)
     document.read(text)
     return document.lines

@@ -59,7 +59,7 @@ class Cost:
     Attributes
     ----------
     note : str
-        Says that the name was read as another one; empty where it was not.
+        Note that the name was read as another one; empty if it was not.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """The record of a calibration: every evaluation, written to a file as it is made, so that none is run twice.
 
-A record is a text file of JSON lines. The first line says which problem it belongs to; each further line
+A record is a text file of JSON lines. The first line identifies the problem; each further line
 holds one evaluation: the parameter values, the cost of each sensor and, where the method needs them, the
 residuals; or the exact derivatives at parameter values, where they were computed. A line that is incomplete
 because the program was killed is removed, and the file is continued from there.

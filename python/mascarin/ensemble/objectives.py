@@ -16,7 +16,7 @@ _STATISTICS: Final[dict[str, Callable[[xr.DataArray, float], xr.DataArray]]] = {
     "mean": lambda series, _: series.mean("time"),
     "max": lambda series, _: series.max("time"),
     "sd": lambda series, _: series.std("time"),
-    # Each record stands for the interval before it; the first is the state at the start.
+    # Each record represents the interval before it; the first is the state at the start.
     "above": lambda series, limit: _hours(series, series > limit),
     "below": lambda series, limit: _hours(series, series < limit),
 }

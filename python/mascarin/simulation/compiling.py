@@ -144,7 +144,7 @@ def start_of(
     """Temperature or temperatures at the start; None to repeat the first period."""
     if wanted is None or isinstance(wanted, float):
         return wanted
-    # The weather of the first stage stands for that of the start.
+    # The weather of the first stage is also used at the start.
     now = dict(zip((*CHANNELS, *description.channels), forcing[0, 0].tolist(), strict=True))
     ambient = Ambient(now["air_temperature"], now["day_of_year"], now)
     return resolved(wanted, building, description.nodes, ambient, start)

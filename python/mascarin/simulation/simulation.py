@@ -329,7 +329,7 @@ class Simulation(VectorRuns):
             Such as ``air_temperature``; see `mascarin.weather.CHANNELS`.
         """
         values = self.compiled.forcing[:, :, CHANNELS.index(channel)]
-        # The start has no stage: the first one of the first step stands for it.
+        # The start has no stage: the first one of the first step is used.
         return np.concatenate([values[:1, 0], values[:, -1]])
 
     # --- checks and provenance ----------------------------------------------------------------------------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def means(place: Array, values: Array, times: Array) -> Array:
     """Means over the intervals that end at the times, of a flux recorded at the end of each step."""
-    # A recorded flux stands for the step that it ends.
+    # A recorded flux is that of the step that it ends.
     heat = np.concatenate([[0.0], np.cumsum(values[1:] * np.diff(place))])
     at = np.interp(times, place, heat)
     return np.concatenate([values[:1], np.diff(at) / np.diff(times)])

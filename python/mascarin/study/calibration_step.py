@@ -101,7 +101,7 @@ def independent_weight(plan: IdentificationPlan, interval: float) -> float:
     Parameters
     ----------
     plan : IdentificationPlan
-        Says after which time samples count as independent.
+        Has the time after which samples count as independent.
     interval : float
         Spacing of the samples. [s]
     """

@@ -44,7 +44,7 @@ class Inputs:
     climate : Climate
         The weather.
     measurements : Measurements
-        The measured columns, masked as the plan says.
+        The measured columns, masked by the plan.
     quality : list of Stretch
         Suspicious values of the measured columns.
     places : Places

@@ -58,7 +58,7 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
 
 
 def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
-    """All active parameters with a range, as the plan says.
+    """All active parameters with a range, by the plan.
 
     Raises
     ------

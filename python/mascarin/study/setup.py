@@ -90,7 +90,7 @@ class Setup:
 
     @property
     def file(self) -> StudyFile:
-        """What the study file says.
+        """Plan of the study.
 
         Raises
         ------

@@ -1,6 +1,6 @@
 """Intermediate results of a study on disk, so that an interrupted study continues where it was.
 
-The manifest says which inputs the intermediate results belong to.
+The manifest identifies the inputs of the intermediate results.
 """
 
 from __future__ import annotations

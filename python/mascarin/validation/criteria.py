@@ -89,7 +89,7 @@ class Criterion(BaseModel):
     @field_validator("sensors", "periods", mode="before")
     @classmethod
     def _listed(cls, value: object) -> object:
-        """A single name stands for a list of one."""
+        """A single name is read as a list of one."""
         return [value] if isinstance(value, str) else value
 
     def describe(self, unit: str) -> str:

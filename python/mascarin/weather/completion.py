@@ -29,7 +29,7 @@ def complete(record: WeatherRecord, latitude: float, longitude: float) -> Weathe
     Returns
     -------
     WeatherRecord
-        With all irradiances and cloud cover; the provenance says how they were derived.
+        With all irradiances and cloud cover; the provenance states how they were derived.
     """
     missing = [name for name in (*RADIATION, "cloud_cover") if name not in record.data.columns]
     if not missing:

@@ -45,7 +45,7 @@ def read_frame(path: Path, separator: str | None, decimal: str, skip_lines: int)
     Parameters
     ----------
     path : Path
-        The file; its ending says whether it is Parquet.
+        The file; its ending shows whether it is Parquet.
     separator : str or None
         Between entries of a CSV file; None: found from the header.
     decimal : str

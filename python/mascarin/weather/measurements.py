@@ -235,7 +235,7 @@ class Measurements(RecordView[Record]):
         Returns
         -------
         Measurements
-            New series, whose provenance says how many values were masked.
+            New series, whose provenance states how many values were masked.
         """
         aligned = mask.reindex(index=self.data.index, columns=self.data.columns, fill_value=False).astype(
             bool
