@@ -162,7 +162,7 @@ def test_every_package_is_described() -> None:
         assert f"`{package}/`" in text or f"`{package}.py`" in text, package
 
 
-def test_the_engine_knows_no_python() -> None:
+def test_the_engine_does_not_use_python() -> None:
     manifest = (ROOT / "crates" / "engine" / "Cargo.toml").read_text(encoding="utf-8")
     assert "pyo3" not in manifest
     for path in (ROOT / "crates" / "engine" / "src").rglob("*.rs"):

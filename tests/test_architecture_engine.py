@@ -168,7 +168,7 @@ def test_files_and_functions_are_short_or_say_why_not(file: Path) -> None:
             assert "Long because " in before, f"{name}, line {first}: {length} lines without a reason"
 
 
-def test_unsafe_stands_in_one_folder() -> None:
+def test_unsafe_is_in_one_folder_only() -> None:
     word = re.compile(r"\bunsafe\b(?!_code)")
     where = {file.relative_to(SOURCE).parts[:2] for file in FILES if word.search(code_of(file))}
     assert where <= {("number", "simd"), ("number", "simd.rs")}, where

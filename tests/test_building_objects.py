@@ -238,7 +238,7 @@ def test_pickled_buildings_keep_their_notes() -> None:
     assert again.to_engine().json == building.to_engine().json
 
 
-def test_every_exported_part_says_what_its_fields_are() -> None:
+def test_every_exported_part_describes_its_fields() -> None:
     for name in b.__all__:
         text = getattr(b, name).__doc__
         assert text, name

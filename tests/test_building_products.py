@@ -121,6 +121,6 @@ def test_unknown_properties_must_be_given(monkeypatch: pytest.MonkeyPatch) -> No
     assert values(material, "latent_heat", "density") == [1e5, 900]
 
 
-def test_the_schema_knows_the_short_form() -> None:
+def test_the_schema_allows_the_short_form() -> None:
     validator = jsonschema.Draft202012Validator(json_schema())
     validator.validate(plain(text("product: RT25HC"), "room.yaml"))

@@ -73,7 +73,7 @@ def test_least_squares_recovers_the_truth_from_data_without_noise() -> None:
     assert fit.on_bound == {}
 
 
-def test_intervals_hold_the_truth_and_the_table_says_so() -> None:
+def test_intervals_contain_the_true_values_as_in_the_table() -> None:
     fit = solve(_problem(noise=0.3))
     assert np.all((fit.low < TRUTH) & (fit.high > TRUTH))
     assert np.all(fit.low < fit.x)

@@ -47,7 +47,7 @@ def test_every_command_has_help(command: cli.Command, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda c: c.name)
-def test_the_list_says_of_a_command_what_its_docstring_says(command: cli.Command) -> None:
+def test_the_list_of_commands_agrees_with_their_docstrings(command: cli.Command) -> None:
     module, name = command.function.split(":")
     function = getattr(importlib.import_module(module), name)
     assert (inspect.getdoc(function) or "").splitlines()[0] == command.help
@@ -82,7 +82,7 @@ def test_a_wrong_call_is_bad_input(words: list[str], said: str, capsys: pytest.C
         (SolverError("roof, step 12"), 3),
     ],
 )
-def test_known_errors_are_said_as_they_stand(
+def test_messages_of_known_errors_are_printed_unchanged(
     error: Exception, code: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     raising(monkeypatch, error)
@@ -150,7 +150,7 @@ def test_the_code_a_command_returns_is_the_exit_code(monkeypatch: pytest.MonkeyP
     assert cli.main([]) == 1
 
 
-def test_warnings_are_said_in_one_line(
+def test_warnings_are_printed_on_one_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def app(_words: list[str]) -> None:

@@ -49,13 +49,15 @@ def test_schema_accepts_a_building_and_refuses_a_wrong_one(
     assert not validator.is_valid(building)
 
 
-def test_check_says_what_is_there(wall: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_describes_the_building(wall: str, capsys: pytest.CaptureFixture[str]) -> None:
     out = run(capsys, "check", wall)
     assert out.startswith("Bench: 0 zones, 1 surface")
     assert "assumed: materials.concrete.specific_heat = 880 J/(kg K)" in out
 
 
-def test_check_as_json_tells_assumptions_from_findings(wall: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_as_json_separates_assumptions_from_findings(
+    wall: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     found = json.loads(run(capsys, "check", wall, "--json", "--step", "1h"))
     assert found["summary"][0].startswith("Bench: ")
     assert any(text.startswith("materials.concrete.specific_heat = 880") for text in found["assumed"])

@@ -29,7 +29,9 @@ def test_errors_end_with_one_as_in_genopt(tmp_path: Path, capsys: pytest.Capture
     assert "Optimization terminated with error." in (tmp_path / "GenOpt.log").read_text()
 
 
-def test_the_limit_ends_with_zero_and_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_limit_on_evaluations_ends_with_exit_code_zero(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     ini = write_project(tmp_path, settings="MaxIte = 8; WriteStepNumber = false; UnitsOfExecution = 1;")
     assert cli.main(["optimize", str(ini)]) == 0
     assert "Maximum number of iteration exceeded." in capsys.readouterr().err

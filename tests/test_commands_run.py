@@ -155,7 +155,7 @@ def test_a_layer_that_never_melts_is_warned_of(call: list[str], capsys: pytest.C
     assert f"warning: {line}" in err
 
 
-def test_a_run_says_how_often_a_state_switched_within_a_step(
+def test_a_run_prints_how_often_a_state_switched_within_a_step(
     call: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     # About the temperature that the box has.

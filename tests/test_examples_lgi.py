@@ -143,7 +143,7 @@ BLIND = (0.22, 0.30, 0.32, 0.33, 0.70, 1.00)
 BIAS = 0.3  # K, what the sensors allow
 
 
-def test_the_identified_cell_holds_on_days_it_has_not_seen(tmp_path: Path) -> None:
+def test_the_calibrated_cell_is_accurate_on_days_not_used(tmp_path: Path) -> None:
     """The identification as the study does it, on five days; its numbers frozen on all the others."""
     study = Study.from_yaml(STUDIES["lgi"])
     with Workspace(tmp_path, study.inputs()) as workspace:

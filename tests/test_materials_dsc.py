@@ -146,7 +146,7 @@ def test_noise_changes_little(tmp_path: Path) -> None:
     assert all(b > a for a, b in pairwise(enthalpies))
 
 
-def test_lag_is_warned_of(tmp_path: Path) -> None:
+def test_a_fast_heating_rate_gives_a_warning(tmp_path: Path) -> None:
     t = temperatures()
     file = write(tmp_path / "a.csv", {"temperature [degC]": t, "DSC [W/g]": heat(t) * 10 / 60 / 1000})
     assert "10 K/min is faster than in any wall" in from_dsc(file, rate=10.0).warnings[0]

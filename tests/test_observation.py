@@ -54,7 +54,7 @@ def test_instants_and_means_stand_side_by_side_for_every_member() -> None:
     np.testing.assert_allclose(found[1], 2.0 * found[0])
 
 
-def test_nothing_is_known_outside_the_run() -> None:
+def test_values_outside_the_run_are_missing() -> None:
     index, run = records("2024-01-01 01:00", [1.0, 2.0], "1h")
     seen = observation("2024-01-01 00:00", 4, "1h", "instant")
     np.testing.assert_array_equal(seen.simulated(index, run)[:, 0], [np.nan, 1.0, 2.0, np.nan])

@@ -31,7 +31,7 @@ def test_hooke_jeeves_finds_the_minimum_on_its_mesh() -> None:
     assert search.reason == "required accuracy is reached"
 
 
-def test_guesses_change_neither_the_course_nor_the_count() -> None:
+def test_points_run_in_advance_change_neither_the_search_nor_the_count() -> None:
     alone, helped = plane(), plane()
     calls = [0, 0]
 

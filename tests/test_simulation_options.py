@@ -189,6 +189,6 @@ def test_a_compiled_run_is_text_and_arrays() -> None:
     assert compiled.dated("step 3 did not converge") == "step 3 from 2001-07-01 03:00:00 did not converge"
 
 
-def test_a_simulation_says_what_it_is() -> None:
+def test_a_simulation_has_a_short_description() -> None:
     text = repr(mc.Simulation(box(), box_climate(), **SHORT))
     assert text == ("<Simulation of 'box', 2001-07-01 00:00 to 2001-07-04 00:00, step 3600 s, 1 outputs>")

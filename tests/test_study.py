@@ -134,7 +134,7 @@ def test_the_schema_of_the_result(done: Done) -> None:
     assert all(len(entry["sha256"]) == 64 for entry in content["inputs"])
 
 
-def test_the_band_holds_on_days_it_has_not_seen(done: Done) -> None:
+def test_the_prediction_interval_covers_days_not_used(done: Done) -> None:
     """The data are our own model with white noise: the band is the noise, and a little for the estimates."""
     for sensor, found in done.content["band"].items():
         assert found["error"] == pytest.approx(NOISE, rel=0.15)
@@ -192,7 +192,7 @@ def test_what_matters_is_what_acts_on_the_sensor(done: Done) -> None:
     assert core["sensors.core.depth"]["effect"] > 0.0
 
 
-def test_blind_days_are_those_the_fit_has_not_seen(done: Done) -> None:
+def test_blind_days_are_those_not_used_for_the_calibration(done: Done) -> None:
     n = {period: done.content["sensors"]["joint"][period]["n"] for period in PERIODS}
     assert n["identification"] == 4 * 144
     assert n["corroboration"] == 2 * 144
@@ -264,7 +264,7 @@ def test_exact_slopes_find_the_same_wall(quick: Bench, capsys: pytest.CaptureFix
     assert (found.out / "study.json").read_bytes() == before
 
 
-def test_what_keeps_from_an_aim_is_the_parameter_left_out(
+def test_the_reason_of_a_missed_aim_is_the_parameter_left_out(
     quick: Bench, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The absorptance of the wall is wrong in the description and is not identified."""
@@ -612,7 +612,7 @@ def static_regression(data_dir: Path, series: pd.DataFrame, column: str, sensor:
     )
 
 
-def test_the_wall_bench_holds_on_blind_days(wall: Done, data_dir: Path) -> None:
+def test_the_wall_bench_is_accurate_on_blind_days(wall: Done, data_dir: Path) -> None:
     sensors, series = wall.content["sensors"], wall.table("series")
     blind = {name: sensors[name]["blind"]["rmse"] for name in ("interface", "insulation")}
     assert blind["interface"] <= 0.15
@@ -631,7 +631,7 @@ def test_every_estimate_of_the_wall_bench_on_a_bound_has_a_reason(wall: Done) ->
         assert not on_bound or entry.get("reason"), path
 
 
-def test_the_dead_sensor_of_the_wall_bench_is_found(wall: Done) -> None:
+def test_the_stuck_sensor_of_the_wall_bench_is_found(wall: Done) -> None:
     stuck = [entry for entry in wall.content["quality"] if entry["kind"] == "stuck"]
     assert [entry["channel"] for entry in stuck] == ["T_ins_1"]
     assert stuck[0]["start"].startswith("2024-09-07T05:0")

@@ -604,7 +604,7 @@ def test_a_stuck_sensor_that_is_not_masked_is_refused(
         assert part in said
 
 
-def test_all_that_is_wrong_is_said_at_once(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_errors_are_in_one_message(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
     """What is wrong with a table hides neither what else is, nor another column."""
     bench.edit("column: joint", "column: jiont")
     bench.edit("column: core", "column: cor")

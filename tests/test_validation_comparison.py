@@ -117,7 +117,7 @@ def test_the_sign_of_nmbe_is_that_of_the_bias() -> None:
         ([5.0], "W", "no degree of freedom"),
     ],
 )
-def test_over_a_mean_without_meaning_nothing_is_divided(measured: list[float], unit: str, text: str) -> None:
+def test_a_metric_over_a_mean_without_meaning_is_missing(measured: list[float], unit: str, text: str) -> None:
     m = metrics(measured, measured, unit=unit)
     assert math.isnan(m.cv_rmse)
     assert math.isnan(m.nmbe)

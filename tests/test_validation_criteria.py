@@ -72,7 +72,7 @@ def test_criteria_are_frozen() -> None:
         ({"metric": "max_error", "limit": 1, "sensors": []}, r"criteria\[0\].sensors"),
     ],
 )
-def test_criteria_that_cannot_be_meant_are_refused(item: dict[str, object], text: str) -> None:
+def test_impossible_criteria_are_refused(item: dict[str, object], text: str) -> None:
     with pytest.raises(InputError, match=text):
         parse_criteria([item])
 

@@ -52,7 +52,7 @@ def test_shaped_reconstruction_keeps_means_and_signs(means: list[float]) -> None
     assert nodes.min() >= 0.0
 
 
-def test_a_linear_course_is_found_again_from_its_means() -> None:
+def test_a_linear_series_is_reconstructed_from_its_means() -> None:
     edges = np.arange(21.0)
     nodes = steady(0.5 * (edges[1:] + edges[:-1]), 4, positive=False)
     inner = nodes[1:-1]

@@ -83,7 +83,7 @@ def test_global_is_direct_times_height_plus_diffuse_at_every_node(clear: ClearSk
         assert np.max(np.abs(closure)) < 1e-10
 
 
-def test_course_is_continuous_but_for_the_horizon(clear: ClearSky) -> None:
+def test_radiation_is_continuous_except_at_the_horizon(clear: ClearSky) -> None:
     direct, diffuse, total = (clear.means(x, 60) for x in (clear.direct, clear.diffuse, clear.total))
     nodes = from_means(
         clear.sun, 0.0, 3600.0, direct, diffuse, total, "global+diffuse"

@@ -77,7 +77,7 @@ def test_sun_at_mid_interval_closes_the_radiation_balance(denver: Climate) -> No
     assert abs(closure(1800.0)[morning].mean() - closure(1800.0)[~morning].mean()) < 1.0
 
 
-def test_typical_year_stands_for_any_year_and_wraps(denver: Climate) -> None:
+def test_typical_year_represents_any_year_and_is_repeated(denver: Climate) -> None:
     assert denver.site is not None
     air = CHANNELS.index("air_temperature")
     year = denver.forcing(denver.site, "2001-01-01", "2002-01-01", 3600.0, "backward-euler")[:, 0, air]

@@ -40,7 +40,7 @@ def test_direction_is_pvlibs_true_position_at_any_instant(place: str) -> None:
     assert np.max(np.abs(np.linalg.norm(vector, axis=1) - 1.0)) < 1e-12
 
 
-def test_noon_sun_stands_south_in_denver_and_north_in_reunion_in_june() -> None:
+def test_noon_sun_is_south_in_denver_and_north_in_reunion_in_june() -> None:
     for place, azimuth_sign, height in (("Denver", -1.0, 73.6), ("Saint-Pierre", 1.0, 45.2)):
         latitude, longitude = PLACES[place]
         day = pd.date_range("2024-06-21", periods=1440, freq="1min", tz="UTC")
