@@ -192,7 +192,7 @@ def test_vertices_that_contradict_area_and_volume() -> None:
 
 def test_assumptions_are_listed() -> None:
     told = noted(room(), "assumed")
-    assert "site.sky: infrared of the weather file, else martin_berdahl, because none is given" in told
+    assert any("site.sky: infrared of the weather file, else martin_berdahl" in line for line in told)
     assert any("site.diffuse: perez" in line for line in told)
     assert any("zones.room: view factors by areas" in line for line in told)
     assert any("zones.room.capacity_factor = 1 -" in line for line in told)
