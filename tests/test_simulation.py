@@ -394,7 +394,7 @@ def test_the_command_lists_parameters_without_effect(
     listed = {row["path"]: row["reason"] for row in json.loads(out)}
     assert listed["surfaces.floor.azimuth"] == "a horizontal surface has no direction"
     assert "surfaces.roof.area" not in listed
-    assert err == f"96 parameters, {len(listed)} without effect\n"
+    assert err == f"95 parameters, {len(listed)} without effect\n"
 
 
 def test_the_command_needs_weather_for_that(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

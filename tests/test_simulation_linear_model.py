@@ -48,7 +48,7 @@ def drive(system: StateSpace, climate: Climate, step: float, sun: Array) -> Arra
 
     dew, cloud, air = at("dew_point") / 100.0, at("cloud_cover"), at("air_temperature")
     clear = 0.711 + 0.56 * dew + 0.73 * dew**2
-    cloudy = np.minimum(clear * (1.0 + 0.0224 * cloud - 0.0035 * cloud**2 + 0.00028 * cloud**3), 1.0)
+    cloudy = clear + (1.0 - clear) * 0.1 * cloud * np.exp(-1200.0 / 8200.0)
     known = {
         "outdoor_air_temperature": air,
         "sky_emission": cloudy * SIGMA * (air + KELVIN) ** 4,

@@ -11,8 +11,8 @@ from mascarin.building.building import Building
 from mascarin.building.documenting import summary_of
 from mascarin.building.number import Number
 
-USUAL_KIND: Final = "solid"
-"""A material without a kind is a solid."""
+USUAL_KINDS: Final = ("solid", "factor")
+"""Kinds that a file may leave out: of a material, and of the effect of clouds given by coefficients."""
 
 
 class _Schema(GenerateJsonSchema):
@@ -50,7 +50,7 @@ def _as_written(form: dict[str, Any]) -> None:
     if "description" in form:
         form["description"] = summary_of(form["description"])
     kind = form.get("properties", {}).get("kind", {})
-    if "const" in kind and kind["const"] != USUAL_KIND and "kind" not in form.get("required", ()):
+    if "const" in kind and kind["const"] not in USUAL_KINDS and "kind" not in form.get("required", ()):
         form["required"] = ["kind", *form.get("required", ())]
 
 

@@ -99,6 +99,16 @@ class DscMaterial:
         Heating first.
     warnings : tuple of str
         Warnings, and decisions that were made for the user.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> file = Path(tempfile.mkdtemp()) / "wax.csv"
+    >>> points = [f"{t},{2.0 + 20.0 * max(0.0, 1.0 - abs(t - 25) / 3)}" for t in range(10, 41)]
+    >>> _ = file.write_text("\\n".join(["temperature [degC],cp heating [J/(g K)]", *points]))
+    >>> from_dsc(file).name
+    'wax'
     """
 
     name: str

@@ -133,7 +133,7 @@ def identify(
     progress : callable, optional
         Called with the number of evaluations and the lowest cost so far.
     """
-    return solve(
+    found = solve(
         stated,
         method=plan.method,
         cost=plan.cost,
@@ -150,6 +150,7 @@ def identify(
         batch=_batch(simulation),
         on_batch=progress,
     )
+    return replace(found, nominal_building=simulation.building)
 
 
 def _batch(simulation: Simulation) -> int:

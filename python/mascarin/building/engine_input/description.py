@@ -49,6 +49,13 @@ class EngineDescription:
         Warnings about the mesh.
     nodes : mapping of (str, str) to int
         Finite volumes by construction and layer.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> description = box().to_engine()
+    >>> len(description.paths) == len(description.values)
+    True
     """
 
     json: str

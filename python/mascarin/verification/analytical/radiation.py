@@ -141,13 +141,19 @@ def _sky(name: str) -> Iterator[Check]:
         "clark_allen": 0.787 + 0.764 * math.log((dew + KELVIN) / 273.0),
         "brunt": 0.618 + 0.056 * math.sqrt(6.1094 * math.exp(17.625 * dew / (243.04 + dew))),
     }
-    clouds = 1.0 + 0.0224 * cloud - 0.0035 * cloud**2 + 0.00028 * cloud**3
+    factor = 1.0 + 0.0224 * cloud - 0.0035 * cloud**2 + 0.00028 * cloud**3
+    layer = 0.1 * cloud * math.exp(-1200.0 / 8200.0)
+    # Martin and Berdahl add an opaque layer, the others are used with the factor of Clark and Allen.
+    emissivities = {
+        sky: clear + (1.0 - clear) * layer if sky == "martin_berdahl" else min(clear * factor, 1.0)
+        for sky, clear in skies.items()
+    }
     columns = {
         "air_temperature": setup.steady(air),
         "dew_point": setup.steady(dew),
         "cloud_cover": setup.steady(cloud),
     }
-    for sky, clear in skies.items():
+    for sky, sky_emissivity in emissivities.items():
         for tilt in (0.0, 60.0):
             text = f"""\
 site: {{latitude: 0, longitude: 0, altitude: 0, timezone: UTC, sky: {sky}}}
@@ -164,7 +170,7 @@ surfaces:
             view = 0.5 * (1.0 + math.cos(math.radians(tilt)))
             beta = math.sqrt(view)
             # Radiation of the sky, part of it (1 - beta) that of the air, and a ground as warm as the air.
-            arriving = view * beta * min(clear * clouds, 1.0) * emission(air) + (
+            arriving = view * beta * sky_emissivity * emission(air) + (
                 1.0 - view * beta
             ) * emission(air)
 
