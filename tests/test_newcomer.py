@@ -204,7 +204,7 @@ def test_a_key_that_is_no_text_is_named() -> None:
 
 def test_a_part_cannot_be_assigned_to() -> None:
     with pytest.raises(mc.InputError, match=r"Zone\.volume: .*immutable"):
-        mc.building.Zone(volume=40).volume = 30  # type: ignore[assignment]
+        mc.building.Zone(volume=40).volume = 30  # type: ignore[misc, assignment]
 
 
 def test_a_fault_in_a_part_given_as_an_object_is_named_down_to_its_field() -> None:
@@ -248,7 +248,7 @@ def test_plots_refuse_what_are_no_axes_and_take_a_grid_of_axes() -> None:
     with pytest.raises(mc.InputError, match="names: found none"):
         run.plot([])
     figure, grid = plt.subplots(1, 1, squeeze=False)
-    assert run.plot(names, ax=grid) is figure
+    assert run.plot(names, ax=grid) is figure  # type: ignore[arg-type]
     assert grid[0, 0].get_ylabel() == "[degC]"
     plt.close(figure)
 

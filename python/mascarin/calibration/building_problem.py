@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -72,10 +72,11 @@ def fit_parameter(
         raise InputError(
             f"{path}: is structural ({parameter.reason}) and cannot be estimated; choose another parameter"
         )
-    pair = list(bounds) if isinstance(bounds, Iterable) and not isinstance(bounds, str) else [bounds]
+    given: Any = bounds  # of any type, where no type checker has looked
+    pair = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
     own = (parameter.low, parameter.high)
     if len(pair) == len(own):
-        pair = [value if given is None else given for given, value in zip(pair, own, strict=True)]
+        pair = [value if end is None else end for end, value in zip(pair, own, strict=True)]
     low, high = bounds_of(path, pair)
     return FitParameter(
         path=parameter.path,

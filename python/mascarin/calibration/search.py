@@ -166,7 +166,7 @@ def _require(method: str, cost: str, confidence: float, own: bool) -> None:
     if method in WITH_SQUARES and cost != "nll" and not own:
         msg = f"{method} minimizes 'nll'; for the cost '{cost}' use a method such as 'hooke-jeeves'"
         raise InputError(msg)
-    if not isinstance(confidence, float) or not 0.0 < confidence < 1.0:
+    if not 0.0 < confidence < 1.0:
         msg = f"confidence: found {confidence!r}, expected a number between 0 and 1, such as 0.95"
         raise InputError(msg)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,11 +45,13 @@ def gradient_of(
     InputError
         The objective needs an output that was not recorded.
     """
-    found = objective(dict(zip(names, trajectory.records.T, strict=True))) if callable(objective) else None
+    given: Any = objective  # of any type, where no type checker has looked
+    found = given(dict(zip(names, trajectory.records.T, strict=True))) if callable(given) else None
     if not (isinstance(found, tuple) and len(found) == 2 and isinstance(found[1], Mapping)):
-        shown = kind_of(found if callable(objective) else objective)
+        shown = kind_of(found if callable(given) else given)
         raise InputError(
-            f"objective: found {shown}, expected a function of the series by output that returns (value, {output: its derivatives})"
+            f"objective: found {shown}, expected a function of the series by output that returns the value "
+            "and a mapping from output to derivatives"
         )
     value, by_series = found
     weights = np.zeros_like(trajectory.records)

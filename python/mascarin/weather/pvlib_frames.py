@@ -250,9 +250,8 @@ def _require_unit(channel: str, values: Array, place: Place) -> None:
     wrong = limits is not None and not limits.low <= middle <= limits.high
     if channel == "global_horizontal" and abs(place.latitude) < _POLAR:
         # By day even a dark sky gives more than 2 W/m2.
-        wrong = wrong or (
-            0.1 < highest <= 2.0 and np.count_nonzero(known > 0.05 * highest) > 0.1 * len(known)
-        )
+        lit = int(np.count_nonzero(known > 0.05 * highest))
+        wrong = wrong or (0.1 < highest <= 2.0 and lit > 0.1 * len(known))
     if wrong and limits is not None:
         raise InputError(
             f"{_WHERE}: {channel} ({' or '.join(_NAMES[channel])}): found a median of {middle:g} and "
