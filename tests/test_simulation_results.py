@@ -213,7 +213,7 @@ def test_plot_uses_the_axes_of_the_reader(run: Results) -> None:
     one = Figure().subplots()
     run.plot(ax=one)
     assert len(one.get_lines()) == 4
-    assert one.get_ylabel() == "degC, W/m2"
+    assert one.get_ylabel() == "[degC], [W/m2]"
     with pytest.raises(InputError, match="found 3 axes, expected one, or one for each unit"):
         run.plot(ax=[above, below, one])
 
