@@ -382,7 +382,7 @@ def test_a_cost_that_is_no_number_at_the_start_stops_at_once() -> None:
 
 
 def test_unknown_method_and_costs_that_do_not_fit() -> None:
-    with pytest.raises(InputError, match="method 'newton' is not known"):
+    with pytest.raises(InputError, match="method: found 'newton'"):
         solve(_problem(), method="newton")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="for the cost 'sd' use a method such as 'hooke-jeeves'"):
         solve(_problem(), cost="sd")

@@ -136,7 +136,7 @@ def test_impossible_rules_are_refused() -> None:
         with pytest.raises(InputError, match=text):
             Rules(**keywords)
     with pytest.raises(
-        InputError, match=r"method 'particle swarm' is not known. Did you mean 'particle-swarm'"
+        InputError, match=r"method: found 'particle swarm', expected .* Did you mean 'particle-swarm'"
     ):
         solve(problem(), method="particle swarm")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="walkers: found 2, expected at least 4"):

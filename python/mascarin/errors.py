@@ -50,7 +50,8 @@ def did_you_mean(found: str, known: Iterable[str]) -> str:
         The closest names, or the whole list where it is short, or an empty string.
     """
     names = sorted(set(known))
-    close = difflib.get_close_matches(found, names, n=3, cutoff=0.6)
+    # What was given may be anything: None, a number.
+    close = difflib.get_close_matches(str(found), names, n=3, cutoff=0.6)
     if close:
         return f"Did you mean {_either(close)}?"
     if names and len(names) <= 20:

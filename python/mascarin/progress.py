@@ -6,9 +6,12 @@ import contextlib
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Final, Self, TextIO
+
+from mascarin.errors import InputError
 
 Report = Callable[[int, int], object]
 """What is called during long work, with the number of units done and their total."""
@@ -49,6 +52,10 @@ def reporting(progress: ProgressOption, label: str) -> Iterator[Report]:
     >>> seen
     [(1, 2)]
     """
+    if progress is not None and not isinstance(progress, bool) and not callable(progress):
+        raise InputError(
+            f"progress: found {progress!r}, expected True, False, None, or a function of (done, total)"
+        )
     if callable(progress):
         call = progress
 
@@ -75,7 +82,9 @@ def in_notebook() -> bool:
 
 @contextlib.contextmanager
 def _notebook_bar(label: str) -> Iterator[Report]:
-    from tqdm.auto import tqdm
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # without ipywidgets the bar is text, which needs no warning
+        from tqdm.auto import tqdm
 
     with tqdm(desc=label, delay=SILENT_FOR, leave=False) as bar:
 

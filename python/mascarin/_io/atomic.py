@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import shutil
 import tempfile
@@ -45,6 +46,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     >>> target.read_text()
     'a,b\n'
     """
+    _require_folder(path)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PART, dir=path.parent)
     draft = Path(name)
     try:
@@ -58,6 +60,12 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
         draft.unlink(missing_ok=True)
         raise
     _flush_folder(path.parent)
+
+
+def _require_folder(path: Path) -> None:
+    """Name the folder that is missing, not the temporary file in it."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, f"cannot write {path.name}: no such folder", str(path.parent))
 
 
 @contextlib.contextmanager
@@ -79,6 +87,7 @@ def drafted(path: Path) -> Iterator[Path]:
     OSError
         The file cannot be written; the file that was there before is unchanged.
     """
+    _require_folder(path)
     with tempfile.TemporaryDirectory(prefix=f".{path.name}.", suffix=PART, dir=path.parent) as folder:
         draft = Path(folder) / path.name
         yield draft

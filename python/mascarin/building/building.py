@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from pydantic import ValidationError, model_validator
 
 from mascarin._io import atomic, display
+from mascarin._io.arguments import mapping_of
 from mascarin.building import outputs as results
 from mascarin.building import summary
 from mascarin.building.checks import check, seconds_of
@@ -298,7 +299,8 @@ class Building(Description):
         >>> cell.replace({"site.sky": "brunt"}).site.sky.kind
         'brunt'
         """
-        places = {self._place(path, value): without_parts(value) for path, value in values.items()}
+        changes = mapping_of("values", values, "values or parts by path")
+        places = {self._place(path, value): without_parts(value) for path, value in changes.items()}
         structural = any(self._is_structural(path) for path in places)
         plain = self.written(keep_derived=not structural)
         for path, value in places.items():
@@ -330,6 +332,7 @@ class Building(Description):
         >>> cell.with_values({"site.altitude": 60}).parameter("site.altitude").value
         60.0
         """
+        values = mapping_of("values", values, "numbers by path, such as {'zones.room.volume': 30.0}")
         for path, value in values.items():
             if isinstance(value, bool) or not isinstance(value, int | float):
                 try:

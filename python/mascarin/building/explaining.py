@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from mascarin.errors import InputError
 
@@ -64,7 +64,7 @@ def _place(location: Place, plain: Any) -> Place:
         kind = isinstance(plain, Mapping) and plain.get("kind") == step and isinstance(following, str)
         if not kind and holds(plain, step):
             place.append(step)
-            plain = plain[step]
+            plain = _written(plain[step])
     last = location[-1] if location else None
     if isinstance(last, str) and "]" not in last and _lacks(plain, last, place):
         place.append(last)
@@ -88,6 +88,16 @@ def holds(plain: Any, step: str | int) -> bool:
     return isinstance(plain, Mapping) and step in plain
 
 
+def _written(plain: Any) -> Any:
+    """A part that was given as an object, as the mapping that a file would hold."""
+    if isinstance(plain, tuple):
+        return list(plain)
+    if not isinstance(plain, BaseModel):
+        return plain
+    names = plain.model_fields_set | ({"kind"} & type(plain).model_fields.keys())
+    return {name: getattr(plain, name) for name in names}
+
+
 def _line(place: Place, lines: Mapping[Place, int]) -> int:
     for length in range(len(place), -1, -1):
         if place[:length] in lines:
@@ -99,7 +109,7 @@ def _dotted(place: Place, plain: Any) -> str:
     """Write a place as the path of a parameter, with the names of layers."""
     steps = []
     for step in place:
-        plain = plain[step] if holds(plain, step) else None
+        plain = _written(plain[step]) if holds(plain, step) else None
         named = isinstance(step, int) and isinstance(plain, Mapping)
         steps.append(str((plain.get("name") or plain.get("material") or step) if named else step))
     return ".".join(steps)

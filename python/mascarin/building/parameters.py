@@ -115,6 +115,11 @@ def resolve(building: Description, path: str, known: Mapping[str, Any]) -> str:
     InputError
         If nothing has that path; the text names the nearest ones.
     """
+    if not isinstance(path, str):
+        raise InputError(
+            f"parameters: found {path!r}, expected a path such as 'zones.room.volume', "
+            "as Building.parameters() lists"
+        )
     found = lookup(building, path, known)
     if found is None:
         raise InputError(

@@ -13,7 +13,7 @@ from mascarin._io import display
 from mascarin.building.documenting import documented, signature_of
 from mascarin.building.explaining import explained
 from mascarin.building.number import Number, noted_form, problem, quantity_of, shown
-from mascarin.errors import did_you_mean
+from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ModelWrapValidatorHandler
@@ -40,6 +40,15 @@ class Part(BaseModel):
             super().__init__(**fields)
         except ValidationError as error:
             raise explained(error, fields, type(self).__name__) from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        try:
+            super().__setattr__(name, value)
+        except ValidationError:
+            raise InputError(
+                f"{type(self).__name__}.{name}: found an assignment, expected none: a part is immutable. "
+                "Building.replace and with_values return a building with other values"
+            ) from None
 
     # Without this mark pydantic would call __init__ for every part inside another one.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]

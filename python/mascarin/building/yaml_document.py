@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import ValidationError
 
+from mascarin._io.arguments import require_type
 from mascarin.building.explaining import Place, explained
 from mascarin.building.part import Part
 from mascarin.errors import InputError
@@ -47,6 +48,7 @@ def read(path: str | Path, kind: type[AnyPart], what: str, *, blanks: bool = Tru
         If the file cannot be read or its description has errors. The text names each error by file, line and
         path, with what was found, what was expected and what to do.
     """
+    require_type("path", path, (str, Path), "the path of a file; a mapping is read by Building.from_dict")
     file = Path(path)
     try:
         text = file.read_text(encoding="utf-8")

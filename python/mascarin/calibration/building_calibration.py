@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.arguments import kind_of, mapping_of, require_type
 from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.calibration.cost import CostName
 from mascarin.calibration.problem import FitParameter
@@ -17,11 +18,13 @@ from mascarin.calibration.rules import MethodName, Rules
 from mascarin.calibration.search import solve
 from mascarin.errors import InputError
 from mascarin.progress import ProgressOption
+from mascarin.simulation.compiling import require_inputs, with_parameters
 from mascarin.simulation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.sky import with_sky_of
 from mascarin.validation.observation import observe
 from mascarin.validation.sensors import Sensor, SensorUncertainty
+from mascarin.weather import Measurements
 from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
@@ -29,7 +32,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.simulation.initial import Initial
-    from mascarin.weather import Climate, Measurements
+    from mascarin.weather import Climate
 
 CONSTANT: Final = ("stuck", "forward_filled")
 """Kinds of suspicious values of the quality check in which a sensor repeats one value."""
@@ -148,7 +151,9 @@ def calibrate(
 
     from mascarin.weather.timezones import moment
 
-    chosen = building.replace(dict(parameters)) if parameters else building
+    require_inputs(building, climate)
+    _require_types(measurements, sensors, vary, record)
+    chosen = with_parameters(building, parameters)
     chosen = with_sky_of(chosen, climate, [p if isinstance(p, str) else p.path for p in vary])
     named = {name: s if isinstance(s, Sensor) else Sensor(s) for name, s in sensors.items()}
     free = _parameters(chosen, vary)
@@ -180,6 +185,28 @@ def calibrate(
         progress=progress,
     )
     return replace(found, nominal_building=chosen, times=observation.times)
+
+
+def _require_types(measurements: object, sensors: object, vary: object, record: object) -> None:
+    """Refuse arguments of other types, and sensors and parameters that are not given by name."""
+    require_type(
+        "measurements",
+        measurements,
+        Measurements,
+        "mascarin.Measurements; Measurements.from_table reads them",
+    )
+    if record is not None:
+        require_type("record", record, (str, Path), "the path of a file")
+    found = mapping_of("sensors", sensors, "columns by output: {'room.air_temperature': 'column'}")
+    if not found:
+        raise InputError("sensors: found none, expected at least one: {'room.air_temperature': 'column'}")
+    for name, sensor in found.items():
+        require_type(f"sensors: {name}", sensor, (str, Sensor), "the name of a column, or a Sensor")
+    paths = "a list of paths or a mapping to (low, high)"
+    if isinstance(vary, str) or not isinstance(vary, Iterable):
+        raise InputError(f"vary: found {kind_of(vary)}, expected {paths}")
+    for one in vary:
+        require_type("vary", one, (str, FitParameter), f"{paths}; an entry is a path or a FitParameter")
 
 
 def _uncertainties(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dict[str, SensorUncertainty]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from mascarin._io.arguments import bounds_of
 from mascarin.calibration.problem import CalibrationProblem, FitParameter, FitSensor
 from mascarin.errors import InputError
 
@@ -71,10 +72,12 @@ def fit_parameter(
         raise InputError(
             f"{path}: is structural ({parameter.reason}) and cannot be estimated; choose another parameter"
         )
-    low, high = (
-        given if given is not None else own
-        for given, own in zip(bounds, (parameter.low, parameter.high), strict=True)
-    )
+    given: Any = bounds  # of any type, where no type checker has looked
+    pair = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
+    own = (parameter.low, parameter.high)
+    if len(pair) == len(own):
+        pair = [value if end is None else end for end, value in zip(pair, own, strict=True)]
+    low, high = bounds_of(path, pair)
     return FitParameter(
         path=parameter.path,
         lower=low,

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin._io.arguments import require_type, whole_number
 from mascarin.calibration.cost import ONE_NUMBER, Cost, CostName
 from mascarin.calibration.evaluations import Evaluator
 from mascarin.calibration.least_squares import least_squares, residuals_and_derivatives
@@ -127,6 +128,9 @@ def _solved(
     on_batch: Callable[[int, float], object],
 ) -> Calibration:
     _require(method, cost, confidence, optimizer is not None)
+    whole_number("seed", seed)
+    if rules is not None:
+        require_type("rules", rules, Rules, "mascarin.calibration.Rules")
     chosen = rules or Rules()
     if chosen.slopes == "exact":
         problem.require_slopes()
@@ -155,13 +159,15 @@ def _solved(
 
 def _require(method: str, cost: str, confidence: float, own: bool) -> None:
     if method not in METHODS:
-        msg = f"method '{method}' is not known. {did_you_mean(method, METHODS)} Known: {', '.join(METHODS)}."
+        msg = (
+            f"method: found '{method}', expected one of {', '.join(METHODS)}. {did_you_mean(method, METHODS)}"
+        )
         raise InputError(msg)
     if method in WITH_SQUARES and cost != "nll" and not own:
         msg = f"{method} minimizes 'nll'; for the cost '{cost}' use a method such as 'hooke-jeeves'"
         raise InputError(msg)
     if not 0.0 < confidence < 1.0:
-        msg = f"confidence: found {confidence:g}, expected a number between 0 and 1, such as 0.95"
+        msg = f"confidence: found {confidence!r}, expected a number between 0 and 1, such as 0.95"
         raise InputError(msg)
 
 

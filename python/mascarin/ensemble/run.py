@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin import __version__
+from mascarin._io.arguments import kind_of, mapping_of
 from mascarin._io.locks import FolderLock
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.members import members as read_members
@@ -20,7 +21,7 @@ from mascarin.ensemble.work import CLOSURE, Chunk, EnsembleInputs, Objective, at
 from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
-from mascarin.simulation.compiling import with_parameters
+from mascarin.simulation.compiling import require_inputs, with_parameters
 from mascarin.simulation.options import RunOptions, described
 from mascarin.simulation.sky import with_sky_of
 from mascarin.weather import summary
@@ -218,6 +219,14 @@ def _prepared(
 
     The first structure is compiled, so that what cannot be used is found before anything is run.
     """
+    require_inputs(building, climate, options.measurements)
+    # Anything with columns: a mapping, a pandas frame, and what has the same methods.
+    if not hasattr(samples, "items"):
+        raise InputError(
+            f"samples: found {kind_of(samples)}, expected values by path, one for each member, such as "
+            "{'zones.room.volume': [30, 40]}, or a pandas.DataFrame with paths as columns"
+        )
+    functions = mapping_of("objectives", objectives, "functions by name: {'peak': function}")
     building = with_parameters(building, options.parameters)
     building = with_sky_of(building, climate, [str(path) for path in samples])
     members = read_members(building, samples)
@@ -226,7 +235,7 @@ def _prepared(
         climate=climate,
         options=replace(options, parameters=None),
         ranges=members.ranges,
-        objectives=dict(objectives or {}),
+        objectives=functions,
         identity="",
     )
     clash = set(inputs.objectives) & {"member", "closure", "failure", "samples"}

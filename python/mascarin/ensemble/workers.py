@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from typing import Final
 
+from mascarin._io.arguments import whole_number
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.work import Chunk, EnsembleInputs, run_chunk
 from mascarin.errors import MascarinError, SolverError
@@ -160,6 +161,7 @@ def _sized(members: int, seconds: float) -> int:
 
 def _processes(workers: int) -> ProcessPoolExecutor:
     # New processes: a copy of one whose threads are running may never continue.
+    whole_number("workers", workers, 1)
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_one_thread)
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib import dates
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from mascarin._io.arguments import require_type
 from mascarin.errors import InputError
 from mascarin.progress import in_notebook
 
@@ -52,6 +54,8 @@ def draw(
     >>> draw([("room", "degC", np.array([20.0, 21.0, 20.5]))], index, None).axes[0].get_xlabel()
     'local time (UTC)'
     """
+    if not series:
+        raise InputError("names: found none, expected at least one series to draw")
     units = list(dict.fromkeys(unit for _, unit, _ in series))
     axes = _axes(ax, units)
     # Times in UTC with local labels: a line does not go back where daylight saving time ends.
@@ -60,7 +64,7 @@ def draw(
         axes[units.index(unit)].plot(days, values, label=name, lw=1.1)
     for axis in dict.fromkeys(axes):
         here = [unit for unit, other in zip(units, axes, strict=True) if other is axis]
-        axis.set_ylabel(", ".join(here))
+        axis.set_ylabel(", ".join(f"[{unit}]" for unit in here))
         axis.legend(fontsize="small")
         axis.grid(alpha=0.3)
         locator = dates.AutoDateLocator(tz=index.tz)  # type: ignore[no-untyped-call]
@@ -72,14 +76,25 @@ def draw(
     return (axes[0].get_figure(root=True) if axes else None) or Figure()
 
 
+def _let_notebook_show_figures() -> None:
+    """Load the backend of the notebook: only then does it know how to draw a `Figure` that a cell returns."""
+    import matplotlib
+    from matplotlib import pyplot
+
+    if not pyplot.get_fignums():  # with an open figure the backend is loaded
+        pyplot.switch_backend(matplotlib.get_backend())
+
+
 def _axes(ax: Axes | Sequence[Axes] | None, units: Sequence[str]) -> list[Axes]:
     """One axes for each unit; the same axes may be used for several units."""
     if ax is None:
         if in_notebook():
-            import matplotlib.pyplot  # noqa: F401 (lets the notebook show figures)
+            _let_notebook_show_figures()
         figure = Figure(figsize=(9.0, 2.8 * len(units) + 0.6), layout="constrained")
         return list(figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]) if units else []
-    given = [ax] if isinstance(ax, Axes) else list(ax)
+    given = [ax] if isinstance(ax, Axes) else list(np.ravel(np.array(ax, dtype=object)))
+    for one in given:
+        require_type("ax", one, Axes, "axes of matplotlib, one or a list")
     if len(given) == 1:
         return given * len(units)
     if len(given) != len(units):

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from mascarin._io.arguments import bounds_of, finite_number, mapping_of, names_of
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.sensitivity.factors import DistributionName, Factor
 from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
+from mascarin.simulation.compiling import require_inputs
 from mascarin.simulation.options import described
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.sky import with_sky_of
@@ -87,9 +89,11 @@ def factors_of(
     (2200, 2500, 'kg/m3')
     """
     spans = {path: checked_range(building, path, span) for path, span in _resolved(building, ranges).items()}
-    shapes = _resolved(building, distributions)
-    group_of = _members(building, groups or {})
-    fixed = {building.parameter(path).path for path in leave_out}
+    shapes = _resolved(
+        building, mapping_of("distributions", distributions, "names by path: {path: 'normal'}")
+    )
+    group_of = _members(building, mapping_of("groups", groups, "lists of paths by name: {name: [path]}"))
+    fixed = {building.parameter(path).path for path in names_of("leave_out", leave_out)}
     chosen = None if only is None else {building.parameter(path).path for path in only}
     found = []
     for parameter in building.parameters():
@@ -193,13 +197,18 @@ def sensitivity_analysis(
     >>> found.ranking("room.air_temperature", 1)
     ['surfaces.facade.outside.absorptance']
     """
-    given = {building.parameter(path).path: value for path, value in (parameters or {}).items()}
+    require_inputs(building, climate, measurements)
+    fixed = mapping_of("parameters", parameters, "values by path, such as {'zones.room.volume': 30.0}")
+    given = {building.parameter(path).path: value for path, value in fixed.items()}
+    if vary is not None and not isinstance(vary, Mapping):
+        vary = names_of("vary", vary)
     building = with_sky_of(building, climate, [*given, *(vary or ())])
     only, ranges = _chosen(building, vary, given)
     chosen = factors_of(
         building, ranges=ranges, distributions=distributions, groups=groups,
-        leave_out=[*leave_out, *given], only=only,
+        leave_out=[*names_of("leave_out", leave_out), *given], only=only,
     )  # fmt: skip
+    finite_number("confidence", confidence, 0.0, 1.0)  # before the runs
     runs = plan(chosen, method, replicates=replicates, samples=samples, order=order, seed=seed)
     simulation = Simulation(
         building, climate, parameters=parameters, outputs=outputs, start=start, end=end, step=step,
@@ -324,7 +333,7 @@ def checked_range(building: Building, path: str, span: tuple[float, float]) -> t
     InputError
         Unknown or structural path, a low end that is not below the high end, or a range beyond the limits.
     """
-    parameter, (low, high) = building.parameter(path), span
+    parameter, (low, high) = building.parameter(path), bounds_of(path, span)
     if parameter.structural:
         raise InputError(f"{path}: is structural ({parameter.reason}) and cannot be varied; leave it out")
     if not parameter.lower <= low < high <= parameter.upper:
@@ -344,7 +353,7 @@ def _members(building: Building, groups: Mapping[str, Sequence[str]]) -> dict[st
     """Group of each path that has one."""
     found: dict[str, str] = {}
     for name, paths in groups.items():
-        for given in paths:
+        for given in names_of(f"groups: {name}", paths):
             path = building.parameter(given).path
             if path in found:
                 raise InputError(f"{given}: is in the groups {found[path]} and {name}; expected one of them")

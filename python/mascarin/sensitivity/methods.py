@@ -7,6 +7,7 @@ from typing import Any, Final, Literal
 
 from numpy.typing import ArrayLike
 
+from mascarin._io.arguments import whole_number
 from mascarin.errors import InputError, did_you_mean
 from mascarin.progress import ProgressOption, reporting
 from mascarin.sensitivity import salib, spectral
@@ -68,6 +69,12 @@ def plan(
     if method not in METHODS:
         msg = f"method: found '{method}', expected one of {', '.join(METHODS)}. "
         raise InputError(msg + did_you_mean(method, METHODS))
+    whole_number("replicates", replicates)
+    whole_number("seed", seed)
+    if samples is not None:
+        whole_number("samples", samples, 1)
+    if order is not None:
+        whole_number("order", order, 1)
     if method == "spectral":
         return spectral.design(factors, replicates=replicates, order=order, runs=samples, seed=seed)
     return salib.plan(factors, method, replicates=replicates, samples=samples, order=order, seed=seed)

@@ -7,11 +7,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io.arguments import mapping_of, require_type
+from mascarin.building import Building
 from mascarin.building.initial_state import Ambient, GivenStart
 from mascarin.errors import InputError
 from mascarin.simulation.initial import MeasuredStart, resolved
 from mascarin.simulation.initial import read as read_initial
-from mascarin.weather import CHANNELS, IRRADIANCES, TEMPERATURES, parse_timezone, scheduled
+from mascarin.weather import (
+    CHANNELS,
+    IRRADIANCES,
+    TEMPERATURES,
+    Climate,
+    Measurements,
+    parse_timezone,
+    scheduled,
+)
 from mascarin.weather.times import stamps_of
 from mascarin.weather.timezones import moment
 
@@ -19,10 +29,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas as pd
 
-    from mascarin.building import Building, EngineDescription, Output
+    from mascarin.building import EngineDescription, Output
     from mascarin.building.initial_state import Profile
     from mascarin.simulation.options import Scheme, TimeLike
-    from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
 
@@ -32,6 +41,7 @@ __all__ = [
     "forcing_of",
     "period",
     "read_initial",
+    "require_inputs",
     "settings_of",
     "start_of",
     "with_parameters",
@@ -44,6 +54,32 @@ MAX_REPETITIONS: Final = 1000
 _USUAL: Final = ("air_temperature", "face_temperature", "interface_temperature", "sensor", "liquid_fraction")
 
 
+def require_inputs(building: object, climate: object, measurements: object = None) -> None:
+    """Refuse what is no building, no climate or no measurements, before anything is read from them.
+
+    Raises
+    ------
+    InputError
+        Something else was given; the text names what makes it.
+    """
+    require_type(
+        "building", building, Building, "a mascarin.Building; Building.from_yaml and from_dict read one"
+    )
+    require_type(
+        "climate",
+        climate,
+        Climate,
+        "a mascarin.Climate; Climate.from_epw, from_tmy, from_table and from_pvlib read one",
+    )
+    if measurements is not None:
+        require_type(
+            "measurements",
+            measurements,
+            Measurements,
+            "mascarin.Measurements; Measurements.from_table reads them",
+        )
+
+
 def with_parameters(building: Building, parameters: Mapping[str, float] | None) -> Building:
     """The building with other values of some parameters.
 
@@ -54,7 +90,7 @@ def with_parameters(building: Building, parameters: Mapping[str, float] | None) 
     """
     if not parameters:
         return building
-    for path, value in parameters.items():
+    for path, value in mapping_of("parameters", parameters, "values by path").items():
         if isinstance(value, str | bool) or not np.isscalar(value):
             unit = building.parameter(path).unit or "its unit"
             raise InputError(

@@ -93,6 +93,9 @@ class EnergyLedger:
             **into,
         }
 
+    def __repr__(self) -> str:
+        return str(self)
+
     def __str__(self) -> str:
         lines = [f"{flow:<14}{value / 3.6e6:>12.3f} kWh" for flow, value in self.into.items()]
         residual = f"relative energy-balance residual {self.relative_residual:.1e}"

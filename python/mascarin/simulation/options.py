@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
 
+from mascarin._io.arguments import names_of
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -105,8 +106,11 @@ class RunOptions:
                 f"scheme: found '{self.scheme}', expected one of {', '.join(SCHEMES)}. "
                 f"{did_you_mean(self.scheme, SCHEMES)}".rstrip()
             )
-        if isinstance(self.outputs, str):
-            raise InputError(f"outputs: found the text '{self.outputs}', expected a list: ['{self.outputs}']")
+        if self.outputs is not None:
+            listed = names_of("outputs", self.outputs, such_as="'room.air_temperature'")
+            twice = next((name for name in listed if listed.count(name) > 1), None)
+            if twice is not None:
+                raise InputError(f"outputs: '{twice}' is listed twice, expected each output once")
         if self.parameters is not None and not isinstance(self.parameters, Mapping):
             raise InputError(
                 f"parameters: found {type(self.parameters).__name__}, expected values by path, such as "

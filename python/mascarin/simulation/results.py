@@ -254,7 +254,8 @@ class Results(Mapping[str, "xr.DataArray"]):
         """
         import pandas as pd
 
-        return pd.DataFrame(self.records, index=self.index, columns=[output.name for output in self.outputs])
+        index = self.index.rename("time")
+        return pd.DataFrame(self.records, index=index, columns=[output.name for output in self.outputs])
 
     def to_xarray(self) -> xr.Dataset:
         """All series as an xarray data set, with provenance and energy balance among its attributes.
@@ -382,7 +383,7 @@ class Results(Mapping[str, "xr.DataArray"]):
         >>> from mascarin.examples import box, box_climate
         >>> figure = mc.simulate(box(), box_climate(), step="1h").plot(["room.air_temperature"])
         >>> figure.axes[0].get_ylabel()
-        'degC'
+        '[degC]'
         """
         from mascarin.figures.series import draw  # matplotlib
 
@@ -397,12 +398,12 @@ class Results(Mapping[str, "xr.DataArray"]):
         return display.text(f"Results of '{self.provenance.building}'", self._rows())
 
     def _repr_html_(self) -> str:
-        table = self.to_dataframe().describe().T
+        tables = {"Statistics": self.to_dataframe().describe().T} if len(self) else {}
         return display.page(
             f"Results of '{self.provenance.building}'",
             self._rows(),
-            tables={"Statistics": table},
-            figures={"Plot": self.plot(list(self)[:_DRAWN])},
+            tables=tables,
+            figures={"Plot": self.plot(list(self)[:_DRAWN])} if len(self) else {},
         )
 
     def _rows(self) -> list[tuple[str, str]]:

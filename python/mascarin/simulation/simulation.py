@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mascarin._io.arguments import names_of
 from mascarin.progress import reporting
 from mascarin.simulation.compiled import MEMORY, CompiledRun
 from mascarin.simulation.energy import EnergyLedger
@@ -109,6 +110,7 @@ class Simulation(VectorRuns):
             parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
             initial=initial, first_period=first_period, measurements=measurements,
         )  # fmt: skip
+        compiling.require_inputs(building, climate, measurements)
         self.building = with_sky_of(
             compiling.with_parameters(building, options.parameters), climate, ranges or ()
         )
@@ -220,7 +222,7 @@ class Simulation(VectorRuns):
         SolverError
             A step or the repeated first period did not converge.
         """
-        paths = [self.building.parameter(path).path for path in vary]
+        paths = [self.building.parameter(path).path for path in names_of("vary", vary)]
         with reporting(progress, "parameters") as report:
             report(0, len(paths))
             records, slopes = self.jacobian_vector(paths, self.vector(parameters or {}), progress=report)

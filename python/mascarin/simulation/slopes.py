@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mascarin._io.arguments import kind_of
+from mascarin.errors import InputError
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.objectives import Gradient, series_of
 
@@ -43,7 +45,15 @@ def gradient_of(
     InputError
         The objective needs an output that was not recorded.
     """
-    value, by_series = objective(dict(zip(names, trajectory.records.T, strict=True)))
+    given: Any = objective  # of any type, where no type checker has looked
+    found = given(dict(zip(names, trajectory.records.T, strict=True))) if callable(given) else None
+    if not (isinstance(found, tuple) and len(found) == 2 and isinstance(found[1], Mapping)):
+        shown = kind_of(found if callable(given) else given)
+        raise InputError(
+            f"objective: found {shown}, expected a function of the series by output that returns the value "
+            "and a mapping from output to derivatives"
+        )
+    value, by_series = found
     weights = np.zeros_like(trajectory.records)
     for name, slopes in by_series.items():
         series_of(dict.fromkeys(names, weights), name)

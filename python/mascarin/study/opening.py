@@ -15,6 +15,7 @@ from pydantic import ValidationError
 from mascarin.building import Building, load
 from mascarin.building.reading import explained
 from mascarin.errors import InputError
+from mascarin.simulation.compiling import require_inputs
 from mascarin.simulation.sky import with_sky_of
 from mascarin.study.description import StudyFile, StudyPlan, read_study
 from mascarin.study.inputs import filled, find, open_climate, open_measurements, require_one_clock
@@ -143,6 +144,7 @@ def from_objects(
     InputError
         A value or a name cannot be used.
     """
+    require_inputs(building, climate, measurements)
     plain = {key: _plain(value) for key, value in plan.items()}
     try:
         checked = StudyPlan.model_validate(plain)

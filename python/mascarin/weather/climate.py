@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mascarin._io.arguments import require_type
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import BY_NAME
@@ -113,6 +114,7 @@ class Climate(RecordView[WeatherRecord]):
         >>> climate.site.altitude, climate.timezone, len(climate.to_dataframe())
         (170.0, 'UTC+1', 8760)
         """
+        require_type("path", path, (str, Path), "the path of an EPW file")
         return cls(record_of_year(read_epw(Path(path)), typical, year, elsewhere))
 
     @classmethod
@@ -150,6 +152,7 @@ class Climate(RecordView[WeatherRecord]):
         >>> climate.site.latitude, climate.timezone
         (36.1, 'UTC-5')
         """
+        require_type("path", path, (str, Path), "the path of a TMY3 file")
         return cls(record_of_year(read_tmy3(Path(path)), typical, year, elsewhere))
 
     @classmethod

@@ -8,6 +8,7 @@ from typing import Final, cast
 
 import numpy as np
 
+from mascarin._io.arguments import names_of
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather import derive
 from mascarin.weather.arrays import Array
@@ -83,7 +84,7 @@ def _stated(
     given: dict[str, float | None] = (
         {name: float(value) for name, value in absent.items()}
         if isinstance(absent, Mapping)
-        else dict.fromkeys(absent)
+        else dict.fromkeys(names_of(f"{where}: absent", absent, such_as="'wind_speed'"))
     )
     if "radiation" in given:
         given.pop("radiation")

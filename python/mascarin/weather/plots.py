@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mascarin._io.arguments import require_type
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.channels import UNITS
 from mascarin.weather.record import Record
@@ -56,7 +57,10 @@ def plot(record: Record, names: Sequence[str], ax: Axes | None) -> Axes:
         )
     import matplotlib.dates
     import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
 
+    if ax is not None:
+        require_type("ax", ax, Axes, "axes of matplotlib")
     ax = plt.subplots(layout="constrained")[1] if ax is None else ax
     edges = record.grid.start + record.grid.interval * np.arange(record.grid.count + 1)
     days = matplotlib.dates.date2num(edges.astype("datetime64[s]"))  # type: ignore[no-untyped-call]

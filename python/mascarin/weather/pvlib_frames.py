@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, cast
 
 import numpy as np
 
+from mascarin._io.arguments import finite_number, require_type
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array
-from mascarin.weather.channels import RADIATION
+from mascarin.weather.channels import BY_NAME, RADIATION
 from mascarin.weather.columns import Column
 from mascarin.weather.measured import record_of_table
 from mascarin.weather.record import WeatherRecord
@@ -27,7 +28,18 @@ PvlibStamps: TypeAlias = Literal["start", "middle", "end", "instant"]
 
 _WHERE: Final = "pvlib"
 _DAY: Final = 86400.0
+_POLAR: Final = 60.0  # deg
+_CONVERSIONS: Final[Mapping[str, str]] = {
+    "degC": "subtract 273.15 from kelvin",
+    "W/m2": "multiply kW/m2 by 1000",
+    "Pa": "multiply kPa by 1000",
+}
 
+_PLACE: Final[Mapping[str, tuple[float, float, str]]] = {
+    "latitude": (-90.0, 90.0, "deg"),
+    "longitude": (-180.0, 360.0, "deg"),
+    "altitude": (-450.0, 9000.0, "m"),
+}
 # Channel or relative humidity -> names in frames of pvlib, the first that is found is taken.
 _NAMES: Final[Mapping[str, tuple[str, ...]]] = {
     "air_temperature": ("temp_air",),
@@ -71,17 +83,27 @@ def record_of_pvlib(
     absent: Iterable[str] | Mapping[str, float],
 ) -> WeatherRecord:
     """Record of a frame; parameters are those of `Climate.from_pvlib`."""
+    import pandas as pd
+
     frame, metadata = (data[0], data[1]) if isinstance(data, tuple) else (data, {})
+    require_type(f"{_WHERE}: data", frame, pd.DataFrame, "a pandas.DataFrame, or the pair (frame, metadata)")
     place = _place(metadata, latitude, longitude, altitude)
     zone = _zone(frame, timezone)
     marked, epw = _stamps(frame, metadata, stamps)
     columns, notes = _columns(frame)
+    for name in columns:
+        _require_unit(str(name), columns[name].to_numpy(dtype=np.float64), place)
     if epw:
         # Spot values are those at the end of the hour, so that the end is the stamp of the whole row.
         columns.index = columns.index + _seconds(3600.0)
         marked = "end"
     if typical is None:
-        typical = "months_selected" in metadata or not columns.index.is_monotonic_increasing
+        typical = "months_selected" in metadata or _months_of_several_years(frame)
+    if not typical and not columns.index.is_monotonic_increasing:
+        raise InputError(
+            f"{_WHERE}: the stamps do not increase, expected a record in the order of time; sort it: "
+            "frame.sort_index(). For a year made of months of several years state typical=True."
+        )
     if typical:
         columns = _ordered(columns, marked, zone)
     table = read_table(columns, timezone=timezone or zone_name(zone))
@@ -115,7 +137,7 @@ def _place(
 
     def found(given: float | None, *keys: str) -> float | None:
         if given is not None:
-            return float(given)
+            return finite_number(f"{_WHERE}: {keys[0]}", given, *_PLACE[keys[0]])
         for source in (metadata, location):
             for key in keys:
                 if key in source:
@@ -182,13 +204,15 @@ def _columns(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
         name = next((name for name in names if name in frame.columns), None)
         if name is None:
             continue
-        values = pd.to_numeric(frame[name]).to_numpy(dtype=np.float64)
+        values = _numbers(frame, name)
         if coded and name in _CODES:
             values = np.where(values >= _CODES[name], np.nan, values)
         values = np.where(values <= -9000.0, np.nan, values)
         if name == "ghi_infrared":
             values = np.where(values <= 0.0, np.nan, values)
         out[channel] = values
+    if "relative_humidity" in out:
+        _require_percent(out["relative_humidity"])
     _derive(frame, out, notes)
     if "dew_point" in out:
         # The dew point is what the engine takes; the other would be converted to it.
@@ -205,6 +229,50 @@ def _columns(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
             "the horizontal; call pvlib.iotools.get_pvgis_hourly(..., surface_tilt=0, components=True)."
         )
     return pd.DataFrame(out, index=frame.index), notes
+
+
+def _numbers(frame: pd.DataFrame, name: str) -> Array:
+    """A column as numbers."""
+    import pandas as pd
+
+    try:
+        return pd.to_numeric(frame[name]).to_numpy(dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{_WHERE}: column '{name}': expected numbers ({error}).") from error
+
+
+def _require_unit(channel: str, values: Array, place: Place) -> None:
+    """Refuse a channel that is in another unit as a whole; single wrong values are left to the run."""
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return
+    limits, middle, highest = BY_NAME.get(channel), float(np.median(known)), float(known.max())
+    wrong = limits is not None and not limits.low <= middle <= limits.high
+    if channel == "global_horizontal" and abs(place.latitude) < _POLAR:
+        # By day even a dark sky gives more than 2 W/m2.
+        lit = int(np.count_nonzero(known > 0.05 * highest))
+        wrong = wrong or (0.1 < highest <= 2.0 and lit > 0.1 * len(known))
+    if wrong and limits is not None:
+        raise InputError(
+            f"{_WHERE}: {channel} ({' or '.join(_NAMES[channel])}): found a median of {middle:g} and "
+            f"a maximum of {highest:g}, expected {limits.unit}, from {limits.low:g} to {limits.high:g}, as "
+            f"pvlib.iotools gives it; {_CONVERSIONS.get(limits.unit, 'convert the column')} in the frame."
+        )
+
+
+def _require_percent(values: Array) -> None:
+    highest = np.max(values, initial=0.0, where=np.isfinite(values))
+    if 0.0 < highest <= 1.5:
+        raise InputError(
+            f"{_WHERE}: relative_humidity: found a maximum of {highest:g}, expected percent, from 0 to 100; "
+            "multiply a fraction by 100 in the frame."
+        )
+
+
+def _months_of_several_years(frame: pd.DataFrame) -> bool:
+    """Whether the stamps go back where a month ends, at most eleven times, as in a typical year."""
+    steps = np.diff(cast("pd.DatetimeIndex", frame.index).asi8)
+    return bool(0 < np.count_nonzero(steps < 0) <= 11)
 
 
 def _derive(frame: pd.DataFrame, out: dict[str, Array], notes: list[str]) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from mascarin._io.arguments import require_type
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.files import file_hash, read_frame, with_time_column
@@ -121,6 +122,12 @@ def read_table(
     """
     import pandas as pd
 
+    require_type(
+        "table",
+        source,
+        (str, Path, pd.DataFrame),
+        "the path of a file or a pandas.DataFrame (Series.to_frame())",
+    )
     zone = _zone(source, timezone, time)
     digest: str | None = None
     if isinstance(source, pd.DataFrame):

@@ -203,6 +203,8 @@ def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:
     """
     import pandas as pd
 
+    if isinstance(value, int | float):
+        raise InputError(f"{what}: found the number {value!r}, expected a date such as 2012-09-20 06:30.")
     if isinstance(value, str) and not _ISO_DATE.match(value.strip()):
         # pandas reads 01/02/2023 as 2 January, but 13/02/2023 as 13 February.
         raise InputError(f"{what}: {value!r} is not a date; write it as 2012-09-20 or 2012-09-20 06:30.")
