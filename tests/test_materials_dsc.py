@@ -16,7 +16,8 @@ from mascarin.building.material import PhaseChangeMaterial
 from mascarin.building.phase_change import TableLaw
 from mascarin.building.reading import parse
 from mascarin.errors import InputError
-from mascarin.materials.dsc import DscMaterial, from_dsc, to_yaml
+from mascarin.materials.dsc import DscMaterial, from_dsc
+from mascarin.materials.dsc_yaml import to_yaml
 
 
 def is_the_known_one(material: DscMaterial, direction: str = "heating") -> None:

@@ -267,7 +267,7 @@ def dsc(
 
 
 def _write(material: DscMaterial, name: str, described: dict[str, Any], out: Path) -> None:
-    from mascarin.materials.dsc import to_yaml
+    from mascarin.materials.dsc_yaml import to_yaml
 
     usable = re.sub(r"\W", "_", name)
     usable = usable if usable[:1].isalpha() else f"pcm_{usable}"

@@ -20,7 +20,7 @@ from mascarin.materials.laws import LAWS, LawFit, fit
 from mascarin.materials.units import check_heat
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     import numpy.typing as npt
 
@@ -102,12 +102,7 @@ class DscMaterial:
 
     Examples
     --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> file = Path(tempfile.mkdtemp()) / "wax.csv"
-    >>> points = [f"{t},{2.0 + 20.0 * max(0.0, 1.0 - abs(t - 25) / 3)}" for t in range(10, 41)]
-    >>> _ = file.write_text("\\n".join(["temperature [degC],cp heating [J/(g K)]", *points]))
-    >>> from_dsc(file).name
+    >>> DscMaterial("wax", runs=(), warnings=()).name
     'wax'
     """
 
@@ -477,33 +472,3 @@ def _draw(runs: Sequence[Melting], above: Any, below: Any) -> None:
             above.plot(run.temperature, (h - h[0]) / 1000.0, style, color=color, label=label)
             heat = run.heat if style == "-" else np.gradient(h, run.temperature)
             below.plot(run.temperature, heat / 1000.0, style, color=color, label=label)
-
-
-def to_yaml(name: str, material: Mapping[str, Any], comments: Sequence[str] = ()) -> str:
-    """A material as text of a building file, with comments above it.
-
-    Parameters
-    ----------
-    name : str
-        Its name there.
-    material : mapping
-        As `DscMaterial.description` gives it.
-    comments : sequence of str
-        Lines to put above.
-    """
-    lines = [*(f"# {text}" for text in comments), "materials:", f"  {name}:"]
-    for key, value in material.items():
-        lines += _entry(key, value, 4)
-    for key in ("conductivity", "density"):
-        if key not in material:
-            lines.append(f"    # {key}:   a calorimeter does not measure it: add it")
-    return "\n".join(lines) + "\n"
-
-
-def _entry(key: str, value: Any, indent: int) -> list[str]:
-    blank = " " * indent
-    if isinstance(value, dict):
-        return [f"{blank}{key}:", *(line for k, v in value.items() for line in _entry(k, v, indent + 2))]
-    if isinstance(value, list):
-        return [f"{blank}{key}: [{', '.join(f'{x:.10g}' for x in value)}]"]
-    return [f'{blank}{key}: "{value}"' if key == "source" else f"{blank}{key}: {value}"]

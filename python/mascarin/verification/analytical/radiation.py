@@ -170,9 +170,7 @@ surfaces:
             view = 0.5 * (1.0 + math.cos(math.radians(tilt)))
             beta = math.sqrt(view)
             # Radiation of the sky, part of it (1 - beta) that of the air, and a ground as warm as the air.
-            arriving = view * beta * sky_emissivity * emission(air) + (
-                1.0 - view * beta
-            ) * emission(air)
+            arriving = view * beta * sky_emissivity * emission(air) + (1.0 - view * beta) * emission(air)
 
             def heat(surface: float, arriving: float = arriving) -> float:
                 return emissivity * (arriving - emission(surface)) + convection * (air - surface)
