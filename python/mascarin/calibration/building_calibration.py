@@ -18,7 +18,6 @@ from mascarin.calibration.rules import MethodName, Rules
 from mascarin.calibration.search import solve
 from mascarin.errors import InputError
 from mascarin.progress import ProgressOption
-from mascarin.simulation.compiling import require_inputs, with_parameters
 from mascarin.simulation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
 from mascarin.simulation.sky import with_sky_of
@@ -149,12 +148,13 @@ def calibrate(
     """
     import pandas as pd
 
+    from mascarin.simulation.compiling import require_inputs, with_parameters  # needs pydantic
     from mascarin.weather.timezones import moment
 
     require_inputs(building, climate)
     _require_types(measurements, sensors, vary, record)
-    chosen = with_parameters(building, parameters)
-    chosen = with_sky_of(chosen, climate, [p if isinstance(p, str) else p.path for p in vary])
+    paths = [p if isinstance(p, str) else p.path for p in vary]
+    chosen = with_sky_of(with_parameters(building, parameters), climate, paths)
     named = {name: s if isinstance(s, Sensor) else Sensor(s) for name, s in sensors.items()}
     free = _parameters(chosen, vary)
     lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))
@@ -167,16 +167,14 @@ def calibrate(
         end=end,
         outputs=[sensor.output or name for name, sensor in named.items()],
         scheme=scheme,
-        initial=initial,
-        first_period=first_period,
-        measurements=measurements,
+        initial=initial, first_period=first_period, measurements=measurements,
         ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
-    )
+    )  # fmt: skip
     _require_varying(measurements, named, begin, simulation.end)
     observation = observe(simulation, measurements, named, begin)
-    use = np.ones(len(observation.times), dtype=np.bool_)
+    every = np.ones(len(observation.times), dtype=np.bool_)
     found = solve(
-        problem_of(simulation, observation, use, free, _uncertainties(simulation, named)),
+        problem_of(simulation, observation, every, free, _uncertainties(simulation, named)),
         method=method,
         cost=cost,
         seed=seed,
