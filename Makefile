@@ -52,7 +52,10 @@ test-lowest: $(BUILT)
 	@test -x $(LOWEST)/bin/python || "$(PYTHON)" -m venv $(LOWEST)
 	$(PY) tests/lowest_versions.py pyproject.toml > $(LOWEST)/requirements.txt
 	$(LOWEST)/bin/python -m pip install --quiet --requirement $(LOWEST)/requirements.txt
-	PYTHONPATH=python $(LOWEST)/bin/python -m pytest --numprocesses=auto --dist=loadfile
+	@printf '#!/bin/sh\nexec "$(CURDIR)/$(LOWEST)/bin/python" -m mascarin.cli "$$@"\n' > $(LOWEST)/bin/mascarin
+	@chmod +x $(LOWEST)/bin/mascarin
+	@# Old versions call functions that newer ones of other packages deprecate.
+	PATH="$(CURDIR)/$(LOWEST)/bin:$$PATH" PYTHONPATH=$(CURDIR)/python $(LOWEST)/bin/python -m pytest --numprocesses=auto --dist=loadfile -W ignore::DeprecationWarning
 
 # ENERGYPLUS is the program of version 25.2 (bench/energyplus.py says where to get it). Leave the machine alone meanwhile.
 bench: $(BUILT) $(HYPERFINE)
