@@ -7,11 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from mascarin._io import atomic, display
 from mascarin._io.locks import FolderLock
+from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
 
 
@@ -104,3 +106,14 @@ def test_a_library_that_writes_to_a_name_replaces_whole(tmp_path: Path) -> None:
         assert not target.exists()
     assert target.read_text() == "whole"
     assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
+
+
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_numbers_of_a_csv_file_are_read_to_the_last_digit(tmp_path: Path, decimal: str) -> None:
+    rng = np.random.default_rng(7)
+    written = rng.normal(size=5000) * 10.0 ** rng.integers(-12, 13, 5000)
+    # The text that Python writes for a number is read by Python as the same number.
+    lines = [repr(value).replace(".", decimal) for value in written.tolist()]
+    (tmp_path / "a.csv").write_text("\n".join(["x", *lines]) + "\n", encoding="utf-8")
+    found = read_csv(tmp_path / "a.csv", sep=";", decimal=decimal)
+    np.testing.assert_array_equal(found["x"].to_numpy(), written)

@@ -19,6 +19,7 @@ import pandas as pd
 import pytest
 
 from mascarin import cli
+from mascarin._io.tables import read_csv
 from study_support import BUILDING, NOISE, STUDY, TRUTH, Bench, logger_table
 
 METRICS = {
@@ -44,7 +45,7 @@ class Done(NamedTuple):
     code: int
 
     def table(self, name: str) -> pd.DataFrame:
-        return pd.read_csv(self.out / "tables" / f"{name}.csv")
+        return read_csv(self.out / "tables" / f"{name}.csv")
 
 
 def carried_out(study: Path | str, out: Path, capsys: pytest.CaptureFixture[str], *options: str) -> Done:
@@ -459,6 +460,7 @@ def test_a_mask_is_shown_and_only_acts_on_sensors(quick: Bench, capsys: pytest.C
 KILLED = """
 import os, signal, sys
 from mascarin import cli
+from mascarin._io.tables import read_csv
 from mascarin.calibration.evaluations import Evaluator
 from mascarin._io import atomic
 from mascarin.study import sensitivity_step as screening

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from mascarin._io.tables import read_csv
 from mascarin.commands.inputs import AsJson, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
 from mascarin.commands.run import read_weather
@@ -119,7 +120,7 @@ def _read(file: Path) -> pd.DataFrame:
     try:
         match file.suffix.lower():
             case ".csv":
-                return pd.read_csv(file)
+                return read_csv(file)
             case ".parquet":
                 return pd.read_parquet(file)
     except (OSError, ValueError, ImportError) as error:

@@ -7,6 +7,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def read_frame(path: Path, separator: str | None, decimal: str, skip_lines: int)
         with warnings.catch_warnings():
             # Rows with more entries than the header has names: which name they belong to is not known.
             warnings.simplefilter("error", pd.errors.ParserWarning)
-            frame = pd.read_csv(
+            frame = read_csv(
                 path,
                 sep=found,
                 decimal=decimal,
