@@ -10,3 +10,7 @@ from mascarin.study.results import StudyResults
 from mascarin.study.study import Study
 
 __all__ = ["Sensor", "Study", "StudyResults"]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -42,9 +42,10 @@ def importance(study: Setup, found: Sensitivity) -> dict[str, Any]:
 
 
 def _frequencies(found: SpectralSensitivity) -> dict[str, int]:
-    """Frequency of each parameter in the first replicate, which the spectra show."""
-    lines = found.design.frequencies[0][found.design.group_of]
-    return {name: int(line) for name, line in zip(found.names, lines, strict=False)}
+    """Frequency of each parameter or group in the first replicate, which the spectra show."""
+    return {
+        name: int(line) for name, line in zip(found.design.groups, found.design.frequencies[0], strict=True)
+    }
 
 
 def analyzed_hours(study: Setup, found: Sensitivity) -> npt.NDArray[np.float64] | None:
