@@ -106,6 +106,21 @@ def test_only_public_names_are_offered() -> None:
     assert dir(package) == sorted(package.__all__)
 
 
+def test_the_text_names_estimates_on_a_bound(fit: Calibration) -> None:
+    measured = 2.0 * np.exp(-0.8 * TIME)
+    problem = CalibrationProblem(
+        # The best rate, 0.8, is below the range.
+        (FitParameter("rate", 1.0, 4.0), FitParameter("size", 0.1, 5.0)),
+        (FitSensor("s", measured, 0.02),),
+        decay,
+    )
+    found = solve(problem, rules=Rules(starts=1))
+    assert list(found.on_bound) == ["rate"]
+    assert "  on a bound  rate; see .on_bound" in repr(found).splitlines()
+    assert "on a bound" in found._repr_html_()
+    assert "on a bound" not in repr(fit)
+
+
 # --- figures --------------------------------------------------------------------------------------------
 
 

@@ -343,8 +343,10 @@ class Calibration:
             ("sensors", sensors),
             ("cost", f"{self.cost_name} = {self.cost:.6g}"),
             ("searches", f"{len(self.minima)}; {self.reason}"),
-            ("warnings", str(len(self.warnings)) if self.warnings else "none"),
+            ("warnings", f"{len(self.warnings)}, see .warnings" if self.warnings else "none"),
         ]
+        if self.on_bound:
+            rows.append(("on a bound", f"{', '.join(self.on_bound)}; see .on_bound"))
         for i, p in enumerate(self.problem.parameters):
             interval = f" [{self.low[i]:.4g}, {self.high[i]:.4g}]" if np.isfinite(self.low[i]) else ""
             rows.append((p.path, f"{self.x[i]:.4g}{interval} {p.unit}".rstrip(" -")))
