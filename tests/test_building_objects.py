@@ -228,6 +228,22 @@ def test_completion_lists_fields_and_methods_only() -> None:
         name for name in names if name.startswith(("_", "model_")) or name in ("json", "copy", "dict")
     ]
     assert {"volume", "infiltration", "to_dict"} <= set(dir(room().zones["room"]))
+    # The same before there is an object: ``mc.Building.`` and the tab key.
+    assert dir(mc.Building) == names
+    assert dir(b.Zone) == dir(room().zones["room"])
+
+
+def test_equal_buildings_are_the_same_key() -> None:
+    building = everything()[0]
+    again = mc.Building.from_dict(building.to_dict())
+    larger = building.with_values({"zones.room.volume": 41.5})
+    assert len({building, again, larger}) == 2
+    assert {building: "found"}[again] == "found"
+    turned = building.to_dict()
+    turned["materials"] = dict(reversed(turned["materials"].items()))
+    other = mc.Building.from_dict(turned)
+    assert other == building
+    assert hash(other) == hash(building)
 
 
 def test_pickled_buildings_keep_their_notes() -> None:

@@ -30,7 +30,8 @@ def test_import_of_simulation_and_ensemble_is_light() -> None:
 
 
 def test_dir_lists_public_names_alone() -> None:
-    for module in (mascarin, mascarin.simulation, mascarin.ensemble):
+    packages = [getattr(mascarin, name) for name in dir(mascarin)]
+    for module in (mascarin, *(package for package in packages if isinstance(package, ModuleType))):
         assert sorted(dir(module)) == sorted(module.__all__)
         assert not [name for name in dir(module) if name.startswith("_") and name != "__version__"]
 

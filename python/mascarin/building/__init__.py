@@ -162,3 +162,7 @@ __all__ = [
     "load",
     "parameter_table",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -17,7 +17,10 @@ from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ModelWrapValidatorHandler
+    from pydantic._internal._model_construction import ModelMetaclass
     from pydantic.json_schema import JsonSchemaValue
+else:
+    ModelMetaclass = type(BaseModel)
 
 Location = tuple[int | str, ...]
 
@@ -27,7 +30,17 @@ _INTERNALS = frozenset([*dir(BaseModel), "has_usual_kind", "in_short", "written"
 _ONE_LINE = 100  # characters
 
 
-class Part(BaseModel):
+class PartType(ModelMetaclass):
+    """Type of the classes of parts: completion of a class leaves out the names of pydantic as well."""
+
+    def __dir__(self) -> list[str]:
+        """Fields and methods, without those of pydantic."""
+        own = {name for kind in self.__mro__ if isinstance(kind, PartType) for name in vars(kind)}
+        names = {*own, *getattr(self, "model_fields", ())} - _INTERNALS
+        return sorted(name for name in names if not name.startswith("_"))
+
+
+class Part(BaseModel, metaclass=PartType):
     """A piece of a description: immutable, and without unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
@@ -95,9 +108,12 @@ class Part(BaseModel):
 
     def __dir__(self) -> list[str]:
         """Fields and methods, without those of pydantic."""
-        own = {name for kind in type(self).__mro__ if issubclass(kind, Part) for name in vars(kind)}
-        names = {*own, *type(self).model_fields} - _INTERNALS
-        return sorted(name for name in names if not name.startswith("_"))
+        return dir(type(self))
+
+    def __hash__(self) -> int:
+        """Equal parts have the same hash, so that buildings can be keys and members of sets."""
+        kind = type(self)
+        return hash((kind, *(_hashable(getattr(self, key)) for key in kind.model_fields)))
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{key}={value}" for key, value in self._rows())
@@ -224,6 +240,15 @@ def plain_value(value: Any) -> Any:
         return pieces["coefficient"] if list(pieces) == ["kind", "coefficient"] else pieces
     if isinstance(value, list | tuple):
         return [plain_value(piece) for piece in value]
+    return value
+
+
+def _hashable(value: Any) -> Any:
+    """A field with mappings and lists replaced; the order of keys has no effect, as in a comparison."""
+    if isinstance(value, Mapping):
+        return frozenset((key, _hashable(piece)) for key, piece in value.items())
+    if isinstance(value, list | tuple):
+        return tuple(map(_hashable, value))
     return value
 
 

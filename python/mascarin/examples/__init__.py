@@ -51,3 +51,7 @@ def locate(name: str) -> Path:
         f"{name}: found no study file, expected a YAML file or one of {', '.join(STUDIES)}. "
         f"{did_you_mean(name, STUDIES)}".rstrip()
     )
+
+
+def __dir__() -> list[str]:
+    return __all__

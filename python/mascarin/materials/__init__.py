@@ -6,3 +6,7 @@ from mascarin.materials.dsc import DscMaterial, from_dsc
 from mascarin.materials.library import Curve, Product, product, products, search
 
 __all__ = ["Curve", "DscMaterial", "Product", "from_dsc", "product", "products", "search"]
+
+
+def __dir__() -> list[str]:
+    return __all__

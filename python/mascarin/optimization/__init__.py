@@ -47,3 +47,7 @@ __all__ = [
     "minimize",
     "uniform_starts",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -105,3 +105,7 @@ def write(path: Path, study: Mapping[str, Any], series: Series) -> Path:
     'report.html'
     """
     return atomic.write(path, render(study, series))
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -23,3 +23,7 @@ __all__ = [
     "run",
     "sensitivity_analysis",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

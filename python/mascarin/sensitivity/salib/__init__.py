@@ -6,3 +6,7 @@ from mascarin.sensitivity.salib.collection import SQUARES, MorrisSensitivity, Sa
 from mascarin.sensitivity.salib.plans import SalibName, SalibPlan, plan
 
 __all__ = ["SQUARES", "MorrisSensitivity", "SalibCollector", "SalibName", "SalibPlan", "plan"]
+
+
+def __dir__() -> list[str]:
+    return __all__

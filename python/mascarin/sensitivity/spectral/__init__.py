@@ -7,3 +7,7 @@ from mascarin.sensitivity.spectral.designs import Design, design
 from mascarin.sensitivity.spectral.result import SpectralSensitivity
 
 __all__ = ["Design", "SpectralCollector", "SpectralSensitivity", "analyze", "design"]
+
+
+def __dir__() -> list[str]:
+    return __all__

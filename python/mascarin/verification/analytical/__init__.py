@@ -6,3 +6,7 @@ from mascarin.verification.analytical.catalogue import cases, run
 from mascarin.verification.analytical.check import Case, Check
 
 __all__ = ["Case", "Check", "cases", "run"]
+
+
+def __dir__() -> list[str]:
+    return __all__
