@@ -9,7 +9,8 @@ from typing import Final
 from mascarin.genopt import modern, searches
 from mascarin.genopt.searches import Context
 from mascarin.genopt.settings import Keys
-from mascarin.optimization import CoordinateSearch, HookeJeeves, Optimizer
+from mascarin.optimization import CoordinateSearch, FibonacciSearch, GoldenSection, HookeJeeves, Optimizer
+from mascarin.optimization.line import fibonacci_points, golden_points
 
 
 @dataclass(frozen=True)
@@ -107,13 +108,17 @@ ALGORITHMS: Final[dict[str, Algorithm]] = {
     ),
     "GoldenSection": Algorithm(
         ("AbsDiffFunction", "IntervalReduction"),
-        searches.golden,
+        searches.interval(GoldenSection, golden_points),
         ("AbsDiffFunction", "IntervalReduction"),
         bounds=True,
         start=False,
     ),
     "Fibonacci": Algorithm(
-        ("IntervalReduction",), searches.fibonacci, ("IntervalReduction",), bounds=True, start=False
+        ("IntervalReduction",),
+        searches.interval(FibonacciSearch, fibonacci_points),
+        ("IntervalReduction",),
+        bounds=True,
+        start=False,
     ),
     "Mesh": Algorithm(("StopAtError",), searches.mesh, discrete=True, bounds=True, start=False),
     "Parametric": Algorithm(("StopAtError",), searches.parametric, discrete=True, bounds=True, start=False),

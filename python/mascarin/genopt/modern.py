@@ -8,20 +8,7 @@ from mascarin.optimization import CovarianceSearch, Optimizer
 
 
 def covariance(context: Context, keys: Keys) -> Optimizer:
-    """Make a CMA-ES search; MaxIte is the largest number of evaluations.
-
-    Parameters
-    ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
-
-    Returns
-    -------
-    Optimizer
-        The search.
-    """
+    """Make a CMA-ES search; MaxIte is the largest number of evaluations."""
     return CovarianceSearch(
         context.space,
         sigma=keys.get("Sigma", 0.25),

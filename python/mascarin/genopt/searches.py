@@ -1,4 +1,8 @@
-"""Optimization algorithms of GenOpt, made from the settings of a project."""
+"""Optimization algorithms of GenOpt, made from the settings of a project.
+
+Each public function makes a search from the project with its parameters (`Context`) and the checked keys
+of the section ``Algorithm``; `pattern` and `interval` make such a function for several kinds of search.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +34,6 @@ from mascarin.optimization import (
     SwarmThenPattern,
     uniform_starts,
 )
-from mascarin.optimization.line import fibonacci_points, golden_points
 
 
 @dataclass(frozen=True)
@@ -144,20 +147,7 @@ def _swarm_rules(keys: Keys) -> SwarmRules:
 
 
 def swarm(context: Context, keys: Keys) -> Optimizer:
-    """Make a particle swarm, on a mesh when one is given.
-
-    Parameters
-    ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
-
-    Returns
-    -------
-    Optimizer
-        The search.
-    """
+    """Make a particle swarm, on a mesh when one is given."""
     mesh = (keys["MeshSizeDivider"], keys["InitialMeshSizeExponent"]) if "MeshSizeDivider" in keys else None
     return ParticleSwarm(
         context.space,
@@ -172,20 +162,7 @@ def swarm(context: Context, keys: Keys) -> Optimizer:
 
 
 def hybrid(context: Context, keys: Keys) -> Optimizer:
-    """Make a particle swarm followed by Hooke-Jeeves.
-
-    Parameters
-    ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
-
-    Returns
-    -------
-    Optimizer
-        The search.
-    """
+    """Make a particle swarm followed by Hooke-Jeeves."""
     settings = context.project.settings
     return SwarmThenPattern(
         context.space,
@@ -206,20 +183,7 @@ def hybrid(context: Context, keys: Keys) -> Optimizer:
 
 
 def simplex(context: Context, keys: Keys) -> Optimizer:
-    """Make the simplex search of Nelder and Mead.
-
-    Parameters
-    ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
-
-    Returns
-    -------
-    Optimizer
-        The search.
-    """
+    """Make the simplex search of Nelder and Mead."""
     settings = context.project.settings
     return NelderMead(
         context.space,
@@ -235,20 +199,7 @@ def simplex(context: Context, keys: Keys) -> Optimizer:
 
 
 def gradient(context: Context, keys: Keys) -> Optimizer:
-    """Make the gradient descent with Armijo line search.
-
-    Parameters
-    ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
-
-    Returns
-    -------
-    Optimizer
-        The search.
-    """
+    """Make the gradient descent with Armijo line search."""
     rules = ArmijoRules(
         alpha=keys["Alpha"],
         beta=keys["Beta"],
@@ -270,68 +221,40 @@ def gradient(context: Context, keys: Keys) -> Optimizer:
     )
 
 
-def golden(context: Context, keys: Keys) -> Optimizer:
-    """Make the golden section search.
+def interval(
+    kind: type[GoldenSection] | type[FibonacciSearch], points_for: Callable[[float], int]
+) -> Callable[[Context, Keys], Optimizer]:
+    """Make the builder of a search that reduces an interval.
 
     Parameters
     ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
+    kind : type
+        `GoldenSection` or `FibonacciSearch`.
+    points_for : callable
+        Number of points for a reduction of the interval.
 
     Returns
     -------
-    Optimizer
-        The search.
+    callable
+        Makes the search from context and keys.
     """
-    limit = context.project.settings.max_iterations
-    points = golden_points(keys["IntervalReduction"]) if "IntervalReduction" in keys else limit
-    return GoldenSection(
-        context.space,
-        points,
-        difference=keys.get("AbsDiffFunction"),
-        text=double_text,
-        observer=context.observer,
-        remember=False,
-    )
 
+    def make(context: Context, keys: Keys) -> Optimizer:
+        limit = context.project.settings.max_iterations
+        return kind(
+            context.space,
+            points_for(keys["IntervalReduction"]) if "IntervalReduction" in keys else limit,
+            difference=keys.get("AbsDiffFunction"),
+            text=double_text,
+            observer=context.observer,
+            remember=False,
+        )
 
-def fibonacci(context: Context, keys: Keys) -> Optimizer:
-    """Make the Fibonacci search.
-
-    Parameters
-    ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
-
-    Returns
-    -------
-    Optimizer
-        The search.
-    """
-    limit = context.project.settings.max_iterations
-    points = fibonacci_points(keys["IntervalReduction"]) if "IntervalReduction" in keys else limit
-    return FibonacciSearch(context.space, points, text=double_text, observer=context.observer, remember=False)
+    return make
 
 
 def mesh(context: Context, keys: Keys) -> Optimizer:
-    """Make the run of all combinations.
-
-    Parameters
-    ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
-
-    Returns
-    -------
-    Optimizer
-        The search.
-    """
+    """Make the run of all combinations."""
     _check_logarithms(context)
     return Grid(
         context.space,
@@ -344,20 +267,7 @@ def mesh(context: Context, keys: Keys) -> Optimizer:
 
 
 def parametric(context: Context, keys: Keys) -> Optimizer:
-    """Make the run of one parameter at a time.
-
-    Parameters
-    ----------
-    context : Context
-        The project and its parameters.
-    keys : Keys
-        Settings of the section.
-
-    Returns
-    -------
-    Optimizer
-        The search.
-    """
+    """Make the run of one parameter at a time."""
     _check_logarithms(context)
     return OneAtATime(context.space, observer=context.observer, remember=False)
 

@@ -21,21 +21,7 @@ _Batch = Generator[list[Point], list[Evaluation], list[Evaluation]]
 
 
 class IntervalSearch(Optimizer):
-    """Base of the searches that shrink an interval around a minimum.
-
-    Parameters
-    ----------
-    space : Space
-        One continuous parameter with bounds; its initial value is not used.
-    points : int
-        Largest number of evaluations [-].
-    difference : float, optional
-        Ends the search when the costs of the two inner points differ by less [unit of the cost].
-    text : callable
-        Text of a number in the overview.
-    observer, remember
-        See `Optimizer`.
-    """
+    """Base of the searches that reduce an interval around a minimum; for parameters see `GoldenSection`."""
 
     def __init__(
         self,

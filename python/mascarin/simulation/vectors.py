@@ -111,25 +111,7 @@ class VectorRuns:
         record_every: int = 1,
         progress: Report | None = None,
     ) -> tuple[Array, Array, list[Failure]]:
-        """Run many parameter vectors, several at a time in lanes and threads.
-
-        Parameters
-        ----------
-        vectors : ndarray, shape (M, P)
-            One parameter vector a row. [unit of each]
-        record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
-        progress : callable, optional
-            Called with the number of members done and their total.
-
-        Returns
-        -------
-        records : ndarray, shape (M, rows, outputs)
-            NaN for a member that failed.
-        residuals : ndarray, shape (M,)
-            Relative energy-balance residual of each member. [-]
-        failures : list of Failure
-            Members that failed, and why.
+        """Check the vectors and run them by `CompiledRun.ensemble`, which explains arguments and results.
 
         Raises
         ------
@@ -151,9 +133,9 @@ class VectorRuns:
         record_every: int = 1,
         progress: Report | None = None,
     ) -> tuple[Array, Array]:
-        """Run once with the derivatives of every output by some parameters, in forward mode.
+        """Check the vector and derive by paths: `CompiledRun.jacobian`, which explains the other arguments.
 
-        What comes back is the derivative of the discrete solution, the repeated first period included, not a
+        The result is the derivative of the discrete solution, the repeated first period included, not a
         difference quotient. At a switch (the end of a melting range, a wind that changes sides) it is the
         derivative of the branch that the run took.
 
@@ -163,17 +145,6 @@ class VectorRuns:
             Paths of the parameters to derive by.
         vector : ndarray, shape (P,), optional
             Parameter vector; default that of the building. [unit of each]
-        record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
-        progress : callable, optional
-            Called with the number of parameters done and their total.
-
-        Returns
-        -------
-        records : ndarray, shape (rows, outputs)
-            As of `run_vector`.
-        slopes : ndarray, shape (vary, rows, outputs)
-            Derivative of each record by each parameter. [unit of the output / unit of the parameter]
 
         Raises
         ------
@@ -202,27 +173,7 @@ class VectorRuns:
         record_every: int = 1,
         memory: int = MEMORY,
     ) -> Trajectory:
-        """Run once and keep what the derivatives in reverse mode need.
-
-        Parameters
-        ----------
-        vector : ndarray, shape (P,), optional
-            Parameter vector; default that of the building. [unit of each]
-        record_from, record_every : int
-            First recorded row and spacing of the recorded rows, in steps.
-        memory : int
-            About how much may be kept: beyond it parts of the run are calculated again. [B]
-
-        Returns
-        -------
-        Trajectory
-            Its records, and the derivatives of quantities made of them by all parameters.
-
-        Raises
-        ------
-        SolverError
-            A step or the repeated first period did not converge.
-        """
+        """Check the vector, by default that of the building, and run it by `CompiledRun.trajectory`."""
         return self.compiled.trajectory(
             self._checked(vector), record_from=record_from, record_every=record_every, memory=memory
         )
