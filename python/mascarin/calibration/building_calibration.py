@@ -20,7 +20,6 @@ from mascarin.errors import InputError
 from mascarin.progress import ProgressOption
 from mascarin.simulation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
-from mascarin.simulation.sky import with_sky_of
 from mascarin.validation.observation import observe
 from mascarin.validation.sensors import Sensor, SensorUncertainty
 from mascarin.weather import Measurements
@@ -148,13 +147,12 @@ def calibrate(
     """
     import pandas as pd
 
-    from mascarin.simulation.compiling import require_inputs, with_parameters  # needs pydantic
+    from mascarin.simulation.compiling import in_climate  # needs pydantic
     from mascarin.weather.timezones import moment
 
-    require_inputs(building, climate)
     _require_types(measurements, sensors, vary, record)
     paths = [p if isinstance(p, str) else p.path for p in vary]
-    chosen = with_sky_of(with_parameters(building, parameters), climate, paths)
+    chosen = in_climate(building, climate, parameters=parameters, varied=paths)
     named = {name: s if isinstance(s, Sensor) else Sensor(s) for name, s in sensors.items()}
     free = _parameters(chosen, vary)
     lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))

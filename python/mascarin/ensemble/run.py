@@ -21,9 +21,8 @@ from mascarin.ensemble.work import CLOSURE, Chunk, EnsembleInputs, Objective, at
 from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
-from mascarin.simulation.compiling import require_inputs, with_parameters
+from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.options import RunOptions, described
-from mascarin.simulation.sky import with_sky_of
 from mascarin.weather import summary
 
 if TYPE_CHECKING:
@@ -219,7 +218,6 @@ def _prepared(
 
     The first structure is compiled, so that what cannot be used is found before anything is run.
     """
-    require_inputs(building, climate, options.measurements)
     # Anything with columns: a mapping, a pandas frame, and what has the same methods.
     if not hasattr(samples, "items"):
         raise InputError(
@@ -227,8 +225,13 @@ def _prepared(
             "{'zones.room.volume': [30, 40]}, or a pandas.DataFrame with paths as columns"
         )
     functions = mapping_of("objectives", objectives, "functions by name: {'peak': function}")
-    building = with_parameters(building, options.parameters)
-    building = with_sky_of(building, climate, [str(path) for path in samples])
+    building = in_climate(
+        building,
+        climate,
+        measurements=options.measurements,
+        parameters=options.parameters,
+        varied=[str(path) for path in samples],
+    )
     members = read_members(building, samples)
     inputs = EnsembleInputs(
         building=building,

@@ -16,10 +16,9 @@ from mascarin.sensitivity.factors import DistributionName, Factor
 from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
-from mascarin.simulation.compiling import require_inputs
+from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.options import described
 from mascarin.simulation.simulation import Simulation
-from mascarin.simulation.sky import with_sky_of
 from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
@@ -197,12 +196,11 @@ def sensitivity_analysis(
     >>> found.ranking("room.air_temperature", 1)
     ['surfaces.facade.outside.absorptance']
     """
-    require_inputs(building, climate, measurements)
     fixed = mapping_of("parameters", parameters, "values by path, such as {'zones.room.volume': 30.0}")
-    given = {building.parameter(path).path: value for path, value in fixed.items()}
     if vary is not None and not isinstance(vary, Mapping):
         vary = names_of("vary", vary)
-    building = with_sky_of(building, climate, [*given, *(vary or ())])
+    building = in_climate(building, climate, measurements=measurements, varied=[*fixed, *(vary or ())])
+    given = {building.parameter(path).path: value for path, value in fixed.items()}
     only, ranges = _chosen(building, vary, given)
     chosen = factors_of(
         building, ranges=ranges, distributions=distributions, groups=groups,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -13,6 +13,7 @@ from mascarin.building.initial_state import Ambient, GivenStart
 from mascarin.errors import InputError
 from mascarin.simulation.initial import MeasuredStart, resolved
 from mascarin.simulation.initial import read as read_initial
+from mascarin.simulation.sky import with_sky_of
 from mascarin.weather import (
     CHANNELS,
     IRRADIANCES,
@@ -39,12 +40,12 @@ __all__ = [
     "changed_parameters",
     "chosen_outputs",
     "forcing_of",
+    "in_climate",
     "period",
     "read_initial",
     "require_inputs",
     "settings_of",
     "start_of",
-    "with_parameters",
 ]
 
 #: Largest change of any temperature between two repetitions of the first period. [K]
@@ -80,7 +81,45 @@ def require_inputs(building: object, climate: object, measurements: object = Non
         )
 
 
-def with_parameters(building: Building, parameters: Mapping[str, float] | None) -> Building:
+def in_climate(
+    building: Building,
+    climate: Climate,
+    *,
+    measurements: Measurements | None = None,
+    parameters: Mapping[str, float] | None = None,
+    varied: Iterable[str] = (),
+) -> Building:
+    """The building as it is simulated in a climate; every run, sweep, analysis and study begins here.
+
+    Parameters
+    ----------
+    building : Building
+        The building as described.
+    climate : Climate
+        Its weather.
+    measurements : Measurements, optional
+        Measured boundaries and sensors.
+    parameters : mapping of str to float, optional
+        Other values, by path. [unit of each]
+    varied : iterable of str
+        Paths of the parameters that vary.
+
+    Returns
+    -------
+    Building
+        With the other values, and with the infrared radiation of the weather unless a model of the sky is
+        given or varies.
+
+    Raises
+    ------
+    InputError
+        Something is of another type, or a parameter cannot have its value.
+    """
+    require_inputs(building, climate, measurements)
+    return with_sky_of(_with_parameters(building, parameters), climate, varied)
+
+
+def _with_parameters(building: Building, parameters: Mapping[str, float] | None) -> Building:
     """The building with other values of some parameters.
 
     Raises
@@ -103,7 +142,7 @@ def with_parameters(building: Building, parameters: Mapping[str, float] | None) 
 def changed_parameters(
     before: Building, after: Building, parameters: Mapping[str, float] | None
 ) -> dict[str, float]:
-    """Parameters that `with_parameters` changed, by whole path. [unit of each]"""
+    """Parameters that `in_climate` changed, by whole path. [unit of each]"""
     old = {before.parameter(path).path: before.parameter(path).value for path in parameters or {}}
     new = {path: after.parameter(path).value for path in old}
     return {path: float(value) for path, value in new.items() if value != old[path]}

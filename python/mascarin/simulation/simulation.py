@@ -17,7 +17,6 @@ from mascarin.simulation.options import RunOptions, described
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.readings import Readings
 from mascarin.simulation.results import Results
-from mascarin.simulation.sky import with_sky_of
 from mascarin.simulation.slopes import gradient_of, labelled_slopes
 from mascarin.simulation.vectors import VectorRuns
 from mascarin.weather import CHANNELS, summary
@@ -110,9 +109,8 @@ class Simulation(VectorRuns):
             parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
             initial=initial, first_period=first_period, measurements=measurements,
         )  # fmt: skip
-        compiling.require_inputs(building, climate, measurements)
-        self.building = with_sky_of(
-            compiling.with_parameters(building, options.parameters), climate, ranges or ()
+        self.building = compiling.in_climate(
+            building, climate, measurements=measurements, parameters=options.parameters, varied=ranges or ()
         )
         self.climate = climate
         self.scheme: Scheme = scheme

@@ -15,8 +15,7 @@ from pydantic import ValidationError
 from mascarin.building import Building, load
 from mascarin.building.reading import explained
 from mascarin.errors import InputError
-from mascarin.simulation.compiling import require_inputs
-from mascarin.simulation.sky import with_sky_of
+from mascarin.simulation.compiling import in_climate, require_inputs
 from mascarin.study.description import StudyFile, StudyPlan, read_study
 from mascarin.study.inputs import filled, find, open_climate, open_measurements, require_one_clock
 from mascarin.study.locations import Faults, Places
@@ -119,7 +118,7 @@ def _with_sky(building: Building, climate: Climate, plan: StudyPlan) -> Building
     named: list[str] = list(plan.identification.parameters) if plan.identification else []
     if plan.sensitivity:
         named += [*plan.sensitivity.ranges, *plan.sensitivity.distributions, *plan.sensitivity.leave_out]
-    return with_sky_of(building, climate, named)
+    return in_climate(building, climate, varied=named)
 
 
 def from_objects(
