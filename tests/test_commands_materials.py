@@ -54,6 +54,7 @@ def test_plot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         (("--melting", "22-28"), "expected LOW..HIGH"),
         (("--melting", "28..22"), "lower end first"),
         (("--plot", "x.svg"), "narrow the search"),
+        (("RT25HC", "--plot", "x.doc"), "--plot: found 'x.doc'; expected a file ending in .svg"),
     ],
 )
 def test_refusals(words: tuple[str, ...], message: str, capsys: pytest.CaptureFixture[str]) -> None:

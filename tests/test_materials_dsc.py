@@ -279,6 +279,13 @@ def test_report_and_plot(tmp_path: Path) -> None:
     file = write(tmp_path / "a.csv", {"temperature [degC]": t, "cp [J/(kg K)]": heat(t)})
     material = from_dsc(file)
     assert "latent heat    150.0 kJ/kg" in material.report()
-    material.plot(tmp_path / "a.svg")
-    assert "heating" in (tmp_path / "a.svg").read_text(encoding="utf-8")
+    figure = material.plot()
+    above, below = figure.axes
+    # From 0 at the first temperature to sensible and latent heat at the last, in kJ/kg.
+    measured, *_ = above.lines
+    assert measured.get_label() == "heating"
+    assert np.asarray(measured.get_ydata())[-1] == pytest.approx(np.trapezoid(heat(t), t) / 1000.0, rel=0.01)
+    assert material.plot(ax=[above, below]) is figure
+    with pytest.raises(InputError, match="expected one, or one for each unit"):
+        material.plot(ax=[above, below, below])
     assert material.to_dict()["runs"]["heating"]["fits"]["tanh"]["law"]["kind"] == "tanh"

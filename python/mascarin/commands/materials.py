@@ -46,6 +46,7 @@ def materials(
     from mascarin.materials import search
     from mascarin.materials.library import suggestion
 
+    _require_format(plot)
     chosen = search(query, melting=_interval(melting), kind=kind)
     exact = [one for one in chosen if _same(one.name, query)]
     chosen = exact or chosen
@@ -63,8 +64,15 @@ def materials(
     if plot is not None:
         from mascarin.materials.plots import plot as draw
 
-        draw(chosen, plot)
+        draw(chosen).savefig(plot)
         print(f"wrote {plot}", file=sys.stderr)
+
+
+def _require_format(plot: Path | None) -> None:
+    if plot is not None:
+        from mascarin.figures.files import require_format
+
+        require_format(plot, "--plot")
 
 
 def _same(name: str, query: str) -> bool:
@@ -241,6 +249,7 @@ def dsc(
     """
     from mascarin.materials.dsc import from_dsc
 
+    _require_format(plot)
     span = _interval(melting)
     material = from_dsc(
         file,
@@ -258,7 +267,7 @@ def dsc(
     if out is not None:
         _write(material, name or material.name, described, out)
     if plot is not None:
-        material.plot(plot)
+        material.plot().savefig(plot)
         print(f"wrote {plot}", file=sys.stderr)
     if as_json:
         print_json({"material": described, **material.to_dict()})

@@ -57,7 +57,7 @@ def draw(
     if not series:
         raise InputError("names: found none, expected at least one series to draw")
     units = list(dict.fromkeys(unit for _, unit, _ in series))
-    axes = _axes(ax, units)
+    axes = axes_for(ax, units)
     # Times in UTC with local labels: a line does not go back where daylight saving time ends.
     days = dates.date2num(index.tz_convert("UTC").tz_localize(None).to_numpy())  # type: ignore[no-untyped-call]
     for name, unit, values in series:
@@ -85,8 +85,31 @@ def _let_notebook_show_figures() -> None:
         pyplot.switch_backend(matplotlib.get_backend())
 
 
-def _axes(ax: Axes | Sequence[Axes] | None, units: Sequence[str]) -> list[Axes]:
-    """One axes for each unit; the same axes may be used for several units."""
+def axes_for(ax: Axes | Sequence[Axes] | None, units: Sequence[str]) -> list[Axes]:
+    """One axes for each unit; the same axes may be used for several units.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes or sequence of them, or None
+        One for each unit, or one for all; None makes a new figure, which a notebook shows.
+    units : sequence of str
+        The units.
+
+    Returns
+    -------
+    list of matplotlib.axes.Axes
+        As many as units.
+
+    Raises
+    ------
+    InputError
+        Another number of axes, or something else.
+
+    Examples
+    --------
+    >>> len(axes_for(None, ["degC", "W"]))
+    2
+    """
     if ax is None:
         if in_notebook():
             _let_notebook_show_figures()

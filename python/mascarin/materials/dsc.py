@@ -20,9 +20,13 @@ from mascarin.materials.laws import LAWS, LawFit, fit
 from mascarin.materials.units import check_heat
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     import numpy.typing as npt
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from mascarin.figures.melting import Curve
 
     Array = npt.NDArray[np.float64]
 
@@ -176,17 +180,22 @@ class DscMaterial:
             "warnings": list(self.warnings),
         }
 
-    def plot(self, file: str | Path) -> None:
+    def plot(self, *, ax: Sequence[Axes] | None = None) -> Figure:
         """Plot the runs and the best law: enthalpy above, apparent specific heat below.
 
         Parameters
         ----------
-        file : str or Path
-            SVG, PNG or PDF.
-        """
-        from mascarin.materials.plots import with_figure
+        ax : sequence of two matplotlib.axes.Axes, optional
+            Where to draw; a new figure when absent.
 
-        with_figure(Path(file), lambda above, below: _draw(self.runs, above, below))
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure of the axes; ``savefig`` writes it to a file.
+        """
+        from mascarin.figures import melting
+
+        return melting.draw([curve for n, run in enumerate(self.runs) for curve in _curves(n, run)], ax)
 
 
 def from_dsc(
@@ -459,16 +468,17 @@ def _listed(value: float | tuple[float, float]) -> float | list[float]:
     return [float(x) for x in value] if isinstance(value, tuple | list) else float(value)
 
 
-def _draw(runs: Sequence[Melting], above: Any, below: Any) -> None:
-    for number, run in enumerate(runs):
-        color, best = f"C{number}", run.fits[0]
-        for fraction, style, label in (
-            (run.fraction, "-", run.direction),
-            (best.law.shape(run.temperature, (best.melting_temperature, *best.widths)), ":", best.law.name),
-        ):
-            solid, liquid = run.specific_heat
-            over = run.temperature - run.half
-            h = solid * over + fraction * (run.latent_heat + (liquid - solid) * over)
-            above.plot(run.temperature, (h - h[0]) / 1000.0, style, color=color, label=label)
-            heat = run.heat if style == "-" else np.gradient(h, run.temperature)
-            below.plot(run.temperature, heat / 1000.0, style, color=color, label=label)
+def _curves(number: int, run: Melting) -> Iterator[Curve]:
+    """The measured curve of a run, and that of its best law."""
+    from mascarin.figures import melting
+
+    best = run.fits[0]
+    for fraction, style, label in (
+        (run.fraction, "-", run.direction),
+        (best.law.shape(run.temperature, (best.melting_temperature, *best.widths)), ":", best.law.name),
+    ):
+        solid, liquid = run.specific_heat
+        over = run.temperature - run.half
+        h = solid * over + fraction * (run.latent_heat + (liquid - solid) * over)
+        heat = run.heat if style == "-" else np.gradient(h, run.temperature)
+        yield melting.Curve(label, number, style, run.temperature, h - h[0], run.temperature, heat)

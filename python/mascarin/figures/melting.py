@@ -1,0 +1,87 @@
+"""Figures of phase-change materials: enthalpy and apparent specific heat over temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from mascarin.figures.series import axes_for
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+class Curve(NamedTuple):
+    """Enthalpy and apparent specific heat of a material on one path.
+
+    Parameters
+    ----------
+    label : str
+        Name in the legend.
+    family : int
+        Curves of one family have one color.
+    style : str
+        Style of the line.
+    temperature, enthalpy : array_like, shape (n,)
+        Points of the enthalpy. [degC, J/kg]
+    middle, specific_heat : array_like, shape (m,)
+        Points of the apparent specific heat. [degC, J/(kg K)]
+
+    Examples
+    --------
+    >>> Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4]).label
+    'wax, heating'
+    """
+
+    label: str
+    family: int
+    style: str
+    temperature: Any
+    enthalpy: Any
+    middle: Any
+    specific_heat: Any
+
+
+def draw(curves: Sequence[Curve], ax: Axes | Sequence[Axes] | None = None) -> Figure:
+    """Draw the enthalpy above, the apparent specific heat below.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        The curves.
+    ax : sequence of two matplotlib.axes.Axes, optional
+        Where to draw; a new figure when absent.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure of the axes.
+
+    Raises
+    ------
+    InputError
+        Another number of axes.
+
+    Examples
+    --------
+    >>> figure = draw([Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])])
+    >>> [axes.get_ylabel() for axes in figure.axes]
+    ['enthalpy [kJ/kg]', 'apparent specific heat [kJ/(kg K)]']
+    """
+    import numpy as np
+
+    above, below = axes_for(ax, ["kJ/kg", "kJ/(kg K)"])
+    for one in curves:
+        look: dict[str, Any] = {"linestyle": one.style, "color": f"C{one.family}", "label": one.label}
+        above.plot(one.temperature, np.asarray(one.enthalpy) / 1000.0, **look)
+        below.plot(one.middle, np.asarray(one.specific_heat) / 1000.0, **look)
+    above.set_ylabel("enthalpy [kJ/kg]")
+    below.set_ylabel("apparent specific heat [kJ/(kg K)]")
+    below.set_xlabel("temperature [degC]")
+    for axes in (above, below):
+        axes.grid(visible=True, alpha=0.3)
+        axes.legend(frameon=False, fontsize="small")
+    figure = above.get_figure(root=True)
+    assert figure is not None  # noqa: S101 (axes always have a figure)
+    return figure
