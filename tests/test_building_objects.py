@@ -13,6 +13,7 @@ import mascarin as mc
 from building_samples import EVERYTHING, everything, room
 from mascarin.building.phase_change import TableLaw
 from mascarin.building.reading import parse
+from mascarin.errors import InputError
 from strategies_building import descriptions
 
 b = mc.building
@@ -244,6 +245,34 @@ def test_equal_buildings_are_the_same_key() -> None:
     other = mc.Building.from_dict(turned)
     assert other == building
     assert hash(other) == hash(building)
+
+
+def test_lists_of_parameters_and_outputs_are_short_and_become_tables() -> None:
+    building = everything()[0]
+    for listing in (building.parameters(), building.outputs()):
+        lines = repr(listing).splitlines()
+        assert len(lines) <= 15
+        assert lines[0].startswith(f"{len(listing)} ")
+        assert listing._repr_html_().startswith("<div>")
+        table = listing.to_dataframe()
+        assert len(table) == len(listing)
+        assert repr(pickle.loads(pickle.dumps(listing))) == repr(listing)  # noqa: S301
+    table = building.parameters().to_dataframe()
+    for parameter in building.parameters():
+        row = table.loc[parameter.path]
+        assert (row["value"], row["unit"], row["low"]) == (parameter.value, parameter.unit, parameter.low)
+    assert building.outputs().to_dataframe().loc["room.air_temperature", "unit"] == "degC"
+
+
+def test_a_docstring_has_its_sections_in_the_order_of_numpydoc() -> None:
+    text = mc.Building.__doc__ or ""
+    places = [text.index(f"\n{name}\n---") for name in ("Parameters", "Raises", "Examples")]
+    assert places == sorted(places)
+
+
+def test_a_step_of_another_type_is_refused() -> None:
+    with pytest.raises(InputError, match=r"step: found \[\]; expected a duration such as '15min'"):
+        room().check([])  # type: ignore[arg-type]
 
 
 def test_pickled_buildings_keep_their_notes() -> None:

@@ -238,6 +238,11 @@ def test_a_step_against_the_gradient_lowers_the_quantity(cell: Study) -> None:
     assert there.value - at.value == pytest.approx(at.slopes[path] * step, rel=0.02)
     assert there.value < at.value
     mean = gradient(cell.building, cell.climate, Mean("room.air_temperature"), **options)
+    lines = repr(mean).splitlines()
+    assert len(lines) <= 15
+    # The parameter with the largest change over its range is first.
+    assert lines[1].split()[0] == mean.to_dataframe().index[0]
+    assert "<details>" in mean._repr_html_()
     assert mean.value == pytest.approx(float(np.mean(seen)) - 0.5, abs=1e-6)
 
 

@@ -140,12 +140,15 @@ def test_results_read_back_are_equal(run: Results, tmp_path: Path) -> None:
     assert Results.open(str(again)) == full
 
 
-@pytest.mark.parametrize("content", [None, b"no NetCDF"])
-def test_files_of_something_else_are_refused(tmp_path: Path, content: bytes | None) -> None:
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [(None, "no such file; give the path"), (b"no NetCDF", "found no results of a run")],
+)
+def test_files_of_something_else_are_refused(tmp_path: Path, content: bytes | None, message: str) -> None:
     file = tmp_path / "other.nc"
     if content is not None:
         file.write_bytes(content)
-    with pytest.raises(InputError, match=r"other\.nc: found no results of a run"):
+    with pytest.raises(InputError, match=rf"other\.nc: {message}"):
         Results.open(file)
 
 

@@ -11,6 +11,7 @@ from pydantic import ValidationError, model_validator
 
 from mascarin._io import atomic, display
 from mascarin._io.arguments import mapping_of
+from mascarin._io.listing import Listing
 from mascarin.building import outputs as results
 from mascarin.building import summary
 from mascarin.building.checks import check, seconds_of
@@ -22,7 +23,7 @@ from mascarin.building.leaves import leaves
 from mascarin.building.names import known_names
 from mascarin.building.number import Interval, Number
 from mascarin.building.outputs import Output
-from mascarin.building.parameters import Parameter, lookup, parameters, resolve
+from mascarin.building.parameters import Parameter, listed, lookup, parameters, resolve
 from mascarin.building.part import Part, insist, is_number, plain_value
 from mascarin.building.references import sources
 from mascarin.building.replacing import piece_at, put, without_parts
@@ -224,13 +225,13 @@ class Building(Description):
     def _parameters(self) -> dict[str, Parameter]:
         return {parameter.path: parameter for parameter in parameters(self)}
 
-    def parameters(self) -> list[Parameter]:
+    def parameters(self) -> Listing[Parameter]:
         """All numbers of the description, each with its path, unit, range and source.
 
         Returns
         -------
         list of Parameter
-            In the order of the description.
+            In the order of the description; its `to_dataframe` gives a table.
 
         Examples
         --------
@@ -239,7 +240,7 @@ class Building(Description):
         >>> cell.parameters()[0].path
         'site.latitude'
         """
-        return list(self._parameters.values())
+        return listed(self._parameters.values())
 
     def parameter(self, path: str) -> Parameter:
         """One number of the description.
@@ -362,13 +363,13 @@ class Building(Description):
 
     # --- what a run needs and gives -------------------------------------------------------------------------
 
-    def outputs(self) -> list[Output]:
+    def outputs(self) -> Listing[Output]:
         """All results that a run of this building can give.
 
         Returns
         -------
         list of Output
-            In the order of the description.
+            In the order of the description; its `to_dataframe` gives a table.
 
         Examples
         --------
@@ -377,7 +378,8 @@ class Building(Description):
         >>> cell.outputs()[0].name
         'room.air_temperature'
         """
-        return results.outputs(self)
+        found = results.outputs(self)
+        return Listing(found, f"{len(found)} outputs", ("name", "unit"))
 
     def output(self, name: str) -> Output:
         """One result.

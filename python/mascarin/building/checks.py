@@ -204,13 +204,13 @@ def assumptions(building: Description) -> Iterator[str]:
 
 def seconds_of(step: str | float) -> float:
     """Duration of a time step in seconds, from a number or a text such as ``15min``."""
-    if not isinstance(step, str):
-        return float(step)
-    import pandas as pd
-
     try:
+        if not isinstance(step, str):
+            return float(step)
+        import pandas as pd
+
         return float(pd.Timedelta(step).total_seconds())
-    except ValueError:
+    except (TypeError, ValueError):
         raise InputError(
-            f"step: found '{step}'; expected a duration such as '15min' or a number [s]"
+            f"step: found {step!r}; expected a duration such as '15min' or a number [s]"
         ) from None

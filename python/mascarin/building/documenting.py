@@ -14,7 +14,7 @@ from pydantic_core import PydanticUndefined
 from mascarin.building.number import Number, quantity_of
 
 #: What ends the summary of a docstring by the numpydoc standard.
-_SECTION = re.compile(r"^ *(Examples|References|See Also|Notes)\n *-{3,}$", re.MULTILINE)
+_SECTION = re.compile(r"^ *(Raises|Examples|References|See Also|Notes)\n *-{3,}$", re.MULTILINE)
 
 
 def signature_of(fields: Mapping[str, FieldInfo]) -> inspect.Signature:

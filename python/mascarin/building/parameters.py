@@ -5,10 +5,11 @@ Sensitivity analysis, calibration, sweeps and GenOpt files name numbers by these
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from mascarin._io.listing import Listing
 from mascarin.building.inactive import without_effect
 from mascarin.building.leaves import leaves
 from mascarin.building.number import Number
@@ -75,6 +76,13 @@ class Parameter:
     def varies(self) -> bool:
         """Whether a sensitivity analysis can vary it with an effect."""
         return self.reason is None and self.low < self.high
+
+
+def listed(found: Iterable[Parameter]) -> Listing[Parameter]:
+    """The parameters as a list that is shown with values and units."""
+    every = list(found)
+    title = f"{len(every)} parameters, {sum(one.varies for one in every)} of which may vary"
+    return Listing(every, title, ("path", "value", "unit"))
 
 
 def parameters(building: Description) -> list[Parameter]:

@@ -53,6 +53,9 @@ class EnergyLedger:
     turnover: float
     relative_residual: float
 
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name != "closure"]
+
     @property
     def closure(self) -> float:
         """The same as `relative_residual`. [-]"""

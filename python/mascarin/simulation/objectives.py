@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from mascarin._io import display
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ class SquaredResiduals:
         return total, slopes
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Gradient:
     """A quantity and its derivatives by all parameters.
 
@@ -126,6 +127,23 @@ class Gradient:
 
     def __dir__(self) -> list[str]:
         return [name for name in super().__dir__() if name != "table"]
+
+    def __repr__(self) -> str:
+        table = self.to_dataframe()
+        columns = (table.index, table["slope"], table["parameter unit"], table["over its range"])
+        return display.text(
+            self._title(),
+            [
+                (path, f"{slope:.4g} per {unit}, {over:.4g} over its range")
+                for path, slope, unit, over in zip(*columns, strict=True)
+            ],
+        )
+
+    def _repr_html_(self) -> str:
+        return display.page(self._title(), [], tables={"Derivatives": self.to_dataframe()})
+
+    def _title(self) -> str:
+        return f"Gradient of a quantity with the value {self.value:.6g} by {len(self.slopes)} parameters"
 
 
 def series_of(series: Mapping[str, Array], output: str) -> Array:

@@ -336,6 +336,8 @@ class Results(Mapping[str, "xr.DataArray"]):
         import pandas as pd
         import xarray as xr
 
+        if not Path(path).is_file():
+            raise InputError(f"{path}: no such file; give the path from the folder you work in.")
         try:
             with xr.open_dataset(path, engine="h5netcdf") as data:
                 data.load()
