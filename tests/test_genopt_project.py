@@ -50,6 +50,31 @@ def test_a_project_is_read(tmp_path: Path) -> None:
         ({"vary": 'Parameter { Name = n; Ini = 4; Values = "a,b"; }'}, "there are 2 values"),
         ({"vary": "Parameter { Name = n; Ini = x; Step = 1; }"}, "'Ini' is 'x'; expected a number"),
         (
+            {"vary": "Parameter { Name = n; Ini = 1; Step = 1; Type = REAL; }"},
+            "Type is 'REAL'; expected CONTINUOUS or SET",
+        ),
+        (
+            {"vary": 'Parameter { Name = n; Ini = 1; Values = "1,2"; Type = CONTINUOUS; }'},
+            "'n' is continuous; 'Values' belongs to Type = SET",
+        ),
+        (
+            {"vary": "Parameter { Name = n; Ini = 1; Step = 1; Min = 3; Max = 2; }"},
+            "'n': Min 3.0 is above Max 2.0; exchange them",
+        ),
+        (
+            {"vary": 'Parameter { Name = n; Ini = 1; Min = 2; Values = "1,2"; }'},
+            "'n' has 'Values'; remove 'Min'",
+        ),
+        (
+            {"vary": "Parameter { Name = n; Ini = 1; Min = 1; Max = 2; Type = SET; }"},
+            "'n' of Type SET needs 'Values', or 'Min', 'Max' and 'Step'",
+        ),
+        (
+            {"vary": "Parameter { Name = n; Ini = 1; Min = 0; Max = 9; Step = -3; Type = SET; }"},
+            "'n': logarithmic spacing needs Min and Max above zero",
+        ),
+        ({"vary": "Parameter { Name = stepNumber; Ini = 1; Step = 1; }"}, "'stepNumber' is reserved"),
+        (
             {"vary": "Parameters { Name = n; }"},
             "unknown or unexpected section 'Parameters'. Did you mean 'Parameter'",
         ),
@@ -140,3 +165,19 @@ def test_the_swarm_and_its_starts_have_separate_seeds(tmp_path: Path) -> None:
     MultiStart = Uniform; Seed = 7; NumberOfInitialPoint = 2;
     MeshSizeExponentIncrement = 1; NumberOfStepReduction = 1;"""
     assert built(write_project(tmp_path, algorithm=algorithm)) == []
+
+
+@pytest.mark.parametrize(
+    ("entries", "values"),
+    [
+        ("Min = 1; Max = 4; Step = 3;", [1.0, 2.0, 3.0, 4.0]),
+        ("Min = 1; Max = 100; Step = -2;", [1.0, 10.0, 100.0]),
+        ("Min = 5; Max = 9; Step = 0;", [5.0]),
+    ],
+)
+def test_values_of_a_discrete_parameter_are_spaced_evenly_or_by_equal_ratios(
+    tmp_path: Path, entries: str, values: list[float]
+) -> None:
+    vary = f"Parameter {{ Name = x1; Ini = 1; {entries} Type = SET; }}"
+    project = load(write_project(tmp_path, vary=vary + "Parameter { Name = x2; Ini = 1; Step = 1; }"))
+    assert [float(text) for text in project.discrete[0].values] == pytest.approx(values, rel=1e-6)

@@ -7,13 +7,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 
 from mascarin.report import text
 from mascarin.report.drawn import Figure, hour_marks
 from mascarin.report.labels import label_of, period_label, unit_of
 from mascarin.report.series import Series
-from mascarin.report.svg import Axis, Chart, Svg
+from mascarin.report.svg import Axis, Chart
 
 TITLE = "Analysis of the residuals"
 
@@ -102,8 +101,6 @@ def residual_figures(study: Mapping[str, Any], sensor: str, entry: Mapping[str, 
     if entry.get("cross_correlation"):
         drawn = _cross(entry).markup(f"Correlation of the residual with the climate over the lag, {label}")
         found.append(Figure("Cross-correlation", drawn))
-    elif entry.get("correlation"):
-        found.append(Figure("Correlation with the climate", _correlation(label, entry)))
     return found
 
 
@@ -175,37 +172,3 @@ def _by_hour(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) ->
     chart.band(hours, mean - sd, mean + sd, "spread")
     chart.curve(hours, mean, "error")
     return chart
-
-
-def _correlation(label: str, entry: Mapping[str, Any]) -> Markup:
-    rows = list(entry["correlation"].items())
-    svg = Svg(250.0, 24.0 + 22.0 * len(rows))
-    left, right = 118.0, 242.0
-    middle = 0.5 * (left + right)
-    band = float(entry.get("correlation_band", 0.0))
-    half = 0.5 * (right - left)
-    if band > 0.0:
-        svg.add(
-            "rect",
-            x=middle - band * half,
-            y=2.0,
-            width=2 * band * half,
-            height=22.0 * len(rows),
-            class_="null-band",
-        )
-    for row, (name, value) in enumerate(rows):
-        y = 2.0 + 22.0 * row
-        length = half * max(-1.0, min(1.0, float(value)))
-        svg.label(0.0, y + 15.0, name, "tick")
-        svg.add(
-            "rect", x=min(middle, middle + length), y=y + 5.0, width=abs(length), height=12.0, class_="bar"
-        )
-        outside = middle + length + (4.0 if value >= 0 else -4.0)
-        inside = abs(length) > half - 26.0
-        x = middle - (4.0 if value >= 0 else -4.0) if inside else outside
-        anchor = "start" if (value >= 0) != inside else "end"
-        svg.label(x, y + 15.0, text.fixed(float(value)), "tick", anchor)
-    svg.line(middle, 0.0, middle, 2.0 + 22.0 * len(rows), "axis")
-    for value in (-1, 0, 1):
-        svg.label(middle + half * value, 18.0 + 22.0 * len(rows), text.fixed(value, 0), "tick", "middle")
-    return svg.markup(f"Correlation of the residual with the climate, {label}")
