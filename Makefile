@@ -36,6 +36,8 @@ export PYO3_PYTHON := $(CURDIR)/$(PY)
 help:
 	@echo "make demo   build, run the study of the LGI cell on shipped data, print where the report is"
 	@echo "make test   build, run formatting, lints, types and every test"
+	@echo "make coverage     build, run the Python tests, print the lines that no test reaches"
+	@echo "make test-lowest  run the Python tests with the lowest versions that pyproject.toml declares"
 	@echo "make bench  build, measure, and write the tables of docs/speed.md;" \
 		"make bench ENERGYPLUS=path with its peer"
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from mascarin import cli
@@ -43,6 +44,19 @@ def test_members_from_a_table(call: list[str], capsys: pytest.CaptureFixture[str
     assert Store(Path("swept")).dataset()["room.air_temperature"].shape == (2, 25)
 
 
+def test_members_from_parquet_are_those_of_the_csv_file(call: list[str]) -> None:
+    # With 17 digits the text of a number is the number.
+    samples = pd.DataFrame({FILM: [2.0000000000000004, 0.1 + 0.2]})
+    samples.to_parquet("members.parquet")
+    samples.to_csv("members.csv", index=False)
+    words = ["--objective", "max:room.air_temperature", "--step", "1h"]
+    for ending in ("csv", "parquet"):
+        assert cli.main([*call[:-1], f"swept{ending}", "--samples", f"members.{ending}", *words]) == 0
+    found = [Store(Path(f"swept{ending}")).to_dataframe() for ending in ("csv", "parquet")]
+    pd.testing.assert_frame_equal(*found, check_exact=True)
+    assert found[0][f"sample: {FILM}"].tolist() == samples[FILM].tolist()
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
@@ -51,6 +65,7 @@ def test_members_from_a_table(call: list[str], capsys: pytest.CaptureFixture[str
         (["--draw", "4", "--objective", "mx:room.air_temperature"], "Did you mean 'max'"),
         (["--draw", "4", "--objective", "max:room.air_temperatur"], "room.air_temperature"),
         (["--draw", "0", "--objective", "max:room.air_temperature"], "expected 1 or more"),
+        (["--samples", "box.yaml", "--objective", "max:room.air_temperature"], "ending in .csv or .parquet"),
         (["--samples", "none.csv", "--objective", "max:room.air_temperature"], "cannot be read"),
         (
             ["--draw", "4", "--vary", "zones.rom.volume", "--objective", "max:room.air_temperature"],
