@@ -1,16 +1,16 @@
-"""Time and error of case 900 of Standard 140: a year in one process on one core, beside EnergyPlus.
+"""Time and error of case 900 of Standard 140 over a year, on one core, compared with EnergyPlus.
 
     python bench/bestest_speed.py 725650TYCST.epw [--energyplus PATH] [--repeat 5] [--json FILE]
 
-Mascarin runs the year at 15 min, its hourly results and numbers included. Times are user and system time, the
-least of several; what is done once before a year (weather and building read, the sun's path) is told by
-itself. EnergyPlus runs the same case, written here, at 15 min and at 1 min; its time is that of its process,
-less that of a run of one day. It is no dependency: it is found as --energyplus or on the PATH, and left out
-otherwise (bench/energyplus.py says how to get it).
+Mascarin runs the year at 15 min, with hourly results and their evaluation. Times are user and system time,
+the shortest of several. What is done once before a year (reading weather and building, position of the sun)
+is given separately. EnergyPlus runs the same case, which this program writes, at 15 min and at 1 min; its
+time is that of its process minus that of a run of one day. EnergyPlus is no dependency: it is found by
+--energyplus or on the PATH, and left out otherwise (bench/energyplus.py says how to get it).
 
-The error of a row is the largest of those of the two annual loads and the two peaks. It is given against the
-same program at its finest step, which shows numerics alone, and against Mascarin at 10 s, which shows the
-programs' physics as well.
+The error of a row is the largest of the errors of the two annual loads and the two peak loads. It is given
+relative to the same program at its finest step, which shows numerical errors only, and relative to Mascarin
+at 10 s, which includes the differences between the models of the programs.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def mascarin(weather: Path, repeat: int) -> list[Row]:
 
 
 def one_run(climate: Climate, step: str, repeat: int) -> Row:
-    """The year, several times; the least time."""
+    """Run the year several times; the shortest time."""
     before = time.process_time()
     wanted = sorted(outputs(CASE))
     simulation = Simulation(load(CASE.file), climate, step=step, start="2000-12-31", outputs=wanted)
@@ -96,7 +96,7 @@ def best(work: Callable[[], object], repeat: int, clock: Callable[[], float]) ->
 
 
 def energyplus(program: Path, weather: Path, repeat: int) -> list[Row]:
-    """Runs at 15 min and at 1 min, and a day to know the start-up."""
+    """Runs at 15 min and at 1 min, and a run of one day for the start-up time."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         start_up = best(lambda: process(program, weather, folder, 4, days=1), repeat, children)
@@ -173,7 +173,7 @@ def report(rows: Sequence[Row]) -> None:
 
 
 def idf(per_hour: int, days: int) -> str:
-    """Case 900 as EnergyPlus reads it: TARP inside, DOE-2 outside, sun traced, panes by their optics."""
+    """Case 900 for EnergyPlus: TARP inside, DOE-2 outside, beam radiation traced, panes by their optics."""
     last = "12, 31" if days == 365 else "1, 1"
     objects = [
         "Version, 25.2",

@@ -1,12 +1,13 @@
-"""Seven parameters of the LGI cell estimated from simulated data: are the true values found and covered?
+"""Seven parameters of the LGI cell estimated from simulated data: errors, and coverage of the intervals.
 
-``python bench/calibration_lgi.py recover``: data without noise, five starts; largest error. ``python
-bench/calibration_lgi.py cover KIND [repetitions]``: 95 % intervals for errors of 0.3 K, KIND being ``white``
-or ``1h`` (correlation time). Each repetition draws new errors and fits them, by default with the model
-replaced by its first-order expansion about the true values: 1000 fits then take minutes. ``cover KIND N
-full`` fits with the model itself, from the true values. Repetitions are kept in a file and not repeated; a
-run that was stopped is continued. ``python bench/calibration_lgi.py speed [starts]``: computing time of a
-start with either kind of derivatives, 6 starts when absent, on data with white errors, and of its parts.
+``python bench/calibration_lgi.py recover``: data without noise, five starts; prints the largest error.
+``python bench/calibration_lgi.py cover KIND [repetitions]``: 95 % intervals for errors of 0.3 K, where KIND
+is ``white`` or ``1h`` (correlation time). Each repetition draws new errors and fits the parameters. By
+default the model is replaced by its first-order expansion about the true values: 1000 fits then take
+minutes. ``cover KIND N full`` fits with the model itself, from the true values. Repetitions are stored in a
+file; a run that was stopped is continued.
+``python bench/calibration_lgi.py speed [starts]``: computing time of a start and of its parts, with both
+kinds of derivatives, on data with white errors; 6 starts by default.
 """
 
 from __future__ import annotations

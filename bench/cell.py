@@ -1,9 +1,9 @@
-"""The LGI cell in a form that Mascarin, EnergyPlus and a hand-written program can all calculate alike.
+"""The LGI cell in a form that Mascarin, EnergyPlus and a hand-written program model in the same way.
 
-What differs from the shipped example, and why: constant films (each program has its own correlations), the
-ground at a constant temperature, one emissivity for both faces of the sheet, no corrugation, one
-conductivity for solid and liquid, and the sky's infrared given with the weather instead of modelled. The
-weather is that of the shipped virtual experiment.
+Differences from the shipped example: constant surface heat transfer coefficients (each program has its own
+correlations), ground of a constant temperature, one emissivity for both surfaces of the steel sheet, no
+corrugation, one conductivity for solid and liquid, and infrared radiation of the sky given with the
+weather. The weather is that of the shipped virtual experiment.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ OUTPUTS = {
     "gap air": "air_gap.air_temperature",
     "steel": "roof.inside_temperature",
 }
-#: Film coefficients outside and inside [W/(m2 K)]: roof, ceiling and floor as in table 4 of the paper before
-#: its identification (doi:10.3390/en9010009), the others taken.
+#: Surface heat transfer coefficients outside and inside [W/(m2 K)]: roof, ceiling and floor as in table 4 of
+#: the paper before its identification (doi:10.3390/en9010009), the others assumed.
 FILMS = {"roof": (25.0, 3.5), "ceiling": (1.0, 1.0), "floor": (None, 3.5)}
 OTHER_FILMS = (15.0, 3.0)
 
@@ -58,7 +58,7 @@ def table() -> pd.DataFrame:
 
 
 def climate(weather: pd.DataFrame) -> Climate:
-    """The same as Mascarin reads it."""
+    """The weather as a climate of Mascarin."""
     columns = {
         "air_temperature": "outdoor_air",
         **{

@@ -4,10 +4,10 @@
     python bench/count_instructions.py target/bench/release/mascarin-bench CASES [--days 3] [--write new.json]
     python bench/count_instructions.py PROGRAM CASES --against old.json
 
-The program is that of bench/engine. Reading the case is taken off. Instructions are those of the program and
-of the libraries that it calls; `--own` prints those of the program alone. Valgrind knows no AVX-512: packs
-are counted with AVX2. Counts of runs and gradients are the same each time; those of packs and jacobians,
-where a thread waits for another, differ by up to 0.05 %.
+The program is that of bench/engine. The instructions for reading the case are subtracted. Counts include
+the libraries that the program calls; with `--own` only the program itself is counted. Valgrind does not
+support AVX-512, so that packs are counted with AVX2. Counts of runs and gradients are reproducible; those
+of packs and Jacobians, where threads wait for each other, differ by up to 0.05 %.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from pathlib import Path
 import counting
 import page
 
-#: What the program does with a case; `nothing` is taken off each of the others.
+#: Kinds of work of the program; the count of `nothing` is subtracted from each of the others.
 KINDS = ("run", "pack", "jacobian", "gradient")
 STEPS_A_DAY = 96
-#: Valgrind knows no AVX-512.
+#: Valgrind does not support AVX-512.
 ENVIRONMENT = {"MASCARIN_LANES": "avx2", "RAYON_NUM_THREADS": "1"}
 
 #: Kind -> instructions of the program, and with those in libraries.
@@ -32,7 +32,7 @@ Row = dict[str, dict[str, int]]
 
 
 def counted(program: Path, case: Path, days: int, kinds: Sequence[str]) -> Row:
-    """What each kind of work on a case takes over some days."""
+    """Instructions of each kind of work on a case over some days."""
 
     def taken(kind: str) -> counting.Count:
         return counting.count(program, [str(case), kind, str(STEPS_A_DAY * days)], {}, ENVIRONMENT)

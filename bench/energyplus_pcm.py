@@ -1,8 +1,9 @@
-"""PCM: Mascarin and EnergyPlus side by side, on the same ceiling in the same cell.
+"""Phase change in Mascarin and EnergyPlus, compared for the same ceiling in the same cell.
 
-Four questions: do both melt alike along a tabulated curve; does a ceiling with hysteresis keep its heat; what
-happens to a sheet of 1 mm; what does the default grid do to a thin PCM layer. The cell and its weather are
-those of `cell.py`; EnergyPlus 25.2 takes steps of a minute, finite differences in the ceiling.
+Four questions: Do both programs give the same melting along an enthalpy table? Is heat conserved in a
+ceiling with hysteresis? What is the result for a steel sheet of 1 mm? What is the effect of the default
+grid on a thin layer of phase-change material? The cell and its weather are those of `cell.py`. EnergyPlus
+25.2 runs with steps of a minute and finite differences in the ceiling.
 
     python bench/energyplus_pcm.py --energyplus PATH [--days 92]
 
@@ -78,7 +79,7 @@ class Bench:
         self.climate: Climate = cell.climate(cell.table())
 
     def ours(self, building: Building) -> tuple[pd.DataFrame, Results]:
-        """Hourly means of what Mascarin gives, and the run."""
+        """Hourly means of the outputs of Mascarin, and the run."""
         run = Simulation(
             building,
             self.climate,
@@ -98,7 +99,7 @@ class Bench:
         phase_change: energyplus.Objects | None = None,
         specific_heat: float | None = None,
     ) -> tuple[pd.DataFrame, energyplus.Run]:
-        """Hourly means of what EnergyPlus gives, fluxes towards the inside, and the run."""
+        """Hourly means of the outputs of EnergyPlus, fluxes positive towards the inside, and the run."""
         weather = self.folder / f"{scheme.per_hour}.epw"
         if not weather.exists():
             energyplus.write_weather(weather, self.climate, building, cell.START, self.end, scheme.per_hour)
@@ -114,7 +115,7 @@ class Bench:
             model["Material"]["ceiling energain"]["specific_heat"] = specific_heat
         run = energyplus.run(self.program, self.folder / "run", model, weather)
         frame = pd.DataFrame({label: run.records[THEIRS.get(name, name)] for label, name in NAMES.items()})
-        # There a flux is positive out of the wall; seen from the gap, "out" is away from the inside.
+        # EnergyPlus counts a flux out of the wall as positive; at the gap that is away from the inside.
         frame["flux into the PCM"] *= -1.0
         return frame, run
 
@@ -129,13 +130,13 @@ def apart(theirs: pd.DataFrame, ours: pd.DataFrame) -> dict[str, float]:
 
 
 def balance(frame: pd.DataFrame) -> float:
-    """Heat that went into the ceiling through both faces, and did not come out [MJ/m2]."""
+    """Heat that entered the ceiling through both surfaces minus the heat that left it [MJ/m2]."""
     net = frame["flux into the PCM"] - frame["flux out of the plasterboard"]
     return float(net.iloc[24 * SETTLING :].sum() * 3600.0 / 1e6)
 
 
 def capacity(building: Building, ours: pd.DataFrame) -> float:
-    """What the ceiling stores at most between two states: all melting, and its widest swing [MJ/m2]."""
+    """Largest heat that the ceiling stores: complete melting, and its largest temperature change [MJ/m2]."""
     warmest = max(float(ours[name].max()) for name in ("PCM top", "plasterboard"))
     coldest = min(float(ours[name].min()) for name in ("PCM top", "plasterboard"))
     stored = 0.0
@@ -182,7 +183,7 @@ def _own_nodes(building: Building) -> int:
 
 
 def hysteresis(bench: Bench) -> Numbers:
-    """Case 2: heating and cooling curve apart."""
+    """Case 2: different curves for heating and cooling."""
     plain = cell.building().replace(
         {
             "materials.energain.melting_temperature": MELTS,
@@ -227,7 +228,7 @@ def hysteresis(bench: Bench) -> Numbers:
 
 
 def thin_sheet(bench: Bench) -> Numbers:
-    """Case 3: the steel sheet of 1 mm in finite differences, at a conductivity that is accepted."""
+    """Case 3: the steel sheet of 1 mm with finite differences, at a conductivity that EnergyPlus accepts."""
     building = cell.building().replace({"materials.steel.conductivity": 35.0})
     ours, _ = bench.ours(building)
     theirs, run = bench.theirs(building, EVERYWHERE)
@@ -244,7 +245,7 @@ def thin_sheet(bench: Bench) -> Numbers:
 
 
 def _kept(run: energyplus.Run) -> float:
-    """Heat that enters the sheet and does not leave it, rms of hourly means [W/m2]: storage and errors."""
+    """Heat flow into the sheet minus heat flow out of it, rms of hourly means: storage and errors. [W/m2]"""
     net = run.records["roof.inside_flux"] + run.records["roof.outside_flux"]
     return float(np.sqrt(np.mean(net.to_numpy()[24 * SETTLING :] ** 2)))
 

@@ -1,13 +1,14 @@
-"""The engine without Python: time by criterion, instructions and arithmetic by callgrind, the machine's peak.
+"""The engine without Python: time by criterion, instructions and operations by callgrind, peak of a core.
 
 Time: `cargo bench` in bench/engine, a crate of its own; one run, and a pack of eight members on one thread.
 
-Arithmetic: counting.py. Reading the case is taken off. Valgrind knows no AVX-512, so packs are counted with
-AVX2; their numbers are the same bits by the same operations. The first day is not repeated here.
+Arithmetic: counting.py. The instructions for reading the case are subtracted. Valgrind does not support
+AVX-512, so that packs are counted with AVX2; results have the same bits, by the same operations. The first
+day is not repeated.
 
-Peak: the fastest of some products of matrices with numpy on one thread. It multiplies and adds in one
-instruction (FMA), which the engine does not: it would give other bits on other machines. Half of that peak is
-what code without FMA could reach at most.
+Peak: the shortest time of several matrix products with numpy on one thread. They multiply and add in one
+instruction (FMA). The engine does not, because results would differ between machines. Code without FMA can
+reach half of that peak at most.
 
     python bench/engine_alone.py [--days 92] [--counted 10] [--write docs/speed.md]
 """
@@ -43,7 +44,7 @@ STAGES_A_DAY = 192  # two in every step of 900 s
 
 
 def bench(cases: Path) -> None:
-    """Run criterion on cases, which builds the program that is counted as well; what it says is passed on."""
+    """Run criterion on the cases, which also builds the program that is counted; its output is passed on."""
     cargo = shutil.which("cargo")
     if cargo is None:
         raise SystemExit("cargo: not found; expected Rust 1.89 or later, see rustup.rs")
@@ -59,7 +60,7 @@ def bench(cases: Path) -> None:
 
 
 def criterion(kind: str, name: str) -> tuple[float, float]:
-    """Mean time and half its interval of 95 %, as criterion found them [s]."""
+    """Mean time and half-width of its 95 % interval, from the files of criterion [s]."""
     file = ESTIMATES / kind / name / "new" / "estimates.json"
     mean = json.loads(file.read_text(encoding="utf-8"))["mean"]
     interval = mean["confidence_interval"]
@@ -67,7 +68,7 @@ def criterion(kind: str, name: str) -> tuple[float, float]:
 
 
 def counted(case: Path, days: int, worth: Mapping[int, int]) -> tuple[Count, Count]:
-    """What a stage takes, of one run and of one member of a pack, counted over some days."""
+    """Counts per stage, of one run and of one member of a pack, over some days."""
     stages = STAGES_A_DAY * days
 
     def taken(what: str) -> Count:
@@ -80,7 +81,7 @@ def counted(case: Path, days: int, worth: Mapping[int, int]) -> tuple[Count, Cou
 
 
 def peak(size: int = 1500, repeats: int = 7) -> float:
-    """Operations of double precision that a core does in a second, at best."""
+    """Largest number of operations of double precision in a second on one core."""
     rng = np.random.default_rng(1)
     a, b = rng.normal(size=(2, size, size))
     times = []

@@ -1,7 +1,7 @@
-"""Cases for bench/engine, the engine without Python: what a run hands over.
+"""Cases for bench/engine, the engine without Python: the input that a run gives to the engine.
 
-They are the models of engine_speed.py and, where its weather is at hand, case 900 of Standard 140. Only the
-first day is not repeated until it settles, so that the number of stages is known.
+They are the models of engine_speed.py and, if its weather file is given, case 900 of Standard 140. The
+first day is not repeated until it converges, so that the number of stages is known.
 
     python bench/engine_cases.py FOLDER [--days 10] [--bestest 725650TYCST.epw]
 """
@@ -43,7 +43,7 @@ def write(folder: Path, days: int) -> list[Path]:
 
 
 def standard_140(folder: Path, days: int, weather: Path) -> Path:
-    """Write case 900 of Standard 140, which has windows and plants, in the same way; the JSON file."""
+    """Write case 900 of Standard 140, which has windows and ideal loads, in the same way; the JSON file."""
     case, found = CASES["900"], read(weather)
     of = Simulation(
         load(case.file),
@@ -65,7 +65,7 @@ def standard_140(folder: Path, days: int, weather: Path) -> Path:
 def _written(
     file: Path, of: Simulation, source: Climate, members: np.ndarray, initial: float | None = None
 ) -> Path:
-    """A case; it starts from one temperature everywhere, that of the outdoor air in the mean unless given."""
+    """Write a case; its initial temperature is by default the mean of the outdoor air."""
     described = of.building.to_engine(STEP, {})
     weather = source.forcing(of.building.site, of.start, of.end, STEP, "sdirk2", list(described.channels))
     case = {

@@ -1,13 +1,13 @@
 """Speed of the engine on the LGI cell over 92 days: single runs through Python, ensembles, lanes and cores.
 
-Every time is the shortest of some repetitions. Single runs and ensembles on one thread are counted in
-processor time, which a busy machine disturbs least; the ratio of two threads to one can only be had by the
-clock, so leave the machine alone for it. Instructions of a stage are counted by valgrind where it is
-installed: the difference of runs over six and over two days.
+Every time is the shortest of several repetitions. Single runs and ensembles on one thread are measured in
+processor time, which other programs on the machine disturb least. The ratio of two threads to one is
+measured by the clock, so that no other program should run meanwhile. Instructions of a stage are counted by
+valgrind where it is installed: the difference of runs over six and over two days.
 
     python bench/engine_speed.py [--days 92] [--members 16] [--write docs/speed.md]
 
-With `--write` the table takes its place in the page.
+With `--write` the table is written into the page.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ MODELS = {
 
 
 def building(model: Model) -> Building:
-    """The cell with the films and the radiation of a model; the slab below it at a constant temperature."""
+    """The cell with the convection and radiation of a model; the slab below it at a constant temperature."""
     cell = mc.load(FOLDER / "lgi" / "building.yaml") if model.whole else smaller()
     changes: dict[str, object] = {"surfaces.floor.outside": {"ground": {"mean": 22.5}}}
     for name, surface in cell.surfaces.items():
@@ -113,7 +113,7 @@ def building(model: Model) -> Building:
 
 
 def smaller() -> Building:
-    """The cell with one upstand of the area of all four, which has no place in space then."""
+    """The cell with one upstand of the area of all four, without a position in space."""
     text = (FOLDER / "lgi" / "building.yaml").read_text(encoding="utf-8")
     for gone in ("north", "east", "west"):
         text = re.sub(rf"  upstand_{gone}:\n(?:    .*\n)+", "", text)
@@ -190,7 +190,7 @@ def measure(name: str, days: int, members: int, repeats: int) -> dict[str, float
 
 
 def apart(name: str, given: argparse.Namespace, threads: int, lanes: str = "") -> dict[str, float]:
-    """The same in a process of its own, which the number of threads and the kind of lanes are given to."""
+    """The same in a process of its own, with a given number of threads and kind of lanes."""
     environment = {**os.environ, "RAYON_NUM_THREADS": str(threads), LANES: lanes}
     command = [sys.executable, __file__, "--child", name, "--days", str(given.days)]
     command += ["--members", str(given.members), "--repeats", str(given.repeats)]

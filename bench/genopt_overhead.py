@@ -1,7 +1,7 @@
-"""What `mascarin optimize` adds to the time of the simulation program, per evaluation.
+"""Time that `mascarin optimize` adds to the simulation program, per evaluation.
 
-Runs a grid of points with a program that takes next to no time, once through the whole optimiser and once
-bare, and prints the difference. With a C compiler the program is compiled, otherwise it is a Python script.
+Runs a grid of points with a program that takes nearly no time, once by `mascarin optimize` and once without
+it, and prints the difference. With a C compiler the program is compiled, otherwise it is a Python script.
 
     python bench/genopt_overhead.py [points]
 """

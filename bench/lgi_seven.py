@@ -1,7 +1,8 @@
-"""The seven parameters of the paper on the LGI cell, as a calibration problem with a known truth.
+"""The seven parameters of the paper on the LGI cell, as a calibration problem with known true values.
 
-The data are our own model's: whatever a search finds can be held against what they were made of. Period,
-sensors, ranges and step are those of the shipped study, with constant films as in the paper.
+The data are simulated, so that estimates can be compared with the values that the data were made with.
+Period, sensors, ranges and step are those of the shipped study, with constant surface heat transfer
+coefficients as in the paper.
 """
 
 from __future__ import annotations
@@ -19,20 +20,20 @@ Floats = NDArray[np.float64]
 
 VARIANT = "the paper's seven, 25 outside"
 SENSOR_SD = 0.3  # K
-#: Where the truth stands between the low and the high end of each range: off the start and off the middle.
+#: Position of the true value in each range, from 0 to 1: neither the start of the search nor the middle.
 TRUTH = np.array([0.62, 0.35, 0.41, 0.55, 0.33, 0.47, 0.58])
 
 
 @dataclass(frozen=True, eq=False)
 class Seven:
-    """The problem without its data, and the truth."""
+    """The problem without its data, and the true values."""
 
     problem: CalibrationProblem
     truth: Floats
     clean: Floats
 
     def measured(self, errors: Floats | None = None) -> CalibrationProblem:
-        """The problem with data (T, S) made of the truth, with errors on top. [K]"""
+        """The problem with data (T, S) simulated with the true values, plus errors. [K]"""
         data = self.clean if errors is None else self.clean + errors
         sensors = tuple(
             replace(

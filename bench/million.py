@@ -1,8 +1,9 @@
-"""Memory that a million objectives take: the LGI cell swept into a store, and its table read back.
+"""Memory for a million objectives: the LGI cell swept into a store, and its table read again.
 
-Memory depends on the members that are held, not on the period: series are reduced in stretches of a fixed
-size (`mascarin/ensemble/work.py`). So the period is short, and the samples are as many as they would be. The
-largest resident memory is the process's own, as the system counts it: Python, samples, store and table.
+Memory depends on the members that are kept, not on the length of the period, because series are reduced in
+parts of a fixed size (`mascarin/ensemble/work.py`). Therefore the period is short and the number of samples
+is the full one. The largest resident memory is that of the process as the system reports it: Python,
+samples, store and table.
 
     python bench/million.py [--members 1000000] [--days 1] [--step 1h] [--write docs/speed.md]
 """
@@ -35,7 +36,7 @@ def largest() -> float:
 
 
 def main() -> None:
-    """Sweep, read back, and tell."""
+    """Sweep, read the table, and print the memory."""
     options = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

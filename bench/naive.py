@@ -1,8 +1,9 @@
-"""The LGI cell as a careful user would write it with numpy, scipy and pvlib: one page, no tricks.
+"""The LGI cell as a careful user would write it with numpy, scipy and pvlib, without optimization for speed.
 
-Finite differences with nodes on the faces and interfaces of every layer, the apparent heat capacity of the
-phase-change layer, radiosity between the faces of each zone, and `solve_ivp` with its stiff method BDF. The
-numbers come from the building, so that it is the same cell; nothing of Mascarin's engine is used.
+Finite differences with nodes on the surfaces and interfaces of every layer, the apparent heat capacity of
+the phase-change layer, radiosity between the surfaces of each zone, and `solve_ivp` with its stiff method
+BDF. The numbers are read from the building, so that it is the same cell; the engine of Mascarin is not
+used.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ SKIN = 500.0  # heat capacity behind a bare resistance: a sheet of paper [J/(m2 
 
 @dataclass
 class Face:
-    """One side of a wall: the node on it, and what it exchanges heat with."""
+    """One side of a wall: its node, and what it exchanges heat with."""
 
     node: int
     area: float
@@ -39,7 +40,7 @@ class Face:
     emissivity: float
     zone: str | None
     sun: Array | None  # absorbed at each row of the weather [W/m2]
-    sky: float  # view of the sky
+    sky: float  # view factor of the sky
 
 
 class NaiveCell:
@@ -87,7 +88,7 @@ class NaiveCell:
             material = self.building.materials[layer.material]
             if isinstance(material, Resistance):
                 following = self._node()
-                self.capacity[following] += SKIN * area  # every node of the system must store something
+                self.capacity[following] += SKIN * area  # every node of the system needs a heat capacity
                 self.links.append((last, following, area / float(material.resistance)))
                 last = following
                 continue
@@ -114,7 +115,7 @@ class NaiveCell:
             self.faces[name, side] = Face(node, area, film, emissivity, face.zone, sun, view)
 
     def _irradiance(self, surface: Any) -> Array:
-        """Sun on a plane, with Perez's sky; the sun stands in the middle of each interval."""
+        """Irradiance of a plane by the Perez model, with the sun in the middle of each interval."""
         site, table = self.building.site, self.weather
         middle = table.index + (table.index[1] - table.index[0]) / 2
         place = location.Location(float(site.latitude), float(site.longitude), altitude=float(site.altitude))
@@ -221,7 +222,7 @@ class NaiveCell:
         return np.asarray(done.y.T, dtype=np.float64)
 
     def read(self, states: Array, output: str) -> Array:
-        """One output of Mascarin's names from the states."""
+        """One output by its name in Mascarin, from the states."""
         key, quantity = output.split(".")
         if quantity == "air_temperature":
             return np.asarray(states[:, self.zones[key]])

@@ -21,7 +21,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def conditions(days: int) -> str:
-    """What was measured, on what."""
+    """Machine and versions of a measurement."""
     machine = f"{platform.machine()}, {os.cpu_count()} cores"
     return f"{days} days; {machine}, load {os.getloadavg()[0]:.1f} at the end"
 

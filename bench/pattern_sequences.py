@@ -83,7 +83,7 @@ def polished(fit: Calibration, folder: Path) -> list[Calibration]:
 
 
 def print_polished(found: list[Calibration]) -> None:
-    """Print whether the ends come together."""
+    """Print whether the ends reach the same minimum."""
     problem = found[0].problem
     z = np.array([problem.positions(fit.x) for fit in found])
     costs = np.array([fit.cost for fit in found])

@@ -1,7 +1,7 @@
-"""What hysteresis costs: the ceiling of the LGI cell, and the whole cell, with one curve and with two.
+"""Computing time with hysteresis relative to one curve: the ceiling of the LGI cell, and the whole cell.
 
-Prints a Markdown table of the processor time of a run (the least of several, so that what else runs here
-matters little) and of Newton's iterations; ends with 1 if hysteresis costs more than half as much again.
+Prints a Markdown table of the processor time of a run (the shortest of several) and of the number of
+Newton's iterations. Ends with 1 if a run with hysteresis takes more than one and a half times as long.
 
     python bench/pcm_hysteresis.py
 """
@@ -42,7 +42,7 @@ def whole_cell(model: str) -> Simulation:
 
 
 def measure(simulations: dict[str, Simulation]) -> dict[str, tuple[float, Results]]:
-    """Least processor time [s] and results by model; in turns, so that all meet the same machine."""
+    """Shortest processor time [s] and results by model; the models take turns."""
     best: dict[str, tuple[float, Results]] = {}
     for _ in range(TRIALS):
         for model, simulation in simulations.items():

@@ -1,8 +1,9 @@
-"""Which runs of melting fail, which need more than Newton's plain iteration, and how well their books close.
+"""Robustness with phase change: failed runs, steps that needed more than Newton's iteration, energy balance.
 
-The LGI cell over ten days, gamma and step, with one curve and with hysteresis; its ceiling alone, driven
-hard; Stefan's front over volumes and steps. Prints three Markdown tables and ends with 1 if a run failed or
-its books do not close to 1e-10.
+The LGI cell over ten days for several values of gamma and step, with one curve and with hysteresis; its
+ceiling alone with rapidly varying air temperature; Stefan's melting front for several sizes of volumes and
+steps. Prints three Markdown tables and ends with 1 if a run failed or a relative energy-balance residual is
+above 1e-10.
 
     python bench/pcm_robustness.py
 """
@@ -31,7 +32,7 @@ CLOSURE = 1e-10
 
 @dataclass
 class Tally:
-    """What a row of runs came to."""
+    """Numbers of a row: runs, failures, and what the solver needed."""
 
     runs: int = 0
     failed: int = 0
@@ -41,7 +42,7 @@ class Tally:
     closure: float = 0.0
 
     def add(self, run: Callable[[], Results]) -> None:
-        """Run one and count."""
+        """Carry out one run and add its numbers."""
         self.runs += 1
         try:
             results = run()
@@ -57,7 +58,7 @@ class Tally:
 
     @property
     def bad(self) -> bool:
-        """Whether a run failed or its books do not close."""
+        """Whether a run failed or an energy-balance residual is too large."""
         return self.failed > 0 or self.closure > CLOSURE
 
     def row(self, *names: str) -> str:
@@ -105,7 +106,7 @@ def in_the_cell() -> Iterator[tuple[Sequence[str], Tally]]:
 
 
 def in_the_ceiling() -> Iterator[tuple[Sequence[str], Tally]]:
-    """The ceiling alone, driven harder, by model and gamma."""
+    """The ceiling alone with rapidly varying air temperature, by model and gamma."""
     for model in MODELS:
         for gamma in GAMMAS:
             tally = Tally()

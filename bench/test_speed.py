@@ -25,7 +25,7 @@ def cell(request: pytest.FixtureRequest) -> Simulation:
 
 
 def test_run(benchmark: Any, cell: Simulation) -> None:
-    """A run, results and ledger included."""
+    """A run with its results and energy balance."""
     results = benchmark.pedantic(cell.run, rounds=7, warmup_rounds=1)
     assert results.energy.closure < 1e-10
 
@@ -42,7 +42,7 @@ def test_ensemble(benchmark: Any, cell: Simulation) -> None:
 
 
 def test_jacobian(benchmark: Any, cell: Simulation) -> None:
-    """All series and their slopes by the parameters that ensembles vary, seven at most."""
+    """All series and their derivatives by the parameters that ensembles vary, at most seven."""
     paths = [path for path in VARIED if path in cell.paths]
     benchmark.extra_info["parameters"] = len(paths)
     _, slopes = benchmark.pedantic(cell.jacobian_vector, args=(paths,), rounds=3, warmup_rounds=1)
@@ -50,7 +50,7 @@ def test_jacobian(benchmark: Any, cell: Simulation) -> None:
 
 
 def test_gradient(benchmark: Any, cell: Simulation) -> None:
-    """The mean of the first output and its slopes by all parameters, in reverse."""
+    """The mean of the first output and its derivatives by all parameters, in reverse mode."""
 
     def gradient() -> np.ndarray:
         way = cell.trajectory()

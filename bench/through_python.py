@@ -1,8 +1,8 @@
-"""What a user waits for: runs, derivatives and ensembles by pytest-benchmark, the command line by hyperfine.
+"""Times for the user: runs, derivatives and ensembles by pytest-benchmark, the command line by hyperfine.
 
-The command runs the shipped description of the LGI cell in the shipped weather, written as a year of EPW. The
-slab, whose temperature an EPW file does not have, stands on ground of a constant temperature. It is timed
-from the start of Python to the printed result.
+The command runs the shipped description of the LGI cell in the shipped weather, written as a year of EPW.
+An EPW file has no temperature of the slab: the slab is on ground of a constant temperature. The time is
+that from the start of Python to the printed result.
 
     python bench/through_python.py [--hyperfine PATH] [--days 92] [--write docs/speed.md]
 """
@@ -35,7 +35,7 @@ HEAD = ("model", "one run", "asked", "members/s", "asked", "Jacobian / run", "gr
 
 
 def benchmarked(days: int) -> dict[tuple[str, str], dict[str, Any]]:
-    """What pytest-benchmark found, by what was done and model."""
+    """Times of pytest-benchmark, by kind of work and model."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "found.json"
         command = [sys.executable, "-m", "pytest", str(HERE / "test_speed.py"), "--quiet"]
@@ -47,7 +47,7 @@ def benchmarked(days: int) -> dict[tuple[str, str], dict[str, Any]]:
 
 
 def rows(found: dict[tuple[str, str], dict[str, Any]], whole: bool) -> list[list[str]]:
-    """A line for each model, with what was asked of the whole period."""
+    """A row for each model, with the required time of the whole period."""
     lines = []
     for name, model in MODELS.items():
         run, many, jacobian, gradient = (
@@ -69,7 +69,7 @@ def rows(found: dict[tuple[str, str], dict[str, Any]], whole: bool) -> list[list
 
 
 def year_of_weather(file: Path) -> None:
-    """Write the shipped weather as an EPW file of a year: where the 92 days end they begin again."""
+    """Write the shipped weather as an EPW file of a year; the 92 days are repeated."""
     energyplus.write_weather(file, cell.climate(cell.table()), cell.building(), cell.START, cell.END, 1)
     lines = file.read_text(encoding="ascii").splitlines()
     head, records = [*lines[:7], "DATA PERIODS,1,1,Data,Friday,1/1,12/31"], lines[8:]
