@@ -1,10 +1,10 @@
 """Sample of the posterior distribution of the parameters, by emcee.
 
 The likelihood of independent errors gives intervals that are much too narrow where errors are autocorrelated.
-Here its shape is kept, with curved valleys and bounds, but it is scaled about its maximum, so that its
-curvature there gives the covariance estimated from the autocorrelated residuals: at a position z it is
-evaluated at ``z0 + C (z - z0)``, with the symmetric C for which ``C H C`` is the inverse of that covariance,
-H being the curvature for independent errors. Priors, and the uniform one over the range, are not scaled.
+Here its shape is kept, but it is scaled about its maximum z0. Its curvature at z0 then gives the covariance
+estimated from the autocorrelated residuals. At a position z the likelihood is evaluated at
+``z0 + C (z - z0)``. C is the symmetric matrix for which ``C H C`` is the inverse of that covariance, and H is
+the curvature for independent errors. Priors, and the uniform prior over the range, are not scaled.
 
 References
 ----------

@@ -239,9 +239,9 @@ class Calibration:
         Parameters
         ----------
         within : float
-            Two minima are the same if their costs differ by less than this part, see `Cost.tolerance`, [-]
+            Largest relative difference of the costs of two minima in one group; see `Cost.tolerance`. [-]
         apart : float
-            and no parameter by more than this part of its range. [-]
+            Largest difference of any parameter within a group, as a part of its range. [-]
 
         Returns
         -------

@@ -75,7 +75,7 @@ class Workspace:
         self._lock.release()
 
     def record(self, command: str, files: Iterable[Path]) -> None:
-        """Remember the files of a command, and remove those that it, or work on other inputs, wrote before.
+        """Note the files that a command wrote; remove its older files, and those of a study of other inputs.
 
         Parameters
         ----------

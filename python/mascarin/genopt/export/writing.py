@@ -1,9 +1,9 @@
 """Writes a study's identification as a GenOpt project.
 
 The command has no file names and no file has an absolute path: the program finds its files in the directory
-in which it is started. So the project also works in folders with blanks in their names, at which GenOpt
-would split the command, and GenOpt cannot use a file of the directory from which it is started instead of a
-file of the run.
+in which it is started. There are two reasons. GenOpt splits the command at blanks, so that a path through a
+folder with a blank in its name would not work. And for a name in the command GenOpt could use a file of the
+directory from which it was started, instead of the file of the run.
 """
 
 from __future__ import annotations
