@@ -53,7 +53,7 @@ def test_members_from_parquet_are_those_of_the_csv_file(call: list[str]) -> None
     for ending in ("csv", "parquet"):
         assert cli.main([*call[:-1], f"swept{ending}", "--samples", f"members.{ending}", *words]) == 0
     found = [Store(Path(f"swept{ending}")).to_dataframe() for ending in ("csv", "parquet")]
-    pd.testing.assert_frame_equal(*found, check_exact=True)
+    pd.testing.assert_frame_equal(found[0], found[1], check_exact=True)
     assert found[0][f"sample: {FILM}"].tolist() == samples[FILM].tolist()
 
 

@@ -134,6 +134,11 @@ def test_unknown_values_stay_empty() -> None:
         bare.enthalpies([0.0, 1.0], [0.0, 1.0])
 
 
+def test_the_text_of_a_product_is_one_short_line() -> None:
+    assert repr(product("Energain")) == "Product('Energain', sheet, melts at 23.4 degC, 71 kJ/kg)"
+    assert max(len(repr(one)) for one in products().values()) <= 100
+
+
 def test_plot() -> None:
     figure = plot([product("RT25HC"), product("Energain")])
     labels = [str(line.get_label()) for line in figure.axes[0].lines]

@@ -61,7 +61,7 @@ class Curve:
         raise ValueError(f"liquid fraction {fraction:g} is outside the curve")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Product:
     """A phase-change product.
 
@@ -83,6 +83,8 @@ class Product:
     >>> one = product("RT25HC")
     >>> one.melting_temperature, one.pair("density")
     (24.3, (880.0, 770.0))
+    >>> one
+    Product('RT25HC', organic, melts at 24.3 degC, 198.9 kJ/kg)
     """
 
     name: str
@@ -94,6 +96,15 @@ class Product:
     heating: Curve | None
     cooling: Curve | None
     raw: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        words = [self.kind or ""]
+        if self.melting_temperature is not None:
+            words.append(f"melts at {self.melting_temperature:g} degC")
+        latent = self.number("latent_heat")
+        if latent is not None:
+            words.append(f"{latent / 1000.0:.4g} kJ/kg")
+        return f"Product({self.name!r}, {', '.join(word for word in words if word)})"
 
     def pair(self, key: str) -> tuple[float, float] | None:
         """A property of solid and liquid, or None where it is not known. [unit of the property]"""

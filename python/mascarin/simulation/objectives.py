@@ -134,7 +134,7 @@ class Gradient:
         return display.text(
             self._title(),
             [
-                (path, f"{slope:.4g} per {unit}, {over:.4g} over its range")
+                (path, f"{slope:.4g}{'' if unit == '-' else f' per {unit}'}, {over:.4g} over its range")
                 for path, slope, unit, over in zip(*columns, strict=True)
             ],
         )
