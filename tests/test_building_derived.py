@@ -7,6 +7,7 @@ import math
 import pytest
 
 from building_samples import EVERYTHING, ROOM, everything, room
+from mascarin.building import Building
 from mascarin.building.parameters import Parameter
 from mascarin.building.reading import parse
 
@@ -75,3 +76,21 @@ def test_terrain_gives_the_profile_at_the_building() -> None:
 def test_a_direction_without_effect_need_not_be_given() -> None:
     assert derived("surfaces.floor.azimuth").value == 0.0
     assert derived("surfaces.held.azimuth").reason
+
+
+@pytest.mark.parametrize(("latitude", "day"), [(48.0, 15.0), (0.0, 15.0), (-20.9, 196.0), (-45.0, 196.0)])
+def test_the_ground_is_coldest_in_the_winter_of_its_hemisphere(latitude: float, day: float) -> None:
+    """15 January is day 15; 15 July is day 31 + 28 + 31 + 30 + 31 + 30 + 15 = 196."""
+    wall = {"construction": "wall", "area": 5.0, "tilt": 180, "inside": {"measured": "T"}}
+    building = Building.from_dict(
+        {
+            "site": {"latitude": latitude, "longitude": 0, "altitude": 0, "timezone": "UTC"},
+            "materials": {"concrete": {"conductivity": 1.75, "density": 2400, "specific_heat": 880}},
+            "constructions": {"wall": {"layers": [{"material": "concrete", "thickness": 0.2}]}},
+            "surfaces": {"floor": {**wall, "outside": {"ground": {"mean": 12, "amplitude": 4}}}},
+        }
+    )
+    found = building.parameter("surfaces.floor.outside.ground.coldest_day")
+    assert found.value == day
+    assert found.assumed
+    assert "coldest_day" not in building.to_dict()["surfaces"]["floor"]["outside"]["ground"]

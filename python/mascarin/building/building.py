@@ -89,7 +89,7 @@ class Building(Description):
         with known_names(data):
             building = handler(data)
         insist(*faults(building))
-        building._fill(surfaces=derive_surfaces(building.surfaces))
+        building._fill(surfaces=derive_surfaces(building.surfaces, building.site.latitude))
         building._fill(windows=derive_windows(building.windows, building.surfaces))
         building._fill(zones=derive_zones(building.zones, building.surfaces))
         return building

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
 from mascarin.building.number import Number, Remark
 from mascarin.building.part import Location, derived_number, fault, insist, refuse
-from mascarin.building.surface import Side, Surface
+from mascarin.building.surface import Ground, Side, Surface
 from mascarin.building.window import Window, WindowOutside
 from mascarin.building.zone import Zone
 from mascarin.errors import InputError
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 _FROM_VERTICES = Remark("from the vertices")
 #: Roughness of plaster, concrete and brick in Walton 1983.
 _USUAL_ROUGHNESS = 1.52
+#: Days of the year.
+_MID_JANUARY, _MID_JULY = 15.0, 196.0
 
 
 def outlines(surfaces: Mapping[str, Surface]) -> dict[str, Polygon]:
@@ -63,10 +65,13 @@ def enclosure(zone: str, surfaces: Mapping[str, Surface]) -> list[Polygon] | Non
     return [drawn[name] if side == "outside" else drawn[name].reversed() for name, side in seen]
 
 
-def derive_surfaces(surfaces: Mapping[str, Surface]) -> dict[str, Surface]:
-    """Derive area and direction of every surface, and lengths and heights of its sides."""
+def derive_surfaces(surfaces: Mapping[str, Surface], latitude: float) -> dict[str, Surface]:
+    """Derive area and direction of every surface, lengths and heights of its sides, and the coldest day."""
     drawn, areas = outlines(surfaces), drawn_areas(surfaces)
-    return {name: _derived_surface(one, drawn.get(name), areas.get(name)) for name, one in surfaces.items()}
+    return {
+        name: _derived_surface(one, drawn.get(name), areas.get(name), latitude)
+        for name, one in surfaces.items()
+    }
 
 
 def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
@@ -82,7 +87,9 @@ def drawn_areas(surfaces: Mapping[str, Surface]) -> dict[str, float]:
         refuse(fault(("surfaces",), *_sentence(error)))
 
 
-def _derived_surface(surface: Surface, polygon: Polygon | None, area: float | None) -> Surface:
+def _derived_surface(
+    surface: Surface, polygon: Polygon | None, area: float | None, latitude: float
+) -> Surface:
     shape: dict[str, Number] = {}
     if polygon is not None and area is not None:
         derived = {"area": area, "tilt": polygon.tilt, "azimuth": polygon.azimuth}
@@ -98,12 +105,17 @@ def _derived_surface(surface: Surface, polygon: Polygon | None, area: float | No
             )
         }
     placed = surface.model_copy(update=shape)
-    sides = {name: _derived_side(getattr(placed, name), placed, polygon) for name in ("outside", "inside")}
+    sides = {
+        name: _derived_side(getattr(placed, name), placed, polygon, latitude)
+        for name in ("outside", "inside")
+    }
     return placed.model_copy(update=sides)
 
 
-def _derived_side(side: Side, surface: Surface, polygon: Polygon | None) -> Side:
+def _derived_side(side: Side, surface: Surface, polygon: Polygon | None, latitude: float) -> Side:
     update: dict[str, object] = {}
+    if side.ground is not None and side.ground.coldest_day is None:
+        update["ground"] = side.ground.model_copy(update={"coldest_day": _coldest_day(latitude)})
     if side.convection is not None:
         area, tilt = float(surface.area or 0.0), float(surface.tilt or 0.0)
         update["convection"] = _derived_convection(side.convection, bool(side.outdoors), area, tilt, polygon)
@@ -112,6 +124,15 @@ def _derived_side(side: Side, surface: Surface, polygon: Polygon | None) -> Side
             Side, "height", float(polygon.centroid[2]), Remark("centroid of the vertices")
         )
     return side.model_copy(update=update)
+
+
+def _coldest_day(latitude: float) -> Number:
+    day, said = (
+        (_MID_JANUARY, "not given: mid-January, in the northern hemisphere")
+        if latitude >= 0.0
+        else (_MID_JULY, "not given: mid-July, in the southern hemisphere")
+    )
+    return derived_number(Ground, "coldest_day", day, Remark(said), assumed=True)
 
 
 def _derived_convection(

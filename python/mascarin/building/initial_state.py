@@ -399,7 +399,7 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
         return film, air[side.zone]
     if side.ground is not None:
         ground = side.ground
-        angle = 2.0 * math.pi * (ambient.day - ground.coldest_day) / 365.0
+        angle = 2.0 * math.pi * (ambient.day - float(ground.coldest_day or 0.0)) / 365.0
         return film, float(ground.mean - ground.amplitude * math.cos(angle))
     return film, ambient.columns[str(side.measured)]
 

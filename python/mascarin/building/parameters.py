@@ -13,6 +13,7 @@ from mascarin._io.listing import Listing
 from mascarin.building.inactive import without_effect
 from mascarin.building.leaves import leaves
 from mascarin.building.number import Number
+from mascarin.building.set_points import cut_ranges
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -87,15 +88,21 @@ def listed(found: Iterable[Parameter]) -> Listing[Parameter]:
 
 def parameters(building: Description) -> list[Parameter]:
     """All numbers of a building, in the order of the description."""
-    inactive = without_effect(building)
-    return [_parameter(path, number, source, inactive.get(path)) for path, number, source in leaves(building)]
+    inactive, cut = without_effect(building), cut_ranges(building)
+    return [
+        _parameter(path, number, source, inactive.get(path), cut.get(path))
+        for path, number, source in leaves(building)
+    ]
 
 
-def _parameter(path: str, number: Number, source: str, inactive: str | None) -> Parameter:
+def _parameter(
+    path: str, number: Number, source: str, inactive: str | None, cut: tuple[float, float] | None
+) -> Parameter:
+    """One number; ``cut``: its range where the default one would cross that of another number."""
     quantity = number.quantity
     if quantity is None:
         raise TypeError(f"{path} measures no quantity")
-    low, high = number.plausible
+    low, high = cut or number.plausible
     if not low < high:
         inactive = inactive or "its default range has no width: give a range"
     return Parameter(
@@ -111,8 +118,14 @@ def _parameter(path: str, number: Number, source: str, inactive: str | None) -> 
         assumed=number.assumed,
         structural=number.structural,
         reason=quantity.spread.reason if number.structural else inactive,
-        range_reason=quantity.spread.reason if number.range is None else "given in the description",
+        range_reason=_range_reason(quantity.spread.reason, number, cut),
     )
+
+
+def _range_reason(usual: str, number: Number, cut: tuple[float, float] | None) -> str:
+    if number.range is not None:
+        return "given in the description"
+    return usual if cut is None else f"{usual}; cut between the set points of heating and cooling"
 
 
 def resolve(building: Description, path: str, known: Mapping[str, Any]) -> str:

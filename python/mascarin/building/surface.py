@@ -114,19 +114,20 @@ def _or_temperature(schema: dict[str, Any]) -> None:
 class Ground(Part):
     """Temperature of the ground: ``mean - amplitude cos(2 pi (day - coldest_day)/365)``.
 
-    ``temperature`` may replace ``mean`` where it is the same all year.
+    ``temperature`` may replace ``mean`` where it is the same all year. Without a ``coldest_day`` a building
+    takes 15 January north of the equator, and 15 July south of it.
 
     Examples
     --------
-    >>> Ground(mean=12, amplitude=4)
-    Ground(mean=12 degC, amplitude=4 K, coldest_day=15 d)
+    >>> Ground(mean=12, amplitude=4, coldest_day=40)
+    Ground(mean=12 degC, amplitude=4 K, coldest_day=40 d)
     """
 
     model_config = ConfigDict(json_schema_extra=_or_temperature)
 
     mean: q.GroundTemperature
     amplitude: q.GroundAmplitude = Number(0.0, source=Remark("not given: the same all year"))
-    coldest_day: q.ColdestDay = Number(15.0, source=Remark("not given: mid-January"), assumed=True)
+    coldest_day: q.ColdestDay | None = None
 
     @model_validator(mode="before")
     @classmethod

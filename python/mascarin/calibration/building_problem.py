@@ -117,15 +117,18 @@ class BuildingModel:
 
     def __call__(self, x: Array) -> Array:
         """Simulate parameter vectors (M, P), shape (M, T, S). [unit of each sensor]"""
-        vectors = np.tile(self.simulation.vector({}), (len(x), 1))
-        vectors[:, [self.simulation.position(path) for path in self.paths]] = x
+        vectors = self.simulation.varied(self.paths, x)
         records, _, _ = self.simulation.ensemble(vectors)
         return self._compared(records)
 
     def slopes(self, x: Array) -> Array:
         """Differentiate the series at a parameter vector (P,), shape (T, S, P). [unit of each]"""
-        vector = self.simulation.vector(dict(zip(self.paths, x.tolist(), strict=True)))
-        _, by_parameter = self.simulation.jacobian_vector(list(self.paths), vector)
+        vector = self.simulation.varied(self.paths, x[None, :])[0]
+        following = self.simulation.followers(self.paths)
+        _, found = self.simulation.jacobian_vector([*self.paths, *following.values()], vector)
+        by_parameter = found[: len(self.paths)]
+        for path, further in zip(following, found[len(self.paths) :], strict=True):
+            by_parameter[self.paths.index(path)] += further
         # Instants and means are linear in the records, and so are their derivatives.
         return np.moveaxis(self._compared(by_parameter), 0, -1)
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin._io import display
+from mascarin.building.set_points import tied_set_points
 from mascarin.calibration.cost import ONE_NUMBER, Cost, CostName
 from mascarin.calibration.evaluations import Trace
 from mascarin.calibration.problem import CalibrationProblem
@@ -172,7 +173,9 @@ class Calibration:
         """
         if self.nominal_building is None:
             raise InputError("building: this calibration was made by solve() on arrays and has no building")
-        return self.nominal_building.with_values(self.values)
+        tied = tied_set_points(self.nominal_building)
+        following = {tied[path]: value for path, value in self.values.items() if path in tied}
+        return self.nominal_building.with_values({**following, **self.values})
 
     def to_dict(self) -> dict[str, dict[str, float | str | None]]:
         """Return the parameters as ``{path: {nominal, fitted, low, high, unit}}``, ready for JSON."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from mascarin.building.set_points import tied_set_points
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -58,8 +59,14 @@ def latin_hypercube(
     for parameter in chosen if vary else ():
         if parameter.structural:
             raise InputError(f"{parameter.path}: is structural and not drawn; give it in a table of samples")
-    free = [p for p in chosen if not p.structural and p.low < p.high]
+    tied = tied_set_points(building)
+    listed = [p.path for p in chosen]
+    # Equal set points are drawn once; the second one gets the values of the first.
+    second = {path for path in listed if tied.get(path) in listed[: listed.index(path)]}
+    free = [p for p in chosen if not p.structural and p.low < p.high and p.path not in second]
     if not free:
         raise InputError("no parameter to draw: all ranges are empty")
     unit = qmc.LatinHypercube(len(free), seed=seed).random(members)
-    return pd.DataFrame({p.path: p.low + (p.high - p.low) * unit[:, k] for k, p in enumerate(free)})
+    drawn = {p.path: p.low + (p.high - p.low) * unit[:, k] for k, p in enumerate(free)}
+    following = {tied[path]: values for path, values in drawn.items() if path in tied}
+    return pd.DataFrame(drawn | following)

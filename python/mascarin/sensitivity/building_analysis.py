@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from mascarin._io.arguments import bounds_of, finite_number, mapping_of, names_of
+from mascarin.building.set_points import tied_set_points
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.sensitivity.factors import DistributionName, Factor
@@ -51,7 +52,8 @@ def factors_of(
     """Make factors of all parameters of a building that are active and have a range.
 
     A parameter that is known to be inactive (a wind exponent where no surface heat transfer coefficient
-    depends on wind) is left out: its index is zero.
+    depends on wind) is left out: its index is zero. Equal set points of heating and cooling in a zone are
+    one parameter, under the path of heating, unless the range of cooling is given as well.
 
     Parameters
     ----------
@@ -94,9 +96,12 @@ def factors_of(
     group_of = _members(building, mapping_of("groups", groups, "lists of paths by name: {name: [path]}"))
     fixed = {building.parameter(path).path for path in names_of("leave_out", leave_out)}
     chosen = None if only is None else {building.parameter(path).path for path in only}
-    found = []
+    tied = tied_set_points(building)
+    found: list[Factor] = []
     for parameter in building.parameters():
         path = parameter.path
+        if path in tied and path not in spans and tied[path] in [factor.path for factor in found]:
+            continue  # it follows the equal set point, see VectorRuns.varied
         low, high = spans.get(path, (parameter.low, parameter.high))
         wanted = path not in fixed and (chosen is None or path in chosen)
         if parameter.reason is None and wanted and low < high:
@@ -297,8 +302,7 @@ def run_samples(
     SolverError
         A run failed; the text names its parameters.
     """
-    vectors = np.tile(simulation.vector({}), (len(samples), 1))
-    vectors[:, [simulation.position(path) for path in paths]] = samples
+    vectors = simulation.varied(paths, samples)
     records, _, failures = simulation.ensemble(vectors, record_from=start, record_every=every)
     if failures:
         failed = failures[0]

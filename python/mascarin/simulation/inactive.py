@@ -77,7 +77,8 @@ def inactive_parameters(
     )
     samples = np.tile(trial.values, (len(trial.paths) + 1, 1))
     for position, path in enumerate(trial.paths):
-        samples[position + 1, position] = _moved(building.parameter(path))
+        moved = np.array([[_moved(building.parameter(path))]])
+        samples[position + 1] = trial.varied([path], moved)[0]
     records, residuals, failures = trial.ensemble(samples)
     failed = {failure.member for failure in failures}
     if 0 in failed:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mascarin.building.set_points import tied_set_points
 from mascarin.errors import InputError
 from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
 from mascarin.simulation.limits import Limits, require_set_points_apart
@@ -86,6 +87,43 @@ class VectorRuns:
         for path, value in parameters.items():
             vector[self.position(path)] = value
         return vector
+
+    def varied(self, paths: Sequence[str], values: Array, base: Array | None = None) -> Array:
+        """Parameter vectors with some parameters varied.
+
+        Equal set points of heating and cooling in one zone are one parameter here: where only one of the two
+        is varied, the other one follows.
+
+        Parameters
+        ----------
+        paths : sequence of str, length K
+            Paths of the parameters that vary.
+        values : ndarray, shape (M, K)
+            Their values. [unit of each]
+        base : ndarray, shape (P,), optional
+            Vector of the others; default that of the building. [unit of each]
+
+        Returns
+        -------
+        ndarray, shape (M, P)
+            One parameter vector a row. [unit of each]
+
+        Raises
+        ------
+        InputError
+            Unknown or structural path.
+        """
+        vectors = np.tile(self.values if base is None else base, (len(values), 1))
+        vectors[:, [self.position(path) for path in paths]] = values
+        for path, other in self.followers(paths).items():
+            vectors[:, self.position(other)] = vectors[:, self.position(path)]
+        return vectors
+
+    def followers(self, paths: Sequence[str]) -> dict[str, str]:
+        """Parameters that follow varied ones: varied path -> path of the equal set point."""
+        tied = tied_set_points(self.building)
+        full = [self.building.parameter(path).path for path in paths] if tied else []
+        return {path: tied[path] for path in full if path in tied and tied[path] not in full}
 
     def position(self, path: str) -> int:
         """Position of a path in a parameter vector.

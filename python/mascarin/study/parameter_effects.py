@@ -92,14 +92,15 @@ class Effects:
         """Paths, signed steps [ranges] and parameter vectors, in chunks."""
         for first in range(0, len(self._factors), _CHUNK):
             chosen = self._factors[first : first + _CHUNK]
-            samples, steps = np.tile(self._values, (len(chosen), 1)), []
-            for row, factor in zip(samples, chosen, strict=True):
+            samples, steps = [], []
+            for factor in chosen:
                 place, span = self._simulation.position(factor.path), factor.high - factor.low
                 value = float(self._values[place])
                 step = STEP if value + STEP * span <= factor.high else -STEP
-                row[place] = value + step * span
+                moved = np.array([[value + step * span]])
+                samples.append(self._simulation.varied([factor.path], moved, self._values)[0])
                 steps.append(step)
                 self.room[factor.path] = (
                     min(0.0, (factor.low - value) / span), max(0.0, (factor.high - value) / span),
                 )  # fmt: skip
-            yield [factor.path for factor in chosen], steps, samples
+            yield [factor.path for factor in chosen], steps, np.array(samples)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mascarin.errors import InputError
 from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
 from mascarin.study import Study
 from mascarin.study.inputs import find
@@ -54,6 +55,11 @@ def compile_study(study: Study) -> Case:
         A parameter or a sensor that cannot be used.
     """
     problem, simulation, observation = study.problem(), study.short(), study.observation
+    for path, other in simulation.followers(problem.paths).items():
+        raise InputError(
+            f"{path}: found the same set point as {other}, which would follow it; expected set points that "
+            "differ in a GenOpt project: lower the heating set point or raise the cooling set point"
+        )
     seconds, at = epoch_seconds(simulation.index), epoch_seconds(observation.times)
     step = seconds[1] - seconds[0]
     columns = [observation.names.index(sensor.name) for sensor in problem.sensors]
