@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mascarin._io import display
+from mascarin._io.numbers import with_interval
 from mascarin.building.set_points import tied_set_points
 from mascarin.calibration.cost import ONE_NUMBER, Cost, CostName
 from mascarin.calibration.evaluations import Trace
@@ -351,8 +352,9 @@ class Calibration:
         if self.on_bound:
             rows.append(("on a bound", f"{', '.join(self.on_bound)}; see .on_bound"))
         for i, p in enumerate(self.problem.parameters):
-            interval = f" [{self.low[i]:.4g}, {self.high[i]:.4g}]" if np.isfinite(self.low[i]) else ""
-            rows.append((p.path, f"{self.x[i]:.4g}{interval} {p.unit}".rstrip(" -")))
+            value, low, high = with_interval(*(float(each[i]) for each in (self.x, self.low, self.high)))
+            interval = f" [{low}, {high}]" if low else ""
+            rows.append((p.path, f"{value}{interval} {p.unit}".rstrip(" -")))
         return rows
 
     def _nominal(self) -> Floats:

@@ -24,7 +24,7 @@ def _finite(value: Any) -> Any:
 
 
 def print_table(header: Sequence[str], rows: Sequence[Sequence[str | float]]) -> None:
-    """Print rows as a table; numbers are aligned right.
+    """Print rows as a table; numbers, also as texts, are aligned right.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str | float]]) ->
     rows : sequence of sequences
         Texts or numbers.
     """
-    right = [all(not isinstance(row[k], str) for row in rows) for k in range(len(header))]
+    right = [all(_is_number(row[k]) for row in rows) for k in range(len(header))]
     cells = [list(header), *([number(cell) for cell in row] for row in rows)]
     widths = [max(len(line[k]) for line in cells) for k in range(len(header))]
     for line in cells:
@@ -42,6 +42,16 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str | float]]) ->
             for cell, width, is_right in zip(line, widths, right, strict=True)
         ]
         print("  ".join(parts).rstrip())
+
+
+def _is_number(cell: str | float) -> bool:
+    if not isinstance(cell, str):
+        return True
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def number(cell: str | float) -> str:

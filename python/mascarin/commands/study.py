@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from cyclopts import Parameter
 
+from mascarin._io.numbers import beside_limit, with_interval
 from mascarin.commands.inputs import AsJson
-from mascarin.commands.output import print_json, print_table
+from mascarin.commands.output import number, print_json, print_table
 
 if TYPE_CHECKING:
     from mascarin.study import Study, StudyResults
@@ -113,12 +114,16 @@ def calibrate(
     if as_json:
         print_json(content)
     else:
-        keys = ("nominal", "fitted", "low", "high", "unit")
         rows = [
-            (path, *("" if found[key] is None else found[key] for key in keys))
+            (
+                path,
+                "" if found["nominal"] is None else number(found["nominal"]),
+                *with_interval(found["fitted"], found["low"], found["high"]),
+                found["unit"] or "",
+            )
             for path, found in content["parameters"].items()
         ]
-        print_table(("parameter", *keys), rows)
+        print_table(("parameter", "nominal", "fitted", "low", "high", "unit"), rows)
         print()
         _print_scores(content)
         for note in content["notes"]:
@@ -184,7 +189,9 @@ def _exit_code(verdicts: Sequence[Mapping[str, Any]]) -> int:
     missed = [verdict for verdict in verdicts if not verdict["passed"]]
     for verdict in missed:
         value, unit = verdict["value"], verdict["unit"]
-        found = "no common values" if value is None else f"{value:.3f} {unit.replace('degC', 'K')}"
+        found = "no common values"
+        if value is not None:
+            found = f"{beside_limit(value, verdict['limit'], least=3)[0]} {unit.replace('degC', 'K')}"
         where = f"{verdict['sensor']}, {verdict['period']}"
         print(f"missed: {where}: {verdict['name']}; found {found}", file=sys.stderr)
     if verdicts:

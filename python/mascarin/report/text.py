@@ -6,6 +6,8 @@ import math
 import re
 from datetime import datetime
 
+from mascarin._io import numbers
+
 _UNITS = {
     "degC": "°C",
     "deg": "°",
@@ -89,6 +91,32 @@ def significant(value: float | None, digits: int = 3) -> str:
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return text.replace("-", MINUS)
+
+
+def with_interval(value: float | None, low: float | None, high: float | None) -> tuple[str, str]:
+    """Estimate, and its interval in words, with the digits that the interval supports."""
+    if value is None or not math.isfinite(value):
+        return NONE, ""
+    if low is None or high is None:
+        return significant(value), ""
+    shown = [_typographic(one) for one in numbers.with_interval(value, low, high)]
+    return shown[0], f"{shown[1]} to {shown[2]}"
+
+
+def beside_limit(value: float | None, limit: float | None) -> tuple[str, str]:
+    """Value and limit with so many decimals that one sees whether the limit is met."""
+    if value is None or limit is None or not math.isfinite(value):
+        return NONE, fixed(limit)
+    found, wanted = numbers.beside_limit(value, limit)
+    return _typographic(found), _typographic(wanted)
+
+
+def _typographic(number: str) -> str:
+    """A number with a true minus sign, and thin spaces between thousands."""
+    whole, point, rest = number.partition(".")
+    grouped = f"{int(whole):,}".replace(",", "\u202f") if whole.lstrip("-").isdigit() else whole
+    sign = "-" if whole.startswith("-0") else ""
+    return f"{sign}{grouped}{point}{rest}".replace("-", MINUS)
 
 
 def with_unit(value: float | None, raw_unit: str, digits: int = 3) -> str:

@@ -79,12 +79,13 @@ def _aims(study: Mapping[str, Any], aims: Sequence[Mapping[str, Any]]) -> dict[s
             {
                 "label": label_of(study, key[1]) if key[1] else "",
                 "name": text.typeset(key[0]),
-                "limit": f"{text.fixed(key[2])}\u00a0{text.difference_unit(str(aim.get('unit', '')))}",
+                "limit": f"{text.beside_limit(key[2], key[2])[1]}\u00a0"
+                f"{text.difference_unit(str(aim.get('unit', '')))}",
                 "found": {},
             },
         )
         row["found"][str(aim.get("period", ""))] = {
-            "text": text.fixed(aim.get("value")),
+            "text": text.beside_limit(aim.get("value"), aim.get("limit"))[0],
             "passed": bool(aim.get("passed")),
         }
     return {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from markupsafe import Markup
@@ -23,7 +23,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     referenced = any("reference_fitted" in e or "reference_nominal" in e for e in entries.values())
     rows = []
     for path, entry in entries.items():
-        interval = [entry.get("low"), entry.get("high")]
+        fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
         allowed = entry.get("range")
         rows.append(
             {
@@ -31,8 +31,8 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
                 "path": path,
                 "unit": text.unit(str(entry.get("unit", ""))),
                 "nominal": text.significant(entry.get("nominal")),
-                "fitted": text.significant(entry.get("fitted")),
-                "interval": _between(interval) if None not in interval else "",
+                "fitted": fitted,
+                "interval": interval,
                 "drawing": parameter_range(entry) if allowed else "",
                 "reference_nominal": text.significant(entry.get("reference_nominal")),
                 "reference_fitted": text.significant(entry.get("reference_fitted")),
@@ -55,30 +55,26 @@ def _published(study: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Estimates of the models whose parameters a publication has too, beside its own."""
     found = []
     for model, entries in study.get("variant_parameters", {}).items():
-        rows = [
-            {
-                "label": parameter_label(study, path),
-                "path": path,
-                "unit": text.unit(str(entry.get("unit", ""))),
-                "nominal": text.significant(entry.get("nominal")),
-                "fitted": text.significant(entry.get("fitted")),
-                "interval": _between([entry["low"], entry["high"]])
-                if None not in (entry.get("low"), entry.get("high"))
-                else text.NONE,
-                "reference_nominal": text.significant(entry.get("reference_nominal")),
-                "reference_fitted": text.significant(entry.get("reference_fitted")),
-                "at_bound": bool(entry.get("at_bound")),
-            }
-            for path, entry in entries.items()
-        ]
+        rows = []
+        for path, entry in entries.items():
+            fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
+            rows.append(
+                {
+                    "label": parameter_label(study, path),
+                    "path": path,
+                    "unit": text.unit(str(entry.get("unit", ""))),
+                    "nominal": text.significant(entry.get("nominal")),
+                    "fitted": fitted,
+                    "interval": interval or text.NONE,
+                    "reference_nominal": text.significant(entry.get("reference_nominal")),
+                    "reference_fitted": text.significant(entry.get("reference_fitted")),
+                    "at_bound": bool(entry.get("at_bound")),
+                }
+            )
         if is_published(entries):
             note = study.get("models", {}).get(model, {}).get("note", "")
             found.append({"model": model_label(study, model), "note": note, "rows": rows})
     return found
-
-
-def _between(ends: Sequence[Any]) -> str:
-    return f"{text.significant(ends[0])} to {text.significant(ends[1])}"
 
 
 def _correlation(study: Mapping[str, Any]) -> dict[str, Any] | None:
