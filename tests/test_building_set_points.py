@@ -114,5 +114,7 @@ def test_a_fit_of_the_heating_set_point_moves_both() -> None:
         room(), climate, measured, sensors={"room.air_temperature": "T"}, vary={HEATING: (18.0, 23.0)},
         step="1h", initial=20.0, warm_up="1h",
     )  # fmt: skip
-    assert found.building.parameter(HEATING).value == pytest.approx(float(table.iloc[1:].mean().iloc[0]), abs=0.02)
+    assert found.building.parameter(HEATING).value == pytest.approx(
+        float(table.iloc[1:].mean().iloc[0]), abs=0.02
+    )
     assert found.building.parameter(COOLING).value == found.building.parameter(HEATING).value

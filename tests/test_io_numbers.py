@@ -57,7 +57,14 @@ def test_no_negative_zero() -> None:
 
 
 def test_the_report_shows_the_digits_of_the_interval() -> None:
-    entry = {"nominal": 24.0, "fitted": 24.02, "low": 23.978, "high": 24.062, "unit": "degC", "range": [20, 30]}
+    entry = {
+        "nominal": 24.0,
+        "fitted": 24.02,
+        "low": 23.978,
+        "high": 24.062,
+        "unit": "degC",
+        "range": [20, 30],
+    }
     study = {"parameters": {"materials.pcm.law.temperature": entry}}
     [row] = parameters.content(study, None)["rows"]  # type: ignore[arg-type, index]
     assert (row["fitted"], row["interval"]) == ("24.020", "23.978 to 24.062")

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from mascarin.errors import InputError
-from mascarin.weather import Climate, Place
+from mascarin.weather import Climate, Measurements, Place
 from mascarin.weather.sun import SunPath
 from mascarin.weather.times import epoch_seconds
 
@@ -88,3 +88,73 @@ def test_the_check_can_be_declined_and_needs_days_and_sun() -> None:
     record("UTC+9", days=1).completed(SITE)
     dark = frame.assign(G=0.0)
     Climate.from_table(dark, timezone="UTC+9", columns=columns, absent=absent).completed(SITE)
+
+
+def summer_clock(
+    declared: str, clock: str = "Europe/Paris", *, start: str = "2023-03-01", days: int = 60
+) -> Climate:
+    """A record whose stamps follow a clock on the wall, read in another zone; hours are doubled or missing."""
+    index = pd.date_range(start, periods=24 * days, freq="1h", tz="UTC")
+    seconds = epoch_seconds(index)
+    path = SunPath.over(SITE.latitude, SITE.longitude, seconds[0], seconds[-1] + 3600.0)
+    fine = path.vector(seconds[:, None] + 3600.0 * (np.arange(12) + 0.5) / 12)[..., 2]
+    rng = np.random.default_rng(3)
+    cloud = np.repeat(rng.uniform(0.2, 1.0, 4 * days), 6)  # changes every six hours
+    sun = 900.0 * cloud * np.maximum(fine, 0.0).mean(axis=1)
+    written = index.tz_convert(clock).tz_localize(None)
+    frame = pd.DataFrame({"T": 15.0, "G": sun, "v": 1.0, "d": 0.0}, index=written)
+    return Climate.from_table(
+        frame[~written.duplicated()],
+        timezone=declared,
+        columns={"air_temperature": "T", "global_horizontal": "G", "wind_speed": "v", "wind_direction": "d"},
+        absent=["dew_point"],
+    ).fill_gaps("2h")
+
+
+@pytest.mark.parametrize(
+    ("start", "date", "when"),
+    [("2023-03-01", "2023-0(3|4)", "later"), ("2023-10-01", "2023-1(0|1)", "earlier")],
+)
+def test_a_clock_of_summer_time_that_is_declared_as_an_offset_is_refused(
+    start: str, date: str, when: str
+) -> None:
+    words = rf"moves by (0\.[89]|1\.[012]) h against the sun about {date}.*{when}.*Europe/Paris"
+    with pytest.raises(InputError, match=words):
+        summer_clock("UTC+1", start=start).completed(SITE)
+
+
+def test_the_same_record_in_the_zone_of_the_place_passes() -> None:
+    summer_clock("Europe/Paris").completed(SITE)
+    summer_clock("UTC+1", "Etc/GMT-1").completed(SITE)
+
+
+def test_real_years_do_not_jump(data_dir: Path) -> None:
+    """Four places from 21 S to 42 N; the same years on a clock of summer time do."""
+    for file in sorted((data_dir / "weather").glob("*.epw")):
+        head = file.read_text(encoding="utf-8", errors="replace").split("\n")[0].split(",")
+        sun = Climate.from_epw(file).data["global_horizontal"]
+        frame = pd.DataFrame({"T": 15.0, "G": sun, "v": 1.0, "d": 0.0}).tz_localize(None)
+        options = {
+            "timezone": f"UTC{float(head[8]):+.0f}",
+            "columns": {
+                "air_temperature": "T", "global_horizontal": "G", "wind_speed": "v", "wind_direction": "d",
+            },
+            "absent": ["dew_point"],
+            "latitude": float(head[6]),
+            "longitude": float(head[7]),
+        }  # fmt: skip
+        Climate.from_table(frame, **options)
+        summer = (frame.index.month > 3) & (frame.index.month < 11)
+        frame["G"] = np.where(summer, frame["G"].shift(1, fill_value=0.0), frame["G"])
+        with pytest.raises(InputError, match="moves by .* h against the sun about .*(-03-|-04-|-10-|-11-)"):
+            Climate.from_table(frame, **options)
+
+
+def test_a_missing_hour_in_spring_is_a_warning() -> None:
+    written = pd.date_range("2024-03-30", periods=96, freq="1h", tz="Europe/Paris").tz_localize(None)
+    frame = pd.DataFrame({"T": np.arange(96.0)}, index=written)
+    [warning] = [n for n in Measurements.from_table(frame, timezone="UTC+1").provenance if "warning" in n]
+    assert "one hour is missing after 2024-03-31 01:00" in warning
+    assert not [
+        n for n in Measurements.from_table(frame, timezone="Europe/Paris").provenance if "warning" in n
+    ]

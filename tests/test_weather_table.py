@@ -96,6 +96,30 @@ def test_offsets_resolve_the_doubled_hour(tmp_path: Path) -> None:
     assert np.diff(epoch_seconds(table.frame.index)) == pytest.approx([3600.0] * 3)
 
 
+@pytest.mark.parametrize("step", [15, 30, 60])
+def test_rows_of_the_doubled_hour_are_taken_in_order(tmp_path: Path, step: int) -> None:
+    """A logger on the clock of the wall writes the hour from 2 to 3 twice, one after the other."""
+    true = pd.date_range("2024-10-26 22:00", periods=8 * 60 // step, freq=f"{step}min", tz="UTC")
+    stamps = true.tz_convert("Europe/Paris").tz_localize(None).strftime("%Y-%m-%d %H:%M").tolist()
+    assert len(set(stamps)) == len(stamps) - 60 // step
+    table = read(tmp_path, rows(stamps), timezone="Europe/Paris")
+    assert epoch_seconds(table.frame.index) == pytest.approx(epoch_seconds(true))
+    assert any("go back by 60 min" in note for note in table.notes)
+
+
+def test_the_doubled_hour_with_rows_missing_in_it(tmp_path: Path) -> None:
+    stamps = [f"2024-10-27 {t}" for t in ("01:30", "02:00", "02:30", "02:30", "03:00")]
+    table = read(tmp_path, rows(stamps), timezone="Europe/Paris")
+    assert np.isnan(table.numbers("T", "test")).tolist() == [False, False, False, True, False, False]
+
+
+@pytest.mark.parametrize("times", [("02:00", "02:00", "02:30", "02:30"), ("02:00", "02:30")])
+def test_a_doubled_hour_without_order_is_refused(tmp_path: Path, times: tuple[str, ...]) -> None:
+    stamps = [f"2024-10-27 {t}" for t in ("01:30", *times, "03:00")]
+    with pytest.raises(InputError, match="has twice the local stamps .*taken in order"):
+        read(tmp_path, rows(stamps), timezone="Europe/Paris")
+
+
 def test_parquet_and_frames(tmp_path: Path) -> None:
     index = pd.date_range("2024-01-01", periods=4, freq="1h", tz="Europe/Paris")
     frame = pd.DataFrame({"T": [1.0, 2.0, np.nan, 4.0]}, index=index)
@@ -135,14 +159,14 @@ def test_parquet_and_frames(tmp_path: Path) -> None:
             "logger.csv:4: time 2024-09-04 00:15:00 is repeated",
         ),
         (
-            rows(["2024-10-27 01:00", "2024-10-27 02:00", "2024-10-27 02:00", "2024-10-27 03:00"]),
+            rows(["2024-10-27 01:00", "2024-10-27 02:00", "2024-10-27 03:00"]),
             {"timezone": "Europe/Paris"},
             "has twice the local stamps 2024-10-27 02:00",
         ),
         (
             rows([f"2024-10-27 {t}" for t in ("01:30", "02:00", "02:30", "02:00", "02:30", "03:00")]),
             {},
-            "logger.csv:5: .*daylight saving",
+            "logger.csv:5: .*daylight saving.*Europe/Paris",
         ),
         (rows(["2024-09-04 00:00", "2024-09-04 00:15"]), {"step": "10min"}, "expected a multiple of 600 s"),
         (

@@ -44,12 +44,14 @@ class Table(Part):
     )
     mean: tuple[str, ...] = Field((), description="Columns that are means over their interval")
     separator: str | None = Field(None, description="Column separator; detected by default")
-    decimal: str = Field(".", description="Decimal mark")
+    decimal: str | None = Field(None, description="Decimal mark; detected by default")
     time: str | tuple[str, ...] | None = Field(
         None, description="Time column or columns; detected by default"
     )
     time_format: str | None = Field(None, description="Format of the stamps, as in strptime")
-    skip_lines: int = Field(0, ge=0, description="Lines before the header")
+    skip_lines: int | None = Field(
+        None, ge=0, description="Lines before the names of the columns; detected by default"
+    )
     missing: tuple[str | float, ...] = Field(
         (), description="Entries that mark a missing value, such as -999"
     )

@@ -171,8 +171,8 @@ class Climate(RecordView[WeatherRecord]):
         time: str | Sequence[str] | None = None,
         time_format: str | None = None,
         separator: str | None = None,
-        decimal: str = ".",
-        skip_lines: int = 0,
+        decimal: str | None = None,
+        skip_lines: int | None = None,
         missing: Sequence[str | float] = (),
         latitude: float | None = None,
         longitude: float | None = None,
@@ -210,7 +210,7 @@ class Climate(RecordView[WeatherRecord]):
             strptime format of the stamps; default ISO 8601.
         separator : str, optional
             Between the entries of a CSV file; default: derived from the header.
-        decimal : str
+        decimal : str, optional
             Decimal mark.
         skip_lines : int
             Lines before the header.

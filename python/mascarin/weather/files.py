@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import warnings
+from collections.abc import Sequence
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
+from mascarin.weather.layout import Layout, decoded, find_layout
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,19 +44,19 @@ def with_time_column(frame: pd.DataFrame) -> pd.DataFrame:
     return frame.reset_index(drop=True)
 
 
-def read_frame(path: Path, separator: str | None, decimal: str, skip_lines: int) -> tuple[pd.DataFrame, int]:
+def read_frame(
+    path: Path, separator: str | None, decimal: str | None, skip_lines: int | None
+) -> tuple[pd.DataFrame, int, tuple[str, ...]]:
     """Read a CSV or Parquet file without changing it.
 
     Parameters
     ----------
     path : Path
         The file; its ending shows whether it is Parquet.
-    separator : str or None
-        Between entries of a CSV file; None: found from the header.
-    decimal : str
-        Decimal mark.
-    skip_lines : int
-        Lines before the header.
+    separator, decimal : str or None
+        Between entries of a CSV file, and its decimal mark; None: found.
+    skip_lines : int or None
+        Lines before the line with the names of the columns; None: found.
 
     Returns
     -------
@@ -60,6 +64,8 @@ def read_frame(path: Path, separator: str | None, decimal: str, skip_lines: int)
         The table; a time index has become the first column.
     first_line : int
         Line of the first row.
+    notes : tuple of str
+        What was found where nothing was stated.
 
     Raises
     ------
@@ -70,66 +76,82 @@ def read_frame(path: Path, separator: str | None, decimal: str, skip_lines: int)
 
     if path.suffix.lower() in {".parquet", ".pq"}:
         try:
-            return with_time_column(pd.read_parquet(path)), 1
+            return with_time_column(pd.read_parquet(path)), 1, ()
         except ImportError as error:
             raise InputError(
                 f"{path.name}: reading Parquet needs pyarrow: install mascarin[parquet]."
             ) from error
         except (ValueError, OSError) as error:
             raise InputError(f"{path.name}: cannot be read as Parquet: {error}") from error
-    found = separator or _separator(path, skip_lines)
+    text, encoding = decoded(path.read_bytes(), path.name)
+    lines = text.splitlines()
+    layout = find_layout(lines, path.name, separator, decimal, skip_lines)
+    frame = _parsed(lines, layout, path.name)
+    frame.columns = pd.Index([str(name).strip() for name in frame.columns])
+    if layout.trailing:
+        frame = frame.iloc[:, :-1]
+    _refuse_cut(text, layout, len(frame.columns), path.name, layout.first + len(frame))
+    return frame, layout.first + 1, _notes(layout, encoding, lines, path.name)
+
+
+def _parsed(lines: Sequence[str], layout: Layout, where: str) -> pd.DataFrame:
+    import pandas as pd
+
+    header = lines[layout.header] if layout.header < len(lines) else ""
+    body = [header + layout.separator * layout.trailing, *lines[layout.first :]]
+    # pandas counts the lines of the body.
+    offset = layout.first - 1
     try:
         with warnings.catch_warnings():
             # Rows with more entries than the header has names: which name they belong to is not known.
             warnings.simplefilter("error", pd.errors.ParserWarning)
-            frame = read_csv(
-                path,
-                sep=found,
-                decimal=decimal,
-                skiprows=skip_lines,
+            return read_csv(
+                StringIO("\n".join(body)),
+                sep=layout.separator,
+                decimal=layout.decimal,
                 skip_blank_lines=False,
                 skipinitialspace=True,
-                encoding="utf-8-sig",
                 low_memory=False,
                 index_col=False,
             )
     except pd.errors.ParserWarning as error:
         raise InputError(
-            f"{path.name}:{skip_lines + 2}: the row has more entries than the header has names; name every "
-            "column."
+            f"{where}:{layout.first + 1}: the row has more entries than the header has names; name every "
+            f"column, or, if {layout.separator!r} is also the decimal mark, write the table with another "
+            "separator."
         ) from error
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError, ValueError) as error:
+    except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
+        said = re.sub(r"(?<=line )\d+", lambda found: str(int(found[0]) + offset), str(error))
         raise InputError(
-            f"{path.name}: cannot be read as a table separated by {found!r}: {error}".strip()
+            f"{where}: cannot be read as a table separated by {layout.separator!r}: {said}".strip()
         ) from error
-    frame.columns = pd.Index([str(name).strip() for name in frame.columns])
-    _refuse_cut(path, found, len(frame.columns), skip_lines + 1 + len(frame))
-    return frame, skip_lines + 2
 
 
-def _refuse_cut(path: Path, separator: str, fields: int, line: int) -> None:
+def _notes(layout: Layout, encoding: str, lines: Sequence[str], where: str) -> tuple[str, ...]:
+    notes = []
+    if encoding != "utf-8-sig":
+        names = {"cp1252": "Windows-1252, because it is not UTF-8", "latin-1": "Latin-1"}
+        notes.append(f"{where}: read as {names.get(encoding, encoding.upper())}.")
+    if layout.header > 0:
+        notes.append(
+            f"{where}: the names of the columns are in line {layout.header + 1}, "
+            f"{lines[layout.header].strip()[:60]!r}; the lines above were left out."
+        )
+    if layout.units:
+        notes.append(
+            f"{where}: line {layout.header + 2} has units, {', '.join(layout.units)[:60]!r}; they were not used."
+        )
+    if layout.decimal != ".":
+        notes.append(f"{where}: the decimal mark is {layout.decimal!r}.")
+    return tuple(notes)
+
+
+def _refuse_cut(text: str, layout: Layout, fields: int, where: str, line: int) -> None:
     """Refuse a file whose last line has no line end and fewer entries than the header: it was cut."""
-    with path.open("rb") as file:
-        file.seek(max(0, path.stat().st_size - 65536))
-        last = file.read().decode("utf-8", errors="replace").rsplit("\n", 1)[-1]
-    count = last.count(separator) + 1
+    last = re.split("[\r\n]", text)[-1]
+    count = last.count(layout.separator) + 1
     if last.strip() and count < fields:
         raise InputError(
-            f"{path.name}:{line}: the last line has {count} of {fields} entries and no line end: the file "
+            f"{where}:{line}: the last line has {count} of {fields} entries and no line end: the file "
             "is cut; get the whole file, or remove that line."
         )
-
-
-def _separator(path: Path, skip_lines: int) -> str:
-    with path.open(encoding="utf-8-sig", errors="replace") as file:
-        for _ in range(skip_lines):
-            file.readline()
-        header = file.readline()
-    counts = {mark: header.count(mark) for mark in (";", "\t", ",", "|")}
-    best = max(counts, key=lambda mark: counts[mark])
-    if counts[best] == 0:
-        raise InputError(
-            f"{path.name}: no separator found in the header {header.strip()[:40]!r}, expected the names of "
-            "columns; state separator, or skip_lines if the header is further down."
-        )
-    return best

@@ -68,8 +68,8 @@ class Measurements(RecordView[Record]):
         time: str | Sequence[str] | None = None,
         time_format: str | None = None,
         separator: str | None = None,
-        decimal: str = ".",
-        skip_lines: int = 0,
+        decimal: str | None = None,
+        skip_lines: int | None = None,
         missing: Sequence[str | float] = (),
     ) -> Measurements:
         """Read a table of measurements.

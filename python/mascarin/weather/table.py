@@ -15,8 +15,9 @@ from mascarin._io.arguments import require_type
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.files import file_hash, read_frame, with_time_column
+from mascarin.weather.layout import EMPTY
 from mascarin.weather.times import epoch_seconds, seconds_of, stamps_of
-from mascarin.weather.timezones import localize, parse_timezone, zone_name, zone_of
+from mascarin.weather.timezones import fixed_offset, localize, parse_timezone, zone_name, zone_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +27,6 @@ Stamps = Literal["start", "end"]
 
 _HAS_OFFSET = re.compile(r"\d{1,2}:\d{2}(?::\d{2}(?:\.\d+)?)?\s*(?:Z|[+-]\d{2}:?\d{2})$")
 _MIDNIGHT = re.compile(r"[T ]24:00(?::00)?$")
-_EMPTY = frozenset({"", "na", "nan", "n/a", "null", "none", "-", "--"})
 
 
 @dataclass(frozen=True)
@@ -81,8 +81,8 @@ def read_table(
     time: str | Sequence[str] | None = None,
     time_format: str | None = None,
     separator: str | None = None,
-    decimal: str = ".",
-    skip_lines: int = 0,
+    decimal: str | None = None,
+    skip_lines: int | None = None,
     step: str | float | None = None,
     missing: Sequence[str | float] = (),
 ) -> Table:
@@ -101,10 +101,11 @@ def read_table(
         strptime format; default ISO 8601.
     separator : str, optional
         Default: found from the header.
-    decimal : str
-        Decimal mark.
-    skip_lines : int
-        Lines before the header.
+    decimal : str, optional
+        Decimal mark. Default: a comma where entries have commas and none has a point.
+    skip_lines : int, optional
+        Lines before the line with the names of the columns. Default: the names are in the last line above
+        the first rows of data that is not a row of units.
     step : str or float, optional
         Expected step, such as `15min` or seconds [s]; default: found.
     missing : sequence
@@ -130,13 +131,14 @@ def read_table(
     )
     zone = _zone(source, timezone, time)
     digest: str | None = None
+    said: tuple[str, ...] = ()
     if isinstance(source, pd.DataFrame):
         frame, where, first_line = with_time_column(source.copy()), "table", 1
     else:
         path = Path(source)
         where = path.name
         digest = file_hash(path)
-        frame, first_line = read_frame(path, separator, decimal, skip_lines)
+        frame, first_line, said = read_frame(path, separator, decimal, skip_lines)
     lines = first_line + np.arange(len(frame), dtype=np.int64)
     empty = frame.isna().all(axis=1).to_numpy()
     frame, lines = frame.loc[~empty], lines[~empty]
@@ -148,7 +150,8 @@ def read_table(
         frame = _without(frame, missing)
     stamps = _stamps(text, time_format, zone, lines, where)
     frame.index = stamps
-    return _regular(frame, zone, where, digest, lines, seconds_of(step, where) if step is not None else None)
+    length = seconds_of(step, where) if step is not None else None
+    return _regular(frame, zone, where, digest, lines, length, said)
 
 
 def _zone(
@@ -234,8 +237,9 @@ def _regular(
     digest: str | None,
     lines: Lines,
     expected: float | None,
+    said: tuple[str, ...],
 ) -> Table:
-    """Check the order and the step; insert rows that are missing."""
+    """Check the order and the step; insert rows that are missing; `said` are notes of the file."""
     import pandas as pd
 
     index = pd.DatetimeIndex(frame.index)
@@ -259,7 +263,7 @@ def _regular(
         f"{where}: {len(frame)} rows of {_length(interval)}, {index[0]:%Y-%m-%d %H:%M} .. "
         f"{index[-1]:%Y-%m-%d %H:%M}, time zone {zone_name(zone)}."
     ]
-    notes += _clock_changes(index, where, zone)
+    notes += [*said, *_clock_changes(index, where, zone), *_skipped_hour(index, gaps - interval, where, zone)]
     absent = int(place[-1]) + 1 - len(frame)
     if absent:
         row = int(np.argmax(ratio > 1.5))
@@ -287,6 +291,24 @@ def _clock_changes(index: pd.DatetimeIndex, where: str, zone: tzinfo) -> list[st
     ]
 
 
+def _skipped_hour(index: pd.DatetimeIndex, extra: Array, where: str, zone: tzinfo) -> list[str]:
+    """A warning where a single hour is missing at the time at which clocks go forward in many zones."""
+    if not fixed_offset(zone):
+        return []
+    # On a Sunday between midnight and 4 h, in March, April, September or October.
+    found = [
+        index[row]
+        for row in np.flatnonzero(extra == 3600.0)
+        if (stamp := index[row + 1]).weekday() == 6 and stamp.hour <= 4 and stamp.month in (3, 4, 9, 10)
+    ]
+    return [
+        f"{where}: warning: one hour is missing after {found[0]:%Y-%m-%d %H:%M}, when clocks go forward in many "
+        f"zones. If the clock of the file follows daylight saving time, {zone_name(zone)} is the wrong zone: "
+        "state the zone of the place, such as Europe/Paris."
+        for _ in found[:1]
+    ]
+
+
 def _ordered(gaps: Array, index: pd.DatetimeIndex, lines: Lines, where: str, zone: tzinfo) -> None:
     wrong = np.flatnonzero(gaps <= 0.0)
     if not len(wrong):
@@ -297,8 +319,8 @@ def _ordered(gaps: Array, index: pd.DatetimeIndex, lines: Lines, where: str, zon
     if gaps[row] == -3600.0 or (gaps[row] < 0.0 and np.any(gaps == -gaps[row])):
         hint = (
             f"if the clock of the file follows daylight saving time, {zone_name(zone)} is the wrong "
-            "zone: write the stamps with their offset, as in 2024-10-27T02:00+01:00; otherwise remove or "
-            "sort the rows."
+            "zone: state the zone of the place, such as Europe/Paris, where the rows of the doubled hour are "
+            "taken in order; otherwise remove or sort the rows."
         )
     raise InputError(
         f"{where}:{lines[row + 1]}: time {index[row + 1]:%Y-%m-%d %H:%M:%S} {found}, expected increasing "
@@ -321,7 +343,7 @@ def _numbers(series: pd.Series[Any], lines: Lines, where: str) -> Array:
     else:
         values = pd.to_numeric(series, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan).copy()
         text = series.astype(str).str.strip()
-        blank = series.isna().to_numpy() | text.str.lower().isin(_EMPTY).to_numpy()
+        blank = series.isna().to_numpy() | text.str.lower().isin(EMPTY).to_numpy()
         bad = np.flatnonzero(np.isnan(values) & ~blank)
         if len(bad):
             row = int(bad[0])

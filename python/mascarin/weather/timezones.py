@@ -140,6 +140,11 @@ def localize(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeI
     ------
     InputError
         Stamps that do not exist in spring, or exist twice in autumn.
+
+    Notes
+    -----
+    Rows of the doubled hour in autumn are taken in order where the clock goes back once among them: those
+    before are in summer time, those after in winter time.
     """
     import numpy as np
 
@@ -148,19 +153,27 @@ def localize(stamps: pd.DatetimeIndex, zone: tzinfo, where: str) -> pd.DatetimeI
     if len(skipped):
         raise InputError(_clock_text(skipped, zone, where, "skips", "when clocks go forward"))
     single = stamps.tz_localize(zone, ambiguous="NaT", nonexistent="NaT")
-    doubled = stamps[single.isna()]
-    if len(doubled):
-        raise InputError(_clock_text(doubled, zone, where, "has twice", "when clocks go back"))
-    return single
+    doubled = single.isna()
+    if not doubled.any():
+        return single
+    summer = np.ones(len(stamps), dtype=bool)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], doubled, [False]]).astype(np.int8)))
+    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        back = np.flatnonzero(np.diff(stamps[first:last].to_numpy()) <= np.timedelta64(0))
+        if len(back) != 1:
+            raise InputError(_clock_text(stamps[first:last], zone, where, "has twice", "when clocks go back"))
+        summer[first + int(back[0]) + 1 : last] = False
+    return stamps.tz_localize(zone, ambiguous=summer, nonexistent="NaT")
 
 
 def _clock_text(stamps: pd.DatetimeIndex, zone: tzinfo, where: str, verb: str, when: str) -> str:
     shown = ", ".join(f"{stamp:%Y-%m-%d %H:%M}" for stamp in stamps[:3])
     more = f" and {len(stamps) - 3} more, up to {stamps[-1]:%Y-%m-%d %H:%M}" if len(stamps) > 3 else ""
     winter = standard_offset(zone, stamps[0].year)
+    order = " Rows of both hours, one after the other, are taken in order." if verb == "has twice" else ""
     return (
         f"{where}: {zone_name(zone)} {verb} the local stamps {shown}{more} ({when}), so the time of "
-        "these rows is not known. If the clock of the file has winter time all year, state timezone: "
+        f"these rows is not known.{order} If the clock of the file has winter time all year, state timezone: "
         f"{_offset_name(winter)}; otherwise write the stamps with their offset, as in 2024-10-27T02:00+01:00."
     )
 

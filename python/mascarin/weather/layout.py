@@ -1,0 +1,217 @@
+"""Layout of a table in a text file: its encoding, separator, decimal mark, and the line with the names."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from mascarin.errors import InputError
+
+_MARKS: Final = (";", "\t", ",", "|")
+_SEARCHED: Final = 200
+"""Lines from the start of a file in which the header is searched."""
+_BLOCK: Final = 3
+"""Rows of data in a row that end the search for the header."""
+_DIGIT: Final = re.compile(r"[-+]?[.,]?\d")
+_COMMA: Final = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
+_POINT: Final = re.compile(r"[-+]?\d+\.\d+(?:[eE][-+]?\d+)?")
+_FORMAT: Final = re.compile(r"(?:yy|dd|mm|hh|ss)[-/.:, tydmhs]+", re.IGNORECASE)
+EMPTY: Final = frozenset({"", "na", "nan", "n/a", "null", "none", "-", "--"})
+"""Entries that mean that there is no value; in small letters."""
+_BRACKETS: Final = re.compile(r"\[.*\]|\(.*\)|<.*>")
+_UNITS: Final = frozenset(
+    "c k f w kw mw wh kwh j kj mj pa hpa kpa bar mbar m mm cm m/s km/h v mv a ma s min h d - 1 deg degc degf "
+    "celsius kelvin % %rh rh w/m2 w/m^2 w/m² kw/m2 j/cm2 wh/m2 w/(m2k) m3/h l/h l/s g/kg kg ppm lux lx "
+    "°c °f ° ºc deg c deg f w/m**2 ts rn avg ave mean smp min max tot std inst".split()
+) | {"deg c", "deg f"}
+"""Entries that are units, or say how a logger formed its values; in small letters."""
+_UNIT_ROWS: Final = 2
+"""Rows of units and of kinds of values that a header may have at most."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where a table is in its file, and how it is written.
+
+    Attributes
+    ----------
+    separator, decimal : str
+        Between entries; the decimal mark.
+    header : int
+        Number of the line with the names, from 0.
+    first : int
+        Number of the first line with data, from 0.
+    trailing : bool
+        The rows end with a separator that the header does not have.
+    units : tuple of str
+        Entries of the row of units below the names; empty without one.
+    """
+
+    separator: str
+    decimal: str
+    header: int
+    first: int
+    trailing: bool = False
+    units: tuple[str, ...] = ()
+
+
+def decoded(raw: bytes, where: str) -> tuple[str, str]:
+    """Text of a file, and the name of its encoding.
+
+    A byte order mark decides; without one, UTF-16 is recognized by its zero bytes. What is not UTF-8 is
+    Windows-1252, of which Latin-1 is a part (WHATWG Encoding Standard): degree signs and umlauts of loggers.
+
+    Parameters
+    ----------
+    raw : bytes
+        Content of the file.
+    where : str
+        File name, for the error.
+
+    Raises
+    ------
+    InputError
+        The file is no text.
+    """
+    guesses = ["utf-8-sig", "cp1252", "latin-1"]
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        guesses = ["utf-16"]
+    elif len(raw) >= 4:
+        head = raw[:400]
+        zeros = [head[k::2].count(0) * 2 / len(head) for k in (0, 1)]
+        if max(zeros) > 0.4 and min(zeros) < 0.1:
+            guesses = ["utf-16-le" if zeros[1] > zeros[0] else "utf-16-be"]
+    for name in guesses:
+        try:
+            text = raw.decode(name)
+        except UnicodeDecodeError:
+            continue
+        if "\x00" in text:
+            break
+        return text, name
+    raise InputError(
+        f"{where}: found bytes that are no text, expected a table as text (CSV) in UTF-8, UTF-16 or "
+        "Windows-1252; a spreadsheet must be saved as CSV, and Parquet files end in .parquet."
+    )
+
+
+def find_layout(
+    lines: Sequence[str], where: str, separator: str | None, decimal: str | None, skip_lines: int | None
+) -> Layout:
+    """Find separator, header, row of units and decimal mark.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Lines of the file.
+    where : str
+        File name, for errors.
+    separator, decimal : str or None
+        As stated; None: found.
+    skip_lines : int or None
+        Lines before the header; None: found.
+
+    Raises
+    ------
+    InputError
+        There is no header, or no separator in it.
+    """
+    header = skip_lines if skip_lines is not None else _header(lines, where, separator)
+    found = separator or _separator(lines[header] if header < len(lines) else "", where, header)
+    names = _cells(lines[header], found) if header < len(lines) else []
+    units: tuple[str, ...] = ()
+    first = header + 1
+    while first - header <= _UNIT_ROWS and first < len(lines):
+        cells = _cells(lines[first], found)
+        if len(cells) != len(names) or not _is_units(cells):
+            break
+        units, first = units or tuple(cells), first + 1
+    sample = [_cells(line, found) for line in lines[first : first + _SEARCHED] if line.strip()]
+    trailing = bool(sample) and all(len(row) == len(names) + 1 and not row[-1].strip() for row in sample)
+    return Layout(found, decimal or _decimal(sample), header, first, trailing, units)
+
+
+def _header(lines: Sequence[str], where: str, separator: str | None) -> int:
+    """Number of the line with the names of the columns."""
+    start = next((k for k, line in enumerate(lines) if line.strip()), 0)
+    marks = [separator] if separator else list(_MARKS)
+    if any(_begins_with_names(lines[start : start + 2], mark) for mark in marks):
+        return start
+    found = [(block[1], -block[0], mark) for mark in marks if (block := _first_block(lines, mark))]
+    if not found:
+        return start
+    count, place, mark = max(found)
+    first = -place
+    at = first - 1
+    while at >= 0 and (not lines[at].strip() or _is_units(_cells(lines[at], mark))):
+        at -= 1
+    names = _cells(lines[at], mark) if at >= 0 else []
+    if at < 0 or len(names) not in (count, count - 1):
+        above = (
+            f"line {at + 1} has {len(names)} of {count} entries" if at >= 0 else "there is no line above it"
+        )
+        raise InputError(
+            f"{where}:{first + 1}: found the first row of data, {lines[first].strip()[:60]!r}, and no names "
+            f"of columns above it ({above}); expected a line with the name of each column: add one, or "
+            "state skip_lines, the number of lines before the line with the names."
+        )
+    return at
+
+
+def _begins_with_names(lines: Sequence[str], mark: str) -> bool:
+    """Whether the first line of a table holds names and the second one data."""
+    names, data = (_cells(line, mark) for line in lines) if len(lines) == 2 else ([], [])
+    return 1 < len(names) == len(data) and not _is_data(names) and _is_data(data)
+
+
+def _first_block(lines: Sequence[str], mark: str) -> tuple[int, int] | None:
+    """Number of the first of some rows of data with the same number of entries, and that number."""
+    rows = [_cells(line, mark) for line in lines[:_SEARCHED]]
+    for k, cells in enumerate(rows):
+        block = rows[k : k + _BLOCK]
+        if (
+            len(cells) > 1
+            and len(block) > 1
+            and all(len(row) == len(cells) and _is_data(row) for row in block)
+        ):
+            return k, len(cells)
+    return None
+
+
+def _cells(line: str, mark: str) -> list[str]:
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=mark, skipinitialspace=True), [])]
+
+
+def _is_data(cells: Sequence[str]) -> bool:
+    """Whether a row holds data: it begins with a time or a number, and most entries are numbers or empty."""
+    numbers = [bool(_DIGIT.match(cell)) for cell in cells]
+    empty = [cell.lower() in EMPTY for cell in cells]
+    return any(numbers[:2]) and sum(n or e for n, e in zip(numbers, empty, strict=True)) > 0.5 * len(cells)
+
+
+def _is_units(cells: Sequence[str]) -> bool:
+    """Whether a row holds units: all its entries are units, in brackets, formats of times, or empty."""
+    written = [cell for cell in cells if cell]
+    return bool(written) and all(
+        cell.lower() in _UNITS or _BRACKETS.fullmatch(cell) or _FORMAT.match(cell) for cell in written
+    )
+
+
+def _separator(header: str, where: str, line: int) -> str:
+    counts = {mark: header.count(mark) for mark in _MARKS}
+    best = max(counts, key=lambda mark: counts[mark])
+    if counts[best] == 0:
+        raise InputError(
+            f"{where}:{line + 1}: no separator found in the header {header.strip()[:40]!r}, expected the "
+            "names of columns; state separator, or skip_lines if the header is further down."
+        )
+    return best
+
+
+def _decimal(rows: Sequence[Sequence[str]]) -> str:
+    """The comma where entries have decimal commas and none has a point."""
+    comma = any(_COMMA.fullmatch(cell) for row in rows for cell in row)
+    return "," if comma and not any(_POINT.fullmatch(cell) for row in rows for cell in row) else "."
