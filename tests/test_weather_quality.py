@@ -259,3 +259,75 @@ def test_runs() -> None:
     flags = np.array([True, True, False, True, False, False, True])
     assert runs(flags) == [(0, 2), (3, 4), (6, 7)]
     assert runs(np.zeros(3, dtype=bool)) == []
+
+
+# ---------------------------------------------------------------------- switched columns
+
+
+def switched(kind: str, days: int = 20, step: int = 10) -> np.ndarray:
+    """Power, position or set point of something that is switched, made up."""
+    rng = np.random.default_rng(5)
+    count = days * 1440 // step
+    hours = np.arange(count) * step / 60.0
+    match kind:
+        case "heater with a thermostat":
+            on = rng.random(count // 6).repeat(6) < 0.4
+            power = np.where(on, 1500.0, 0.0)
+            power[count // 3 : count // 2] = 0.0  # off for more than three days
+        case "measured power":
+            on = np.resize(rng.random(count // 12).repeat(12) < 0.5, count)
+            power = np.where(on, 1200.0 + 8.0 * rng.standard_normal(count), 0.0)
+            power[: count // 4] = 0.0
+        case "standby, then unplugged":
+            on = np.resize(rng.random(count // 12).repeat(12) < 0.4, count)
+            power = np.where(on, 900.0 + 5.0 * rng.standard_normal(count), 2.0 + 0.3 * rng.random(count))
+            power[2 * count // 3 :] = 0.0
+        case "two steps":
+            power = np.array([0.0, 750.0, 1500.0])[rng.integers(0, 3, count // 40 + 1)].repeat(40)[:count]
+        case "set point":
+            power = np.where((hours % 24 > 6) & (hours % 24 < 22) & (hours % 168 < 120), 21.0, 17.0)
+        case "window contact":
+            power = ((hours > 100) & (hours < 110)).astype(float)
+        case "always on after a week":
+            power = np.where(hours < 168.0, 0.0, 500.0)
+        case _:
+            raise AssertionError(kind)
+    return power
+
+
+SWITCHED = (
+    "heater with a thermostat", "measured power", "standby, then unplugged", "two steps", "set point",
+    "window contact", "always on after a week",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", SWITCHED)
+def test_switched_columns_are_never_stuck(kind: str) -> None:
+    values = switched(kind)
+    index = pd.date_range("2024-01-01", periods=len(values), freq="10min", tz="UTC")
+    rng = np.random.default_rng(1)
+    room = 20.0 + np.cumsum(0.02 * rng.standard_normal(len(values)))
+    data = pd.DataFrame({"switch": values, "room": room}, index=index)
+    assert [s for s in find(data) if s.kind in ("stuck", "forward_filled")] == []
+
+
+def test_all_switched_columns_together_are_not_filled() -> None:
+    index = pd.date_range("2024-01-01", periods=20 * 144, freq="10min", tz="UTC")
+    data = pd.DataFrame({kind: switched(kind) for kind in SWITCHED}, index=index)
+    assert [s for s in find(data) if s.kind in ("stuck", "forward_filled")] == []
+
+
+def test_a_stuck_sensor_beside_a_heater_is_still_found() -> None:
+    values = switched("measured power")
+    index = pd.date_range("2024-01-01", periods=len(values), freq="10min", tz="UTC")
+    rng = np.random.default_rng(1)
+    room = 20.0 + np.cumsum(0.02 * rng.standard_normal(len(values)))
+    room[1500:1900] = room[1500]
+    found = find(pd.DataFrame({"heater": values, "room": room}, index=index))
+    assert [(s.channel, s.kind, s.count) for s in found] == [("room", "stuck", 399)]
+
+
+def test_the_heaters_of_the_twin_house_are_not_stuck(data_dir: Path) -> None:
+    path = data_dir / "twinhouse" / "twinhouse_O5_exp1.csv"
+    stretches = Measurements.from_table(path, timezone="UTC+1").quality()
+    assert [s for s in stretches if s.kind in ("stuck", "forward_filled")] == []

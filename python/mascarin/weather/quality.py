@@ -2,7 +2,8 @@
 
 Nothing is corrected here. What is usual is derived from each channel: how often it repeats a value, how far
 it changes in one step, where it is constant (night, no wind, saturation). A part of a series is reported when
-it is far from that, so that the steps of a coarse logger are not reported.
+it is far from that, so that the steps of a coarse logger are not reported. Columns that are switched (heaters,
+set points, states) hold their values rightly and are never stuck, see `mascarin.weather.switching`.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Final, Literal
 import numpy as np
 
 from mascarin.weather.arrays import Array, Flags, Lines
+from mascarin.weather.switching import is_switched, switched_levels
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -104,9 +106,10 @@ def find(
         kept = values.copy()
         for _, first, last, _ in outside:
             kept[first:last] = np.nan
-        stuck[name] = _stuck(kept, interval, (limits or {}).get(name, ()))
+        stuck[name] = [] if is_switched(values) else _stuck(kept, interval, (limits or {}).get(name, ()))
         found[name] += _spikes(_unwound(kept), values)
-    for name, stretches in _repeated(columns, stuck).items():
+    sensed = {name: values for name, values in columns.items() if not is_switched(values)}
+    for name, stretches in _repeated(sensed, stuck).items():
         found[name] += stretches
     return [
         Stretch(name, kind, data.index[first], data.index[last - 1], last - first, detail)
@@ -289,6 +292,7 @@ def _stuck(values: Array, interval: float, bounds: Sequence[float]) -> list[tupl
         return [] if float(there[0]).is_integer() else [(0, len(values))]
     start, length = _runs_of_equal(values)
     idle = _idle(values, start, length, interval) | np.isin(values[start], bounds) | np.isnan(values[start])
+    idle |= switched_levels(values, start, length)
     longest = _usual_longest(length[~idle])
     long = ~idle & (length >= _FEWEST) & (length > _LONGER * longest)
     long &= ~_returning(values[start], length)
@@ -356,6 +360,8 @@ def _repeated(
     columns: Mapping[str, Array], stuck: Mapping[str, list[tuple[int, int]]]
 ) -> dict[str, list[tuple[Defect, int, int, str]]]:
     """Divide runs of repeated values into stuck and forward-filled ones."""
+    if not columns:
+        return {}
     together = _held_together(columns, stuck)
     found: dict[str, list[tuple[Defect, int, int, str]]] = {name: [] for name in columns}
     count = len(next(iter(columns.values())))
