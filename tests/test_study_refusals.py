@@ -65,13 +65,13 @@ CASES = {
     ),
     "no time zone of the table": Refused(
         MEASURED + "  timezone: UTC+1\n",
-        MEASURED,
+        MEASURED.replace("logger", "other"),  # what the weather says of its own table does not hold for it
         "measurements:",
         ("measurements.timezone", "found: nothing", "Europe/Paris", "Add 'timezone:'"),
     ),
     "no time zone of the weather": Refused(
-        "    timezone: UTC+1\n",
-        "",
+        "    table: logger.csv\n    timezone: UTC+1\n",
+        "    table: other.csv\n",
         "measured:",
         ("climate.measured.timezone", "found: nothing", "Add"),
     ),

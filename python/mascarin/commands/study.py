@@ -160,10 +160,23 @@ def validate(
 
 
 def _open(file: str) -> Study:
+    """Open a study, and say on standard error what is suspicious in its tables and what is left out."""
     from mascarin.examples import locate
     from mascarin.study import Study
 
-    return Study.from_yaml(locate(file))
+    opened = Study.from_yaml(locate(file))
+    said = dict.fromkeys((*opened.climate.provenance, *opened.measurements.provenance))
+    lines = [note for note in said if ": warning: " in note]
+    if opened.quality:
+        lines.append("suspicious periods in the measurements:")
+        lines += [
+            f"  {s.channel}: {s.kind} from {s.start:%Y-%m-%d %H:%M}, {s.detail}"
+            f"{'; left out of all comparisons' if opened.leaves_out(s) else ''}"
+            for s in opened.quality
+        ]
+    if lines:
+        print("\n".join(lines), file=sys.stderr)
+    return opened
 
 
 def _print_scores(content: Mapping[str, Any]) -> None:
@@ -203,11 +216,6 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
     """Print a summary on standard error."""
     count = len(opened.file.sensors)
     lines = [f"{opened.file.name}: {opened.file.observed}, {count} sensor{'s' * (count != 1)}"]
-    if opened.quality:
-        lines.append("suspicious periods in the measurements:")
-        lines += [
-            f"  {s.channel}: {s.kind} from {s.start:%Y-%m-%d %H:%M}, {s.detail}" for s in opened.quality
-        ]
     lines.append(f"{'sensor':<16}{'period':<16}{'model':<10}{'rmse':>8}{'sd':>8}{'bias':>8}{'max':>8}")
     for run in (results.nominal, results.fitted):
         for sensor, periods in run.scores.items():

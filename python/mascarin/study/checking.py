@@ -85,10 +85,12 @@ def _words(first: pd.Timestamp, last: pd.Timestamp) -> str:
 
 
 def _working(study: Setup) -> None:
-    """Refuse to calibrate with a sensor that repeats its value and is not masked."""
+    """Refuse to calibrate with a sensor that repeats its value, unless the study says that it is masked."""
     start, end = study.identification
     for name, sensor in study.plan.sensors.items():
-        kinds = [kind for kind in CONSTANT if kind not in study.plan.quality.mask]
+        # What is left out by default may not be most of the identification; who writes it knows.
+        written = study.plan.quality.mask if "mask" in study.plan.quality.model_fields_set else ()
+        kinds = [kind for kind in CONSTANT if kind not in written]
         for stretch in study.quality:
             if not sensor.use or stretch.channel not in sensor.columns or stretch.kind not in kinds:
                 continue

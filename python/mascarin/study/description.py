@@ -29,6 +29,12 @@ TAKEN: Final = (
 )  # fmt: skip
 
 
+#: Keys of a table that hold for weather and measurements where both are in it.
+OF_THE_TABLE: Final = (
+    "table", "timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "missing",
+)  # fmt: skip
+
+
 class Table(Part):
     """A table of measured columns."""
 
@@ -128,7 +134,8 @@ class Quality(Part):
     """Treatment of suspicious values. They are always reported."""
 
     mask: tuple[Literal["stuck", "forward_filled", "spike", "out_of_range"], ...] = Field(
-        (), description="Kinds that are excluded from all comparisons"
+        ("stuck", "forward_filled"),
+        description="Kinds that are excluded from all comparisons; [] excludes nothing",
     )
 
 
@@ -331,9 +338,7 @@ class StudyPlan(Part):
         "zones and surfaces",
     )
     periods: Periods = Field(description="Which part of the record is used for what")
-    quality: Quality = Field(
-        default_factory=lambda: Quality(mask=()), description="What to do with suspicious values"
-    )
+    quality: Quality = Field(default_factory=Quality, description="What to do with suspicious values")
     criteria: tuple[Limit, ...] = Field((), description="Limits on metrics; exit code 1 if one is not met")
     aims: tuple[Limit, ...] = Field(
         (),
@@ -372,7 +377,26 @@ class StudyFile(StudyPlan):
         default_factory=dict, description="Path -> value that replaces the one of the building file"
     )
     climate: ClimateSource = Field(description="Weather data")
-    measurements: Table = Field(description="Table of measurements")
+    measurements: Table = Field(
+        description="Table of measurements. Keys of the same table that are given for the weather need not be "
+        "repeated, and the other way round; without an entry: the table of the weather"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_table(cls, data: Any) -> Any:
+        """Weather and measurements in one table: what one of them says of it holds for the other one too."""
+        if not isinstance(data, dict) or not isinstance(data.get("climate"), dict):
+            return data
+        weather, measured = data["climate"].get("measured"), data.get("measurements")
+        measured = {} if measured is None else measured
+        if not isinstance(weather, dict) or not isinstance(measured, dict):
+            return data
+        if "table" in weather and "table" in measured and weather["table"] != measured["table"]:
+            return data
+        said = {key: value for key, value in (weather | measured).items() if key in OF_THE_TABLE}
+        both = {**data["climate"], "measured": {**said, **weather}}
+        return {**data, "climate": both, "measurements": {**said, **measured}}
 
     @model_validator(mode="before")
     @classmethod

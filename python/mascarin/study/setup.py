@@ -101,6 +101,11 @@ class Setup:
         assert isinstance(self.plan, StudyFile)  # noqa: S101 (what comes from a file is one)
         return self.plan
 
+    def leaves_out(self, stretch: Stretch) -> bool:
+        """Whether suspicious values are left out of all comparisons: those of sensors, of the masked kinds."""
+        sensors = {column for sensor in self.plan.sensors.values() for column in sensor.columns}
+        return stretch.kind in self.plan.quality.mask and stretch.channel in sensors
+
     # --- periods ----------------------------------------------------------------------------------------
 
     def _moment(self, text: str, what: str) -> pd.Timestamp:

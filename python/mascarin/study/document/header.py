@@ -143,8 +143,6 @@ def _spans(times: pd.DatetimeIndex, use: npt.NDArray[np.bool_], interval: float)
 
 
 def _quality(study: Setup) -> list[dict[str, Any]]:
-    masked = set(study.plan.quality.mask)
-    sensors = {column for sensor in study.plan.sensors.values() for column in sensor.columns}
     return [
         {
             "channel": stretch.channel,
@@ -153,7 +151,7 @@ def _quality(study: Setup) -> list[dict[str, Any]]:
             "end": stretch.end.tz_localize(None).isoformat(),
             "count": stretch.count,
             "detail": stretch.detail,
-            "masked": stretch.kind in masked and stretch.channel in sensors,
+            "masked": study.leaves_out(stretch),
         }
         for stretch in study.quality
     ]
