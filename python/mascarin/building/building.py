@@ -26,7 +26,7 @@ from mascarin.building.outputs import Output
 from mascarin.building.parameters import Parameter, listed, lookup, parameters, resolve
 from mascarin.building.part import Part, insist, is_number, plain_value
 from mascarin.building.references import sources
-from mascarin.building.replacing import piece_at, put, without_parts
+from mascarin.building.replacing import piece_at, put, replaced_at, without_parts
 from mascarin.building.rules import faults
 from mascarin.building.yaml_document import read
 from mascarin.building.yaml_text import text_of
@@ -122,7 +122,7 @@ class Building(Description):
         >>> Building.from_yaml(examples.FOLDER / "lgi" / "building.yaml").name
         'LGI cell'
         """
-        return read(path, cls, "a building", blanks=False)
+        return read(path, cls, "a building", blanks=False, finish=replaced_at)
 
     @classmethod
     def from_dict(cls, description: Mapping[str, Any]) -> Self:

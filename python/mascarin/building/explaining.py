@@ -12,6 +12,17 @@ from mascarin.errors import InputError
 Place = tuple[str | int, ...]
 
 
+class Line(int):
+    """Number of a line, with the name of its file where a description is merged from several files."""
+
+    file: str
+
+    def __new__(cls, number: int, file: str) -> Line:
+        made = super().__new__(cls, number)
+        made.file = file
+        return made
+
+
 def explained(
     error: ValidationError, plain: Any, name: str, lines: Mapping[Place, int] | None = None
 ) -> InputError:
@@ -34,13 +45,13 @@ def explained(
         To be raised by the caller.
     """
     found = sorted(
-        (_line(place, lines or {}), _dotted(place, plain), _sentences(dict(fault)))
+        (_where(place, lines or {}, name), _dotted(place, plain), _sentences(dict(fault)))
         for fault in error.errors(include_url=False)
         for place in [_place(fault["loc"], plain)]
     )
     blocks = []
-    for line, dotted, sentences in dict.fromkeys(found):
-        where = f"{name}:{line}" if line else name
+    for (file, line), dotted, sentences in dict.fromkeys(found):
+        where = f"{file}:{line}" if line else file
         blocks.append(f"{where}: {dotted or 'the whole description'}\n{sentences}")
     if len(blocks) > 1:
         blocks.insert(0, f"{name}: {len(blocks)} faults")
@@ -98,11 +109,13 @@ def _written(plain: Any) -> Any:
     return {name: getattr(plain, name) for name in names}
 
 
-def _line(place: Place, lines: Mapping[Place, int]) -> int:
+def _where(place: Place, lines: Mapping[Place, int], name: str) -> tuple[str, int]:
+    """File and line of a place, else of the nearest part around it; 0 where there is none."""
     for length in range(len(place), -1, -1):
-        if place[:length] in lines:
-            return lines[place[:length]]
-    return 0
+        line = lines.get(place[:length])
+        if line is not None:
+            return getattr(line, "file", name), int(line)
+    return name, 0
 
 
 def _dotted(place: Place, plain: Any) -> str:

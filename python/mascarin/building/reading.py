@@ -6,9 +6,9 @@ from pathlib import Path
 
 from mascarin.building.building import Building
 from mascarin.building.explaining import explained
-from mascarin.building.yaml_document import lines, parse_as, plain, read
+from mascarin.building.yaml_document import files_of, lines, parse_as, plain, read
 
-__all__ = ["explained", "lines", "load", "parse", "parse_as", "plain", "read"]
+__all__ = ["explained", "files_of", "lines", "load", "parse", "parse_as", "plain", "read"]
 
 
 def load(path: str | Path) -> Building:

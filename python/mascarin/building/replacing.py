@@ -3,12 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mascarin.building.leaves import steps
 from mascarin.building.number import Number
 from mascarin.building.part import Part, written_value
 from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from typing import Protocol
+
+    class Replaceable(Protocol):
+        """What has a name and gives a copy of itself with other values by path."""
+
+        name: str
+
+        def replace(self, values: Mapping[str, Any]) -> Any:
+            """The same with other values."""
+
+
+AnyBuilding = TypeVar("AnyBuilding", bound="Replaceable")
 
 
 def without_parts(value: Any) -> Any:
@@ -72,6 +86,32 @@ def put(plain: dict[str, Any], part: Part, path: Sequence[str], value: Any) -> N
     if isinstance(before, Number) and isinstance(value, int | float) and not isinstance(value, Number | bool):
         value = Number(value, range=before.range)
     holder[key] = value
+
+
+def replaced_at(building: AnyBuilding, values: Mapping[str, tuple[Any, int]]) -> AnyBuilding:
+    """The same building with values by path that a file gives.
+
+    Parameters
+    ----------
+    building : Building
+        What the file and its bases describe otherwise.
+    values : mapping of str to (any, int)
+        By path: the value, and its line with the name of its file.
+
+    Raises
+    ------
+    InputError
+        A path does not exist or a value is not possible; the line is named.
+    """
+    try:
+        return building.replace({path: value for path, (value, _) in values.items()})
+    except InputError as error:
+        text = str(error)
+        named = [path for path in values if path in text]
+        path = max(named, key=len) if named else next(iter(values))
+        line = values[path][1]
+        said = text.removeprefix(f"{building.name}: ").removeprefix(f"{path}: ")
+        raise InputError(f"{getattr(line, 'file', building.name)}:{line}: set.{path}: {said}") from None
 
 
 def _kind_of(part: Any, beside: Any) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from mascarin._io.arguments import require_type
 from mascarin.building.explaining import Place, explained
+from mascarin.building.inheriting import EXTENDS, Inherited, inherited
 from mascarin.building.part import Part
 from mascarin.errors import InputError
 
@@ -23,7 +24,15 @@ AnyPart = TypeVar("AnyPart", bound=Part)
 MOST_VALUES = 100_000
 
 
-def read(path: str | Path, kind: type[AnyPart], what: str, *, blanks: bool = True) -> AnyPart:
+def read(
+    path: str | Path,
+    kind: type[AnyPart],
+    what: str,
+    *,
+    blanks: bool = True,
+    file_keys: Collection[str] = (),
+    finish: Callable[[AnyPart, Mapping[str, tuple[Any, int]]], AnyPart] | None = None,
+) -> AnyPart:
     """Read a description of any kind from a YAML file.
 
     Parameters
@@ -36,6 +45,10 @@ def read(path: str | Path, kind: type[AnyPart], what: str, *, blanks: bool = Tru
         The same in words, for messages.
     blanks : bool
         Whether a key may stand without a value.
+    file_keys : collection of str
+        Keys that name files, which are counted from the folder of the file in which they are.
+    finish : callable, optional
+        Puts in the values that the file gives by path, each with its line.
 
     Returns
     -------
@@ -49,13 +62,39 @@ def read(path: str | Path, kind: type[AnyPart], what: str, *, blanks: bool = Tru
         path, with what was found, what was expected and what to do.
     """
     require_type("path", path, (str, Path), "the path of a file; a mapping is read by Building.from_dict")
-    file = Path(path)
+    found = merged(Path(path), what, blanks=blanks, file_keys=file_keys)
     try:
-        text = file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of {what}") from error
-    return parse_as(kind, text, str(file), blanks=blanks)
+        part = kind.model_validate(found.plain)
+    except ValidationError as error:
+        raise explained(error, found.plain, str(path), found.lines) from None
+    return finish(part, found.values) if found.values and finish is not None else part
+
+
+def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = ()) -> Inherited:
+    """Plain values of a file merged with the files that it extends.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    what : str
+        What it describes, for messages.
+    blanks : bool
+        Whether a key may stand without a value.
+    file_keys : collection of str
+        Keys that name files.
+    """
+
+    def one(file: Path) -> tuple[dict[str, Any], dict[Place, int]]:
+        try:
+            text = file.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+            raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of {what}") from error
+        document = _Document(str(file), blanks=blanks)
+        return document.read(text), document.lines
+
+    return inherited(path, one, by_path=not blanks, file_keys=file_keys)
 
 
 def parse_as(kind: type[AnyPart], text: str, name: str, *, blanks: bool = True) -> AnyPart:
@@ -73,11 +112,15 @@ def plain(text: str, name: str) -> Any:
     return _Document(name).read(text)
 
 
-def lines(text: str, name: str) -> Mapping[Place, int]:
-    """Line of each key and value of YAML text, by place; ``name`` is the name of the file in messages."""
-    document = _Document(name, blanks=True)
-    document.read(text)
-    return document.lines
+def lines(path: Path) -> tuple[Mapping[Place, int], tuple[Path, ...]]:
+    """Line of each key and value of a YAML file and the files that it extends, by place; and these files."""
+    found = merged(path, "a description", blanks=True)
+    return found.lines, found.files
+
+
+def files_of(path: Path) -> tuple[Path, ...]:
+    """A YAML file and the files that it extends, in order."""
+    return merged(path, "a description", blanks=True).files
 
 
 @dataclass
@@ -99,6 +142,8 @@ class _Document:
         self.scalars = yaml.constructor
         try:
             root = yaml.compose(text)
+            # A key without a value removes that of the base.
+            self.blanks = self.blanks or _extends(root)
             plain = self._value(root, (), frozenset()) if root is not None else None
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
@@ -188,6 +233,12 @@ class _Document:
                     node.start_mark.line, _text(place), f"the tag '{kind}'", "plain values", "Remove the tag."
                 )
                 return None
+
+
+def _extends(root: Any) -> bool:
+    """Whether a document extends another one."""
+    pairs = root.value if isinstance(getattr(root, "value", None), list) else []
+    return any(isinstance(pair, tuple) and pair[0].value == EXTENDS for pair in pairs)
 
 
 def _text(place: Place) -> str:

@@ -29,6 +29,9 @@ TAKEN: Final = (
 )  # fmt: skip
 
 
+#: Keys that name files.
+FILE_KEYS: Final = ("building", "epw", "tmy", "table")
+
 #: Keys of a table that hold for weather and measurements where both are in it.
 OF_THE_TABLE: Final = (
     "table", "timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "missing",
@@ -417,4 +420,4 @@ def read_study(path: str | Path) -> StudyFile:
     """
     from mascarin.building.reading import read
 
-    return read(path, StudyFile, "a study")
+    return read(path, StudyFile, "a study", file_keys=FILE_KEYS)

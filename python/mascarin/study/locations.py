@@ -52,7 +52,7 @@ class Faults:
 
 
 class Places:
-    """Lines of the entries of a YAML file; without a file, the dotted names of the entries alone.
+    """Lines of the entries of a YAML file, and of those that it extends; without a file, dotted names alone.
 
     Parameters
     ----------
@@ -62,22 +62,23 @@ class Places:
 
     def __init__(self, path: Path | None = None) -> None:
         self.file = "study" if path is None else str(path)
-        self._text = "" if path is None else path.read_text(encoding="utf-8")
-        self._lines = {} if path is None else lines(self._text, self.file)
+        self._lines, files = ({}, ()) if path is None else lines(path)
+        self._texts = {str(file): file.read_text(encoding="utf-8") for file in files}
 
     def at(self, *place: str | int) -> str:
         """File, line and dotted name of an entry; the line of its parent if it is not written."""
         written = next((place[:n] for n in range(len(place), -1, -1) if place[:n] in self._lines and n), ())
         line = self._lines.get(written)
-        where = f"{self.file}:{line}" if line else self.file
+        where = f"{getattr(line, 'file', self.file)}:{line}" if line else self.file
         return f"{where}: {'.'.join(map(str, place))}"
 
     def find(self, key: str, value: str) -> str | None:
         """File and line of the first line that gives a key this value; None if there is none."""
         wanted = re.compile(rf"\b{re.escape(key)}:\s*[\"']?{re.escape(value)}\b")
-        for number, line in enumerate(self._text.splitlines(), start=1):
-            if wanted.search(line):
-                return f"{self.file}:{number}"
+        for file, text in self._texts.items():
+            for number, line in enumerate(text.splitlines(), start=1):
+                if wanted.search(line):
+                    return f"{file}:{number}"
         return None
 
     @contextmanager

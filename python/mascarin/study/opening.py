@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from mascarin.building import Building, load
-from mascarin.building.reading import explained
+from mascarin.building.reading import explained, files_of
 from mascarin.errors import InputError
 from mascarin.simulation.compiling import in_climate, require_inputs
 from mascarin.study.description import StudyFile, StudyPlan, read_study
@@ -105,8 +105,8 @@ def from_file(path: Path) -> Inputs:
         read = filled(read, building, longest)
     read = _masked(read, file, quality)
     hashes = {
-        "study": file_hash(path),
-        "building": file_hash(described),
+        "study": _hash_of_all(path),
+        "building": _hash_of_all(described),
         "measurements": read.sha256 or "",
         "climate": climate.sha256 or "",
     }
@@ -231,6 +231,12 @@ def _masked(read: Measurements, plan: StudyPlan, quality: Sequence[Stretch]) -> 
     sensors = {column for sensor in plan.sensors.values() for column in sensor.columns}
     chosen = [stretch for stretch in quality if stretch.channel in sensors]
     return read.masked(mask(read.data, chosen, list(kinds)))
+
+
+def _hash_of_all(path: Path) -> str:
+    """SHA-256 of a file, and of the files that it extends."""
+    hashes = [file_hash(file) for file in files_of(path)]
+    return hashes[0] if len(hashes) == 1 else hashlib.sha256(" ".join(hashes).encode()).hexdigest()
 
 
 def _digest(content: Any) -> str:

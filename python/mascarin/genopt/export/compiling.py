@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mascarin.building.reading import files_of
 from mascarin.errors import InputError
 from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
 from mascarin.study import Study
@@ -86,5 +87,6 @@ def _files(path: Path, file: StudyFile) -> list[str]:
     climate = file.climate
     measured = None if climate.measured is None else climate.measured.table
     names = [file.building, climate.epw, climate.tmy, measured, file.measurements.table]
-    found = [path, *(find(name, path.parent) for name in names if name is not None)]
+    named = [find(name, path.parent) for name in names if name is not None]
+    found = [*files_of(path), *files_of(named[0]), *named[1:]]
     return sorted({str(one.resolve()) for one in found})
