@@ -52,6 +52,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "check", "mascarin.commands.building:check", "Check a building description and print a summary."
         ),
         Command("parameters", "mascarin.commands.building:parameters", "List every parameter of a building."),
+        Command("outputs", "mascarin.commands.building:outputs", "List every output of a building."),
         Command(
             "materials",
             "mascarin.commands.materials:materials",

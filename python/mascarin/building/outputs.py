@@ -155,9 +155,13 @@ def find(building: Description, name: str) -> Output:
     for output in reversed(outputs(building)):
         known.update(dict.fromkeys((*output.aliases, output.name), output))
     if name not in known:
+        owner, _, what = str(name).partition(".")
+        own = [one for one in known if one.partition(".")[0] == owner]
+        near = [one for one in own if what and what in one.partition(".")[2]]
+        hint = did_you_mean(name, known) or (f"'{owner}' has {', '.join(near or own[:8])}." if own else "")
         raise InputError(
-            f"{name}: found no such output; expected one of the {len(known)} of this building. "
-            f"{did_you_mean(name, known)}".rstrip()
+            f"{name}: found no such output; expected one of the {len(known)} of this building, which 'mascarin "
+            f"outputs' lists. {hint}".rstrip()
         )
     return known[name]
 

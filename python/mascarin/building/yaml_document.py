@@ -97,6 +97,18 @@ def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = 
     return inherited(path, one, by_path=not blanks, file_keys=file_keys)
 
 
+def validated(
+    path: Path, kind: type[AnyPart], what: str, *, only: Collection[str], file_keys: Collection[str] = ()
+) -> AnyPart:
+    """Read some keys of a description, whatever else the file has; see `read`."""
+    found = merged(path, what, blanks=True, file_keys=file_keys)
+    plain = {key: value for key, value in found.plain.items() if key in only}
+    try:
+        return kind.model_validate(plain)
+    except ValidationError as error:
+        raise explained(error, plain, str(path), found.lines) from None
+
+
 def parse_as(kind: type[AnyPart], text: str, name: str, *, blanks: bool = True) -> AnyPart:
     """Read a description of any kind from YAML text; ``name`` is the name of the file in messages."""
     document = _Document(name, blanks=blanks)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from mascarin.commands.inputs import AsJson, Flag, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
@@ -110,11 +110,55 @@ def parameters(
     print_table(("path", "value", "unit", "low", "high", "note"), rows)
 
 
+def outputs(building: Path, /, *patterns: str, settings: Settings = None, as_json: AsJson = False) -> None:
+    """List every output of a building.
+
+    Each with its name, unit, other names, and whether a run records it without --output. The names are those
+    of 'mascarin run --output' and of the sensors of a study.
+
+    Parameters
+    ----------
+    building : Path
+        Description of a building.
+    patterns : str
+        Only outputs that fit these patterns, such as "roof.*" or "*_temperature".
+    """
+    from mascarin.simulation.compiling import chosen_outputs
+
+    described = read_building(building, settings)
+    usual = {output.name for output in chosen_outputs(described, None)}
+    table: list[dict[str, Any]] = [
+        {
+            "name": output.name,
+            "unit": output.unit,
+            "aliases": list(output.aliases),
+            "mean": output.mean,
+            "default": output.name in usual,
+        }
+        for output in described.outputs()
+    ]
+    shown = [row for row in table if any(_matches(name, patterns) for name in (row["name"], *row["aliases"]))]
+    if not shown:
+        names = [row["name"] for row in table]
+        raise InputError(
+            f"found no output that fits {' '.join(patterns)}; expected a name or a pattern such as 'roof.*'. "
+            f"{did_you_mean(patterns[0], names) if patterns else ''}".rstrip()
+        )
+    if as_json:
+        print_json(shown)
+        return
+    rows = [
+        (row["name"], row["unit"], ", ".join(row["aliases"]), "default" if row["default"] else "")
+        for row in shown
+    ]
+    print_table(("output", "unit", "other names", "recorded"), rows)
+
+
 def _unreached(building: Building, weather: Path | None) -> dict[str, str]:
     """Parameters on which nothing depends, each with the reason."""
     if weather is None:
         raise InputError("--reach: found no --weather; expected a weather file to run the building in")
-    from mascarin.commands.run import read_weather
+    from mascarin.commands.inputs import read_weather
     from mascarin.simulation.inactive import inactive_parameters
 
     return inactive_parameters(building, read_weather(weather))

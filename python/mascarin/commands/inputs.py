@@ -12,6 +12,7 @@ from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
+    from mascarin.weather import Climate
 
 Flag: Final = Parameter(negative="", show_default=False)
 """An option without a value."""
@@ -79,3 +80,25 @@ def seconds(text: str) -> float:
     from mascarin.weather.times import seconds_of
 
     return seconds_of(text, "--step")
+
+
+def read_weather(file: Path) -> Climate:
+    """Read a weather file; the ending of its name gives its format.
+
+    Raises
+    ------
+    InputError
+        If it is neither EPW nor TMY3, or damaged.
+    """
+    from mascarin.weather import Climate
+
+    match file.suffix.lower():
+        case ".epw":
+            return Climate.from_epw(file)
+        case ".csv":
+            return Climate.from_tmy(file)
+        case suffix:
+            raise InputError(
+                f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, .csv (TMY3, or "
+                "another table with --column), .parquet (with --column) or .yaml"
+            )

@@ -14,13 +14,13 @@ from cyclopts import Parameter
 from mascarin._io.atomic import drafted
 from mascarin.commands.inputs import AsJson, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
+from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
-    from mascarin.weather import Climate
 
 FORMATS = (".nc", ".csv")
 
@@ -30,6 +30,10 @@ def run(
     /,
     *,
     weather: Path,
+    measurements: Path | None = None,
+    columns: Annotated[list[str] | None, Parameter(name="--column", negative="")] = None,
+    timezone: str | None = None,
+    stamps: Literal["start", "end"] = "start",
     out: Annotated[Path | None, Parameter(alias="-o")] = None,
     start: str | None = None,
     end: str | None = None,
@@ -49,7 +53,18 @@ def run(
     building : Path
         Description of a building.
     weather : Path
-        Weather file: EPW, or TMY3 as CSV.
+        Weather: an EPW file, TMY3 as CSV, a measured table (CSV with --column, or Parquet), or a YAML file with
+        the keys climate and measurements of a study, such as the study itself.
+    measurements : Path
+        Table with the measured columns that the building names. Default: the table of --weather.
+    columns : list of str
+        Column of a measured table for --weather, as CHANNEL=COLUMN or CHANNEL=COLUMN [UNIT], such as
+        "air_temperature=T_out" or "wind_speed=wind [km/h]"; CHANNEL=none for what was not measured. Can be
+        given several times.
+    timezone : str
+        Time zone of measured tables. Default: that of the site.
+    stamps : str
+        Which end of its interval a stamp of a measured table marks.
     out : Path
         File for the time series: NetCDF (.nc) or CSV (.csv, in local time). Without it a summary is printed.
     start : str
@@ -70,9 +85,13 @@ def run(
         _require_writable(out)
     from mascarin.simulation.simulation import Simulation
 
+    climate, measured = run_inputs(
+        described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps
+    )
     simulation = Simulation(
         described,
-        read_weather(weather),
+        climate,
+        measurements=measured,
         step=seconds(step),
         start=start,
         end=end,
@@ -104,27 +123,6 @@ def _print_warnings(building: Building, simulation: Simulation) -> None:
     assumed = sum(line.startswith("assumed: ") for line in lines)
     if assumed:
         print(f"{assumed} assumed values: 'mascarin check' lists them", file=sys.stderr)
-
-
-def read_weather(file: Path) -> Climate:
-    """Read a weather file; the ending of its name gives its format.
-
-    Raises
-    ------
-    InputError
-        If it is neither EPW nor TMY3, or damaged.
-    """
-    from mascarin.weather import Climate
-
-    match file.suffix.lower():
-        case ".epw":
-            return Climate.from_epw(file)
-        case ".csv":
-            return Climate.from_tmy(file)
-        case suffix:
-            raise InputError(
-                f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, or .csv (TMY3)"
-            )
 
 
 def _require_writable(out: Path) -> None:

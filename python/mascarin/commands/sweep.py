@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from mascarin._io.tables import read_csv
 from mascarin.commands.inputs import AsJson, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
-from mascarin.commands.run import read_weather
+from mascarin.commands.inputs import read_weather
 from mascarin.errors import InputError, SolverError
 
 if TYPE_CHECKING:

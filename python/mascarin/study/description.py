@@ -101,6 +101,21 @@ class MeasuredWeather(Table):
     )
 
 
+def with_shared_table(data: Any) -> Any:
+    """Weather and measurements in one table: what one of them says of it holds for the other one too."""
+    if not isinstance(data, dict) or not isinstance(data.get("climate"), dict):
+        return data
+    weather, measured = data["climate"].get("measured"), data.get("measurements")
+    measured = {} if measured is None else measured
+    if not isinstance(weather, dict) or not isinstance(measured, dict):
+        return data
+    if "table" in weather and "table" in measured and weather["table"] != measured["table"]:
+        return data
+    said = {key: value for key, value in (weather | measured).items() if key in OF_THE_TABLE}
+    both = {**data["climate"], "measured": {**said, **weather}}
+    return {**data, "climate": both, "measurements": {**said, **measured}}
+
+
 class ClimateSource(Part):
     """Source of the weather data; exactly one kind."""
 
@@ -114,6 +129,25 @@ class ClimateSource(Part):
         if len(given) != 1:
             insist(fault((), ", ".join(given) or "nothing", "one of epw, tmy, measured", "Keep exactly one."))
         return self
+
+
+class RunInputs(Part):
+    """Weather, and a table of measurements: what a run takes from a study, or from a file with these keys."""
+
+    climate: ClimateSource = Field(description="Weather data")
+    measurements: Table | None = Field(None, description="Table with the measured columns of the building")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_table(cls, data: Any) -> Any:
+        """Keep the keys of a run, and share what weather and measurements have in common."""
+        if not isinstance(data, dict):
+            return data
+        weather = (
+            (data.get("climate") or {}).get("measured") if isinstance(data.get("climate"), dict) else None
+        )
+        kept = {key: data[key] for key in ("climate", "measurements") if key in data}
+        return with_shared_table(kept) if "measurements" in kept or weather else kept
 
 
 class Periods(Part):
@@ -388,18 +422,7 @@ class StudyFile(StudyPlan):
     @model_validator(mode="before")
     @classmethod
     def _one_table(cls, data: Any) -> Any:
-        """Weather and measurements in one table: what one of them says of it holds for the other one too."""
-        if not isinstance(data, dict) or not isinstance(data.get("climate"), dict):
-            return data
-        weather, measured = data["climate"].get("measured"), data.get("measurements")
-        measured = {} if measured is None else measured
-        if not isinstance(weather, dict) or not isinstance(measured, dict):
-            return data
-        if "table" in weather and "table" in measured and weather["table"] != measured["table"]:
-            return data
-        said = {key: value for key, value in (weather | measured).items() if key in OF_THE_TABLE}
-        both = {**data["climate"], "measured": {**said, **weather}}
-        return {**data, "climate": both, "measurements": {**said, **measured}}
+        return with_shared_table(data)
 
     @model_validator(mode="before")
     @classmethod

@@ -1,0 +1,129 @@
+"""Measured tables as weather and as boundary conditions of a single run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from mascarin.commands.inputs import read_weather
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+    from mascarin.weather import Climate, Column, Measurements
+    from mascarin.weather.table import Stamps
+
+_YAML: Final = (".yaml", ".yml")
+_TABLES: Final = (".csv", ".txt", ".tsv", ".dat", ".parquet", ".pq")
+_UNIT: Final = re.compile(r"(?P<column>.*\S)\s+\[(?P<unit>[^\]]+)\]")
+_NONE: Final = "none"
+
+
+def run_inputs(
+    building: Building,
+    weather: Path,
+    table: Path | None,
+    *,
+    columns: Sequence[str],
+    timezone: str | None,
+    stamps: Stamps,
+) -> tuple[Climate, Measurements | None]:
+    """Read the weather of a run, and the measured columns that its building names.
+
+    Parameters
+    ----------
+    building : Building
+        Names the columns of its measured boundaries, and its site.
+    weather : Path
+        Weather file, measured table, or YAML file with ``climate`` and ``measurements``.
+    table : Path or None
+        Table of the measured columns; None: that of the weather.
+    columns : sequence of str
+        Channels of a measured table, as ``channel=column``.
+    timezone : str or None
+        Zone of the tables; None: that of the site.
+    stamps : str
+        Which end of its interval a stamp marks.
+
+    Raises
+    ------
+    InputError
+        Something cannot be used; option or file is named.
+    """
+    from mascarin.building.engine_input import measured_columns
+    from mascarin.weather import Measurements
+
+    zone = timezone or str(building.site.timezone)
+    needed = measured_columns(building)
+    measured = None
+    if weather.suffix.lower() in _YAML:
+        if columns:
+            raise InputError(
+                f"--column: found beside {weather}; expected the columns in that file, under climate"
+            )
+        from mascarin.study.run_inputs import open_run_inputs
+
+        climate, measured = open_run_inputs(weather, building)
+    elif columns or weather.suffix.lower() in _TABLES[1:]:
+        climate = _measured_weather(building, weather, columns, zone, stamps)
+        table = table or weather
+    else:
+        climate = read_weather(weather)
+    if table is not None and needed:
+        measured = Measurements.from_table(table, columns=needed, timezone=zone, stamps=stamps)
+    if needed and measured is None:
+        raise InputError(
+            f"--measurements: not given; expected a table with the measured columns of this building: "
+            f"{', '.join(needed)}"
+        )
+    return climate, measured
+
+
+def _measured_weather(
+    building: Building, file: Path, columns: Sequence[str], zone: str, stamps: Stamps
+) -> Climate:
+    from mascarin.weather import Climate
+    from mascarin.weather.table import read_table
+
+    names = [str(name) for name in read_table(file, timezone=zone).frame.columns]
+    chosen: dict[str, Column] = {}
+    absent = []
+    for text in columns:
+        channel, column = _pair(text, names)
+        if column is None:
+            absent.append(channel)
+        else:
+            chosen[channel] = column
+    site = building.site
+    try:
+        return Climate.from_table(
+            file, columns=chosen, absent=absent, timezone=zone, stamps=stamps, latitude=float(site.latitude),
+            longitude=float(site.longitude), altitude=float(site.altitude),
+        )  # fmt: skip
+    except InputError as error:
+        if "absent: [" not in str(error):
+            raise
+        raise InputError(
+            f"{error} On the command line: --column CHANNEL=COLUMN, or --column CHANNEL=none for what was not "
+            "measured."
+        ) from None
+
+
+def _pair(text: str, names: Sequence[str]) -> tuple[str, Column | None]:
+    """Channel and column of ``--column``; None for a channel that was not measured.
+
+    Brackets hold a unit, unless the table has a column (``names``) that is called so.
+    """
+    from mascarin.weather import Column
+
+    channel, equals, name = (part.strip() for part in text.partition("="))
+    if not (channel and equals and name):
+        raise InputError(
+            f"--column: found '{text}'; expected CHANNEL=COLUMN, such as air_temperature=T_out, or CHANNEL=none"
+        )
+    if name == _NONE and _NONE not in names:
+        return channel, None
+    unit = None if name in names else _UNIT.fullmatch(name)
+    return channel, Column(unit["column"], unit=unit["unit"]) if unit else Column(name)

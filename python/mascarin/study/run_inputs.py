@@ -1,0 +1,57 @@
+"""Weather and measurements of a single run, from a study or from a file with the same two keys."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mascarin.building.engine_input import measured_columns
+from mascarin.building.yaml_document import validated
+from mascarin.study.description import FILE_KEYS, RunInputs
+from mascarin.study.inputs import filled, find, open_climate
+from mascarin.study.locations import Places
+from mascarin.weather import Measurements
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+    from mascarin.weather import Climate
+
+
+def open_run_inputs(path: Path, building: Building) -> tuple[Climate, Measurements | None]:
+    """Read the weather of a run, and the measured columns that its building names.
+
+    Parameters
+    ----------
+    path : Path
+        Study, or a file with ``climate`` and ``measurements`` as in a study.
+    building : Building
+        Names the columns of its measured boundaries.
+
+    Returns
+    -------
+    climate : Climate
+        The weather.
+    measurements : Measurements or None
+        The columns; None where the building has no measured boundary.
+
+    Raises
+    ------
+    InputError
+        A file, column or time zone is missing, or a value cannot be used.
+    """
+    inputs = validated(
+        path, RunInputs, "weather and measurements", only=("climate", "measurements"), file_keys=FILE_KEYS
+    )
+    places = Places(path)
+    climate = open_climate(inputs.climate, path.parent, building, places)
+    columns, table = measured_columns(building), inputs.measurements
+    if not columns or table is None:
+        return climate, None
+    with places.blame("measurements", "table"):
+        file = find(table.table, path.parent)
+    with places.blame("measurements"):
+        read = Measurements.from_table(file, columns=columns, **{**table.options, "mean": ()})
+        means = [name for name in table.mean if name in columns]
+        if means:
+            read = Measurements.from_table(file, columns=columns, **{**table.options, "mean": means})
+    return climate, read if table.fill_gaps is None else filled(read, building, table.fill_gaps)
