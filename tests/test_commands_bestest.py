@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import mascarin as mc
 from mascarin import cli
 from mascarin.verification.bestest.catalogue import CASES
 
@@ -80,3 +81,51 @@ def test_an_error_in_a_file_of_the_user_names_the_line(
     mine.write_text(CASES["195"].file.read_text("utf-8").replace("volume: 129.6", "volume: -1"), "utf-8")
     assert cli.main(["bestest", str(mine), "--weather", str(data_dir / WEATHER)]) == 2
     assert "zones.room.volume" in capsys.readouterr().err
+
+
+OWN = "case,quantity,unit,min,max\nmine,annual_heating,MWh,{0},{1}\nmine.yaml,room.peak_heating,kW,0,100\n"
+
+
+@pytest.mark.parametrize(("low", "high", "code"), [(0, 100, 0), (0, 0.001, 1)])
+def test_cases_of_the_user_have_their_own_ranges(
+    low: float, high: float, code: int, data_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = tmp_path / "mine.yaml"
+    shutil.copy(CASES["195"].file, mine)
+    zone = next(iter(mc.load(mine).zones))
+    (tmp_path / "own.csv").write_text(OWN.format(low, high).replace("room.", f"{zone}."), encoding="utf-8")
+    words = [str(mine), "--ranges", str(tmp_path / "own.csv"), "--weather", str(data_dir / WEATHER)]
+    assert cli.main(["bestest", *words, "--step", "1h", "--json", "-o", str(tmp_path / "o")]) == code
+    out, err = capsys.readouterr()
+    rows = {row["quantity"]: row for row in json.loads(out)}
+    assert rows[f"{zone}.annual_heating"]["passed"] is (code == 0)
+    assert (rows[f"{zone}.annual_heating"]["min"], rows[f"{zone}.annual_heating"]["max"]) == (low, high)
+    assert rows[f"{zone}.peak_heating"]["passed"] is True
+    assert rows[f"{zone}.mean_temperature"]["passed"] is None
+    assert f"{2 - code} of 2 numbers inside" in err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "case,quantity,unit\nmine,annual_heating,MWh\n",
+            "own.csv:1: found the columns case, quantity, unit",
+        ),
+        ("case,quantity,unit,min,max\n# x\nmine,annual_heating,MWh,1,two\n", "own.csv:3: max: found 'two'"),
+        ("case,quantity,unit,min,max\nmine,annual_heating,MWh,2,1\n", "own.csv:2: found min 2 above max 1"),
+        (
+            "case,quantity,unit,min,max\nmime,annual_heating,MWh,1,2\n",
+            "found the case 'mime'; expected one of",
+        ),
+    ],
+)
+def test_ranges_that_cannot_be_used_are_refused_before_the_runs(
+    text: str, said: str, data_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = tmp_path / "mine.yaml"
+    shutil.copy(CASES["195"].file, mine)
+    (tmp_path / "own.csv").write_text(text, encoding="utf-8")
+    words = [str(mine), "--ranges", str(tmp_path / "own.csv"), "--weather", str(data_dir / WEATHER)]
+    assert cli.main(["bestest", *words]) == 2
+    assert said in capsys.readouterr().err

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,11 +12,14 @@ from cyclopts import Parameter
 
 from mascarin.commands.inputs import AsJson, Flag, Step, seconds
 from mascarin.commands.output import number, print_json, print_table
-from mascarin.errors import InputError
+from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
+    from mascarin.verification.bestest.catalogue import Case
     from mascarin.verification.bestest.quantities import Quantity
     from mascarin.verification.bestest.reference import Range
+
+    Ranges = Mapping[tuple[str, str], Range]
 
 PAGE = "bestest.html"
 SUFFIXES = (".yaml", ".yml")
@@ -25,6 +28,7 @@ SUFFIXES = (".yaml", ".yml")
 def bestest(
     *cases: str,
     weather: Path | None = None,
+    ranges: Path | None = None,
     out: Annotated[Path | None, Parameter(alias="-o")] = None,
     step: Step = "15min",
     workers: int = 2,
@@ -41,9 +45,12 @@ def bestest(
     ----------
     cases : str
         Numbers of cases, such as 600 900FF, and your own building files (.yaml), which are run in the
-        same way and compared with nothing. Default: all 39 cases.
+        same way and compared with --ranges. Default: all 39 cases.
     weather : Path
         The standard's weather file, 725650TYCST.epw.
+    ranges : Path
+        CSV file with ranges for your own building files: columns case (name of the file), quantity (such as
+        annual_heating, or room.peak_cooling), unit, min and max, or one column for each program.
     out : Path
         Folder for a page with charts, hourly days and tables (bestest.html).
     workers : int
@@ -57,17 +64,15 @@ def bestest(
         0, or 1 if a number is outside.
     """
     from mascarin.verification.bestest.catalogue import CASES, chosen
+    from mascarin.verification.bestest.reference import read_ranges
 
     own = [Path(word) for word in dict.fromkeys(cases) if word.endswith(SUFFIXES)]
     wanted = chosen([word for word in cases if not word.endswith(SUFFIXES)] if cases else list(CASES))
     if list_cases:
-        rows = [(case.name, case.base, case.change, str(case.file)) for case in wanted]
-        if as_json:
-            print_json([dict(zip(("case", "base", "change", "file"), row, strict=True)) for row in rows])
-        else:
-            print_table(("case", "base", "change", "file"), rows)
-        return 0
+        return _list(wanted, as_json=as_json)
     _require_possible_folder(out)
+    known = read_ranges(ranges) if ranges is not None else None
+    _require_own(own, known)
     if workers < 1:
         raise InputError(f"--workers: found {workers}; expected 1 or more")
     from mascarin.progress import Progress
@@ -81,7 +86,8 @@ def bestest(
         years, others = run(wanted, climate, own=own, step=seconds(step), workers=workers, progress=progress)
     took = time.monotonic() - started
     rows_found = [row for case in wanted for row in quantities(years, case)]
-    rows_found += [row for file, series in others.items() for row in quantities_of(str(file), series)]
+    rows_found += [row for file, series in others.items() for row in quantities_of(str(file), series, known)]
+    _warn_unused(rows_found, known)
     if out is not None:
         from mascarin.report.bestest import write
 
@@ -99,10 +105,44 @@ def bestest(
         _print(rows_found)
     held = [row.passed for row in rows_found if row.passed is not None]
     outside = held.count(False)
-    print(
-        f"{len(held) - outside} of {len(held)} numbers inside the range of the six programs", file=sys.stderr
-    )
+    of = "the six programs" if known is None else "the six programs, or of --ranges"
+    print(f"{len(held) - outside} of {len(held)} numbers inside the range of {of}", file=sys.stderr)
     return 1 if outside else 0
+
+
+def _list(wanted: Sequence[Case], *, as_json: bool) -> int:
+    rows = [(case.name, case.base, case.change, str(case.file)) for case in wanted]
+    if as_json:
+        print_json([dict(zip(("case", "base", "change", "file"), row, strict=True)) for row in rows])
+    else:
+        print_table(("case", "base", "change", "file"), rows)
+    return 0
+
+
+def _require_own(own: Sequence[Path], known: Ranges | None) -> None:
+    """Refuse ranges of cases that are not run, before the simulations start."""
+    from mascarin.verification.bestest.quantities import case_names
+
+    names = {name for file in own for name in case_names(str(file))}
+    for case, _ in known or ():
+        if case not in names:
+            raise InputError(
+                f"--ranges: found the case '{case}'; expected one of the building files of this command: "
+                f"{', '.join(map(str, own)) or 'none was given'}. {did_you_mean(case, names)}".rstrip()
+            )
+
+
+def _warn_unused(rows: Sequence[Quantity], known: Ranges | None) -> None:
+    """Say which ranges were compared with nothing."""
+    used = {id(row.range) for row in rows}
+    for (case, quantity), found in (known or {}).items():
+        if id(found) not in used:
+            names = [row.quantity for row in rows if row.range is None]
+            print(
+                f"warning: --ranges: {case} has no quantity '{quantity}'; expected one of "
+                f"{', '.join(dict.fromkeys(names))}",
+                file=sys.stderr,
+            )
 
 
 def _require_possible_folder(out: Path | None) -> None:

@@ -63,8 +63,14 @@ def run_inputs(
             raise InputError(
                 f"--column: found beside {weather}; expected the columns in that file, under climate"
             )
+        from mascarin.building.yaml_document import merged
         from mascarin.study.run_inputs import open_run_inputs
 
+        if "climate" not in merged(weather, "weather and measurements", blanks=True).plain:
+            raise InputError(
+                f"--weather: found '{weather}', a file without the key climate; expected .epw, a table, or a "
+                "YAML file with climate and measurements as in a study"
+            )
         climate, measured = open_run_inputs(weather, building)
     elif columns or weather.suffix.lower() in _TABLES[1:]:
         climate = _measured_weather(building, weather, columns, zone, stamps)

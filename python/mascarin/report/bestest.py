@@ -172,9 +172,8 @@ def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> d
 
 def _outside(row: Quantity) -> str:
     found = f"{_shown(row, row.value)} {text.unit(row.unit)}"
-    return (
-        f"{row.case}: {_words(row.quantity)}, {found} outside of the range {_span(row)} of the six programs"
-    )
+    whose = "the six programs" if (row.case, row.quantity) in ranges() else "--ranges"
+    return f"{row.case}: {_words(row.quantity)}, {found} outside of the range {_span(row)} of {whose}"
 
 
 def _span(row: Quantity) -> str:
@@ -183,8 +182,8 @@ def _span(row: Quantity) -> str:
 
 
 def _theirs(row: Quantity) -> Range:
-    """The range of the six programs for a quantity."""
-    return ranges()[row.case, row.quantity]
+    """The range of a quantity: that of the six programs, or that of the user for an own case."""
+    return row.range or ranges()[row.case, row.quantity]
 
 
 def _floating(found: Found) -> list[dict[str, Any]]:

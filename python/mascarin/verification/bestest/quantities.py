@@ -6,8 +6,9 @@ An hour has the number of the hour that ends: hour 1 is 00:00 to 01:00, local st
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -215,8 +216,10 @@ def quantities(years: Mapping[str, Year], case: Case) -> list[Quantity]:
     ]
 
 
-def quantities_of(name: str, series: Mapping[str, Array]) -> list[Quantity]:
-    """Compute loads and temperatures of any building, without results of programs.
+def quantities_of(
+    name: str, series: Mapping[str, Array], known: Mapping[tuple[str, str], Range] | None = None
+) -> list[Quantity]:
+    """Compute loads and temperatures of any building.
 
     Parameters
     ----------
@@ -224,6 +227,9 @@ def quantities_of(name: str, series: Mapping[str, Array]) -> list[Quantity]:
         Name of the building.
     series : mapping of str to ndarray, shape (8760,)
         Hourly means of loads and air temperatures, by output name. [W, degC]
+    known : mapping of (str, str) to Range, optional
+        Ranges by case and quantity, from `read_ranges`. A case is the name, or its file with or without ending;
+        in a building of one zone the quantity may be written without the zone.
 
     Returns
     -------
@@ -237,10 +243,31 @@ def quantities_of(name: str, series: Mapping[str, Array]) -> list[Quantity]:
             _extremes(values) if kind == "air_temperature" else _load(kind.removesuffix("_load"), values)
         )
         for quantity, (value, at) in numbers.items():
-            found.append(
-                Quantity(name, f"{zone}.{quantity}", _UNITS[quantity.split("_")[0]], value, at, None)
-            )
-    return found
+            unit = _UNITS[quantity.split("_")[0]]
+            found.append(Quantity(name, f"{zone}.{quantity}", unit, value, at, None))
+    zones = {output.partition(".")[0] for output in series}
+    return found if known is None else [_with_range(one, known, lone=len(zones) == 1) for one in found]
+
+
+def _with_range(one: Quantity, known: Mapping[tuple[str, str], Range], *, lone: bool) -> Quantity:
+    """The same quantity with its range, if there is one."""
+    short = one.quantity.partition(".")[2]
+    for name in case_names(one.case):
+        for quantity in (one.quantity, *((short,) if lone else ())):
+            found = known.get((name, quantity))
+            if found is not None and found.unit not in ("", one.unit):
+                raise InputError(
+                    f"--ranges: found {quantity} of {name} in {found.unit!r}; expected {one.unit}: convert it"
+                )
+            if found is not None:
+                return replace(one, range=found)
+    return one
+
+
+def case_names(file: str) -> tuple[str, ...]:
+    """Names under which ranges may have a building file: as given, its name, its name without ending."""
+    path = PurePath(file)
+    return file, path.name, path.stem
 
 
 _UNITS: Final = {"annual": "MWh", "peak": "kW", "max": "degC", "min": "degC", "mean": "degC"}
