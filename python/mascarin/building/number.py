@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, Final, get_args
 
 from pydantic_core import PydanticCustomError, core_schema
 
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 Interval = tuple[float, float]
 
+#: What to do about a number outside its limits.
+CHECK_SIGN: Final = "Check sign and unit."
 #: A number with a decimal comma.
 _COMMA = re.compile(r"[-+]?\d+,\d+")
 
@@ -345,7 +347,7 @@ class Quantity:
         if not math.isfinite(number):
             raise problem(shown(float(number)), self.expectation, "Write a finite number.")
         if not self.limits.hold(number):
-            raise problem(shown(float(number)), self.expectation, "Check sign and unit.")
+            raise problem(shown(float(number)), self.expectation, CHECK_SIGN)
         if self.whole and not float(number).is_integer():
             raise problem(shown(float(number)), self.expectation, "Round it.")
         return number

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
@@ -12,7 +12,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 from mascarin._io import display
 from mascarin.building.documenting import documented, signature_of
 from mascarin.building.explaining import explained
-from mascarin.building.number import Number, noted_form, problem, quantity_of, shown
+from mascarin.building.number import CHECK_SIGN, Number, noted_form, problem, quantity_of, shown
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -47,6 +47,8 @@ class Part(BaseModel, metaclass=PartType):
 
     #: Whether a file may leave out the kind, because no other kind is as usual.
     has_usual_kind: ClassVar[bool] = False
+    #: What to write instead, by a key that does not exist here or whose value is often wrong.
+    advice: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, /, **fields: Any) -> None:
         try:
@@ -155,15 +157,22 @@ class Part(BaseModel, metaclass=PartType):
         context, key, found = fault.get("ctx", {}), str((*fault["loc"], "")[0]), shown(fault["input"])
         match fault["type"]:
             case "input":
-                return problem(context["found"], context["expected"], context["help"])
+                plain = context["help"] == CHECK_SIGN
+                help_ = cls.advice.get(key, CHECK_SIGN) if plain else context["help"]
+                return problem(context["found"], context["expected"], help_)
             case "extra_forbidden":
                 known = [name for name in cls.model_fields if name != "kind"]
-                return problem(f"the key '{key}'", "a key that exists here", did_you_mean(key, known))
+                help_ = cls.advice.get(key) or did_you_mean(key, known)
+                return problem(f"the key '{key}'", "a key that exists here", help_)
+            case "union_tag_not_found":
+                tags = cls._kinds(key)
+                help_ = cls.advice.get(key) or f"Add 'kind: {tags[0]}' or another one."
+                return problem(f"{found}, without a kind", f"a kind: {', '.join(tags)}", help_)
             case "missing" if len(fault["loc"]) == 1:
                 return problem("nothing", cls._meaning(key), f"Add '{key}:'.")
             case "missing" | "too_short" | "too_long":
                 return problem("another number of items", cls._meaning(key), "Count them.")
-            case "union_tag_not_found" | "union_tag_invalid":
+            case "union_tag_invalid":
                 return _choice(f"kind: {context.get('tag', 'not given')}", context.get("expected_tags", ""))
             case "literal_error":
                 return _choice(found, context["expected"])
@@ -173,6 +182,17 @@ class Part(BaseModel, metaclass=PartType):
                 return problem(found, f"a list: {cls._meaning(key)}", "Write [a, b, ...].")
             case _:
                 return problem(found, _lowered(fault["msg"]), "Correct the value.")
+
+    @classmethod
+    def _kinds(cls, key: str) -> list[str]:
+        """Kinds of the parts that a field may hold."""
+        found, pending = [], [getattr(cls.model_fields.get(key), "annotation", None)]
+        while pending:
+            one = pending.pop(0)
+            if isinstance(one, type) and issubclass(one, Part) and "kind" in one.model_fields:
+                found.append(str(one.model_fields["kind"].default))
+            pending += get_args(one)
+        return found or ["a kind"]
 
     @classmethod
     def _meaning(cls, key: str) -> str:

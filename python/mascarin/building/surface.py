@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import InitErrorDetails
@@ -124,6 +125,9 @@ class Ground(Part):
     """
 
     model_config = ConfigDict(json_schema_extra=_or_temperature)
+    advice: ClassVar[Mapping[str, str]] = {
+        "measured": "Write 'measured: COLUMN' in the side, in place of 'ground:'."
+    }
 
     mean: q.GroundTemperature
     amplitude: q.GroundAmplitude = Number(0.0, source=Remark("not given: the same all year"))
@@ -133,6 +137,13 @@ class Ground(Part):
     @classmethod
     def _constant(cls, raw: Any) -> Any:
         """Read ``{temperature: 22}`` as a constant mean."""
+        if isinstance(raw, int | float) and not isinstance(raw, bool):
+            raise problem(
+                f"the number {raw:g}",
+                "a mapping with the temperature of the ground",
+                f"Write 'ground: {{temperature: {raw:g}}}', or 'ground: {{mean: {raw:g}, amplitude: 4}}' for one "
+                "that changes over the year.",
+            )
         if isinstance(raw, dict) and "temperature" in raw and "mean" not in raw:
             return {("mean" if key == "temperature" else key): value for key, value in raw.items()}
         return raw
@@ -164,6 +175,15 @@ class Side(Part):
     >>> outdoors.faces, indoors.faces
     ('outdoors', 'zone')
     """
+
+    advice: ClassVar[Mapping[str, str]] = {
+        "temperature": "For a surrounding of a given temperature write 'ground: {temperature: 24}', for a measured "
+        "one 'measured: COLUMN', for a room that is held at it a zone with 'heating' and 'cooling'.",
+        "emissivity": "For no long-wave exchange keep a value and write 'longwave: none' in the side outdoors, or in the zone that "
+        "it faces; bright metal has an emissivity of about 0.05.",
+        "convection": "Write 'convection: 8' for a coefficient [W/(m2 K)], or 'convection: {kind: tarp}' for a "
+        "correlation.",
+    }
 
     outdoors: Literal[True] | None = Field(None, description="Faces the weather: write true")
     zone: ZoneName | None = Field(None, description="Faces the air of this zone")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -94,6 +95,10 @@ class SetPoint(Part):
     SetPoint(temperature=20 degC)
     """
 
+    advice: ClassVar[Mapping[str, str]] = {
+        "measured": "Write 'setpoint: {schedule: NAME}' with a schedule of kind temperature that has this column."
+    }
+
     temperature: q.SetPoint | None = None
     schedule: ScheduleName | None = Field(None, description="Schedule of temperature")
 
@@ -179,6 +184,12 @@ class Zone(Part):
     >>> float(zone.infiltration.constant)
     0.5
     """
+
+    advice: ClassVar[Mapping[str, str]] = {
+        "temperature": "The air temperature is a result: hold it with 'heating: {setpoint: 24}' and 'cooling: "
+        "{setpoint: 24}'. That at the start of a run is an option of the run (initial).",
+        "setpoint": "Write 'heating: {setpoint: 20}' or 'cooling: {setpoint: 26}'.",
+    }
 
     volume: q.Volume | None = None
     capacity_factor: q.CapacityFactor = Number(1.0, source=Remark("air alone, no furniture"), assumed=True)

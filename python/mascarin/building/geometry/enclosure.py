@@ -14,6 +14,7 @@ from mascarin.building.geometry.polygon import TOLERANCE, Polygon
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]
+Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -171,6 +172,13 @@ def volume(polygons: Sequence[Polygon]) -> float:
         There are gaps between the polygons, or they point out of the zone.
     """
     gaps = open_edges(polygons)
+    wrong = _reversed(polygons) if gaps else []
+    if wrong:
+        raise InputError(
+            f"the vertices of {', '.join(wrong)} are in the reverse order of the other surfaces; expected the "
+            f"vertices of every surface counter-clockwise seen from outside; reverse the order of those of "
+            f"{', '.join(wrong)}"
+        )
     if gaps:
         shown = "; ".join(str(gap) for gap in gaps[:6])
         more = f"; and {len(gaps) - 6} more" if len(gaps) > 6 else ""
@@ -178,17 +186,57 @@ def volume(polygons: Sequence[Polygon]) -> float:
             f"the surfaces do not enclose the zone: {len(gaps)} open edges ({shown}{more}); "
             "expected every edge to belong to two surfaces; complete the vertices or give the volume"
         )
+    total = _signed_volume(polygons)
+    if total <= 0.0:
+        raise InputError(
+            f"the surfaces enclose {total:.3f} m3: their normals point out of the zone; "
+            "expected the vertices of every surface counter-clockwise seen from outside; reverse the order of "
+            "the vertices of every surface"
+        )
+    return total
+
+
+def _signed_volume(polygons: Sequence[Polygon]) -> float:
     origin = polygons[0].points[0]
     total = 0.0
     for polygon, parent in zip(polygons, parents(polygons), strict=True):
         if parent is None:
             total -= polygon.area * float((polygon.points[0] - origin) @ polygon.normal) / 3.0
-    if total <= 0.0:
-        raise InputError(
-            f"the surfaces enclose {total:.3f} m3: their normals point out of the zone; "
-            "expected the vertices of every surface counter-clockwise seen from outside"
-        )
     return total
+
+
+def _reversed(polygons: Sequence[Polygon]) -> list[str]:
+    """Names of the polygons whose reversal closes the volume; none if reversal is not what is wrong.
+
+    Two polygons that share an edge point to the same side of the shell if they run along it in opposite
+    directions. From the first one on, each neighbour is turned until it does.
+    """
+    turned = {0: False}
+    edges = [
+        [(_triple(p.points[i]), _triple(p.points[(i + 1) % len(p.points)])) for i in range(len(p.points))]
+        for p in polygons
+    ]
+    pending = [0]
+    while pending:
+        one = pending.pop()
+        for other in range(len(polygons)):
+            if other in turned:
+                continue
+            same = any(_meet(a, b, c, d) for a, b in edges[one] for c, d in edges[other])
+            opposite = any(_meet(a, b, d, c) for a, b in edges[one] for c, d in edges[other])
+            if same != opposite:
+                turned[other] = turned[one] != same
+                pending.append(other)
+    for wrong in ({k for k, turn in turned.items() if turn}, {k for k, turn in turned.items() if not turn}):
+        mended = [p.reversed() if k in wrong else p for k, p in enumerate(polygons)]
+        if 0 < len(wrong) < len(polygons) and not open_edges(mended) and _signed_volume(mended) > 0.0:
+            return [polygons[k].name for k in sorted(wrong)]
+    return []
+
+
+def _meet(a: Triple, b: Triple, c: Triple, d: Triple) -> bool:
+    """Whether two edges run from the same point to the same point."""
+    return math.dist(a, c) <= TOLERANCE and math.dist(b, d) <= TOLERANCE
 
 
 def check_convex(polygons: Sequence[Polygon]) -> None:
