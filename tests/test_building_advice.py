@@ -17,7 +17,7 @@ CUBE = {
     "east": [[5, 0, 0], [5, 4, 0], [5, 4, 3], [5, 0, 3]],
     "west": [[0, 4, 0], [0, 0, 0], [0, 0, 3], [0, 4, 3]],
 }
-OUTSIDE = {"outdoors": True, "convection": 20, "emissivity": 0.9, "absorptance": 0.6}
+OUTSIDE: dict[str, Any] = {"outdoors": True, "convection": 20, "emissivity": 0.9, "absorptance": 0.6}
 INSIDE = {"zone": "room", "convection": 3, "emissivity": 0.9}
 
 
@@ -79,7 +79,7 @@ def test_what_to_write_in_a_zone(room: dict[str, Any], says: list[str]) -> None:
 
 def test_what_is_advised_is_accepted() -> None:
     cube(ground={"temperature": 24})
-    cube(ground={"mean": 24, "amplitude": 4})
+    cube(ground={"mean": 24.0, "amplitude": 4.0})
     cube(**{**OUTSIDE, "convection": {"kind": "tarp"}})
     cube(room={"heating": {"setpoint": 24}, "cooling": {"setpoint": 24}})
     cube(**OUTSIDE, longwave="none")

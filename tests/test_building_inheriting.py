@@ -103,7 +103,8 @@ def test_a_key_without_a_value_removes_that_of_the_base(base: Path) -> None:
     file = variant(
         base,
         "extends: base.yaml\nzones: {room: {heating: }}\n"
-        "surfaces: {south: {outside: {outdoors: , absorptance: , emissivity: , convection: 9, measured: T}}}\n",
+        "surfaces: {south: {outside: {outdoors: , absorptance: , emissivity: , convection: 9, "
+        "measured: T}}}\n",
     )
     found = load(file)
     assert found.zones["room"].heating is None
@@ -132,7 +133,7 @@ def test_circles_are_refused(base: Path) -> None:
         InputError, match=r"one.yaml:1: extends\n  found: a circle, two.yaml -> one.yaml -> two"
     ):
         load(file)
-    with pytest.raises(InputError, match="a circle, self.yaml -> self.yaml"):
+    with pytest.raises(InputError, match=r"a circle, self.yaml -> self.yaml"):
         load(variant(base, "extends: self.yaml\n", "self.yaml"))
 
 

@@ -73,16 +73,17 @@ def test_a_table_as_weather_and_boundary(bench: Bench, capsys: pytest.CaptureFix
 def test_two_tables_with_their_zone_and_unit(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
     whole = pd.read_csv(bench.table, index_col=0, parse_dates=True)
     kelvin = (whole[["air"]] + 273.15).rename(columns={"air": "air (out)"})
-    kelvin.index = kelvin.index - pd.Timedelta(hours=1)
+    kelvin.index = pd.DatetimeIndex(kelvin.index) - pd.Timedelta(hours=1)
     kelvin.to_csv(bench.folder / "weather.csv", sep=";", decimal=",")
-    whole.index = whole.index - pd.Timedelta(hours=1)
+    local = pd.DatetimeIndex(whole.index)
+    whole.index = local - pd.Timedelta(hours=1)
     whole.to_csv(bench.table)
     words = [word.replace("=air", "=air (out) [K]") for word in columns()]
     found = run(
         bench, capsys, "--weather", str(bench.folder / "weather.csv"), "--measurements", str(bench.table),
         "--timezone", "UTC", *words, end="2023-03-03 23:00",
     )  # fmt: skip
-    whole.index = whole.index + pd.Timedelta(hours=1)
+    whole.index = local
     whole.to_csv(bench.table)
     assert found["mean"] == pytest.approx(expected(bench)["mean"], abs=1e-9)
 
@@ -104,7 +105,7 @@ def test_a_file_with_the_two_keys_gives_them_too(bench: Bench, capsys: pytest.Ca
     [
         (["--column", "air_temperature"], "--column: found 'air_temperature'; expected CHANNEL=COLUMN"),
         (
-            columns()[2:] + ["--column", "air_temperature=ari"],
+            [*columns()[2:], "--column", "air_temperature=ari"],
             "no column 'ari' (wanted for air_temperature). Did you mean 'air'",
         ),
         (["--column", "air_temperature=air"], "no column for dew_point"),

@@ -1,4 +1,4 @@
-"""Tables as loggers and spreadsheets write them: encodings, separators, decimal commas, lines above the header."""
+"""Tables as loggers and spreadsheets write them: encodings, separators, decimal commas, lines above names."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_lines_above_the_header_are_left_out(tmp_path: Path, head: str) -> None:
 
 def test_the_lines_of_errors_count_from_the_start_of_the_file(tmp_path: Path) -> None:
     text = table(head=HEADS["names and values"]).replace("20.125", "2O.125")
-    with pytest.raises(InputError, match="line 8: found '2O.125', expected a number"):
+    with pytest.raises(InputError, match=r"line 8: found '2O.125', expected a number"):
         read(tmp_path, text)
 
 

@@ -116,7 +116,7 @@ def test_the_doubled_hour_with_rows_missing_in_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize("times", [("02:00", "02:00", "02:30", "02:30"), ("02:00", "02:30")])
 def test_a_doubled_hour_without_order_is_refused(tmp_path: Path, times: tuple[str, ...]) -> None:
     stamps = [f"2024-10-27 {t}" for t in ("01:30", *times, "03:00")]
-    with pytest.raises(InputError, match="has twice the local stamps .*taken in order"):
+    with pytest.raises(InputError, match=r"has twice the local stamps .*taken in order"):
         read(tmp_path, rows(stamps), timezone="Europe/Paris")
 
 

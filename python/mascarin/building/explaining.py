@@ -17,7 +17,7 @@ class Line(int):
 
     file: str
 
-    def __new__(cls, number: int, file: str) -> Line:
+    def __new__(cls, number: int, file: str) -> Line:  # noqa: D102
         made = super().__new__(cls, number)
         made.file = file
         return made

@@ -160,7 +160,8 @@ def find(building: Description, name: str) -> Output:
         near = [one for one in own if what and what in one.partition(".")[2]]
         hint = did_you_mean(name, known) or (f"'{owner}' has {', '.join(near or own[:8])}." if own else "")
         raise InputError(
-            f"{name}: found no such output; expected one of the {len(known)} of this building, which 'mascarin "
+            f"{name}: found no such output; expected one of the {len(known)} of this building, which "
+            "'mascarin "
             f"outputs' lists. {hint}".rstrip()
         )
     return known[name]

@@ -3,26 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
 from mascarin.building.leaves import steps
 from mascarin.building.number import Number
 from mascarin.building.part import Part, written_value
 from mascarin.errors import InputError
-
-if TYPE_CHECKING:
-    from typing import Protocol
-
-    class Replaceable(Protocol):
-        """What has a name and gives a copy of itself with other values by path."""
-
-        name: str
-
-        def replace(self, values: Mapping[str, Any]) -> Any:
-            """The same with other values."""
-
-
-AnyBuilding = TypeVar("AnyBuilding", bound="Replaceable")
 
 
 def without_parts(value: Any) -> Any:
@@ -88,7 +74,7 @@ def put(plain: dict[str, Any], part: Part, path: Sequence[str], value: Any) -> N
     holder[key] = value
 
 
-def replaced_at(building: AnyBuilding, values: Mapping[str, tuple[Any, int]]) -> AnyBuilding:
+def replaced_at(building: Any, values: Mapping[str, tuple[Any, int]]) -> Any:
     """The same building with values by path that a file gives.
 
     Parameters

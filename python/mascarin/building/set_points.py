@@ -1,4 +1,4 @@
-"""Constant set points of heating and cooling in one zone: equal ones are one parameter, others do not cross."""
+"""Constant set points of heating and cooling in a zone: equal ones are one parameter, others do not cross."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def tied_set_points(building: Description) -> dict[str, str]:
     >>> tied_set_points(box())
     {}
     """
-    found = {}
+    found: dict[str, str] = {}
     for heating, cooling, warm, cold in _constant(building):
         if warm == cold:
             found |= {heating: cooling, cooling: heating}

@@ -141,7 +141,8 @@ class Ground(Part):
             raise problem(
                 f"the number {raw:g}",
                 "a mapping with the temperature of the ground",
-                f"Write 'ground: {{temperature: {raw:g}}}', or 'ground: {{mean: {raw:g}, amplitude: 4}}' for one "
+                f"Write 'ground: {{temperature: {raw:g}}}', or 'ground: {{mean: {raw:g}, amplitude: 4}}' "
+                "for one "
                 "that changes over the year.",
             )
         if isinstance(raw, dict) and "temperature" in raw and "mean" not in raw:
@@ -177,11 +178,14 @@ class Side(Part):
     """
 
     advice: ClassVar[Mapping[str, str]] = {
-        "temperature": "For a surrounding of a given temperature write 'ground: {temperature: 24}', for a measured "
+        "temperature": "For a surrounding of a given temperature write 'ground: {temperature: 24}', for a "
+        "measured "
         "one 'measured: COLUMN', for a room that is held at it a zone with 'heating' and 'cooling'.",
-        "emissivity": "For no long-wave exchange keep a value and write 'longwave: none' in the side outdoors, or in the zone that "
+        "emissivity": "For no long-wave exchange keep a value and write 'longwave: none' in the side "
+        "outdoors, or in the zone that "
         "it faces; bright metal has an emissivity of about 0.05.",
-        "convection": "Write 'convection: 8' for a coefficient [W/(m2 K)], or 'convection: {kind: tarp}' for a "
+        "convection": "Write 'convection: 8' for a coefficient [W/(m2 K)], or 'convection: {kind: tarp}' "
+        "for a "
         "correlation.",
     }
 

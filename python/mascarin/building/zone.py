@@ -96,7 +96,8 @@ class SetPoint(Part):
     """
 
     advice: ClassVar[Mapping[str, str]] = {
-        "measured": "Write 'setpoint: {schedule: NAME}' with a schedule of kind temperature that has this column."
+        "measured": "Write 'setpoint: {schedule: NAME}' with a schedule of kind temperature that has this "
+        "column."
     }
 
     temperature: q.SetPoint | None = None
@@ -186,7 +187,8 @@ class Zone(Part):
     """
 
     advice: ClassVar[Mapping[str, str]] = {
-        "temperature": "The air temperature is a result: hold it with 'heating: {setpoint: 24}' and 'cooling: "
+        "temperature": "The air temperature is a result: hold it with 'heating: {setpoint: 24}' and "
+        "'cooling: "
         "{setpoint: 24}'. That at the start of a run is an option of the run (initial).",
         "setpoint": "Write 'heating: {setpoint: 20}' or 'cooling: {setpoint: 26}'.",
     }

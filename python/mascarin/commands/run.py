@@ -53,8 +53,8 @@ def run(
     building : Path
         Description of a building.
     weather : Path
-        Weather: an EPW file, TMY3 as CSV, a measured table (CSV with --column, or Parquet), or a YAML file with
-        the keys climate and measurements of a study, such as the study itself.
+        Weather: an EPW file, TMY3 as CSV, a measured table (CSV with --column, or Parquet), or a YAML file
+        with the keys climate and measurements of a study, such as the study itself.
     measurements : Path
         Table with the measured columns that the building names. Default: the table of --weather.
     columns : list of str

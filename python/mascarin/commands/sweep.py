@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from mascarin._io.tables import read_csv
-from mascarin.commands.inputs import AsJson, Settings, Step, read_building, seconds
+from mascarin.commands.inputs import AsJson, Settings, Step, read_building, read_weather, seconds
 from mascarin.commands.output import print_json, print_table
-from mascarin.commands.inputs import read_weather
 from mascarin.errors import InputError, SolverError
 
 if TYPE_CHECKING:

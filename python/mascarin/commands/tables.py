@@ -112,7 +112,8 @@ def _measured_weather(
         if "absent: [" not in str(error):
             raise
         raise InputError(
-            f"{error} On the command line: --column CHANNEL=COLUMN, or --column CHANNEL=none for what was not "
+            f"{error} On the command line: --column CHANNEL=COLUMN, or --column CHANNEL=none for what was "
+            "not "
             "measured."
         ) from None
 
@@ -127,7 +128,8 @@ def _pair(text: str, names: Sequence[str]) -> tuple[str, Column | None]:
     channel, equals, name = (part.strip() for part in text.partition("="))
     if not (channel and equals and name):
         raise InputError(
-            f"--column: found '{text}'; expected CHANNEL=COLUMN, such as air_temperature=T_out, or CHANNEL=none"
+            f"--column: found '{text}'; expected CHANNEL=COLUMN, such as air_temperature=T_out, or "
+            "CHANNEL=none"
         )
     if name == _NONE and _NONE not in names:
         return channel, None

@@ -415,7 +415,8 @@ class StudyFile(StudyPlan):
     )
     climate: ClimateSource = Field(description="Weather data")
     measurements: Table = Field(
-        description="Table of measurements. Keys of the same table that are given for the weather need not be "
+        description="Table of measurements. Keys of the same table that are given for the weather need not "
+        "be "
         "repeated, and the other way round; without an entry: the table of the weather"
     )
 

@@ -102,7 +102,7 @@ class Setup:
         return self.plan
 
     def leaves_out(self, stretch: Stretch) -> bool:
-        """Whether suspicious values are left out of all comparisons: those of sensors, of the masked kinds."""
+        """Whether suspicious values are left out of all comparisons: of sensors, of the masked kinds."""
         sensors = {column for sensor in self.plan.sensors.values() for column in sensor.columns}
         return stretch.kind in self.plan.quality.mask and stretch.channel in sensors
 

@@ -139,7 +139,8 @@ def _notes(layout: Layout, encoding: str, lines: Sequence[str], where: str) -> t
         )
     if layout.units:
         notes.append(
-            f"{where}: line {layout.header + 2} has units, {', '.join(layout.units)[:60]!r}; they were not used."
+            f"{where}: line {layout.header + 2} has units, {', '.join(layout.units)[:60]!r}; they were not "
+            "used."
         )
     if layout.decimal != ".":
         notes.append(f"{where}: the decimal mark is {layout.decimal!r}.")

@@ -2,8 +2,8 @@
 
 Nothing is corrected here. What is usual is derived from each channel: how often it repeats a value, how far
 it changes in one step, where it is constant (night, no wind, saturation). A part of a series is reported when
-it is far from that, so that the steps of a coarse logger are not reported. Columns that are switched (heaters,
-set points, states) hold their values rightly and are never stuck, see `mascarin.weather.switching`.
+it is far from that, so that the steps of a coarse logger are not reported. Columns that are switched
+(heaters, set points, states) hold their values rightly and are never stuck, see `mascarin.weather.switching`.
 """
 
 from __future__ import annotations

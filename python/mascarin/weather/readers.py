@@ -186,7 +186,8 @@ def _check_tmy(lines: list[str], where: str) -> None:
     if head != _TMY_HEAD or len(lines) < 3:
         raise InputError(
             f"{where}:1: expected the seven fields of a TMY3 table (station, name, state, time zone, "
-            f"latitude, longitude, altitude), found {head}; read other tables with from_table, or on the command "
+            f"latitude, longitude, altitude), found {head}; read other tables with from_table, or on the "
+            "command "
             "line with --column."
         )
     names = [name.strip() for name in lines[1].split(",")]

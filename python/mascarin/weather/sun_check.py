@@ -139,7 +139,9 @@ def _refuse_jump(record: WeatherRecord, middle: Array, turns: npt.NDArray[np.com
     )
     raise InputError(
         f"{record.file}: the radiation moves by {abs(jump):.1f} h against the sun about {when:%Y-%m-%d} "
-        f"({'later' if jump > 0.0 else 'earlier'} from then on), expected less than {_JUMP:g} h. {advice} If it "
-        "does not, the clock of the logger was set: repair the stamps (in Python the record can be read as it "
+        f"({'later' if jump > 0.0 else 'earlier'} from then on), expected less than {_JUMP:g} h. {advice} "
+        "If it "
+        "does not, the clock of the logger was set: repair the stamps (in Python the record can be read as "
+        "it "
         "is: check_sun=False)."
     )

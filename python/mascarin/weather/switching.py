@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from mascarin.weather.arrays import Array, Flags
+from mascarin.weather.arrays import Array, Flags, Lines
 
 _FEW: Final = 3
 """A column with so few different values is a state."""
@@ -17,7 +17,7 @@ _LARGE: Final = 0.25
 _REST: Final = 0.05
 """A column is at rest in this lowest part of its range."""
 _JUMP: Final = 1.0 / 3.0
-"""A column that usually leaves and enters its rest by changes of this part of its range is turned on and off."""
+"""A column that usually leaves and enters its rest by such a part of its range is turned on and off."""
 _SHARE: Final = 0.1
 """A level other than zero is held in at least this part of the rows."""
 
@@ -46,7 +46,7 @@ def is_switched(values: Array) -> bool:
     return len(different) <= _LEVELS and bool(np.median(changes) >= _LARGE * np.ptp(there))
 
 
-def switched_levels(values: Array, start: Array, length: Array) -> Flags:
+def switched_levels(values: Array, start: Lines, length: Lines) -> Flags:
     """Runs at a level to which a column is switched, such as the zero of a heater that is off.
 
     Such a level is entered and left by large changes, held several times, and in a tenth of the rows. Zero is
@@ -84,14 +84,14 @@ def switched_levels(values: Array, start: Array, length: Array) -> Flags:
         changes = changes[~np.isnan(changes)]
         if np.count_nonzero(same) > 1 and np.median(changes) >= _LARGE * (high - low):
             found[same] = True
-    return found | ((level == 0.0) & off)
+    return np.asarray(found | ((level == 0.0) & off))
 
 
 def _turned_on_and_off(there: Array, low: float, high: float) -> bool:
     """Whether a column without negative values usually leaves its lowest values by a jump: a heater, a fan.
 
-    Radiation and wind rise gradually: in the weather files and measurements of the tests by at most a quarter of
-    the range. A heater that draws some standby power before it is off is one, too.
+    Radiation and wind rise gradually: in the weather files and measurements of the tests by at most a quarter
+    of the range. A heater that draws some standby power before it is off is one, too.
     """
     if np.min(there) < 0.0:
         return False

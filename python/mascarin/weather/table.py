@@ -298,11 +298,12 @@ def _skipped_hour(index: pd.DatetimeIndex, extra: Array, where: str, zone: tzinf
     # On a Sunday between midnight and 4 h, in March, April, September or October.
     found = [
         index[row]
-        for row in np.flatnonzero(extra == 3600.0)
+        for row in np.flatnonzero(extra == 3600.0).tolist()
         if (stamp := index[row + 1]).weekday() == 6 and stamp.hour <= 4 and stamp.month in (3, 4, 9, 10)
     ]
     return [
-        f"{where}: warning: one hour is missing after {found[0]:%Y-%m-%d %H:%M}, when clocks go forward in many "
+        f"{where}: warning: one hour is missing after {found[0]:%Y-%m-%d %H:%M}, when clocks go forward in "
+        "many "
         f"zones. If the clock of the file follows daylight saving time, {zone_name(zone)} is the wrong zone: "
         "state the zone of the place, such as Europe/Paris."
         for _ in found[:1]

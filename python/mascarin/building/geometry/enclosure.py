@@ -175,7 +175,8 @@ def volume(polygons: Sequence[Polygon]) -> float:
     wrong = _reversed(polygons) if gaps else []
     if wrong:
         raise InputError(
-            f"the vertices of {', '.join(wrong)} are in the reverse order of the other surfaces; expected the "
+            f"the vertices of {', '.join(wrong)} are in the reverse order of the other surfaces; expected "
+            "the "
             f"vertices of every surface counter-clockwise seen from outside; reverse the order of those of "
             f"{', '.join(wrong)}"
         )
@@ -190,7 +191,8 @@ def volume(polygons: Sequence[Polygon]) -> float:
     if total <= 0.0:
         raise InputError(
             f"the surfaces enclose {total:.3f} m3: their normals point out of the zone; "
-            "expected the vertices of every surface counter-clockwise seen from outside; reverse the order of "
+            "expected the vertices of every surface counter-clockwise seen from outside; reverse the order "
+            "of "
             "the vertices of every surface"
         )
     return total

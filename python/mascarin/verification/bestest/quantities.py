@@ -228,8 +228,8 @@ def quantities_of(
     series : mapping of str to ndarray, shape (8760,)
         Hourly means of loads and air temperatures, by output name. [W, degC]
     known : mapping of (str, str) to Range, optional
-        Ranges by case and quantity, from `read_ranges`. A case is the name, or its file with or without ending;
-        in a building of one zone the quantity may be written without the zone.
+        Ranges by case and quantity, from `read_ranges`. A case is the name, or its file with or without
+        ending; in a building of one zone the quantity may be written without the zone.
 
     Returns
     -------

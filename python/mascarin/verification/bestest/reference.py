@@ -79,8 +79,8 @@ def read_ranges(path: Path) -> Mapping[tuple[str, str], Range]:
     Parameters
     ----------
     path : Path
-        CSV file with the columns case, quantity, unit, then min and max, or one column for each program. A case
-        is the name of a building file, with or without its ending; lines that begin with # are left out.
+        CSV file with the columns case, quantity, unit, then min and max, or one column for each program. A
+        case is the name of a building file, with or without its ending; lines that begin with # are left out.
 
     Returns
     -------
@@ -104,7 +104,8 @@ def read_ranges(path: Path) -> Mapping[tuple[str, str], Range]:
     missing = [name for name in _OWN if name not in names] or ([] if len(programs) > 1 else ["min", "max"])
     if missing:
         raise InputError(
-            f"{path}:{lines[0][0] if lines else 1}: found the columns {', '.join(names) or 'none'}; expected case, "
+            f"{path}:{lines[0][0] if lines else 1}: found the columns {', '.join(names) or 'none'}; "
+            "expected case, "
             f"quantity, unit, min and max (or a column for each program): add {', '.join(missing)}"
         )
     found = {}
