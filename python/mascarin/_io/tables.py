@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TextIO
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 _EXACT: Final = (3, 1)
 
 
-def read_csv(path: Path, **options: Any) -> pd.DataFrame:
+def read_csv(path: Path | TextIO, **options: Any) -> pd.DataFrame:
     r"""Read a CSV file; each number is the floating-point number nearest to its text.
 
     Older versions of pandas read some numbers with an error in the last digit, unless asked not to.
 
     Parameters
     ----------
-    path : Path
+    path : Path or text file
         The file.
     **options
         Passed to `pandas.read_csv`.
