@@ -1,10 +1,15 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
+import pandas as pd
 import pytest
 from pvlib.irradiance import erbs, get_extra_radiation
 
+from mascarin.weather import Climate
 from mascarin.weather.derive import cloud_cover, dew_point, diffuse_erbs
+from mascarin.weather.sun import SunPath
 
 
 def test_dew_point_of_saturated_air_is_its_temperature() -> None:
@@ -42,14 +47,13 @@ def clear_sky(up: np.ndarray) -> np.ndarray:
     return np.where(up > 0.0, 1098.0 * up * np.exp(-0.057 / np.maximum(up, 1e-3)), 0.0)
 
 
-def test_cloud_cover_inverts_kasten_and_czeplak() -> None:
+def test_cloud_cover_inverts_kimball() -> None:
     up = np.maximum(np.sin(np.linspace(-np.pi, 3.0 * np.pi, 96)), 0.0)
-    oktas = 6.0
-    total = clear_sky(up) * (1.0 - 0.75 * (oktas / 8.0) ** 3.4)
+    total = clear_sky(up) * (0.29 + 0.71 * (1.0 - 0.75))
     tenths = cloud_cover(total, up, 3600.0)
     assert tenths == pytest.approx(np.full(96, 7.5), abs=1e-9)
     assert cloud_cover(np.zeros(10), np.zeros(10), 3600.0) == pytest.approx(np.zeros(10))
-    assert cloud_cover(2.0 * total, up, 3600.0).min() == 0.0
+    assert cloud_cover(3.0 * total, up, 3600.0).max() == 0.0
 
 
 def test_cloud_cover_is_linear_through_the_night() -> None:
@@ -57,3 +61,54 @@ def test_cloud_cover_is_linear_through_the_night() -> None:
     clear = float(clear_sky(up)[0])
     tenths = cloud_cover(np.array([clear, clear, 0.0, 0.0, 0.0, 0.25 * clear, 0.25 * clear]), up, 3600.0)
     assert tenths == pytest.approx([0.0, 0.0, 2.5, 5.0, 7.5, 10.0, 10.0])
+
+
+SITES = {
+    "Hamburg": (53.6, 10.0, 16.0),
+    "Denver": (39.8, -104.6, 1650.0),
+    "Saint-Denis": (-20.9, 55.5, 10.0),
+    "Singapore": (1.35, 103.8, 20.0),
+    "Nairobi": (-1.3, 36.8, 1700.0),
+}
+
+
+@pytest.mark.filterwarnings("ignore:.*dayofyear")  # of pvlib
+@pytest.mark.parametrize("model", ["haurwitz", "ineichen"])
+@pytest.mark.parametrize("day", ["2021-01-15", "2021-04-15", "2021-07-15"])
+@pytest.mark.parametrize("site", SITES)
+def test_a_clear_sky_of_pvlib_has_few_clouds(site: str, day: str, model: str) -> None:
+    """Half-hourly values of a whole day; the inverse of Kasten and Czeplak gave up to 8 tenths."""
+    from pvlib.location import Location
+
+    latitude, longitude, altitude = SITES[site]
+    times = pd.date_range(day, periods=48, freq="30min", tz="UTC")
+    place = Location(latitude, longitude, altitude=altitude)
+    extra = {"linke_turbidity": 3.0} if model == "ineichen" else {}
+    total = place.get_clearsky(times, model=model, **extra)["ghi"].to_numpy()
+    position = place.get_solarposition(times)["zenith"].to_numpy()
+    tenths = cloud_cover(total, np.maximum(np.cos(np.radians(position)), 0.0), 1800.0)
+    lit = position < 80.0
+    assert tenths[lit].mean() < (0.2 if model == "haurwitz" else 2.0)
+    assert tenths[lit].max() < (0.5 if model == "haurwitz" else 3.0)
+
+
+#: Error of the inverse of Kasten and Czeplak by day, root of the mean square [tenths].
+BEFORE = {"REU_Saint-Denis": 2.57, "USA_FL_Tampa": 3.20, "USA_IL_Chicago": 2.89}
+
+
+@pytest.mark.parametrize("name", BEFORE)
+def test_estimated_clouds_agree_better_with_observed_ones(name: str, data_dir: Path) -> None:
+    """Hours with the sun above 10 deg in years of weather files that have observed opaque clouds."""
+    [file] = (data_dir / "weather").glob(f"{name}*.epw")
+    head = file.read_text(encoding="utf-8", errors="replace").split("\n")[0].split(",")
+    climate = Climate.from_epw(file)
+    seen = climate.data["cloud_cover"].to_numpy()
+    observed = 0.5 * (seen + np.append(seen[1:], seen[-1]))
+    grid = climate.grid
+    sun = SunPath.over(float(head[6]), float(head[7]), grid.start, grid.end)
+    parts = grid.start + grid.interval * (np.arange(grid.count)[:, None] + (np.arange(12) + 0.5) / 12)
+    up = np.maximum(sun.vector(parts)[..., 2], 0.0).mean(axis=1)
+    estimated = cloud_cover(climate.data["global_horizontal"].to_numpy(), up, 3600.0)
+    error = (estimated - observed)[up > np.sin(np.radians(10.0))]
+    assert np.sqrt(np.mean(error**2)) < 0.75 * BEFORE[name]
+    assert abs(error.mean()) < 0.9

@@ -45,7 +45,7 @@ def test_real_hourly_record(data_dir: Path) -> None:
     assert row["global_horizontal"] == pytest.approx(stamped * 1e4 / 3600.0)
     assert row["pressure"] == pytest.approx(100.0 * raw["PSTAT"].iloc[11])
     text = " ".join(climate.provenance)
-    for said in ("9172 rows of 1 h", "the end of its interval", "J/cm2 to W/m2", "Erbs", "Kasten & Czeplak"):
+    for said in ("9172 rows of 1 h", "the end of its interval", "J/cm2 to W/m2", "Erbs", "Kimball 1928"):
         assert said in text
     assert summary(climate)["sha256"] == "4bc1d1e3dace763a92590536ecc5c39e27362187139d58153eaea5a360b56f8c"
 

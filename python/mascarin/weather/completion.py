@@ -47,8 +47,8 @@ def complete(record: WeatherRecord, latitude: float, longitude: float) -> Weathe
             derive.cloud_cover(total, up, grid.interval) if total.any() else np.zeros(grid.count)
         )
         notes.append(
-            f"{record.file}: cloud cover estimated from global irradiance (Kasten & Czeplak 1980 "
-            "with Haurwitz's clear sky, G/G_clear = 1 - 0.75 (N/8)^3.4), interpolated through the night."
+            f"{record.file}: cloud cover estimated from global irradiance (Kimball 1928 with Haurwitz's "
+            "clear sky, G/G_clear = 1 - 0.71 N), interpolated through the night."
             if total.any()
             else f"{record.file}: cloud cover was not measured and cannot be estimated; clear sky assumed."
         )

@@ -7,6 +7,7 @@ doi:10.1175/1520-0450(1996)035<0601:IMFAOS>2.0.CO;2 (Magnus form over water).
 Erbs, Klein & Duffie 1982, Solar Energy 28(4), 293-302, doi:10.1016/0038-092X(82)90302-4.
 Haurwitz 1945, Journal of Meteorology 2(3), 154-166, doi:10.1175/1520-0469(1945)002<0154:IIRTCA>2.0.CO;2.
 Kasten & Czeplak 1980, Solar Energy 24(2), 177-189, doi:10.1016/0038-092X(80)90391-6.
+Kimball 1928, Monthly Weather Review 56(10), 393-398 (0.29 + 0.71 (1 - N) of the radiation of a clear sky).
 """
 
 from __future__ import annotations
@@ -22,8 +23,7 @@ MAGNUS_B: Final = 17.625
 MAGNUS_C: Final = 243.04
 """Alduchov & Eskridge 1996 [degC]."""
 
-_CLOUD_EXPONENT: Final = 3.4
-_CLOUD_LOSS: Final = 0.75
+_CLOUD_LOSS: Final = 0.71
 _CLEAR_GAIN: Final = 1098.0
 _CLEAR_DECAY: Final = -0.057
 _LOWEST_SUN: Final = float(np.sin(np.radians(10.0)))
@@ -81,12 +81,15 @@ def diffuse_erbs(total: Array, up: Array, extra: Array) -> Array:
 
 
 def cloud_cover(total: Array, up: Array, interval: float) -> Array:
-    """Cloud cover from global irradiance, by the inverse of the relation of Kasten & Czeplak.
+    """Cloud cover from global irradiance, by the linear relation of Kimball.
 
-    G / G_clear = 1 - 0.75 (N/8)^3.4, N in oktas, on running means of an hour; with the sun below 10 deg, and
-    at night, linear between the last and the next value. G_clear is Haurwitz's 1098 sin h exp(-0.057 / sin h)
-    W/m2. The clear-sky relation of Kasten and Czeplak, from Hamburg, is a quarter too low for a high sun, so
-    that the cloud cover would depend on the hour.
+    G / G_clear = 1 - 0.71 N, on running means of an hour; with the sun below 10 deg, and at night, linear
+    between the last and the next value. G_clear is Haurwitz's 1098 sin h exp(-0.057 / sin h) W/m2.
+
+    The relation of Kasten and Czeplak, 1 - 0.75 N^3.4, is the mean radiation at a given cloud cover. Its
+    inverse has no finite slope at a clear sky: 5 % less than Haurwitz's clear sky, which haze makes, would be
+    4.5 tenths of cloud. Here it is 0.7 tenths. A clear sky of another model than Haurwitz's (turbid air, a low
+    sun) is still up to 4 tenths in single hours, 2 tenths in the mean of a day.
 
     Parameters
     ----------
@@ -111,7 +114,7 @@ def cloud_cover(total: Array, up: Array, interval: float) -> Array:
     ratio = _running(np.where(usable, total, 0.0), width) / np.maximum(
         _running(np.where(usable, clear, 0.0), width), 1e-9
     )
-    tenths = 10.0 * (np.clip(1.0 - ratio, 0.0, _CLOUD_LOSS) / _CLOUD_LOSS) ** (1.0 / _CLOUD_EXPONENT)
+    tenths = 10.0 * np.clip(1.0 - ratio, 0.0, _CLOUD_LOSS) / _CLOUD_LOSS
     place = np.arange(len(total))
     return np.interp(place, place[usable], tenths[usable])
 
