@@ -131,25 +131,6 @@ class ClimateSource(Part):
         return self
 
 
-class RunInputs(Part):
-    """Weather, and a table of measurements: what a run takes from a study, or from a file with these keys."""
-
-    climate: ClimateSource = Field(description="Weather data")
-    measurements: Table | None = Field(None, description="Table with the measured columns of the building")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _one_table(cls, data: Any) -> Any:
-        """Keep the keys of a run, and share what weather and measurements have in common."""
-        if not isinstance(data, dict):
-            return data
-        weather = (
-            (data.get("climate") or {}).get("measured") if isinstance(data.get("climate"), dict) else None
-        )
-        kept = {key: data[key] for key in ("climate", "measurements") if key in data}
-        return with_shared_table(kept) if "measurements" in kept or weather else kept
-
-
 class Periods(Part):
     """Parts of the record, in local time of the weather data. The end of a period is not included."""
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field, model_validator
 
 from mascarin.building.engine_input import measured_columns
+from mascarin.building.part import Part
 from mascarin.building.yaml_document import validated
-from mascarin.study.description import FILE_KEYS, RunInputs
+from mascarin.study.description import FILE_KEYS, ClimateSource, Table, with_shared_table
 from mascarin.study.inputs import filled, find, open_climate
 from mascarin.study.locations import Places
 from mascarin.weather import Measurements
@@ -15,6 +18,25 @@ from mascarin.weather import Measurements
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.weather import Climate
+
+
+class RunInputs(Part):
+    """Weather, and a table of measurements: what a run takes from a study, or from a file with these keys."""
+
+    climate: ClimateSource = Field(description="Weather data")
+    measurements: Table | None = Field(None, description="Table with the measured columns of the building")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_table(cls, data: Any) -> Any:
+        """Keep the keys of a run, and share what weather and measurements have in common."""
+        if not isinstance(data, dict):
+            return data
+        weather = (
+            (data.get("climate") or {}).get("measured") if isinstance(data.get("climate"), dict) else None
+        )
+        kept = {key: data[key] for key in ("climate", "measurements") if key in data}
+        return with_shared_table(kept) if "measurements" in kept or weather else kept
 
 
 def open_run_inputs(path: Path, building: Building) -> tuple[Climate, Measurements | None]:

@@ -88,8 +88,8 @@ def cloud_cover(total: Array, up: Array, interval: float) -> Array:
 
     The relation of Kasten and Czeplak, 1 - 0.75 N^3.4, is the mean radiation at a given cloud cover. Its
     inverse has no finite slope at a clear sky: 5 % less than Haurwitz's clear sky, which haze makes, would be
-    4.5 tenths of cloud. Here it is 0.7 tenths. A clear sky of another model than Haurwitz's (turbid air, a low
-    sun) is still up to 4 tenths in single hours, 2 tenths in the mean of a day.
+    4.5 tenths of cloud. Here it is 0.7 tenths. A clear sky of another model than his (turbid air, a low sun)
+    is still up to 4 tenths in single hours, 2 tenths in the mean of a day.
 
     Parameters
     ----------
