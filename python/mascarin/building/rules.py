@@ -13,7 +13,6 @@ from mascarin.building.material import Resistance
 from mascarin.building.part import fault
 from mascarin.building.schedule import DAYS, Piece
 from mascarin.building.surface import NoLongwave, Side
-from mascarin.building.window import windows_in
 from mascarin.building.zone import GivenSun, TracedSun
 from mascarin.building.zone_surfaces import ZoneSurface, surfaces_of_zone
 from mascarin.errors import did_you_mean
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
 
     from mascarin.building.description import Description
     from mascarin.building.geometry import Polygon
-    from mascarin.building.window import Window
     from mascarin.building.zone import IdealLoads
 
 Faults = Iterator["InitErrorDetails"]
@@ -229,7 +227,8 @@ def surface_names(seen: list[ZoneSurface]) -> list[str]:
 def _windows_lie_in_walls(building: Description) -> Faults:
     if not building.windows:
         return
-    drawn = outlines(building.surfaces)
+    drawn, glazed = outlines(building.surfaces), window_outlines(building.windows)
+    outdoors = _Drawn(list(drawn.items()), list(glazed.items()))
     for name, window in building.windows.items():
         wall, at = building.surfaces[window.surface], ("windows", name)
         if not wall.outside.outdoors or wall.inside.zone is None:
@@ -250,16 +249,30 @@ def _windows_lie_in_walls(building: Description) -> Faults:
                 "Give the wall vertices, or the window an area.",
             )
             continue
-        polygon = window_outlines({name: window})[name]
+        polygon = glazed[name]
         if not outline.contains(polygon):
             yield fault((*at, "vertices"), *_outside_of_its_wall(polygon, outline))
-        yield from _overlaps(building, name, polygon, drawn)
+        for other in outdoors.overlapping(polygon, outline):
+            yield fault(
+                (*at, "vertices"),
+                f"a window that overlaps '{other}'",
+                "windows, doors and walls that do not overlap",
+                "Move its corners.",
+            )
+    yield from _walls_are_larger_than_their_windows(building, glazed)
+
+
+def _walls_are_larger_than_their_windows(building: Description, glazed: Mapping[str, Polygon]) -> Faults:
+    areas_in: dict[str, dict[str, float]] = {}
+    for one, window in building.windows.items():
+        area = glazed[one].area if window.area is None else float(window.area)
+        areas_in.setdefault(window.surface, {})[one] = area
+    drawn = drawn_areas(building.surfaces)
     for name, surface in building.surfaces.items():
-        inside = dict(windows_in(name, building.windows))
-        if not inside:
+        areas = areas_in.get(name)
+        if areas is None:
             continue
-        gross = float(surface.area or drawn_areas(building.surfaces).get(name, 0.0))
-        areas = {one: _window_area(one, window) for one, window in inside.items()}
+        gross = float(surface.area or drawn.get(name, 0.0))
         if sum(areas.values()) >= gross:
             listed = ", ".join(f"{one} {area:.2f}" for one, area in areas.items())
             yield fault(
@@ -270,26 +283,24 @@ def _windows_lie_in_walls(building: Description) -> Faults:
             )
 
 
-def _overlaps(building: Description, name: str, polygon: Polygon, walls: dict[str, Polygon]) -> Faults:
-    """Windows that overlap one before them, or another wall than the one they are in."""
-    own = walls[building.windows[name].surface]
-    before = takewhile(lambda one: one != name, building.windows)
-    others = window_outlines({one: building.windows[one] for one in before})
-    others |= {wall: outline for wall, outline in walls.items() if not outline.contains(own)}
-    for other, outline in others.items():
-        if polygon.overlaps(outline):
-            yield fault(
-                ("windows", name, "vertices"),
-                f"a window that overlaps '{other}'",
-                "windows, doors and walls that do not overlap",
-                "Move its corners.",
-            )
+class _Drawn:
+    """Walls and windows with vertices, found by their place."""
 
+    def __init__(self, walls: list[tuple[str, Polygon]], windows: list[tuple[str, Polygon]]) -> None:
+        from mascarin.building.geometry import BoxIndex
 
-def _window_area(name: str, window: Window) -> float:
-    if window.area is not None:
-        return float(window.area)
-    return window_outlines({name: window})[name].area
+        self._parts, self._walls = [*walls, *windows], len(walls)
+        self._index = BoxIndex([polygon for _, polygon in self._parts])
+
+    def overlapping(self, window: Polygon, wall: Polygon) -> list[str]:
+        """Windows before a window, then walls beside the one it is in, that it overlaps."""
+        near = self._index.touching(window)
+        before = takewhile(
+            lambda one: one[1] is not window, (self._parts[k] for k in near if k >= self._walls)
+        )
+        walls = (self._parts[k] for k in near if k < self._walls)
+        others = [*before, *((name, one) for name, one in walls if not one.contains(wall))]
+        return [name for name, one in others if window.overlaps(one)]
 
 
 def _outside_of_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]:

@@ -16,11 +16,13 @@ from mascarin.building.geometry.exchange import (
     log_integral,
     view_factors,
 )
+from mascarin.building.geometry.index import BoxIndex
 from mascarin.building.geometry.polygon import TOLERANCE, Polygon
 
 __all__ = [
     "CLOSURE_LIMIT",
     "TOLERANCE",
+    "BoxIndex",
     "OpenEdge",
     "Polygon",
     "check_convex",

@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from mascarin.building.geometry.index import BoxIndex
 from mascarin.building.geometry.polygon import TOLERANCE, Polygon
 from mascarin.errors import InputError
 
@@ -55,9 +56,11 @@ def parents(polygons: Sequence[Polygon]) -> list[int | None]:
         Two polygons cover the same area.
     """
     found: list[int | None] = []
+    index = BoxIndex(polygons)
     for i, child in enumerate(polygons):
         best: int | None = None
-        for j, candidate in enumerate(polygons):
+        for j in index.around(child):
+            candidate = polygons[j]
             if i == j or not candidate.contains(child):
                 continue
             if child.contains(candidate):

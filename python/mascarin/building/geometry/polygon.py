@@ -217,7 +217,7 @@ class Polygon:
         )
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1 << 16)
 def _checked(name: str, corners: tuple[tuple[float, float, float], ...]) -> Polygon:
     """Check a polygon once: the same polygons are needed many times for one description."""
     polygon = Polygon(name, corners)
