@@ -1,24 +1,26 @@
 //! The numbering of the unknowns of the coupled system: surfaces in contact with zones, and the air of each zone.
 //!
 //! First come, zone by zone, the surfaces that exchange heat with their own zone only: surfaces of walls of constant
-//! properties whose other surface is in contact with no zone. Then the other surfaces of walls of constant properties: they
-//! need not be eliminated again where only the other walls change. Last come the surfaces of nonlinear walls and the air of the
-//! zones. Within these two groups the unknown with the fewest neighbours comes next (minimum degree; Tinney & Walker 1967,
-//! doi:10.1109/PROC.1967.6011; George & Liu 1989, doi:10.1137/1031001), which keeps the factors sparse. Unknowns of different
-//! zones are coupled only by the walls and the air paths between the zones.
+//! properties whose other surface is in contact with no zone. Of all others, the unknown with the fewest neighbours comes next
+//! (minimum degree; Tinney & Walker 1967, doi:10.1109/PROC.1967.6011; George & Liu 1989, doi:10.1137/1031001), which keeps the
+//! factors sparse: unknowns of different zones are coupled only by the walls and the air paths between the zones.
+//!
+//! In a building of few zones the other surfaces of walls of constant properties come before the surfaces of nonlinear walls
+//! and the airs: they need not be eliminated again where only these change. In a building of many zones that would couple all
+//! airs with each other. Of both orders, the one with less work is taken.
 
-use core::ops::Range;
 use std::collections::BTreeSet;
 
 use super::ids::SurfaceId;
 use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
+use super::pattern::Pattern;
 use crate::input::description::{Description, Facing, ZoneLongwave};
 
 /// The order of elimination; see [`Plan`](crate::building::plan::Plan).
 #[derive(Debug, Clone)]
 pub(crate) struct Order {
     pub(crate) own_rows: usize,
-    pub(crate) reach: Vec<Vec<Range<usize>>>,
+    pub(crate) pattern: Pattern,
     pub(crate) constant_rows: usize,
 }
 
@@ -29,9 +31,8 @@ pub(crate) fn number_unknowns(
 ) -> (Vec<SurfacePlan>, Vec<ZonePlan>, Order) {
     let (mut surfaces, mut zones) = find_unknowns(description);
     let groups = groups(walls, &surfaces, &zones);
-    let in_group = |wanted: usize| groups.iter().filter(|(group, _)| *group == wanted).count();
-    let (own_rows, constant_rows) = (in_group(OWN), in_group(CONSTANT));
-    let (position, later) = minimum_degree(neighbours(description, &surfaces, &zones), &groups);
+    let neighbours = neighbours(description, &surfaces, &zones);
+    let (position, order) = order(&neighbours, groups);
     for surface in &mut surfaces {
         if let SurfaceRole::Zone { row, .. } = &mut surface.role {
             *row = position[*row];
@@ -41,10 +42,43 @@ pub(crate) fn number_unknowns(
         zone.air_row = position[zone.air_row];
         zone.surface_rows = zone.surface_rows.iter().map(|&row| position[row]).collect();
     }
-    let later = later.into_iter().skip(own_rows);
-    let reach =
-        later.map(|coupled| runs(coupled.into_iter().map(|k| position[k] - own_rows).collect())).collect();
-    (surfaces, zones, Order { own_rows, reach, constant_rows })
+    (surfaces, zones, order)
+}
+
+/// Eliminations of the surfaces of constant walls for one of the rest, at least: most balances change from stage to stage.
+const SHARE_OF_CONSTANT: usize = 4;
+
+/// Positions of the unknowns in the order with less work, and that order.
+fn order(neighbours: &[BTreeSet<usize>], mut groups: Vec<(usize, usize)>) -> (Vec<usize>, Order) {
+    let apart = Order::new(neighbours, &groups);
+    let Order { constant_rows, pattern, .. } = &apart.1;
+    let constant = pattern.work(0..*constant_rows);
+    let changing = pattern.work(*constant_rows..pattern.size());
+    if constant == 0 {
+        return apart;
+    }
+    for group in groups.iter_mut().filter(|group| group.0 == CONSTANT) {
+        *group = (CHANGING, 0);
+    }
+    let together = Order::new(neighbours, &groups);
+    let work = together.1.pattern.work(0..together.1.pattern.size());
+    if work < changing + constant / SHARE_OF_CONSTANT { together } else { apart }
+}
+
+impl Order {
+    /// Eliminates group by group; with the position of each unknown.
+    fn new(neighbours: &[BTreeSet<usize>], groups: &[(usize, usize)]) -> (Vec<usize>, Self) {
+        let in_group = |wanted: usize| groups.iter().filter(|(group, _)| *group == wanted).count();
+        let (own_rows, constant_rows) = (in_group(OWN), in_group(CONSTANT));
+        let (position, later) = minimum_degree(neighbours.to_vec(), groups);
+        let of_row = |coupled: BTreeSet<usize>| {
+            let mut rows: Vec<usize> = coupled.into_iter().map(|k| position[k] - own_rows).collect();
+            rows.sort_unstable();
+            rows
+        };
+        let later: Vec<Vec<usize>> = later.into_iter().skip(own_rows).map(of_row).collect();
+        (position, Self { own_rows, pattern: Pattern::new(&later), constant_rows })
+    }
 }
 
 /// The unknowns in the order of the description: the surfaces in contact with zones, then the air of each zone.
@@ -163,18 +197,6 @@ fn minimum_degree(
     (position, later)
 }
 
-/// Numbers gathered into runs without gaps.
-fn runs(numbers: BTreeSet<usize>) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for number in numbers {
-        match runs.last_mut() {
-            Some(run) if run.end == number => run.end += 1,
-            _ => runs.push(number..number + 1),
-        }
-    }
-    runs
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -225,11 +247,5 @@ mod tests {
         groups[0] = (CONSTANT, 0);
         assert_eq!(fill(6, &star, &groups), 5 * 4 / 2);
         assert_eq!(minimum_degree(graph(6, &star), &groups).0[0], 0);
-    }
-
-    #[test]
-    fn runs_of_numbers() {
-        assert_eq!(runs([1, 2, 3, 7, 9, 10].into()), [1..4, 7..8, 9..11]);
-        assert!(runs(BTreeSet::new()).is_empty());
     }
 }

@@ -1,10 +1,9 @@
 //! The building compiled to flat arrays and indices: everything that does not depend on a parameter's value.
 
-use core::ops::Range;
-
 use super::ids::{BySurface, SurfaceId};
 pub use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
 use super::order::{Order, number_unknowns};
+use super::pattern::Pattern;
 use super::solar_geometry::SolarGeometry;
 use crate::error::EngineError;
 use crate::input::check::check;
@@ -33,10 +32,10 @@ pub struct Plan {
     /// Number of the first rows of the coupled system: surfaces of walls of constant properties whose other surface is in no
     /// zone, zone by zone.
     pub own_rows: usize,
-    /// For each later row, in the order of elimination, the rows after it that it is coupled with, as runs without gaps;
-    /// all counted from the first of these rows. They hold the other surfaces in contact with zones and the air of the zones.
-    pub reach: Vec<Vec<Range<usize>>>,
-    /// Number of the first of these rows: the other surfaces of walls of constant properties.
+    /// The matrix of the later rows, counted from the first of them: the other surfaces in contact with zones and the air of the
+    /// zones.
+    pub(crate) pattern: Pattern,
+    /// Number of the first of these rows: the other surfaces of walls of constant properties, where they come before the rest.
     pub constant_rows: usize,
 }
 
@@ -55,7 +54,7 @@ impl Plan {
             walls.push(wall);
         }
         let (surfaces, mut zones, order) = number_unknowns(&description, &walls);
-        let Order { own_rows, reach, constant_rows } = order;
+        let Order { own_rows, pattern, constant_rows } = order;
         let conditioned = |zone: &Zone| zone.heating.is_some() || zone.cooling.is_some();
         let ideal_loads = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();
         let windows: Vec<usize> = (0..walls.len()).filter(|&w| walls[w].glass.is_some()).collect();
@@ -75,7 +74,7 @@ impl Plan {
             solar_geometry,
             n_cells: first_cell,
             own_rows,
-            reach,
+            pattern,
             constant_rows,
         })
     }
@@ -104,7 +103,7 @@ impl Plan {
     /// Number of rows of the coupled system.
     #[must_use]
     pub fn rows(&self) -> usize {
-        self.own_rows + self.reach.len()
+        self.own_rows + self.pattern.size()
     }
 
     /// Number of channels that the forcing must have.
@@ -141,7 +140,7 @@ mod tests {
         }
         // The walls between zones couple their air: the two surfaces of a wall have two later neighbours each, the air of a zone
         // that of the next.
-        let later: Vec<usize> = plan.reach.iter().map(|runs| runs.iter().map(Range::len).sum()).collect();
+        let later: Vec<usize> = plan.pattern.rows(0..7).iter().map(|row| row.later.len()).collect();
         assert_eq!(later, [2, 2, 2, 2, 1, 1, 0]);
     }
 

@@ -54,7 +54,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             factored_length: f64::NAN,
             exterior: vec![ExteriorSurfaces::None; count],
             inverses: vec![S::zero(); count],
-            coupled: CoupledSystem::new(&plan.reach, plan.own_rows, plan.constant_rows),
+            coupled: CoupledSystem::new(&plan.pattern, plan.own_rows, plan.constant_rows),
             zone_fronts: ZoneFronts::new(plan, coefficients, &laws.surfaces),
         }
     }
@@ -220,7 +220,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             slope: infiltration.slope + ventilation.slope,
         };
         let storage = numbers.capacity.scale(1.0 / inputs.length);
-        self.coupled.add(air, air, storage + entering.slope);
+        self.coupled.add_diagonal(air, storage + entering.slope);
         self.coupled.right[air] +=
             storage * inputs.air[zone] + entering.offset + entering.slope * inputs.conditions.outdoor_air;
         self.coupled.right[air] += inputs.conditions.zones[zone].convective + inputs.load[zone];
@@ -242,7 +242,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             [SurfaceRole::Zone { row: outer, .. }, SurfaceRole::Zone { row: inner, .. }] => {
                 for (e, (mine, other)) in [(outer, inner), (inner, outer)].into_iter().enumerate() {
                     if matrix {
-                        self.coupled.add(mine, mine, -(area * response[e][e]));
+                        self.coupled.add_diagonal(mine, -(area * response[e][e]));
                         self.coupled.add(mine, other, -(area * response[e][1 - e]));
                     }
                     self.coupled.right[mine] += area * source[e];
@@ -284,7 +284,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             ExteriorBalance::Gain(gain) => (source[o] + gain.offset) * self.inverses[w],
         };
         if matrix {
-            self.coupled.add(row, row, -(area * (response[e][e] + response[e][o] * slope)));
+            self.coupled.add_diagonal(row, -(area * (response[e][e] + response[e][o] * slope)));
         }
         self.coupled.right[row] += area * (source[e] + response[e][o] * offset);
         ExteriorSurfaces::One { side: o, line: Line { offset, slope } }

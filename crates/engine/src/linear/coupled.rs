@@ -1,7 +1,7 @@
 //! The linear system that is left when walls and zones are eliminated: airs, and the surfaces that zones share.
 //!
-//! Gaussian elimination row by row. The pattern of the matrix is known beforehand: the *reach* of a row lists the later rows
-//! that it meets, fill-in included ([`Plan::reach`](crate::building::plan::Plan::reach)), and only these are computed with.
+//! Gaussian elimination row by row. The pattern of the matrix is known beforehand, fill-in included ([`Pattern`]): only these
+//! entries are stored and computed with, so that work and memory grow like the building.
 //! The matrix is an M-matrix, whose pivots are positive in any order: no pivoting, the same operations in every lane.
 //!
 //! The first unknowns are surfaces of walls of constant properties. Their rows change less often than the rest (once for each
@@ -10,20 +10,20 @@
 
 use core::ops::Range;
 
+use crate::building::pattern::{Pattern, RowPattern};
 use crate::linear::product::{PlainMatrix, Product, SameKind};
 use crate::number::real::Real;
 
 /// The system of airs and of the surfaces that zones share.
 #[derive(Debug, Clone)]
 pub(crate) struct CoupledSystem<'a, S> {
-    /// For each row the later ones that it meets.
-    reach: &'a [Vec<Range<usize>>],
+    pattern: &'a Pattern,
     /// Number of unknowns that zones eliminate: rows are counted from there, see
     /// [`Plan::own_rows`](crate::building::plan::Plan::own_rows).
     before: usize,
     /// Number of the first unknowns, see [`Plan::constant_rows`](crate::building::plan::Plan::constant_rows).
     first: usize,
-    /// The matrix row by row, in place of it its factors: inverse pivots on the diagonal, the upper triangle as the elimination
+    /// Entries of the matrix as the pattern places them, in place of them its factors: inverse pivots on the diagonal, the upper triangle as the elimination
     /// leaves it, and below the diagonal the entries that the pivot eliminated.
     matrix: Vec<S>,
     /// Right-hand sides, then the solution, of all unknowns, those that zones eliminate included.
@@ -34,11 +34,11 @@ pub(crate) struct CoupledSystem<'a, S> {
 }
 
 impl<'a, S: Real> CoupledSystem<'a, S> {
-    pub(crate) fn new(reach: &'a [Vec<Range<usize>>], before: usize, first: usize) -> Self {
-        let size = reach.len();
-        let (all, line) = (vec![S::zero(); size * size], vec![S::zero(); size]);
+    pub(crate) fn new(pattern: &'a Pattern, before: usize, first: usize) -> Self {
+        let size = pattern.size();
+        let (all, line) = (vec![S::zero(); pattern.entries()], vec![S::zero(); size]);
         let right = vec![S::zero(); before + size];
-        Self { reach, before, first, kept: all.clone(), matrix: all, kept_right: line, right }
+        Self { pattern, before, first, kept: all.clone(), matrix: all, kept_right: line, right }
     }
 
     #[inline(always)]
@@ -51,17 +51,33 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
         self.right[self.before..].fill(S::zero());
     }
 
-    /// Adds to an entry of the matrix.
+    /// Adds to the diagonal of the matrix.
+    #[inline(always)]
+    pub(crate) fn add_diagonal(&mut self, row: usize, value: S) {
+        self.matrix[self.pattern.row(row - self.before).diagonal] += value;
+    }
+
+    /// Adds to an entry of the matrix; the rows must meet.
     #[inline(always)]
     pub(crate) fn add(&mut self, row: usize, column: usize, value: S) {
-        self.matrix[(row - self.before) * self.reach.len() + column - self.before] += value;
+        let place = self.pattern.place(row - self.before, column - self.before);
+        debug_assert!(place.is_some(), "row {row} does not meet row {column}");
+        if let Some(place) = place {
+            self.matrix[place] += value;
+        }
+    }
+
+    /// Adds to an entry whose place is known.
+    #[inline(always)]
+    pub(crate) fn add_at(&mut self, place: usize, value: S) {
+        self.matrix[place] += value;
     }
 
     /// Adds a conductance between two unknowns.
     #[inline(always)]
     pub(crate) fn couple(&mut self, a: usize, b: usize, conductance: S) {
-        self.add(a, a, conductance);
-        self.add(b, b, conductance);
+        self.add_diagonal(a, conductance);
+        self.add_diagonal(b, conductance);
         self.add(a, b, -conductance);
         self.add(b, a, -conductance);
     }
@@ -70,7 +86,7 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
     #[inline(always)]
     pub(crate) fn keep_matrix(&mut self) {
         self.eliminate(0..self.first);
-        let start = self.first * self.reach.len();
+        let start = self.pattern.start(self.first);
         self.kept[start..].copy_from_slice(&self.matrix[start..]);
     }
 
@@ -78,14 +94,14 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
     #[inline(always)]
     pub(crate) fn keep_right(&mut self) {
         let right = &mut self.right[self.before..];
-        forward::<S, SameKind, S>(self.reach, &self.matrix, right, 0..self.first);
+        forward::<S, SameKind, S>(self.pattern, &self.matrix, right, 0..self.first);
         self.kept_right.copy_from_slice(right);
     }
 
     /// Restores the system as the elimination of the first unknowns left it, before anything was added to the rest.
     #[inline(always)]
     pub(crate) fn begin(&mut self) {
-        let start = self.first * self.reach.len();
+        let start = self.pattern.start(self.first);
         self.matrix[start..].copy_from_slice(&self.kept[start..]);
         self.right[self.before..].copy_from_slice(&self.kept_right);
     }
@@ -93,18 +109,18 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
     /// Solves for the unknowns behind the first; they replace their right-hand sides.
     #[inline(always)]
     pub(crate) fn solve_rest(&mut self) {
-        let rest = self.first..self.reach.len();
+        let rest = self.first..self.pattern.size();
         self.eliminate(rest.clone());
         let right = &mut self.right[self.before..];
-        forward::<S, SameKind, S>(self.reach, &self.matrix, right, rest.clone());
-        back::<S, SameKind, S>(self.reach, &self.matrix, right, rest);
+        forward::<S, SameKind, S>(self.pattern, &self.matrix, right, rest.clone());
+        back::<S, SameKind, S>(self.pattern, &self.matrix, right, rest);
     }
 
     /// Solves for the first unknowns, once the others are known.
     #[inline(always)]
     pub(crate) fn solve_first(&mut self) {
         let right = &mut self.right[self.before..];
-        back::<S, SameKind, S>(self.reach, &self.matrix, right, 0..self.first);
+        back::<S, SameKind, S>(self.pattern, &self.matrix, right, 0..self.first);
     }
 
     /// The solution for another right-hand side, with the factors already computed.
@@ -115,29 +131,25 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
 
     #[inline(always)]
     fn solve_with<P: Product<S, R>, R: Real>(&self, right: &mut [R]) {
-        let (right, all) = (&mut right[self.before..], 0..self.reach.len());
-        forward::<S, P, R>(self.reach, &self.matrix, right, all.clone());
-        back::<S, P, R>(self.reach, &self.matrix, right, all);
+        let (right, all) = (&mut right[self.before..], 0..self.pattern.size());
+        forward::<S, P, R>(self.pattern, &self.matrix, right, all.clone());
+        back::<S, P, R>(self.pattern, &self.matrix, right, all);
     }
 
     /// Gaussian elimination of what is not zero. Pivots are left inverted; what is below them stays.
     #[inline(always)]
     fn eliminate(&mut self, rows: Range<usize>) {
-        let n = self.reach.len();
-        for k in rows {
-            let reach = &self.reach[k];
-            let (upper, lower) = self.matrix.split_at_mut((k + 1) * n);
-            let pivot = &mut upper[k * n..];
-            let inverse = S::one() / pivot[k];
-            pivot[k] = inverse;
-            for later in reach {
-                let later = &mut lower[(later.start - k - 1) * n..(later.end - k - 1) * n];
-                for row in later.chunks_exact_mut(n) {
-                    let factor = row[k] * inverse;
-                    for run in reach {
-                        for (a, &p) in row[run.clone()].iter_mut().zip(&pivot[run.clone()]) {
-                            *a = *a - factor * p;
-                        }
+        for RowPattern { entries, diagonal, later, .. } in self.pattern.rows(rows) {
+            let (upper, lower) = self.matrix.split_at_mut(entries.end);
+            let inverse = S::one() / upper[*diagonal];
+            upper[*diagonal] = inverse;
+            let pivot = &upper[diagonal + 1..];
+            for row in later {
+                let factor = lower[row.entry - entries.end] * inverse;
+                for segment in &row.segments {
+                    let changed = &mut lower[segment.place - entries.end..][..segment.of_pivot.len()];
+                    for (a, &p) in changed.iter_mut().zip(&pivot[segment.of_pivot.clone()]) {
+                        *a = *a - factor * p;
                     }
                 }
             }
@@ -155,23 +167,19 @@ impl CoupledSystem<'_, f64> {
     /// The solution of the transposed system, with the factors already computed.
     #[inline(always)]
     pub(crate) fn solve_transposed(&self, right: &mut [f64]) {
-        let (right, n) = (&mut right[self.before..], self.reach.len());
-        for k in 0..n {
-            let line = &self.matrix[k * n..(k + 1) * n];
-            let weight = right[k] * line[k];
+        let (right, rows) = (&mut right[self.before..], self.pattern.rows(0..self.pattern.size()));
+        for (k, row) in rows.iter().enumerate() {
+            let weight = right[k] * self.matrix[row.diagonal];
             right[k] = weight;
-            for run in &self.reach[k] {
-                for (later, &factor) in right[run.clone()].iter_mut().zip(&line[run.clone()]) {
-                    *later -= factor * weight;
-                }
+            let factors = &self.matrix[row.diagonal + 1..row.entries.end];
+            for (later, &factor) in row.later.iter().zip(factors) {
+                right[later.row] -= factor * weight;
             }
         }
-        for k in (0..n).rev() {
-            let mut sum = 0.0;
-            for row in self.reach[k].iter().cloned().flatten() {
-                sum += self.matrix[row * n + k] * right[row];
-            }
-            right[k] -= self.matrix[k * n + k] * sum;
+        for (k, row) in rows.iter().enumerate().rev() {
+            let below = row.later.iter().map(|later| self.matrix[later.entry] * right[later.row]);
+            let sum = below.fold(0.0, |sum, term| sum + term);
+            right[k] -= self.matrix[row.diagonal] * sum;
         }
     }
 }
@@ -179,18 +187,15 @@ impl CoupledSystem<'_, f64> {
 /// Eliminates some unknowns from a right-hand side.
 #[inline(always)]
 fn forward<S: Real, P: Product<S, R>, R: Real>(
-    reach: &[Vec<Range<usize>>],
+    pattern: &Pattern,
     matrix: &[S],
     right: &mut [R],
     rows: Range<usize>,
 ) {
-    let n = reach.len();
-    for k in rows {
-        let known = P::of(matrix[k * n + k], right[k]);
-        for run in &reach[k] {
-            for row in run.clone() {
-                right[row] = right[row] - P::of(matrix[row * n + k], known);
-            }
+    for (k, row) in rows.clone().zip(pattern.rows(rows)) {
+        let known = P::of(matrix[row.diagonal], right[k]);
+        for later in &row.later {
+            right[later.row] = right[later.row] - P::of(matrix[later.entry], known);
         }
     }
 }
@@ -198,21 +203,22 @@ fn forward<S: Real, P: Product<S, R>, R: Real>(
 /// Solves for some unknowns, from the last to the first.
 #[inline(always)]
 fn back<S: Real, P: Product<S, R>, R: Real>(
-    reach: &[Vec<Range<usize>>],
+    pattern: &Pattern,
     matrix: &[S],
     right: &mut [R],
     rows: Range<usize>,
 ) {
-    let n = reach.len();
-    for k in rows.rev() {
-        let row = &matrix[k * n..(k + 1) * n];
+    for (k, row) in rows.clone().zip(pattern.rows(rows)).rev() {
+        let mut factors = &matrix[row.diagonal + 1..row.entries.end];
         let mut sum = right[k];
-        for run in &reach[k] {
-            for (&a, &x) in row[run.clone()].iter().zip(&right[run.clone()]) {
+        for run in &row.reach {
+            let (of_run, rest) = factors.split_at(run.len());
+            for (&a, &x) in of_run.iter().zip(&right[run.clone()]) {
                 sum = sum - P::of(a, x);
             }
+            factors = rest;
         }
-        right[k] = P::of(row[k], sum);
+        right[k] = P::of(matrix[row.diagonal], sum);
     }
 }
 

@@ -34,7 +34,7 @@ impl<S: Real> StageSolver<'_, S> {
             let places = [&outer, &self.solution];
             let moved = self.distance(model, &outer);
             if moved.lt(enough).any()
-                && self.nonlinear.excess_evaluated(stage, change, &self.system, places).lt(S::zero()).any()
+                && self.nonlinear.accepts_with_all_evaluated(stage, change, &self.system, places).any()
             {
                 self.counters.nested += 1;
                 self.accept_change(change);

@@ -148,7 +148,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
         for iteration in 0..MAX_ITERATIONS {
             self.solve_linearised(stage, None);
             let change = self.change(stage.model);
-            active = active & !accepts(change, self.excess(stage, change), iteration);
+            active = active & !self.accepts(stage, change, iteration);
             if active.any() && iteration + 1 == MAX_ITERATIONS {
                 // The last change is kept: the error names it.
                 break;
@@ -192,10 +192,20 @@ impl<'a, S: Real> StageSolver<'a, S> {
         Err(self.not_converged(stage, lanes))
     }
 
-    /// What the tangents leave out at the solution, less what is accepted, see [`NonlinearLaws::excess`] [W/m2].
+    /// Where the solution is accepted: what the tangents leave out is small, or after many iterations the change.
     #[inline(always)]
-    pub(super) fn excess(&self, stage: &Stage<'_, S>, change: S) -> S {
-        self.nonlinear.excess(stage, change, &self.system, [&self.iterate, &self.solution])
+    fn accepts(&self, stage: &Stage<'_, S>, change: S, iteration: usize) -> S::Mask {
+        let small = self.small_remainder(stage, change);
+        if iteration < PATIENCE {
+            return small;
+        }
+        small | change.lt(S::constant(TOLERANCE))
+    }
+
+    /// Where what the tangents leave out at the solution is accepted, see [`NonlinearLaws::accepts`].
+    #[inline(always)]
+    pub(super) fn small_remainder(&self, stage: &Stage<'_, S>, change: S) -> S::Mask {
+        self.nonlinear.accepts(stage, change, &self.system, [&self.iterate, &self.solution])
     }
 
     /// Notes the last change of an accepted stage.
@@ -267,13 +277,6 @@ impl<'a, S: Real> StageSolver<'a, S> {
             iterations: MAX_ITERATIONS,
         }
     }
-}
-
-/// Where a solution is accepted: what the tangents leave out is small, or after many iterations the change.
-#[inline(always)]
-pub(super) fn accepts<S: Real>(change: S, excess: S, iteration: usize) -> S::Mask {
-    let small = change.lt(S::constant(TOLERANCE)) & S::Mask::splat(iteration >= PATIENCE);
-    excess.lt(S::zero()) | small
 }
 
 /// What the linear system of a stage is made of.

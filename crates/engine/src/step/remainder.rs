@@ -2,8 +2,9 @@
 //!
 //! A law differs from its tangent by half its second derivative times the square of the change. For most laws this is
 //! estimated, without evaluating them once more: the second derivative of a melting curve `tanh` is at most twice its slope
-//! over its width, that of natural convection (powers up to 4/3 of the temperature difference) a third of its slope over
-//! the difference. All other melting curves are evaluated at the solution, once all else is small.
+//! over its width, that of natural convection `C (d^2 + r^2)^(n/2) d` at most `1.55 n C (d^2 + r^2)^((n - 1)/2)`, with the
+//! temperature difference `d` and the rounding `r` of its root. All other melting curves are evaluated at the solution, once
+//! all else is small.
 
 use crate::building::coefficients::Boundary;
 use crate::building::ids::SurfaceId;
@@ -13,6 +14,7 @@ use crate::linear::building_system::BuildingSystem;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::StorageRule;
 use crate::number::real::{Mask, Real};
+use crate::physics::convection::natural::ROUND_OFF;
 use crate::step::stage::Stage;
 
 /// Largest remainder that is accepted, over the largest heat flow density [-].
@@ -21,42 +23,80 @@ const ACCEPTED: f64 = 1e-9;
 const LEAST_FLOW: f64 = 10.0;
 /// Half of the second derivative of emission, which is also more than that of air flow over the area of a zone [W/(m2 K2)].
 const EMISSION: f64 = 0.05;
-/// A sixth of a slope of natural convection [W/(m2 K)].
-const CONVECTION: f64 = 0.7;
-/// Smaller differences count as this one: there the slope of natural convection is small [K].
-const LEAST_DIFFERENCE: f64 = 1e-5;
+/// Half of the second derivative of natural convection, times the cube root of the square of the temperature difference
+/// [W/(m2 K^(4/3))]: with `n = 1/3` it is `0.26 C`, and `C` is at most 1.63 in the published correlations.
+const CONVECTION: f64 = 0.6;
+/// More than the heat transfer coefficients of natural convection on the two sides of equal temperatures, where correlations
+/// for warm and for cold plates meet [W/(m2 K)].
+const SIDES: f64 = 2.0;
 
 /// Parts of a building whose laws are nonlinear.
 #[derive(Debug, Clone)]
 pub(crate) struct NonlinearLaws<S> {
-    /// Surfaces with natural convection, and the zone whose air they meet; none outdoors.
-    convective: Vec<(SurfaceId, Option<usize>)>,
+    /// Surfaces with natural convection outdoors, and those in zones with their zone.
+    exterior: Vec<SurfaceId>,
+    interior: Vec<(SurfaceId, usize)>,
     /// Walls whose melting curves are estimated, and those whose curves have to be evaluated.
     estimated: Vec<usize>,
     evaluated: Vec<usize>,
     /// Surfaces outdoors, which the sun falls on.
     outdoors: Vec<SurfaceId>,
-    /// Largest remainder that is accepted in this stage [W/m2].
-    accepted: S,
+    /// What is accepted in this stage.
+    limit: Limit<S>,
+}
+
+/// What is accepted in a stage.
+#[derive(Debug, Clone, Copy)]
+struct Limit<S> {
+    /// Largest remainder [W/m2].
+    remainder: S,
+    /// Third power of the largest remainder over [`CONVECTION`] [K4].
+    cube: S,
+    /// Largest change of a temperature difference that changes its sign [K].
+    across: S,
+}
+
+impl<S: Real> Limit<S> {
+    #[inline(always)]
+    fn new(remainder: S) -> Self {
+        let root = remainder.scale(1.0 / CONVECTION);
+        Self { remainder, cube: root * root * root, across: remainder.scale(1.0 / SIDES) }
+    }
+
+    /// Where the remainder of natural convection is accepted; temperature difference from surface to air at the iterate
+    /// and at the solution [K].
+    #[inline(always)]
+    fn accepts_convection(&self, before: S, after: S) -> S::Mask {
+        let moved = after - before;
+        let square = moved * moved;
+        let rounded = after * after + S::constant(ROUND_OFF * ROUND_OFF);
+        let smooth = (square * square * square).lt(self.cube * rounded);
+        let one_side = !(before * after).lt(S::zero());
+        smooth & (one_side | moved.abs().lt(self.across))
+    }
 }
 
 impl<S: Real> NonlinearLaws<S> {
     pub(crate) fn new(model: &Model<'_, S>) -> Self {
         let (parts, plan, coefficients) = (&model.parts, model.plan, &model.coefficients);
-        let zone = |surface: SurfaceId| match plan.surfaces[surface].role {
-            SurfaceRole::Zone { zone, .. } => Some(zone),
-            SurfaceRole::Exterior => None,
-        };
+        let (mut exterior, mut interior) = (Vec::new(), Vec::new());
+        for &surface in &parts.surfaces.nonlinear {
+            match plan.surfaces[surface].role {
+                SurfaceRole::Zone { zone, .. } => interior.push((surface, zone)),
+                SurfaceRole::Exterior => exterior.push(surface),
+            }
+        }
         let estimated = |&w: &usize| coefficients.walls[w].pcm.iter().all(|law| law.curvature().is_some());
         let (estimated, evaluated) = parts.nonlinear_walls.iter().copied().partition(estimated);
         let outdoors =
             |&surface: &SurfaceId| matches!(coefficients.surfaces[surface].boundary, Boundary::Outdoors(_));
         Self {
-            convective: parts.surfaces.nonlinear.iter().map(|&surface| (surface, zone(surface))).collect(),
+            exterior,
+            interior,
             estimated,
             evaluated,
             outdoors: plan.surfaces.ids().filter(outdoors).collect(),
-            accepted: S::zero(),
+            limit: Limit::new(S::zero()),
         }
     }
 
@@ -67,75 +107,77 @@ impl<S: Real> NonlinearLaws<S> {
         for &surface in &self.outdoors {
             sun = sun.max(stage.conditions.surfaces[surface].solar);
         }
-        self.accepted = (sun + S::constant(LEAST_FLOW)).scale(ACCEPTED);
+        self.limit = Limit::new((sun + S::constant(LEAST_FLOW)).scale(ACCEPTED));
     }
 
-    /// The largest remainder less what is accepted [W/m2]: below zero where the solution is accepted. `change`: the largest
-    /// change from the iterate to the solution [K].
+    /// Where the largest remainder is accepted, by lane. `change`: the largest change from the iterate to the solution [K].
     #[inline(always)]
-    pub(crate) fn excess(
+    pub(crate) fn accepts(
         &self,
         stage: &Stage<'_, S>,
         change: S,
         system: &BuildingSystem<'_, S>,
         [old, new]: [&Unknowns<S>; 2],
-    ) -> S {
-        let accepted = self.accepted;
-        let mut largest = (change * change).scale(EMISSION) - accepted;
-        let by_difference = accepted.scale(1.0 / CONVECTION);
-        for &(surface, zone) in &self.convective {
-            let [before, after] = if let Some(zone) = zone {
-                [old, new].map(|at| at.surfaces[surface] - at.air[zone])
-            } else {
-                let outdoors = stage.conditions.surfaces[surface].temperature;
-                [old, new].map(|at| at.surfaces[surface] - outdoors)
-            };
-            let moved = after - before;
-            let most = (after.abs() + S::constant(LEAST_DIFFERENCE)) * by_difference;
-            largest = largest.max(moved * moved - most);
+    ) -> S::Mask {
+        let mut small = (change * change).scale(EMISSION).lt(self.limit.remainder);
+        // In most of the iterations that do not end here, this is enough to know.
+        if !small.any() {
+            return small;
         }
-        if stage.storage == StorageRule::ApparentCapacity {
-            return largest;
+        for &surface in &self.exterior {
+            let air = stage.conditions.surfaces[surface].temperature;
+            let [before, after] = [old.surfaces[surface] - air, new.surfaces[surface] - air];
+            small = small & self.limit.accepts_convection(before, after);
         }
+        for &(surface, zone) in &self.interior {
+            let before = old.surfaces[surface] - old.air[zone];
+            let after = new.surfaces[surface] - new.air[zone];
+            small = small & self.limit.accepts_convection(before, after);
+        }
+        if stage.storage == StorageRule::ApparentCapacity || !small.any() {
+            return small;
+        }
+        let mut largest = S::zero();
         for &w in &self.estimated {
-            largest = largest.max(system.walls[w].estimated_remainder() - accepted);
+            largest = largest.max(system.walls[w].estimated_remainder());
         }
-        if !self.evaluated.is_empty() && largest.lt(S::zero()).any() {
-            largest = largest.max(self.evaluate(stage, &self.evaluated, system, new));
+        small = small & largest.lt(self.limit.remainder);
+        if !self.evaluated.is_empty() && small.any() {
+            small = small & self.accepts_evaluated(stage, &self.evaluated, system, new);
         }
-        largest
+        small
     }
 
-    /// The largest remainder of the melting curves of some walls, evaluated, less what is accepted [W/m2].
+    /// Where the remainder of the melting curves of some walls, evaluated, is accepted.
     // One copy only: inlining multiplies compile time.
     #[inline(never)]
-    fn evaluate(
+    fn accepts_evaluated(
         &self,
         stage: &Stage<'_, S>,
         walls: &[usize],
         system: &BuildingSystem<'_, S>,
         solution: &Unknowns<S>,
-    ) -> S {
-        let mut largest = -self.accepted;
+    ) -> S::Mask {
+        let mut largest = S::zero();
         for &w in walls {
             let (numbers, cells) = (&stage.model.coefficients.walls[w], stage.model.cells(w));
             let surfaces = solution.surfaces.pair(w);
             let memory = &stage.state.memory[cells];
-            largest = largest.max(system.walls[w].remainder(numbers, memory, surfaces) - self.accepted);
+            largest = largest.max(system.walls[w].remainder(numbers, memory, surfaces));
         }
-        largest
+        largest.lt(self.limit.remainder)
     }
 
-    /// As [`Self::excess`], with all melting curves evaluated.
+    /// As [`Self::accepts`], with all melting curves evaluated.
     #[inline(always)]
-    pub(crate) fn excess_evaluated(
+    pub(crate) fn accepts_with_all_evaluated(
         &self,
         stage: &Stage<'_, S>,
         change: S,
         system: &BuildingSystem<'_, S>,
         places: [&Unknowns<S>; 2],
-    ) -> S {
+    ) -> S::Mask {
         let walls = &stage.model.parts.nonlinear_walls;
-        self.excess(stage, change, system, places).max(self.evaluate(stage, walls, system, places[1]))
+        self.accepts(stage, change, system, places) & self.accepts_evaluated(stage, walls, system, places[1])
     }
 }

@@ -1,20 +1,26 @@
 //! The coupled system against a dense solver: in parts, with other right-hand sides, transposed.
 
-use core::ops::Range;
-
 use super::CoupledSystem;
+use crate::building::pattern::Pattern;
 use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
 use crate::number::dual::Dual;
 
 /// All rows meet each other.
-fn full(size: usize) -> Vec<Vec<Range<usize>>> {
-    (0..size).map(|k| Vec::from_iter((k + 1 < size).then_some(k + 1..size))).collect()
+fn full(size: usize) -> Pattern {
+    Pattern::new(&(0..size).map(|k| (k + 1..size).collect()).collect::<Vec<_>>())
+}
+
+/// The matrix of a system that has not been factored, with all its zeros.
+fn dense(system: &CoupledSystem<'_, f64>) -> Vec<f64> {
+    let size = system.pattern.size();
+    let entry = |k: usize| system.pattern.place(k / size, k % size).map_or(0.0, |place| system.matrix[place]);
+    (0..size * size).map(entry).collect()
 }
 
 /// Five unknowns, three of them first; the last conductance between the others changes and the rest is solved again.
 #[test]
 fn the_rest_is_solved_again() {
-    let reach = vec![vec![1..2, 3..4], vec![2..5], vec![3..5], vec![4..5], vec![]];
+    let pattern = Pattern::new(&[vec![1, 3], vec![2, 3, 4], vec![3, 4], vec![4], vec![]]);
     let conductances = [(0, 1, 2.0), (0, 3, 1.0), (1, 2, 0.5), (1, 4, 3.0), (2, 4, 1.5)];
     let held = [1.0, 0.5, 2.0, 0.0, 0.1];
     let assemble = |system: &mut CoupledSystem<'_, f64>| {
@@ -26,7 +32,7 @@ fn the_rest_is_solved_again() {
             system.right[row] = held * 20.0 + 5.0;
         }
     };
-    let mut system = CoupledSystem::new(&reach, 0, 3);
+    let mut system = CoupledSystem::new(&pattern, 0, 3);
     assemble(&mut system);
     system.keep_matrix();
     system.keep_right();
@@ -37,11 +43,11 @@ fn the_rest_is_solved_again() {
         system.solve_rest();
         system.solve_first();
         // The whole system, assembled anew.
-        let mut whole = CoupledSystem::new(&reach, 0, 3);
+        let mut whole = CoupledSystem::new(&pattern, 0, 3);
         assemble(&mut whole);
         whole.couple(3, 4, last);
         whole.right[4] += 7.0;
-        let expected = dense_solution(&whole.matrix, &whole.right);
+        let expected = dense_solution(&dense(&whole), &whole.right);
         close(&system.right, &expected, 1e-14, &format!("last conductance {last}"));
         let mut again = whole.right.clone();
         system.solve_again(&mut again);
@@ -65,14 +71,9 @@ fn m_matrix(size: usize) -> Vec<f64> {
 }
 
 /// A system with such a matrix, factored, behind some rows that zones eliminate.
-fn factored<'a>(
-    matrix: &[f64],
-    reach: &'a [Vec<Range<usize>>],
-    before: usize,
-    first: usize,
-) -> CoupledSystem<'a, f64> {
-    let size = reach.len();
-    let mut system = CoupledSystem::new(reach, before, first);
+fn factored<'a>(matrix: &[f64], pattern: &'a Pattern, before: usize, first: usize) -> CoupledSystem<'a, f64> {
+    let size = pattern.size();
+    let mut system = CoupledSystem::new(pattern, before, first);
     for (k, &value) in matrix.iter().enumerate() {
         system.add(before + k / size, before + k % size, value);
     }
@@ -86,12 +87,12 @@ fn factored<'a>(
 #[test]
 fn random_m_matrices_are_solved_as_the_dense_solver_solves_them() {
     for size in 1..=40 {
-        let (matrix, reach) = (m_matrix(size), full(size));
+        let (matrix, pattern) = (m_matrix(size), full(size));
         let (right, slopes) = (Numbers::new(7).line(size), Numbers::new(8).line(size));
         let expected = dense_solution(&matrix, &right);
         let mut bits = None;
         for (before, first) in [(0, 0), (3, size / 2), (1, size)] {
-            let system = factored(&matrix, &reach, before, first);
+            let system = factored(&matrix, &pattern, before, first);
             let mut solution = [&vec![f64::NAN; before][..], &right].concat();
             system.solve_again(&mut solution);
             close(&solution[before..], &expected, 1e-12, &format!("{size} unknowns, {first} first"));
@@ -112,9 +113,9 @@ fn random_m_matrices_are_solved_as_the_dense_solver_solves_them() {
 #[test]
 fn the_transpose_is_the_transpose() {
     for size in 1..=40 {
-        let (matrix, reach) = (m_matrix(size), full(size));
+        let (matrix, pattern) = (m_matrix(size), full(size));
         for first in [0, size / 2, size] {
-            let system = factored(&matrix, &reach, 0, first);
+            let system = factored(&matrix, &pattern, 0, first);
             let mut numbers = Numbers::new(size as u64 + 1);
             let (right, weights) = (numbers.line(size), numbers.line(size));
             let (mut solution, mut back) = (right.clone(), weights.clone());

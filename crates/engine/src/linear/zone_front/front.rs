@@ -12,7 +12,7 @@ use super::eliminate::Factors;
 use super::equations::Equations;
 use super::exterior::Exterior;
 use super::laws::Laws;
-use super::layout::Layout;
+use super::layout::{Layout, places};
 
 /// The front of a zone.
 #[derive(Debug, Clone)]
@@ -64,12 +64,14 @@ impl<S: Real> ZoneFront<S> {
         let eliminated = order.iter().filter(|&&i| of_plan.surface_rows[i] < plan.own_rows).count();
         let surfaces: Vec<SurfaceId> = order.iter().map(|&i| of_plan.surfaces[i]).collect();
         let retained = order[eliminated..].iter().map(|&i| of_plan.surface_rows[i]);
+        let retained_rows: Vec<usize> = retained.chain([of_plan.air_row]).collect();
         let layout = Layout {
             surfaces: surfaces.len(),
             eliminated,
             stride: (surfaces.len() + 2).next_multiple_of(S::CHUNK),
             first_row: order.first().map_or(0, |&i| of_plan.surface_rows[i]),
-            retained_rows: retained.chain([of_plan.air_row]).collect(),
+            places: places(&plan.pattern, plan.own_rows, &retained_rows),
+            retained_rows,
             walls: surfaces[..eliminated].to_vec(),
         };
         let exterior = Exterior::new(numbers, laws, &layout);

@@ -1,6 +1,7 @@
 //! The unknowns of a front: which are eliminated, which are retained, and their rows.
 
 use crate::building::ids::SurfaceId;
+use crate::building::pattern::Pattern;
 
 /// The unknowns of a front and their rows.
 #[derive(Debug, Clone)]
@@ -14,6 +15,8 @@ pub(super) struct Layout {
     /// Row of the first eliminated surface among the unknowns of the building, and rows of the retained unknowns.
     pub(super) first_row: usize,
     pub(super) retained_rows: Vec<usize>,
+    /// Places of their entries in the coupled matrix, row by row; none where two of them do not meet.
+    pub(super) places: Vec<Option<usize>>,
     /// The eliminated surfaces.
     pub(super) walls: Vec<SurfaceId>,
 }
@@ -24,6 +27,13 @@ impl Layout {
     pub(super) fn row(&self, i: usize) -> usize {
         if i < self.eliminated { self.first_row + i } else { self.retained_rows[i - self.eliminated] }
     }
+}
+
+/// Places in the coupled matrix, whose rows begin with `own_rows`, of the entries of some rows in the columns of the same
+/// rows.
+pub(super) fn places(pattern: &Pattern, own_rows: usize, rows: &[usize]) -> Vec<Option<usize>> {
+    let entries = rows.iter().flat_map(|&row| rows.iter().map(move |&column| (row, column)));
+    entries.map(|(row, column)| pattern.place(row - own_rows, column - own_rows)).collect()
 }
 
 /// What is to be eliminated.

@@ -61,7 +61,7 @@ impl<S: Real> ZoneFront<S> {
         constant: bool,
         coupled: &mut CoupledSystem<'_, S>,
     ) {
-        let Layout { surfaces, eliminated, retained_rows, .. } = &self.layout;
+        let Layout { surfaces, eliminated, retained_rows, places, .. } = &self.layout;
         let (surfaces, eliminated, emission) = (*surfaces, *eliminated, &self.laws.emission);
         if constant {
             for (i, &row) in (eliminated..).zip(retained_rows) {
@@ -71,13 +71,16 @@ impl<S: Real> ZoneFront<S> {
         if elimination == Elimination::RightHandSide {
             return;
         }
-        let air_row = retained_rows[surfaces - eliminated];
-        for (i, &row) in (eliminated..).zip(retained_rows) {
+        let (count, air_row) = (retained_rows.len(), retained_rows[surfaces - eliminated]);
+        let rows = retained_rows.iter().zip(places.chunks_exact(count));
+        for (i, (&row, places)) in (eliminated..).zip(rows) {
             let mut right = self.entry(i, surfaces + 1);
-            for (j, &column) in (eliminated..surfaces).zip(retained_rows) {
+            for (j, place) in (eliminated..surfaces).zip(places) {
                 // Between surfaces only the upper triangle is stored.
                 let entry = if i <= j || i == surfaces { self.entry(i, j) } else { self.entry(j, i) };
-                coupled.add(row, column, entry * emission[1][j]);
+                if let Some(place) = *place {
+                    coupled.add_at(place, entry * emission[1][j]);
+                }
                 right = right - entry * emission[0][j];
             }
             coupled.add(row, air_row, self.entry(i, surfaces));

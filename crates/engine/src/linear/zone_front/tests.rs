@@ -1,15 +1,14 @@
 //! Fronts of 1 to 40 surfaces: against a dense solver, without a residual, with the same bits in all numbers and by both
 //! eliminations, and their transpose.
 
-use core::ops::Range;
-
 use super::eliminate::Factors;
 use super::exterior::Exterior;
 use super::front::ZoneFront;
 use super::fronts::{Eliminate, Solve};
 use super::laws::Laws;
-use super::layout::{Elimination, Layout};
+use super::layout::{Elimination, Layout, places};
 use crate::building::ids::SurfaceId;
+use crate::building::pattern::Pattern;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
@@ -31,6 +30,11 @@ fn front<S: Real>(surfaces: usize, eliminated: usize, nonlinear: bool) -> ZoneFr
         eliminated,
         stride: (surfaces + 2).next_multiple_of(S::CHUNK),
         first_row: 0,
+        places: places(
+            &pattern(surfaces + 1 - eliminated),
+            eliminated,
+            &(eliminated..=surfaces).collect::<Vec<_>>(),
+        ),
         retained_rows: (eliminated..=surfaces).collect(),
         walls: ids[..eliminated].to_vec(),
     };
@@ -82,7 +86,7 @@ fn solve<S: Real>(
     coupled.clear_right();
     for &row in &zone.layout.retained_rows {
         if elimination == Elimination::Full {
-            coupled.add(row, row, S::constant(HELD));
+            coupled.add_diagonal(row, S::constant(HELD));
         }
         coupled.right[row] += S::constant(WARMTH);
     }
@@ -156,8 +160,8 @@ fn sizes() -> Vec<(usize, usize)> {
 }
 
 /// All retained unknowns meet each other.
-fn reach(retained: usize) -> Vec<Vec<Range<usize>>> {
-    (0..retained).map(|k| Vec::from_iter((k + 1 < retained).then_some(k + 1..retained))).collect()
+fn pattern(retained: usize) -> Pattern {
+    Pattern::new(&(0..retained).map(|k| (k + 1..retained).collect()).collect::<Vec<_>>())
 }
 
 #[test]
@@ -165,9 +169,9 @@ fn fronts_are_solved_as_the_dense_solver_solves_them() {
     for (surfaces, eliminated) in sizes() {
         for nonlinear in [false, true] {
             let context = format!("{surfaces} surfaces, {eliminated} eliminated, nonlinear {nonlinear}");
-            let reach = reach(surfaces + 1 - eliminated);
+            let pattern = pattern(surfaces + 1 - eliminated);
             let mut front = front::<f64>(surfaces, eliminated, nonlinear);
-            let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
+            let mut coupled = CoupledSystem::new(&pattern, eliminated, 0);
             let found = solve(&mut front, &mut coupled, Elimination::Full, false);
             let (matrix, right) = balances(&front);
             close(&found, &dense_solution(&matrix, &right), 1e-12, &context);
@@ -188,9 +192,9 @@ fn fronts_are_solved_as_the_dense_solver_solves_them() {
 fn a_constant_matrix_is_kept() {
     for (surfaces, eliminated) in sizes() {
         let context = format!("{surfaces} surfaces, {eliminated} eliminated");
-        let reach = reach(surfaces + 1 - eliminated);
+        let pattern = pattern(surfaces + 1 - eliminated);
         let mut front = front::<f64>(surfaces, eliminated, false);
-        let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
+        let mut coupled = CoupledSystem::new(&pattern, eliminated, 0);
         for part in [Elimination::Full, Elimination::RightHandSide, Elimination::RightHandSide] {
             let found = solve(&mut front, &mut coupled, part, true);
             let (matrix, right) = balances(&front);
@@ -236,8 +240,8 @@ fn rows_in_registers_have_the_bits_of_rows_of_any_length() {
     fn check<S: Real>() {
         for (surfaces, eliminated) in sizes() {
             for nonlinear in [false, true] {
-                let reach = reach(surfaces + 1 - eliminated);
-                let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
+                let pattern = pattern(surfaces + 1 - eliminated);
+                let mut coupled = CoupledSystem::new(&pattern, eliminated, 0);
                 let mut front = front::<S>(surfaces, eliminated, nonlinear);
                 solve(&mut front, &mut coupled, Elimination::Full, false);
                 // Solving leaves temperatures in place of the right-hand side.
@@ -265,8 +269,8 @@ fn all_fronts<S: Real>() -> Vec<S> {
     let mut all = Vec::new();
     for (surfaces, eliminated) in sizes() {
         for (nonlinear, constant) in [(false, false), (true, false), (false, true)] {
-            let reach = reach(surfaces + 1 - eliminated);
-            let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
+            let pattern = pattern(surfaces + 1 - eliminated);
+            let mut coupled = CoupledSystem::new(&pattern, eliminated, 0);
             let mut front = front::<S>(surfaces, eliminated, nonlinear);
             all.extend(solve(&mut front, &mut coupled, Elimination::Full, constant));
         }
@@ -294,9 +298,9 @@ fn lanes_give_the_bits_of_a_plain_number() {
 fn the_transpose_is_the_transpose() {
     for (surfaces, eliminated) in sizes() {
         let context = format!("{surfaces} surfaces, {eliminated} eliminated");
-        let reach = reach(surfaces + 1 - eliminated);
+        let pattern = pattern(surfaces + 1 - eliminated);
         let mut front = front::<f64>(surfaces, eliminated, true);
-        let mut coupled = CoupledSystem::new(&reach, eliminated, 0);
+        let mut coupled = CoupledSystem::new(&pattern, eliminated, 0);
         solve(&mut front, &mut coupled, Elimination::Full, false);
         let (matrix, _) = balances(&front);
         let mut numbers = Numbers::new(surfaces as u64);

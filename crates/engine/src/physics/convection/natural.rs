@@ -3,7 +3,7 @@
 use crate::number::real::{Mask, Real};
 
 /// Temperature differences below this [K] are rounded off: `|d|^(1/3)` has an infinite slope at zero.
-const ROUND_OFF: f64 = 0.01;
+pub(crate) const ROUND_OFF: f64 = 0.01;
 /// A surface is treated as horizontal when its normal lies within 45 deg of the vertical.
 pub(super) const HORIZONTAL: f64 = core::f64::consts::FRAC_1_SQRT_2;
 

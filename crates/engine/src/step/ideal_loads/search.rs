@@ -96,7 +96,13 @@ impl<S: Real> IdealLoads<S> {
             }
             // Responses are the inverse of an M-matrix, whose principal minors are positive: no pivoting.
             solve_many(&mut self.matrix, &mut self.right, 1);
+            let mut loads = self.right.iter().zip(&self.correction);
+            let moved = loads.any(|(&new, &old)| (new.lt(old) | old.lt(new)).any());
             self.correction.copy_from_slice(&self.right);
+            // The same loads have the same modes, and these the same solution.
+            if !moved {
+                break;
+            }
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::error::EngineError;
 use crate::linear::unknowns::line;
 use crate::number::real::{Mask, Real};
 use crate::step::halving::Part;
-use crate::step::newton::{Search, accepts};
+use crate::step::newton::Search;
 use crate::step::stage::Stage;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -34,8 +34,8 @@ struct Swept<S: Real> {
     energy: Power<S>,
     /// Largest change of a temperature in any stage [K].
     change: S,
-    /// Largest excess of a stage, see [`NonlinearLaws::excess`](crate::step::remainder::NonlinearLaws::excess) [W/m2].
-    excess: S,
+    /// Where all stages are accepted; nowhere after the first sweep, which adds up no heat: it is never the last.
+    accepted: S::Mask,
 }
 
 impl<S: Real> Stepper<'_, S> {
@@ -67,11 +67,9 @@ impl<S: Real> Stepper<'_, S> {
         let mut further = self.further_sweeps();
         for number in 0..MAX_SWEEPS {
             let whole = number >= SINGLE_SWEEPS;
-            let Swept { mut energy, change, excess } =
+            let Swept { mut energy, change, accepted } =
                 self.sweep(state, weather, Sweep { part, length, number, active })?;
-            // The first sweep adds up no heat: it is never the last.
-            let still = accepts(change, excess, number) & S::Mask::splat(number > 0);
-            let still = still | S::Mask::splat(whole);
+            let still = accepted | S::Mask::splat(whole);
             let (air, load) = (&self.solver.solution.air, &mut self.solver.start.load);
             let found = self.ideal_loads.correct(air, load, active, further > 0);
             let moving = active & !(found & still) & !self.solver.failed;
@@ -142,8 +140,8 @@ impl<S: Real> Stepper<'_, S> {
     ) -> Result<Swept<S>, EngineError> {
         let tableau = self.scheme.tableau();
         let (weights, length_of_stage) = (tableau.weights, tableau.diagonal * length);
-        let (mut energy, mut change, mut excess) = (Power::none(), S::zero(), -S::one());
         let (again, responds) = (number > 0, self.ideal_loads.finds_responses(number, active));
+        let (mut energy, mut change, mut accepted) = (Power::none(), S::zero(), S::Mask::splat(again));
         if again {
             self.solver.start.begin(&self.model, state);
             self.known.restart();
@@ -180,7 +178,10 @@ impl<S: Real> Stepper<'_, S> {
             let sound = solver.solve(&stage, search)?;
             known.keep(&solver.solution);
             let moved = S::select(sound, solver.change(model), S::constant(f64::INFINITY));
-            (change, excess) = (change.max(moved), excess.max(solver.excess(&stage, moved)));
+            change = change.max(moved);
+            if accepted.any() {
+                accepted = accepted & solver.small_remainder(&stage, moved);
+            }
             if responds {
                 ideal_loads.respond(model, &solver.system, index, (length_of_stage, tableau.ratio));
             }
@@ -192,7 +193,7 @@ impl<S: Real> Stepper<'_, S> {
                 self.add_heat(weight * length, &mut energy);
             }
         }
-        Ok(Swept { energy, change, excess })
+        Ok(Swept { energy, change, accepted })
     }
 
     /// Brings the airs to their set points by the loads of the last stage, and adds its heat.

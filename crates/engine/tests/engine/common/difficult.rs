@@ -15,8 +15,9 @@ use mascarin_engine::state::Initial;
 
 use crate::common::{Builder, forcing, options, set, try_run, values, weather};
 
-/// Steps that are tried of each building.
+/// Steps that are tried of each building, and how many of them difficult ones are looked for in.
 const STEPS: usize = 48;
+const MANY: usize = 2 * STEPS;
 
 /// A zone behind three light walls of a material that melts within a few thousandths of a kelvin.
 pub fn sharp(width: f64, thickness: f64, nodes: usize, heated: bool) -> Description {
@@ -75,6 +76,11 @@ impl Step {
         Options { initial, ..options(self.scheme, self.dt / parts as f64, probes()) }
     }
 
+    /// Whether Newton's iteration alone did not solve it.
+    pub fn is_difficult(&self) -> bool {
+        self.run.counters.halvings + self.run.counters.nested > 0
+    }
+
     /// The step at other parameters.
     pub fn at(&self, numbers: &[f64]) -> Run<f64> {
         try_run(&self.plan, numbers, &self.rows, &self.options(1)).unwrap()
@@ -91,12 +97,15 @@ pub fn probes() -> Vec<Probe> {
 
 /// Steps that Newton's iteration alone does not solve.
 pub fn steps(scheme: Scheme, heated: bool) -> Vec<Step> {
-    let difficult = |step: &Step| step.run.counters.halvings + step.run.counters.nested > 0;
-    all_steps(scheme, heated).into_iter().filter(difficult).collect()
+    first_steps(scheme, heated, MANY).into_iter().filter(Step::is_difficult).collect()
 }
 
 /// Steps of some buildings, each run alone.
 pub fn all_steps(scheme: Scheme, heated: bool) -> Vec<Step> {
+    first_steps(scheme, heated, STEPS)
+}
+
+fn first_steps(scheme: Scheme, heated: bool, count: usize) -> Vec<Step> {
     let mut found = Vec::new();
     for (width, thickness, nodes, dt) in [
         (1e-3, 0.003, 4, 10_800.0),
@@ -111,9 +120,9 @@ pub fn all_steps(scheme: Scheme, heated: bool) -> Vec<Step> {
         (1e-2, 0.010, 6, 10_800.0),
     ] {
         let plan = Plan::new(sharp(width, thickness, nodes, heated)).unwrap();
-        let rows = forcing(&plan, scheme, STEPS, dt, |time, row| jumps(time, dt, row));
+        let rows = forcing(&plan, scheme, count, dt, |time, row| jumps(time, dt, row));
         let mut initial = Initial::Everywhere(20.0);
-        for (step, rows) in rows.chunks(rows.len() / STEPS).enumerate() {
+        for (step, rows) in rows.chunks(rows.len() / count).enumerate() {
             let options = Options { initial: initial.clone(), ..options(scheme, dt, probes()) };
             let run = try_run(&plan, &values(&plan), rows, &options).unwrap();
             let state = &run.state;
