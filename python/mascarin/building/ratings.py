@@ -63,7 +63,7 @@ def window_ratings(building: Description) -> dict[str, WindowRating]:
     >>> from mascarin.verification.bestest.catalogue import CASES
     >>> rating = window_ratings(load(CASES["600"].file))["south_west_window"]
     >>> round(rating.transmittance, 3), round(rating.solar_heat_gain, 2)
-    (0.699, 0.76)
+    (0.703, 0.76)
     """
     if not building.windows:
         return {}
