@@ -294,9 +294,23 @@ def everything_melting(wax: str, salt: str, curve: str) -> Building:
     return parse(text[:start] + " " + _CURVES[curve] + text[end:], "everything.yaml")
 
 
+#: What has no value in `EVERYTHING`, by path.
+OPTIONAL = {
+    "site.air_density": 1.16,
+    "site.air_specific_heat": 1012,
+    "glazings.plain.transmittance": 0.6,
+    "glazings.listed.angular.back": {"transmittance": 0.7, "reflectance": 0.15, "absorptance": [0.15]},
+    "surfaces.north.outside.convection": {"kind": "measured", "column": "h_north"},
+    "zones.attic.sun": {
+        "kind": "shares", "shares": {"ceiling": 0.95}, "lost": 0.05,
+        "diffuse": {"shares": {"ceiling": 0.9}, "lost": 0.1},
+    },
+}  # fmt: skip
+
+
 def everything() -> list[Building]:
-    """Every kind of part: once for each sky, with the density of the air, with each law of phase change."""
+    """Every kind of part: once for each sky, with what has no default, with each law of phase change."""
     building = parse(EVERYTHING, "everything.yaml")
     skies = [building.replace({"site.sky": sky}) for sky in SKIES]
     melting = [everything_melting(*laws) for laws in MELTING]
-    return [*skies, building.replace({"site.air_density": 1.16}), *melting]
+    return [*skies, building.replace(OPTIONAL), *melting]

@@ -52,6 +52,9 @@ class Plan:
     def n_cells(self) -> int:
         """Finite volumes in all walls."""
 
+    def window_ratings(self, values: _Array) -> _Array:
+        """Windows x (U value [W/(m2 K)], solar heat gain, normal and hemispherical transmittance [-])."""
+
     def simulate(self, values: _Array, forcing: _Array, options: dict[str, Any]) -> dict[str, Any]:
         """One run: records (rows x probes), ledger [J], counters.
 

@@ -45,6 +45,8 @@ pub mod march {
     pub use crate::step::{Counters, Scheme};
 }
 
+pub use run::ratings;
+
 /// Quantities to record.
 pub mod probe {
     pub use crate::run::outputs::Output as Probe;

@@ -6,6 +6,7 @@ use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
 use mascarin_engine::march::{Run, march};
 use mascarin_engine::plan::Plan as EnginePlan;
+use mascarin_engine::ratings::window_ratings;
 use mascarin_engine::{batch, state_space};
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
@@ -52,6 +53,24 @@ impl Plan {
     #[getter]
     fn n_cells(&self) -> usize {
         self.plan.n_cells
+    }
+
+    /// Ratings of the windows (windows x 4): U value, solar heat gain, normal and hemispherical solar transmittance.
+    fn window_ratings<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let values = contiguous(values.as_slice())?;
+        if values.len() != self.plan.description.parameters.len() {
+            return Err(EngineInputError::new_err("as many values as parameters are needed"));
+        }
+        let found = guarded(|| Ok(window_ratings(&self.plan, values)))?;
+        let rows: Vec<f64> = found
+            .iter()
+            .flat_map(|one| [one.u_value, one.solar_heat_gain, one.transmittance, one.diffuse_transmittance])
+            .collect();
+        PyArray1::from_vec(py, rows).reshape([found.len(), 4])
     }
 
     /// One run: a dictionary of records, ledger and counters.

@@ -6,6 +6,7 @@ other by name.
 
 from __future__ import annotations
 
+from mascarin.building.air import moist_air
 from mascarin.building.building import Building
 from mascarin.building.checks import check
 from mascarin.building.convection import (
@@ -14,6 +15,7 @@ from mascarin.building.convection import (
     Doe2,
     Iso15099,
     LinearWind,
+    Measured,
     Mowitt,
     PaperEq5,
     Power,
@@ -46,6 +48,7 @@ from mascarin.building.phase_change import (
     TanhLaw,
     TriangleLaw,
 )
+from mascarin.building.ratings import WindowRating, window_ratings
 from mascarin.building.reading import load
 from mascarin.building.schedule import (
     FractionDays,
@@ -72,12 +75,14 @@ from mascarin.building.window import Frame, Shade, Window, WindowInside, WindowO
 from mascarin.building.zone import (
     AirPath,
     EvenSun,
+    FloorSun,
     Gain,
     GivenSun,
     IdealLoads,
     Infiltration,
     Opening,
     SetPoint,
+    SunShares,
     TracedSun,
     Ventilation,
     Zone,
@@ -101,6 +106,7 @@ __all__ = [
     "EvenSun",
     "Exposure",
     "FilledGap",
+    "FloorSun",
     "FractionDays",
     "FractionPoint",
     "FractionSchedule",
@@ -120,6 +126,7 @@ __all__ = [
     "LinearLaw",
     "LinearWind",
     "MartinBerdahlSky",
+    "Measured",
     "MeasuredSky",
     "Mowitt",
     "Number",
@@ -142,6 +149,7 @@ __all__ = [
     "Site",
     "SmoothStepLaw",
     "Solid",
+    "SunShares",
     "Surface",
     "TableLaw",
     "TanhLaw",
@@ -156,11 +164,14 @@ __all__ = [
     "Window",
     "WindowInside",
     "WindowOutside",
+    "WindowRating",
     "Zone",
     "check",
     "json_schema",
     "load",
+    "moist_air",
     "parameter_table",
+    "window_ratings",
 ]
 
 

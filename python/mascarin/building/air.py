@@ -8,7 +8,10 @@ ASHRAE Handbook of Fundamentals, ch. 1 (specific heat and gas constant of dry ai
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
+
+from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building.site import Site
@@ -16,8 +19,77 @@ if TYPE_CHECKING:
 #: Specific heat of dry air [J/(kg K)].
 SPECIFIC_HEAT = 1006.0
 _GAS_CONSTANT = 287.055  # dry air [J/(kg K)]
+_VAPOUR = 1860.0  # specific heat of water vapour [J/(kg K)]
+_WATER_TO_AIR = 0.621945  # molar mass of water over that of dry air [-]
 _SEA_LEVEL = 101_325.0  # pressure of the standard atmosphere [Pa]
 _STANDARD = 288.15  # 15 degC [K]
+
+
+def heat_capacity(site: Site) -> float:
+    """Heat capacity of a cubic metre of the air in the zones.
+
+    Parameters
+    ----------
+    site : Site
+        The site.
+
+    Returns
+    -------
+    float
+        Density times specific heat, which is that of dry air where none is given. [J/(m3 K)]
+    """
+    heat = SPECIFIC_HEAT if site.air_specific_heat is None else float(site.air_specific_heat)
+    return density(site) * heat
+
+
+def moist_air(temperature: float, humidity: float, pressure: float) -> tuple[float, float]:
+    """Density and specific heat of moist air, for `site.air_density` and `site.air_specific_heat`.
+
+    A mixture of ideal gases; the specific heat is that of a kilogram of the mixture. Saturation pressure
+    over water by Magnus.
+
+    Parameters
+    ----------
+    temperature : float
+        Temperature. [degC]
+    humidity : float
+        Relative humidity, 0 to 1. [-]
+    pressure : float
+        Pressure. [Pa]
+
+    Returns
+    -------
+    tuple of float
+        Density [kg/m3] and specific heat [J/(kg K)].
+
+    Raises
+    ------
+    InputError
+        A humidity outside 0 to 1, a temperature outside -45 to 60 degC, a pressure that is not above that of
+        the vapour.
+
+    References
+    ----------
+    ASHRAE Handbook of Fundamentals 2017, ch. 1 (mixture, specific heat of water vapour). WMO-No. 8, annex 4.B
+    (Magnus formula, -45 to 60 degC).
+
+    Examples
+    --------
+    >>> density, heat = moist_air(20, 0.5, 101325)
+    >>> round(density, 3), round(heat)
+    (1.199, 1012)
+    """
+    if not -45.0 <= temperature <= 60.0:
+        raise InputError(f"temperature: found {temperature:g} degC; expected -45 to 60 degC")
+    if not 0.0 <= humidity <= 1.0:
+        raise InputError(f"humidity: found {humidity:g}; expected a relative humidity from 0 to 1")
+    vapour = humidity * 611.2 * math.exp(17.62 * temperature / (243.12 + temperature))
+    if pressure <= vapour:
+        raise InputError(f"pressure: found {pressure:g} Pa; expected a pressure of moist air [Pa]")
+    ratio = _WATER_TO_AIR * vapour / (pressure - vapour)
+    kelvin = temperature + 273.15
+    mass = (pressure - vapour) / (_GAS_CONSTANT * kelvin) * (1.0 + ratio)
+    return mass, (SPECIFIC_HEAT + ratio * _VAPOUR) / (1.0 + ratio)
 
 
 def density(site: Site) -> float:

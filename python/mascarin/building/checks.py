@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from mascarin.building.air import SPECIFIC_HEAT, density
+from mascarin.building.air import density, heat_capacity
 from mascarin.building.derived import sides_of_zone
 from mascarin.building.description import Description
 from mascarin.building.inactive import sides as every_side
@@ -15,8 +15,18 @@ from mascarin.building.mesh import Mesh, choose
 from mascarin.building.parameters import parameters
 from mascarin.building.phase_change import CUT, ClosedLaw, FractionLaw, FractionsLaw, TanhLaw
 from mascarin.building.plausibility import warnings
+from mascarin.building.ratings import window_ratings
+from mascarin.building.site import wind_factor
 from mascarin.building.surface import Side, Surface
-from mascarin.building.u_values import resistance_words, time_constant, u_value, window_u_value
+from mascarin.building.u_values import (
+    described_u_value,
+    described_window_u_value,
+    resistance_words,
+    time_constant,
+    u_value,
+    window_u_value,
+)
+from mascarin.building.window import Window, WindowOutside
 from mascarin.building.zone_surfaces import closed, surfaces_of_zone
 from mascarin.errors import InputError
 
@@ -53,6 +63,7 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
         *_surfaces(building),
         *_windows(building),
         *_constructions(building, mesh),
+        *_winds(building),
         *_melting(building),
         *(f"warning: {text}" for text in warnings(building, mesh, step_seconds)),
         *(f"assumed: {text}" for text in assumptions(building)),
@@ -72,18 +83,33 @@ def _zones(building: Description) -> Iterator[str]:
         total = sum(_own_area(building, surface) * u_value(building, surface) for surface in shell)
         glazed = [window for window in building.windows.values() if window.surface in names]
         total += sum(float(window.area or 0.0) * window_u_value(building, window) for window in glazed)
+        meant = sum(_own_area(building, surface) * described_u_value(building, surface) for surface in shell)
+        meant += sum(_described_ua(building, window) for window in glazed)
         heavy = density(building.site)
-        air = zone.infiltration.constant * (zone.volume or 0.0) * heavy * SPECIFIC_HEAT / 3600.0
+        air = zone.infiltration.constant * (zone.volume or 0.0) * heat_capacity(building.site) / 3600.0
         yield (
             f"zone {name}: {zone.volume:g} m3, {_count(len(surfaces), 'surface')} of {area:.2f} m2, "
-            f"UA {total:.2f} W/K by the U values below, "
+            f"UA {total:.2f} W/K by the U values below{_other_ua(total, meant)}, "
             f"infiltration {air:.2f} W/K (air of {heavy:.3f} kg/m3), {_exchange(building, name)}"
         )
 
 
+def _other_ua(by_iso: float, described: float) -> str:
+    same = math.isclose(by_iso, described, rel_tol=5e-4)
+    return "" if same else f" ({described:.2f} W/K with the coefficients described)"
+
+
+def _described_ua(building: Description, window: Window) -> float:
+    area, glass = float(window.area or 0.0), described_window_u_value(building, window)
+    if window.frame is None:
+        return area * glass
+    share = float(window.frame.fraction)
+    return area * ((1.0 - share) * glass + share * float(window.frame.u_value))
+
+
 def _in_zones(building: Description) -> Iterator[str]:
     """Gains, ventilation and ideal loads of the zones, and the air between zones."""
-    heat = density(building.site) * SPECIFIC_HEAT
+    heat = heat_capacity(building.site)
     for name, zone in building.zones.items():
         for key, gain in zone.gains.items():
             words = f"{gain.power:g} W, {100 * gain.radiative:g} % radiated"
@@ -130,6 +156,7 @@ def _surfaces(building: Description) -> Iterator[str]:
             f"surface {name}: {surface.construction}, {surface.area:.2f} m2, tilt {surface.tilt:g}, "
             f"azimuth {surface.azimuth:g}, {_facing(surface.outside)} -> {_facing(surface.inside)}, "
             f"U {u_value(building, surface):.3f} W/(m2 K), {resistance_words(building, surface)}"
+            f"{_as_described(u_value(building, surface), described_u_value(building, surface))}"
         )
 
 
@@ -140,7 +167,35 @@ def _windows(building: Description) -> Iterator[str]:
         yield (
             f"window {name}: {window.glazing} in {window.surface}, {window.area:.2f} m2{frame}, "
             f"U {u:.3f} W/(m2 K), surface resistances of ISO 6946"
+            f"{_as_described(u, described_window_u_value(building, window), ' of the glass')}"
         )
+    for name, rating in window_ratings(building).items():
+        yield (
+            f"window {name}: glass of U {rating.u_value:.2f} W/(m2 K) and solar heat gain "
+            f"{rating.solar_heat_gain:.3f} by EN 673 and EN 410, solar transmittance "
+            f"{rating.transmittance:.3f}, {rating.diffuse_transmittance:.3f} of diffuse radiation"
+        )
+
+
+def _as_described(by_iso: float, described: float, what: str = "") -> str:
+    """U value by the coefficients described, where it is another one."""
+    return "" if math.isclose(by_iso, described, rel_tol=5e-4) else f"; U {described:.3f}{what} as described"
+
+
+def _winds(building: Description) -> Iterator[str]:
+    """Heights of the sides outdoors, and the wind there."""
+    sides: list[tuple[str, Side | WindowOutside]] = [
+        *((f"surface {name}", surface.outside) for name, surface in building.surfaces.items()),
+        *((f"window {name}", window.outside) for name, window in building.windows.items()),
+    ]
+    for name, side in sides:
+        if not (side.outdoors and side.exposed.wind):
+            continue
+        if side.height is None:
+            yield f"{name}: no height, wind as at the mast"
+            continue
+        factor = wind_factor(building.site.wind, side.height)
+        yield f"{name}: {side.height:.2f} m high, {factor:.2f} of the wind at the mast"
 
 
 def _facing(side: Side) -> str:

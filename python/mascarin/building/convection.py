@@ -26,6 +26,20 @@ class Constant(Part):
     coefficient: q.HeatTransferCoefficient
 
 
+class Measured(Part):
+    """A surface heat transfer coefficient from a measured column [W/(m2 K)], times a factor.
+
+    Examples
+    --------
+    >>> Measured(column="h_wall")
+    Measured(column=h_wall, factor=1)
+    """
+
+    kind: Literal["measured"] = "measured"
+    column: str = Field(description="Name of a measured column [W/(m2 K)], not below 0")
+    factor: q.ConvectionFactor = Number(1.0, source=Remark("the measurement without a correction"))
+
+
 class LinearWind(Part):
     """``constant + wind V``, with the wind speed V at the surface.
 
@@ -155,10 +169,16 @@ class Power(Part):
 
 
 Convection = Annotated[
-    Constant | LinearWind | AlamdariHammond | PaperEq5 | Tarp | Mowitt | Doe2 | Iso15099 | Power,
+    Constant | LinearWind | AlamdariHammond | PaperEq5 | Tarp | Mowitt | Doe2 | Iso15099 | Power | Measured,
     Field(discriminator="kind"),
     Shorthand(word="kind", number="coefficient", kind="constant"),
 ]
+
+
+def measured_column(convection: Convection | None) -> str | None:
+    """Column of a measured coefficient; None for any other."""
+    return convection.column if isinstance(convection, Measured) else None
+
 
 #: Description of the fields that hold a coefficient.
 CONVECTION = "Surface heat transfer coefficient: a number [W/(m2 K)], or a correlation"

@@ -10,7 +10,7 @@ from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
 from mascarin.building.number import Number, Remark
-from mascarin.building.part import Pair, Part, fault, insist
+from mascarin.building.part import Pair, Part, derived_number, fault, insist
 
 ISO_15099 = "ISO 15099:2003, 5.3 and annex B"
 _FIT = "Karlsson & Roos 2000, doi:10.1016/S0038-092X(00)00083-9"
@@ -18,6 +18,8 @@ _RATED = "ISO 10292:1994 and EN 673"
 #: Largest deviation from one of the sum of transmittance, reflectance and absorptance: by the rounding of a
 #: table, and for hemispherical values by the few angles they are integrated from [-].
 SUM_LIMIT, DIFFUSE_LIMIT = 0.006, 0.015
+#: Units above the first U value usually have one pane, below the second three [W/(m2 K)].
+_SINGLE, _TRIPLE = 3.9, 0.9
 
 
 class TwoSides(Pair):
@@ -151,7 +153,7 @@ Gap = Annotated[
 
 
 class DiffuseOptics(Part):
-    """Optics of a glazing for diffuse solar radiation from outside.
+    """Optics of a glazing for diffuse solar radiation from outside or from inside.
 
     Examples
     --------
@@ -180,6 +182,10 @@ class Angular(Part):
         description="Of each pane, outside to inside: one list for each pane, a value at each angle"
     )
     diffuse: DiffuseOptics | None = Field(None, description="Hemispherical values; none: integrated")
+    back: DiffuseOptics | None = Field(
+        None,
+        description="Hemispherical values from inside; none: those from outside, panes reversed",
+    )
     transmittance_scale: q.OpticScale = Number(1.0, source=Remark("the table without a correction"))
     absorptance_scale: q.OpticScale = Number(1.0, source=Remark("the table without a correction"))
 
@@ -222,9 +228,12 @@ class Angular(Part):
         if self.diffuse is not None:
             rows.append(("diffuse", self.diffuse.transmittance, sum(self.diffuse.absorptance)))
             reflected.append(self.diffuse.reflectance)
+        if self.back is not None:
+            rows.append(("diffuse, from inside", self.back.transmittance, sum(self.back.absorptance)))
+            reflected.append(self.back.reflectance)
         for (where, through, absorbed), back in zip(rows, reflected, strict=True):
             total = through + absorbed + (back or 0.0)
-            limit = DIFFUSE_LIMIT if where == "diffuse" else SUM_LIMIT
+            limit = DIFFUSE_LIMIT if where.startswith("diffuse") else SUM_LIMIT
             if total > 1.0 + limit or (back is not None and total < 1.0 - limit):
                 yield fault(
                     ("transmittance",),
@@ -269,8 +278,9 @@ class PaneGlazing(Part):
                 "There is one gap between two panes.",
             )
         table = self.angular
-        diffuse = table.diffuse.absorptance if table is not None and table.diffuse is not None else None
-        for absorbed in (table.absorptance if table is not None else None, diffuse):
+        both_ways = () if table is None else (table.diffuse, table.back)
+        diffuse = (one.absorptance if one is not None else None for one in both_ways)
+        for absorbed in (table.absorptance if table is not None else None, *diffuse):
             if absorbed is not None and len(absorbed) != len(self.panes):
                 yield fault(
                     ("angular", "absorptance"),
@@ -298,20 +308,24 @@ class PaneGlazing(Part):
 
 
 class SimpleGlazing(Part):
-    """A glazing by its rated U value and solar heat gain.
+    """A glazing by its rated U value and solar heat gain, represented by panes that have both.
 
-    Transmittance at normal incidence by Arasteh et al. 2009, angular dependence by Karlsson & Roos 2000.
+    Without a coating the panes are of one glass. A U value that needs a coating gives clear panes with a
+    coated one; its solar transmittance is estimated (Arasteh et al. 2009) unless it is given.
 
     Examples
     --------
     >>> float(SimpleGlazing(u_value=1.1, solar_heat_gain=0.6).panes)
     2.0
+    >>> float(SimpleGlazing(u_value=5.8, solar_heat_gain=0.85).panes)
+    1.0
     """
 
     kind: Literal["simple"] = "simple"
     u_value: q.GlazingU
     solar_heat_gain: q.SolarHeatGain
-    panes: q.PaneCount = Number(2.0, source=f"{_FIT}: double glazing", assumed=True)
+    transmittance: q.UnitTransmittance | None = None
+    panes: q.PaneCount | None = None
     category: q.GlassCategory = Number(4.0, source=f"{_FIT}: clear glass without coating", assumed=True)
     outside_film: q.SurfaceResistance = Number(0.04, source=_RATED)
     inside_film: q.SurfaceResistance = Number(0.13, source=_RATED)
@@ -330,7 +344,21 @@ class SimpleGlazing(Part):
                     "Correct it, or describe the glazing by 'kind: panes'.",
                 )
             )
+        insist(*self._transmits())
+        if self.panes is None:
+            panes = 1.0 if self.u_value > _SINGLE else 3.0 if self.u_value < _TRIPLE else 2.0
+            source = Remark("usual number for this U value")
+            self._fill(panes=derived_number(SimpleGlazing, "panes", panes, source, assumed=True))
         return self
+
+    def _transmits(self) -> Iterator[InitErrorDetails]:
+        if self.transmittance is not None and self.transmittance > self.solar_heat_gain:
+            yield fault(
+                ("transmittance",),
+                f"{self.transmittance:g}, above solar_heat_gain {self.solar_heat_gain:g}",
+                "at most the solar heat gain: transmitted radiation, and absorbed radiation that enters",
+                "Correct one of them. Both are of solar radiation (not of light), at normal incidence.",
+            )
 
     @property
     def resistance(self) -> float:
@@ -378,5 +406,5 @@ SOURCES = {
     "coated": "Finlayson et al. 1993, WINDOW 4.0, LBL-33943 (angular behaviour of coated panes)",
     "filled": f"{ISO_15099} (convection in gaps)",
     "simple": "Arasteh, Kohler & Griffith 2009, LBNL-2804E (transmittance by U and solar heat gain)",
-    "angle": f"{_FIT} (angular behaviour of a unit by U and solar heat gain)",
+    "angle": f"{_FIT} (angular behaviour of a category of glass)",
 }

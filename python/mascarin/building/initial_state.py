@@ -32,6 +32,8 @@ FILMS: Final = (0.04, 0.13)
 _GAP: Final = 0.17
 #: Least resistance of a frame without the rated surface resistances, as in the engine. [m2 K/W]
 _LEAST: Final = 1e-3
+#: Resistance of an outer pane of a glazing by U and g, as in the engine [m2 K/W].
+_PANE: Final = 0.004
 #: Positions closer than this are the same. [m2 K/W]
 _SAME: Final = 1e-9
 
@@ -236,7 +238,9 @@ def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> Wall:
     """Nodes of a window as in the engine: pane surfaces at gaps, and middles of panes with heat capacity."""
     if isinstance(glazing, SimpleGlazing):
         films = glazing.outside_film + glazing.inside_film
-        return Wall(name, sides, ((0.0, 1.0 / glazing.u_value - films),), ())
+        whole = float(1.0 / glazing.u_value - films)
+        outer = min(_PANE, 0.25 * whole)
+        return Wall(name, sides, ((0.0, whole),), (outer, whole - outer))
     layers: list[tuple[float, float]] = []
     cells: list[float] = []
     for k, pane in enumerate(glazing.panes):

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 from mascarin.building.material import PhaseChangeMaterial
+from mascarin.building.surface import Side
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
+    from mascarin.building.window import Window, WindowOutside
 
 Kind = Literal[
     "air_temperature",
@@ -33,6 +36,10 @@ Kind = Literal[
     "transmitted_solar",
     "zone_transmitted_solar",
     "zone_lost_solar",
+    "solar_transmittance",
+    "absorbed_solar",
+    "net_longwave",
+    "convection",
     "sky_temperature",
 ]
 
@@ -44,6 +51,8 @@ _ZONE_KINDS: tuple[Kind, ...] = (
 )
 #: Units of means over the interval that ends at the time of the record.
 _MEANS = ("W", "W/m2")
+#: Kinds that are means or states at the time of the record, whatever their unit.
+_BY_KIND = {"solar_transmittance": True, "net_longwave": False}
 _SIDES = ("outside", "inside")
 
 
@@ -60,7 +69,11 @@ class Output:
 
     Solar radiation is the mean over the step that ends at the record: incident on a surface or window after
     shading [W/m2], transmitted by a window or by all windows of a zone, and lost by a zone through its
-    windows [W].
+    windows [W]; absorbed by a side of a surface, or by all panes of a window [W/m2]. The solar transmittance
+    of a window is what it transmits over what is incident on its glass, 0 without sun.
+
+    The long-wave radiation that a side gains from its surroundings [W/m2] and its convective heat transfer
+    coefficient [W/(m2 K)] are those at the time of the record.
 
     Attributes
     ----------
@@ -103,7 +116,7 @@ class Output:
     @property
     def mean(self) -> bool:
         """Whether a record is the mean over the interval before it, and not a state at its time."""
-        return self.unit in _MEANS
+        return _BY_KIND.get(self.kind, self.unit in _MEANS)
 
     @property
     def place(self) -> dict[str, int]:
@@ -128,6 +141,7 @@ def outputs(building: Description) -> list[Output]:
         found += _of_surface(building, index, name)
         if building.surfaces[name].outside.outdoors:
             found.append(Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index))
+        found += _of_sides(building, index, name)
     found += _of_windows(building)
     found.append(Output("sky_temperature", "degC", "sky_temperature"))
     for index, name in enumerate(building.sensors):
@@ -142,6 +156,14 @@ def _of_windows(building: Description) -> Iterator[Output]:
             yield Output(f"{name}.{word}_temperature", "degC", "face_temperature", surface=index, side=side)
         yield Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index)
         yield Output(f"{name}.transmitted_solar", "W", "transmitted_solar", surface=index)
+        yield Output(f"{name}.solar_transmittance", "-", "solar_transmittance", surface=index)
+        yield Output(f"{name}.absorbed_solar", "W/m2", "absorbed_solar", surface=index, side=0)
+        window = building.windows[name]
+        exchanged = (_radiates(building, window.outside), _radiates(building, _wall_inside(building, window)))
+        for side, word in enumerate(_SIDES):
+            if exchanged[side]:
+                yield Output(f"{name}.{word}_longwave", "W/m2", "net_longwave", surface=index, side=side)
+            yield Output(f"{name}.{word}_convection", "W/(m2 K)", "convection", surface=index, side=side)
     lit = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
     for index, name in enumerate(building.zones):
         if name in lit:
@@ -165,6 +187,30 @@ def find(building: Description, name: str) -> Output:
             f"outputs' lists. {hint}".rstrip()
         )
     return known[name]
+
+
+def _of_sides(building: Description, index: int, name: str) -> Iterator[Output]:
+    """Solar and long-wave radiation and convection at the two sides of a surface."""
+    lit = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
+    for number, (word, side) in enumerate(zip(_SIDES, building.surfaces[name].sides, strict=True)):
+        make = partial(Output, surface=index, side=number)
+        if side.sunlit or side.irradiance is not None or (side.zone is not None and side.zone in lit):
+            yield make(f"{name}.{word}_absorbed_solar", "W/m2", "absorbed_solar")
+        if _radiates(building, side):
+            yield make(f"{name}.{word}_longwave", "W/m2", "net_longwave")
+        if side.convection is not None and (side.outdoors or side.zone is not None):
+            yield make(f"{name}.{word}_convection", "W/(m2 K)", "convection")
+
+
+def _wall_inside(building: Description, window: Window) -> Side:
+    return building.surfaces[window.surface].inside
+
+
+def _radiates(building: Description, side: Side | WindowOutside) -> bool:
+    """Whether long-wave radiation is exchanged beside the convection."""
+    if isinstance(side, Side) and side.zone is not None:
+        return building.zones[side.zone].longwave.kind != "none"
+    return bool(side.outdoors) and (side.longwave is None or side.longwave.kind != "none")
 
 
 def _of_surface(building: Description, index: int, name: str) -> Iterator[Output]:

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from mascarin.building.convection import Doe2, Mowitt, Tarp
+from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
 from mascarin.building.derived import drawn_areas, outlines, shade_outlines, sides_of_zone, window_outlines
 from mascarin.building.material import Resistance
-from mascarin.building.part import fault
+from mascarin.building.part import Location, fault
 from mascarin.building.schedule import DAYS, Piece
 from mascarin.building.surface import NoLongwave, Side
-from mascarin.building.zone import GivenSun, TracedSun
-from mascarin.building.zone_surfaces import ZoneSurface, surfaces_of_zone
+from mascarin.building.zone import FloorSun, GivenSun, SunShares, TracedSun
+from mascarin.building.zone_surfaces import ZoneSurface, floors, surfaces_of_zone
 from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:
@@ -177,6 +177,14 @@ def _columns_have_one_meaning(building: Description) -> Faults:
                 "a column of irradiance [W/m2]",
                 "Name the right column.",
             )
+        film = side.convection
+        if isinstance(film, Measured) and film.column in temperatures | {side.irradiance}:
+            yield fault(
+                (*at, "convection", "column"),
+                f"'{film.column}', which has another meaning elsewhere",
+                "a column of a heat transfer coefficient [W/(m2 K)]",
+                "Name the right column.",
+            )
 
 
 def _view_factors_sum_to_one(building: Description) -> Faults:
@@ -326,9 +334,10 @@ def _sun_can_be_absorbed(building: Description) -> Faults:
         lit = any(item.window is not None for item in seen)
         sun = definition.sun
         if isinstance(sun, GivenSun):
-            yield from _fractions_sum_to_one(
-                zone, sun, [item.name for item in seen if item.surface is not None]
-            )
+            names = [item.name for item in seen if item.surface is not None]
+            for part, at in ((sun, ("sun",)), (sun.diffuse, ("sun", "diffuse"))):
+                if part is not None:
+                    yield from _fractions_sum_to_one(("zones", zone, *at), part, names)
         if sun is not None and not lit:
             yield fault(
                 ("zones", zone, "sun"),
@@ -338,6 +347,13 @@ def _sun_can_be_absorbed(building: Description) -> Faults:
             )
         if isinstance(sun, TracedSun):
             yield from _rays_end_on_surfaces(zone, seen)
+        if isinstance(sun, FloorSun) and not any(floors(seen)):
+            yield fault(
+                ("zones", zone, "sun"),
+                "floor, in a zone without a floor",
+                "a surface that faces up into the zone, within 30 deg",
+                "Correct 'tilt:' of the floor (180 deg for its inner side up), or write 'sun: area'.",
+            )
         if not lit or isinstance(sun, GivenSun):
             continue
         for item in seen:
@@ -385,8 +401,7 @@ def _shades_can_act(building: Description) -> Faults:
         )
 
 
-def _fractions_sum_to_one(zone: str, sun: GivenSun, names: list[str]) -> Faults:
-    at = ("zones", zone, "sun")
+def _fractions_sum_to_one(at: Location, sun: GivenSun | SunShares, names: list[str]) -> Faults:
     for name in sun.shares:
         if name not in names:
             yield fault(

@@ -55,6 +55,35 @@ class Wind(Part):
         return {"exponent": exponent, "layer": layer} | raw
 
 
+def wind_factor(wind: Wind, height: float) -> float:
+    """Wind speed at a height of the site over that at the mast, as in the engine.
+
+    Parameters
+    ----------
+    wind : Wind
+        The profile.
+    height : float
+        Height above the ground. [m]
+
+    Returns
+    -------
+    float
+        ``(mast_layer/mast_height)^mast_exponent (height/layer)^exponent``; heights below 0.1 m count as
+        0.1 m. [-]
+
+    References
+    ----------
+    ASHRAE Handbook of Fundamentals 2017, ch. 24, eq. 4.
+
+    Examples
+    --------
+    >>> round(wind_factor(Wind(terrain="suburb"), 10.0), 3)
+    0.717
+    """
+    mast = float(wind.mast_layer / wind.mast_height) ** float(wind.mast_exponent)
+    return float(mast * (max(float(height), 0.1) / float(wind.layer or 1.0)) ** float(wind.exponent or 0.0))
+
+
 class MeasuredSky(Part):
     """Measured horizontal infrared radiation of the climate, times a factor.
 
@@ -210,6 +239,7 @@ class Site(Part):
     longitude: q.Longitude
     altitude: q.Altitude
     air_density: q.AirDensity | None = None
+    air_specific_heat: q.AirSpecificHeat | None = None
     timezone: Annotated[str, AfterValidator(_timezone)] = Field(
         description="Time zone of the local clock: an IANA name such as Europe/Paris, or UTC+4"
     )

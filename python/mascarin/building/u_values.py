@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 
-from mascarin.building.convection import Constant
+from mascarin.building.convection import Constant, LinearWind
 from mascarin.building.description import Description
 from mascarin.building.glazing import glazing_resistance
 from mascarin.building.material import Material, Resistance
 from mascarin.building.mesh import Mesh
 from mascarin.building.phases import phase
 from mascarin.building.surface import Side, Surface
-from mascarin.building.window import Window
+from mascarin.building.window import Window, WindowInside, WindowOutside, emissivities
 
 #: Surface resistances of ISO 6946:2017, table 7 [m2 K/W]: heat upwards, horizontal, downwards; and outdoors.
 _ISO_UP, _ISO_LEVEL, _ISO_DOWN, _ISO_OUTDOORS = 0.10, 0.13, 0.17, 0.04
+#: Wind [m/s] and coefficients of black radiation at 10 and 20 degC [W/(m2 K)] of ISO 6946:2017, annex C.
+_WIND, _BLACK_OUTDOORS, _BLACK_INDOORS = 4.0, 5.1, 5.7
 _ISO, _DESCRIBED, _NONE, _CLOSED = "ISO 6946", "described", "no", "adiabatic"
 
 
@@ -66,6 +68,95 @@ def u_value(building: Description, surface: Surface) -> float:
     resistance = sum(_resistance(building.materials[layer.material], layer.thickness) for layer in layers)
     resistance += sum(_surface_resistance(building, side, surface)[0] for side in surface.sides)
     return 1.0 / resistance if resistance > 0.0 else math.inf
+
+
+def described_u_value(building: Description, surface: Surface) -> float:
+    """Thermal transmittance between the two sides, by the coefficients that are described.
+
+    Constant coefficients are taken as they are, those by wind at 4 m/s (ISO 6946), correlations and measured
+    columns as the convection of ISO 6946. Long-wave exchange is added with the emissivity of the side and a
+    black coefficient of 5.7 W/(m2 K) (20 degC) in a zone and 5.1 W/(m2 K) (10 degC) outdoors.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    surface : Surface
+        One of its surfaces.
+
+    Returns
+    -------
+    float
+        U value; infinite without any resistance, 0 where a side is adiabatic. [W/(m2 K)]
+
+    References
+    ----------
+    ISO 6946:2017, annex C.
+    """
+    layers = building.constructions[surface.construction].layers
+    resistance = sum(_resistance(building.materials[layer.material], layer.thickness) for layer in layers)
+    tilt = float(surface.tilt or 0.0)
+    for side in surface.sides:
+        if side.adiabatic:
+            return 0.0
+        if side.convection is not None:
+            radiates = not _without_radiation(building, side)
+            emissivity = float(side.emissivity or 0.0) if radiates else 0.0
+            coefficient = _coefficient(side, tilt) * float(side.area_factor or 1.0)
+            resistance += _inverse(coefficient + emissivity * _black(side))
+    return _inverse(resistance)
+
+
+def described_window_u_value(building: Description, window: Window) -> float:
+    """Thermal transmittance of the glass of a window by the coefficients that are described.
+
+    As `described_u_value`; gaps as in `window_u_value`.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    window : Window
+        One of its windows.
+
+    Returns
+    -------
+    float
+        U value without the frame. [W/(m2 K)]
+    """
+    glazing, wall = building.glazings[window.glazing], building.surfaces[window.surface]
+    resistance = glazing_resistance(glazing)
+    zone = building.zones[str(wall.inside.zone)]
+    outdoors = window.outside.longwave is None or window.outside.longwave.kind != "none"
+    exchanged = (outdoors, zone.longwave.kind != "none")
+    both: list[WindowOutside | WindowInside] = [window.outside, window.inside]
+    for k, side in enumerate(both):
+        radiation = float(emissivities(glazing)[k]) * _black(side) if exchanged[k] else 0.0
+        resistance += _inverse(_coefficient(side, float(wall.tilt or 0.0)) + radiation)
+    return _inverse(resistance)
+
+
+def _inverse(number: float) -> float:
+    return 1.0 / number if number > 0.0 else math.inf
+
+
+def _black(side: Side | WindowOutside | WindowInside) -> float:
+    """Coefficient of black radiation [W/(m2 K)]."""
+    return _BLACK_OUTDOORS if side.outdoors else _BLACK_INDOORS
+
+
+def _coefficient(side: Side | WindowOutside | WindowInside, tilt: float) -> float:
+    """Convective coefficient [W/(m2 K)]; that of ISO 6946, annex C, where it is no number."""
+    film = side.convection
+    if isinstance(film, Constant):
+        return float(film.coefficient)
+    wind = _WIND if side.outdoors and side.exposed.wind else 0.0
+    if isinstance(film, LinearWind):
+        return float(film.constant + film.wind * wind)
+    if side.outdoors:
+        return 4.0 + 4.0 * wind
+    # Heat flows outwards, as in the heating season.
+    return 5.0 if tilt < 30.0 else 0.7 if tilt > 150.0 else 2.5
 
 
 def _resistance(material: Material, thickness: float | None) -> float:

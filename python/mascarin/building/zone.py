@@ -145,6 +145,21 @@ class EvenSun(Part):
     kind: Literal["area"] = "area"
 
 
+class SunShares(Part):
+    """Fractions of the diffuse part of the solar radiation, scaled to a sum of one.
+
+    Examples
+    --------
+    >>> SunShares(shares={"floor": 0.3, "walls": 0.7})
+    SunShares(shares=floor, walls, lost=0)
+    """
+
+    shares: dict[Name, q.SunShare] = Field(
+        default_factory=dict, description="Fraction of each surface of the zone, by its name"
+    )
+    lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
+
+
 class GivenSun(Part):
     """Solar radiation distributed by given fractions, scaled to a sum of one.
 
@@ -159,6 +174,21 @@ class GivenSun(Part):
         default_factory=dict, description="Fraction of each surface of the zone, by its name"
     )
     lost: q.SunShare = Number(0.0, source=Remark("not given: nothing leaves again"))
+    diffuse: SunShares | None = Field(
+        None, description="Fractions of the diffuse part; none: those of the beam for all of it"
+    )
+
+
+class FloorSun(Part):
+    """Beam radiation evenly on the floor; diffuse and reflected radiation evenly over all surfaces.
+
+    Examples
+    --------
+    >>> FloorSun()
+    FloorSun()
+    """
+
+    kind: Literal["floor"] = "floor"
 
 
 class TracedSun(Part):
@@ -173,7 +203,9 @@ class TracedSun(Part):
     kind: Literal["geometry"] = "geometry"
 
 
-ZoneSun = Annotated[EvenSun | GivenSun | TracedSun, Field(discriminator="kind"), Shorthand(word="kind")]
+ZoneSun = Annotated[
+    EvenSun | GivenSun | FloorSun | TracedSun, Field(discriminator="kind"), Shorthand(word="kind")
+]
 
 
 class Zone(Part):

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from mascarin.building.window import Window
 
 
+#: Largest angle between a floor and the horizontal [deg].
+_FLOOR = 30.0
+
+
 @dataclass(frozen=True)
 class ZoneSurface:
     """One surface of a zone.
@@ -77,6 +81,18 @@ def surfaces_of_zone(
         area = share * float(window.area or 0.0)
         found.append(ZoneSurface(name, "inside", area, share, polygon(name, "inside"), None, window))
     return found
+
+
+def floors(seen: list[ZoneSurface]) -> list[bool]:
+    """Which surfaces of a zone are its floor: those that face up within 30 deg, without internal mass."""
+
+    def floor(item: ZoneSurface) -> bool:
+        if item.surface is None or item.surface.internal_mass:
+            return False
+        tilt = float(item.surface.tilt or 0.0)
+        return (tilt if item.side == "outside" else 180.0 - tilt) <= _FLOOR
+
+    return [floor(item) for item in seen]
 
 
 def frame_fraction(window: Window) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mascarin._io.arguments import mapping_of, require_type
 from mascarin.building import Building
+from mascarin.building.convection import measured_column
 from mascarin.building.initial_state import Ambient, GivenStart
 from mascarin.errors import InputError
 from mascarin.simulation.initial import MeasuredStart, resolved
@@ -16,6 +17,7 @@ from mascarin.simulation.initial import read as read_initial
 from mascarin.simulation.sky import with_sky_of
 from mascarin.weather import (
     CHANNELS,
+    COEFFICIENTS,
     IRRADIANCES,
     TEMPERATURES,
     Climate,
@@ -258,7 +260,9 @@ def _limits(building: Building) -> dict[str, tuple[float, float]]:
     sides = [side for surface in building.surfaces.values() for side in surface.sides]
     temperatures = {side.measured: TEMPERATURES for side in sides if side.measured is not None}
     irradiances = {side.irradiance: IRRADIANCES for side in sides if side.irradiance is not None}
-    return temperatures | irradiances
+    panes = [side for window in building.windows.values() for side in (window.outside, window.inside)]
+    films = [measured_column(side.convection) for side in [*sides, *panes]]
+    return temperatures | irradiances | {film: COEFFICIENTS for film in films if film is not None}
 
 
 def _require_numbers(forcing: Array, channels: Sequence[str], building: Building) -> None:

@@ -18,7 +18,7 @@ Notes
 
 from __future__ import annotations
 
-from mascarin.weather.channels import CHANNELS, IRRADIANCES, RADIATION, TEMPERATURES, UNITS
+from mascarin.weather.channels import CHANNELS, COEFFICIENTS, IRRADIANCES, RADIATION, TEMPERATURES, UNITS
 from mascarin.weather.climate import Climate
 from mascarin.weather.columns import Column
 from mascarin.weather.measurements import Measurements
@@ -30,6 +30,7 @@ from mascarin.weather.timezones import parse_timezone
 
 __all__ = [
     "CHANNELS",
+    "COEFFICIENTS",
     "IRRADIANCES",
     "RADIATION",
     "STAGES",

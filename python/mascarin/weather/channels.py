@@ -78,3 +78,6 @@ TEMPERATURES: Final = (-90.0, 150.0)
 
 IRRADIANCES: Final = (-50.0, 2000.0)
 """Limits of a measured irradiance on a plane. [W/m2]"""
+
+COEFFICIENTS: Final = (0.0, 2000.0)
+"""Limits of a measured heat transfer coefficient. [W/(m2 K)]"""

@@ -464,8 +464,8 @@ class Climate(RecordView[WeatherRecord]):
         measurements : Measurements, optional
             Where to look for columns that the climate does not hold.
         limits : mapping of str to (float, float), optional
-            Lowest and highest possible value of measured columns, by their use: `TEMPERATURES` or
-            `IRRADIANCES`. [unit of the column]
+            Lowest and highest possible value of measured columns, by their use: `TEMPERATURES`,
+            `IRRADIANCES` or `COEFFICIENTS`. [unit of the column]
 
         Returns
         -------

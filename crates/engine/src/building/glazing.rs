@@ -7,19 +7,21 @@
 //! The long-wave exchange between two panes is exact in T^4 and iterated with the rest. The convective conductance of a gap is
 //! computed once per stage, at temperatures predicted for it (laws in [`window_gaps`](crate::physics::window_gaps)).
 //!
-//! Sources:
-//! - Surface resistances of a rated U value: ISO 10292:1994 and EN 673.
-//! - A unit by U and g: Arasteh, Kohler & Griffith (2009), LBNL-2804E.
+//! A unit by U and g has two panes without heat capacity, the outermost and the innermost, and one gap between them.
+//!
+//! Source of the surface resistances of a rated U value: ISO 10292:1994 and EN 673.
 
 use super::cell::{Cell, Matter};
 use crate::input::description::{Gap, Glazing, Pane, Surface};
 use crate::input::values::Values;
 use crate::number::real::Real;
-use crate::physics::optics::{Diffuse, Optics};
+use crate::physics::optics::{Diffuse, Optics, Rating};
 use crate::physics::window_gaps::{GapTangent, GasGap};
 
 /// What rated surface resistances leave of a frame's or a sheet's resistance is no less than this [m2 K/W].
 const LEAST_RESISTANCE: f64 = 1e-3;
+/// Resistance of a pane of a unit by U and g [m2 K/W], 4 mm of glass; a quarter of the whole at most.
+const PANE_RESISTANCE: f64 = 0.004;
 
 /// Where the sun absorbed in a pane acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,9 +58,9 @@ impl GlassPlan {
     /// Lays out a glazing.
     #[must_use]
     pub fn new(glazing: &Glazing) -> Self {
-        let panes: &[Pane] = match glazing {
-            Glazing::Panes { panes, .. } => panes,
-            Glazing::Simple { .. } => &[],
+        let Glazing::Panes { panes, .. } = glazing else {
+            let sites = [Node::Outside, Node::Inside].map(|node| Site::Surfaces([node; 2]));
+            return Self { cell_panes: vec![0, 1], sites: sites.to_vec(), gap_links: vec![1] };
         };
         let mut plan = Self { cell_panes: Vec::new(), sites: Vec::new(), gap_links: Vec::new() };
         for (k, pane) in panes.iter().enumerate() {
@@ -74,9 +76,6 @@ impl GlassPlan {
             if let Node::Cell(cell) = back {
                 plan.gap_links.push(cell + 1);
             }
-        }
-        if plan.sites.is_empty() {
-            plan.sites.push(Site::Surfaces([Node::Outside, Node::Inside]));
         }
         plan
     }
@@ -133,17 +132,40 @@ impl<S: Real> GlassWall<S> {
                 };
                 Self { cells, extra, glass: Glass::new(optics, filled, tilt) }
             }
-            Glazing::Simple { u_value, solar_heat_gain, panes, category, surface_resistances } => {
-                let outer_inner = surface_resistances.map(|id| values.get(id));
-                let (u, gain) = (values.get(*u_value), values.get(*solar_heat_gain));
-                let resistance = rated_resistance(u, outer_inner[0] + outer_inner[1]);
-                let [transmittance, absorptance] = split_gain(u, gain, resistance, outer_inner);
-                let optics =
-                    Optics::of_sheet(transmittance, absorptance, values.get(*panes), values.get(*category));
-                let glass = Glass::new(optics, Vec::new(), tilt);
-                Self { cells: Vec::new(), extra: vec![resistance], glass }
+            Glazing::Simple {
+                u_value,
+                solar_heat_gain,
+                transmittance,
+                panes,
+                category,
+                surface_resistances,
+            } => {
+                let surface_resistances = surface_resistances.map(|id| values.get(id));
+                let u_value = values.get(*u_value);
+                let whole = rated_resistance(u_value, surface_resistances[0] + surface_resistances[1]);
+                let rating = Rating {
+                    gain: values.get(*solar_heat_gain),
+                    transmittance: transmittance.map(|id| values.get(id)),
+                    u_value,
+                    resistances: [whole, whole.scale(0.25).min(S::constant(PANE_RESISTANCE))],
+                    panes: values.get(*panes),
+                    category: values.get(*category),
+                };
+                let height = values.get_or(window.cavity_height, 1.0);
+                Self::of_rating(&rating, plan.gap_links[0], [tilt, height])
             }
         }
+    }
+
+    /// Two panes and one gap in place of a unit by its rated values.
+    fn of_rating(rating: &Rating<S>, link: usize, [tilt, height]: [S; 2]) -> Self {
+        let matter = Matter::Solid { conductivity: S::one(), capacity: S::zero() };
+        let surface = Cell { thickness: S::zero(), matter };
+        let pane = rating.resistances[1];
+        let gap = GasGap::of_rating(&rating.gaps(), height);
+        let glass = Glass::new(Optics::of_rating(rating), vec![(link, gap)], tilt);
+        // The gap's resistance is replaced in every iteration.
+        Self { cells: vec![surface.clone(), surface], extra: vec![pane, S::one(), pane], glass }
     }
 }
 
@@ -175,31 +197,6 @@ fn pane_cells<S: Real>(values: &Values<'_, S>, panes: &[Pane], plan: &GlassPlan)
 /// What rated surface resistances leave of the resistance of a rated U value [m2 K/W].
 pub(crate) fn rated_resistance<S: Real>(u_value: S, surface_resistances: S) -> S {
     (S::one() / u_value - surface_resistances).max(S::constant(LEAST_RESISTANCE))
-}
-
-/// Transmittance and absorptance that give a solar heat gain with the rated surface resistances, outer and inner [m2 K/W]
-/// (LBNL-2804E).
-fn split_gain<S: Real>(u_value: S, gain: S, resistance: S, outer_inner: [S; 2]) -> [S; 2] {
-    let cubic = |c: [f64; 3]| gain * (S::constant(c[1]) + gain.scale(c[0])) + S::constant(c[2]);
-    let single = S::select(
-        gain.lt(S::constant(0.7206)),
-        cubic([0.939_998, 0.203_32, 0.0]),
-        cubic([0.0, 1.304_15, -0.305_15]),
-    );
-    let many = S::select(
-        gain.lt(S::constant(0.15)),
-        gain.scale(0.410_40),
-        cubic([0.085_775, 0.963_954, -0.084_958]),
-    );
-    // Between the two families of glass the correlation is interpolated by U.
-    let share = ((u_value - S::constant(3.4)).scale(1.0 / 1.1)).max(S::zero()).min(S::one());
-    let transmittance = (many + share * (single - many)).max(S::zero()).min(gain);
-    let inward = (outer_inner[0] + resistance.scale(0.5)) / (outer_inner[0] + resistance + outer_inner[1]);
-    let absorptance = (gain - transmittance) / inward;
-    // No more than what is not transmitted: else T and A solve T + A = 1 and T + N A = g.
-    let full = (S::one() - gain) / (S::one() - inward);
-    let too_much = (S::one() - transmittance).lt(absorptance);
-    [S::select(too_much, S::one() - full, transmittance), S::select(too_much, full, absorptance)]
 }
 
 impl<S: Real> Glass<S> {

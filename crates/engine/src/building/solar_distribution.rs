@@ -3,12 +3,13 @@
 //! Opaque surfaces absorb by their solar absorptance. Glass absorbs in its panes, transmits a part outdoors and reflects the
 //! rest. All that is transmitted into the zone is absorbed or lost: the fractions sum to one.
 //!
-//! By area: the irradiance is the same on all surfaces, as in an integrating sphere. By given shares. By geometry: the beam is
+//! By area: the irradiance is the same on all surfaces, as in an integrating sphere. By given shares, those of beam and diffuse
+//! radiation may differ. The beam on the floor: what the floor reflects is distributed by area. By geometry: the beam is
 //! incident where its rays end (see [`geometry::patches`](crate::geometry::patches)), diffuse radiation by the view factors
 //! from the window. What a surface reflects is diffuse and is incident by the view factors of the zone: the radiosity of its
 //! surfaces (Hottel & Sarofim 1967, Radiative Transfer, ch. 3), solved once per run.
 
-use crate::input::description::ZoneSun;
+use crate::input::description::{ParamId, ZoneSun};
 use crate::input::values::Values;
 use crate::number::dense::solve_many;
 use crate::number::real::Real;
@@ -37,6 +38,8 @@ impl<S: Real> SolarSurface<'_, S> {
 pub enum SolarDistribution<S> {
     /// By fractions that do not depend on the direction of the sun.
     Fixed(FixedDistribution<S>),
+    /// By such fractions of the beam and of diffuse radiation.
+    Split([FixedDistribution<S>; 2]),
     /// By the geometry of the zone.
     Traced(TracedDistribution<S>),
 }
@@ -76,10 +79,21 @@ impl<S: Real> SolarDistribution<S> {
         }
         Some(match law {
             ZoneSun::Area => Self::Fixed(FixedDistribution::by_area(surfaces)),
-            ZoneSun::Shares { surfaces: shares, lost } => {
-                let of = |share: &Option<_>| values.get_or(*share, 0.0);
-                let shares: Vec<S> = shares.iter().map(of).collect();
-                Self::Fixed(FixedDistribution::by_shares(surfaces, &shares, of(lost)))
+            ZoneSun::Shares { surfaces: shares, lost, diffuse } => {
+                let of = |share: &Option<ParamId>| values.get_or(*share, 0.0);
+                let given = |shares: &[Option<ParamId>], lost| {
+                    let shares: Vec<S> = shares.iter().map(of).collect();
+                    FixedDistribution::by_shares(surfaces, &shares, of(lost))
+                };
+                let all = given(shares, lost);
+                match diffuse {
+                    Some(diffuse) => Self::Split([all, given(&diffuse.faces, &diffuse.lost)]),
+                    None => Self::Fixed(all),
+                }
+            }
+            ZoneSun::Floor { floor } => {
+                let even = FixedDistribution::by_area(surfaces);
+                Self::Split([FixedDistribution::on_floor(surfaces, floor, &even), even])
             }
             ZoneSun::Geometry => Self::Traced(TracedDistribution::new(surfaces, &exchange())),
         })
@@ -108,6 +122,39 @@ impl<S: Real> FixedDistribution<S> {
             }
         }
         distribution
+    }
+
+    /// The same irradiance on the floor; what it reflects as `even`.
+    fn on_floor(surfaces: &[SolarSurface<'_, S>], floor: &[bool], even: &Self) -> Self {
+        let lit = || surfaces.iter().enumerate().filter(|(i, _)| floor[*i]);
+        let irradiance = S::one() / lit().fold(S::zero(), |sum, (_, surface)| sum + surface.area);
+        let mut reflected = S::zero();
+        for (_, surface) in lit() {
+            reflected += surface.area * irradiance * (S::one() - surface.admitted());
+        }
+        let scaled = |numbers: &[S]| numbers.iter().map(|&number| number * reflected).collect();
+        let mut distribution = Self {
+            absorbed: scaled(&even.absorbed),
+            on_glass: scaled(&even.on_glass),
+            in_glass: even.in_glass * reflected,
+            lost: even.lost * reflected,
+        };
+        for (i, surface) in lit() {
+            distribution.add(i, surface, irradiance);
+        }
+        distribution
+    }
+
+    /// Adds what a surface does with an irradiance [1/m2].
+    fn add(&mut self, i: usize, surface: &SolarSurface<'_, S>, irradiance: S) {
+        if let Some(glass) = surface.glass {
+            let on = surface.area * irradiance;
+            self.on_glass[i] += irradiance;
+            self.lost += on * glass.transmittance;
+            self.in_glass += on * (glass.admitted() - glass.transmittance);
+        } else {
+            self.absorbed[i] += irradiance * surface.absorptance;
+        }
     }
 
     /// Given shares, scaled to a sum of one with what is lost.
@@ -181,6 +228,21 @@ mod tests {
         assert!((distribution.lost - 2.0 * 0.6 * irradiance).abs() < 1e-15);
         let absorbed = 10.0 * distribution.absorbed[0] + 20.0 * distribution.absorbed[1];
         assert!((absorbed + distribution.lost + distribution.in_glass - 1.0).abs() < 1e-14);
+    }
+
+    /// A watt of beam on a floor of absorptance 0.6: 0.4 W are reflected and distributed by area.
+    #[test]
+    fn on_the_floor_every_watt_is_accounted_for() {
+        let glass = Diffuse { transmittance: 0.6, absorptance: vec![0.1, 0.05] };
+        let window = SolarSurface { area: 2.0, absorptance: 0.0, glass: Some(&glass) };
+        let surfaces = [opaque(10.0, 0.6), opaque(20.0, 0.3), window];
+        let even = FixedDistribution::by_area(&surfaces);
+        let beam = FixedDistribution::on_floor(&surfaces, &[true, false, false], &even);
+        let irradiance = 1.0 / (10.0 * 0.6 + 20.0 * 0.3 + 2.0 * 0.75);
+        assert!((beam.absorbed[0] - 0.6 * (0.1 + 0.4 * irradiance)).abs() < 1e-15);
+        assert!((beam.absorbed[1] - 0.3 * 0.4 * irradiance).abs() < 1e-15);
+        let absorbed = 10.0 * beam.absorbed[0] + 20.0 * beam.absorbed[1];
+        assert!((absorbed + beam.lost + beam.in_glass - 1.0).abs() < 1e-14);
     }
 
     /// Shares of 1, 3 and 1 lost are 0.2, 0.6 and 0.2.

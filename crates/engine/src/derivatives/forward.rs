@@ -12,6 +12,7 @@ use crate::number::real::Real;
 use crate::run::control::RunControl;
 use crate::run::march::march_observed;
 use crate::run::options::Options;
+use crate::run::outputs::Output;
 use crate::step::Stepper;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
@@ -105,7 +106,10 @@ fn run_with_slopes(
     let mut groups: Vec<_> = vectors
         .iter()
         .map(|(numbers, parameters)| {
-            let stepper = DerivativeStepper::new(plan, numbers, options.scheme);
+            let mut stepper = DerivativeStepper::new(plan, numbers, options.scheme);
+            if options.probes.iter().any(Output::averages_absorbed_sun) {
+                stepper.stepper.average_absorbed_sun();
+            }
             let state = stepper.stepper.begin(&options.initial);
             Group { state, stepper, slopes: Slopes { parameters: *parameters, records: Vec::new() } }
         })

@@ -16,6 +16,7 @@ use crate::run::Action;
 use crate::run::control::RunControl;
 use crate::run::march::{Run, march_observed};
 use crate::run::options::Options;
+use crate::run::outputs::Output;
 use crate::step::Stepper;
 use crate::step::history::History;
 use crate::step::stage_solutions::{Solution, read_solution};
@@ -214,7 +215,10 @@ impl<'a> ReversePass<'a> {
         options: &'a Options,
         records: &'a [f64],
     ) -> Self {
-        let fresh = DerivativeStepper::new(plan, leaves, options.scheme);
+        let mut fresh = DerivativeStepper::new(plan, leaves, options.scheme);
+        if options.probes.iter().any(Output::averages_absorbed_sun) {
+            fresh.stepper.average_absorbed_sun();
+        }
         let (stepper, length) = (fresh.clone(), Tape::len());
         let now = fresh.stepper.begin(&options.initial);
         Tape::truncate(length);

@@ -8,8 +8,8 @@ use core::fmt::{Display, Write};
 use super::description::{
     AirPath, Angular, Clouds, Construction, Convection, Description, Facing, FrameShare, Gain, Gap, Glazing,
     IdealLoad, Infiltration, Layer, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
-    ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, Surface, Ventilation, WindProfile, Zone,
-    ZoneLongwave, ZoneSun,
+    ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, SunShares, Surface, Ventilation,
+    WindProfile, Zone, ZoneLongwave, ZoneSun,
 };
 
 /// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
@@ -104,7 +104,7 @@ macro_rules! walk {
 walk!(Description { site, materials, constructions, zones, air_paths, openings, surfaces, sensors }
     plain { parameters, shades, channels });
 
-walk!(Site { altitude, air_density, ground_reflectance, wind, sky, cloud } plain { diffuse });
+walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse });
 impl ParameterIds for Clouds {
     fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
         match self {
@@ -151,7 +151,7 @@ walk!(Construction { layers, glazing } plain { name });
 walk!(Layer { thickness } plain { name, material, nodes });
 walk!(Glazing by variant {
     Panes { panes, gaps, angular } plain {},
-    Simple { u_value, solar_heat_gain, panes, category, surface_resistances } plain {},
+    Simple { u_value, solar_heat_gain, transmittance, panes, category, surface_resistances } plain {},
 });
 walk!(Pane { thickness, conductivity, storage, emissivity, optics } plain {});
 walk!(PaneOptics { transmittance, reflectance } plain { coated });
@@ -160,7 +160,8 @@ walk!(Gap by variant {
     Filled { thickness, pressure } plain { gas },
 });
 walk!(Angular { transmittance_scale, absorptance_scale }
-    plain { angles, transmittance, absorptance, diffuse_transmittance, diffuse_absorptance });
+    plain { angles, transmittance, absorptance, diffuse_transmittance, diffuse_absorptance, back_transmittance,
+        back_absorptance });
 
 walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, gains, ventilation, heating, cooling }
     plain { name, view_weights });
@@ -172,9 +173,11 @@ walk!(ZoneLongwave by variant {
 });
 walk!(ZoneSun by variant {
     Area {} plain {},
-    Shares { surfaces, lost } plain {},
+    Shares { surfaces, lost, diffuse } plain {},
+    Floor {} plain { floor },
     Geometry {} plain {},
 });
+walk!(SunShares { faces, lost } plain {});
 walk!(Gain { power, radiative } plain { name, schedule });
 walk!(Ventilation { air_changes, flow } plain { name, schedule });
 walk!(IdealLoad { setpoint, capacity } plain { schedule });
@@ -204,6 +207,7 @@ walk!(OutdoorLongwave by variant {
 });
 walk!(Convection by variant {
     Constant { coefficient } plain {},
+    Measured { factor } plain { channel },
     LinearWind { constant, wind } plain {},
     AlamdariHammond { length, factor } plain {},
     PaperEq5 { length, factor } plain {},

@@ -6,6 +6,7 @@ pub(crate) mod elementary;
 pub mod lanes;
 pub(crate) mod line;
 mod macros;
+pub(crate) mod newton;
 mod plain;
 pub mod real;
 pub mod simd;

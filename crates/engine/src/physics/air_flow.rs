@@ -12,7 +12,7 @@ use crate::input::forcing::{Schedule, scheduled};
 use crate::input::values::Values;
 use crate::number::line::Line;
 use crate::number::real::Real;
-use crate::physics::constants::{AIR_SPECIFIC_HEAT, GRAVITY, KELVIN};
+use crate::physics::constants::{GRAVITY, KELVIN};
 
 /// Temperature differences between a zone and outdoors are rounded off within this [K] where they drive an air flow.
 const ROUND_OFF: f64 = 0.01;
@@ -57,10 +57,9 @@ pub struct Path<S> {
 }
 
 impl<S: Real> Path<S> {
-    /// Evaluates a path at a parameter vector and the density of the air [kg/m3].
+    /// Evaluates a path at a parameter vector; `heat` is that of a cubic metre of air [J/(m3 K)].
     #[must_use]
-    pub fn new(path: &description::AirPath, values: &Values<'_, S>, density: S) -> Self {
-        let heat = density.scale(AIR_SPECIFIC_HEAT);
+    pub fn new(path: &description::AirPath, values: &Values<'_, S>, heat: S) -> Self {
         let flow =
             AirFlow { conductance: values.get(path.flow) * heat, schedule: Schedule::new(path.schedule) };
         Self { between: path.between, flow }

@@ -12,11 +12,30 @@
 //! - 90 deg: Wright (1996), ASHRAE Trans. 102(1), and for the circulation round the whole gap Elsherbiny et al. (1982).
 
 use crate::input::description::Gas;
+use crate::number::newton::falling_root;
 use crate::number::real::{Mask, Real};
 use crate::physics::constants::{GAS_CONSTANT, GRAVITY, KELVIN, SIGMA};
 
 /// Temperature differences across a gap are rounded off within this [K].
 const ROUND_OFF: f64 = 0.01;
+
+/// Mean temperature of a gap and difference across it at which a unit is rated (EN 673:2011) [degC], [K].
+const RATED_TEMPERATURE: f64 = 10.0;
+const RATED_DIFFERENCE: f64 = 15.0;
+/// Widths of gaps in units known by their rating: the narrowest, and that of the least conductance with argon [m].
+const BEST_WIDTHS: [f64; 2] = [1e-5, 0.015];
+/// Pressure in a gap [Pa].
+const STANDARD_PRESSURE: f64 = 101_325.0;
+
+/// Equal gaps in a row, as rated.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RatedGaps<S> {
+    /// [-].
+    pub(crate) number: S,
+    /// Conductances of one of them by gas and by long-wave radiation [W/(m2 K)].
+    pub(crate) gas: S,
+    pub(crate) radiation: S,
+}
 
 /// `a + b T` of conductivity [W/(m K)], viscosity [Pa s] and specific heat [J/(kg K)], T in K; molar mass [kg/mol].
 #[derive(Debug, Clone, Copy)]
@@ -93,6 +112,33 @@ impl<S: Real> GasGap<S> {
             tilt,
             exchange,
         }
+    }
+
+    /// Equal gaps in a row as one, of a height [m]: argon in a vertical gap of the width that gives the rated conductance of the
+    /// gas, or of the best width and a better gas; radiation exact in T^4.
+    pub(crate) fn of_rating(rated: &RatedGaps<S>, height: S) -> Self {
+        let each = |width: S, height: S| {
+            let (pressure, tilt) = (S::constant(STANDARD_PRESSURE), S::constant(90.0));
+            Self::new(Gas::Argon, pressure, [width, height], tilt, [S::one(); 2])
+        };
+        let as_rated = |gap: &Self| {
+            let half = 0.5 * RATED_DIFFERENCE;
+            gap.convection(S::constant(RATED_TEMPERATURE - half), S::constant(RATED_TEMPERATURE + half))
+        };
+        let [least, best] = BEST_WIDTHS.map(S::constant);
+        // Of the logarithm: nearly a straight line in that of the width.
+        let width =
+            falling_root(S::constant(BEST_WIDTHS[1]).ln(), 12, [least.ln(), best.ln()], |width, fixed| {
+                let keep = |number: S| if fixed { number.fixed() } else { number };
+                (as_rated(&each(width.exp(), keep(height))) / keep(rated.gas).max(S::constant(1e-3))).ln()
+            });
+        let mut gap = each(width.exp(), height);
+        // The difference is shared by all gaps. A single pane has less than one gap, and no gas that circulates.
+        gap.buoyancy = gap.buoyancy * rated.number.min(S::one()) / rated.number.max(S::one());
+        gap.inverse_thickness = gap.inverse_thickness * (rated.gas / rated.number) / as_rated(&gap);
+        let mean = KELVIN + RATED_TEMPERATURE;
+        gap.exchange = (rated.radiation / rated.number).scale(1.0 / (4.0 * SIGMA * mean * mean * mean));
+        gap
     }
 
     /// Conductance of the gas [W/(m2 K)] between surfaces at two temperatures [degC].

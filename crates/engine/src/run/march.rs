@@ -8,6 +8,7 @@ use crate::number::real::Real;
 use crate::run::action::Action;
 use crate::run::control::RunControl;
 use crate::run::options::Options;
+use crate::run::outputs::Output;
 use crate::run::warm_up::warm_up;
 use crate::step::newton::Counters;
 use crate::step::state::State;
@@ -76,6 +77,9 @@ pub(crate) fn march_observed<'a, S: Real>(
     let plan = stepper.model.plan;
     if options.residuals {
         stepper.evaluate_residuals();
+    }
+    if options.probes.iter().any(Output::averages_absorbed_sun) {
+        stepper.average_absorbed_sun();
     }
     let mut state = stepper.begin(&options.initial);
     let (cycles, warm_up_change) =

@@ -6,6 +6,7 @@ pub mod ensemble;
 pub mod march;
 pub mod options;
 pub mod outputs;
+pub mod ratings;
 mod warm_up;
 
 pub(crate) use action::Action;

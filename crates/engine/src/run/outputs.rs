@@ -108,6 +108,32 @@ pub enum Output {
         /// Index of the zone.
         zone: usize,
     },
+    /// Sun that a window transmits over the sun on it, zero without sun, mean over the step [-].
+    SolarTransmittance {
+        /// Index of the wall or window.
+        surface: usize,
+    },
+    /// Sun absorbed at a surface, or by all panes of a window, mean over the step [W/m2].
+    AbsorbedSolar {
+        /// Index of the wall or window.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
+    /// Long-wave radiation that a surface gains from its surroundings at the end of the step [W/m2].
+    NetLongwave {
+        /// Index of the wall or window.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
+    /// Convective surface heat transfer coefficient at the end of the step [W/(m2 K)].
+    Convection {
+        /// Index of the wall or window.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
     /// Temperature of the sky as a black body [degC].
     SkyTemperature,
     /// Temperature at a sensor [degC].
@@ -137,11 +163,15 @@ impl Output {
             | Self::ZoneTransmittedSolar { zone }
             | Self::ZoneLostSolar { zone } => zone < plan.zones.len(),
             Self::IncidentSolar { surface } => surface < plan.walls.len(),
-            Self::TransmittedSolar { surface } => plan.windows.contains(&surface),
-            Self::SkyTemperature => true,
-            Self::FaceTemperature { surface, side } | Self::FaceFlux { surface, side } => {
-                surface < plan.walls.len() && side < 2
+            Self::TransmittedSolar { surface } | Self::SolarTransmittance { surface } => {
+                plan.windows.contains(&surface)
             }
+            Self::SkyTemperature => true,
+            Self::FaceTemperature { surface, side }
+            | Self::FaceFlux { surface, side }
+            | Self::AbsorbedSolar { surface, side }
+            | Self::NetLongwave { surface, side }
+            | Self::Convection { surface, side } => surface < plan.walls.len() && side < 2,
             Self::InterfaceTemperature { surface, interface } => interface > 0 && interface < layers(surface),
             Self::LayerFlux { surface, layer } => layer < layers(surface),
             Self::LayerTemperature { surface, layer }
@@ -157,6 +187,12 @@ impl Output {
         } else {
             Err(EngineError::Input(format!("there is nothing to record for {self:?}")))
         }
+    }
+
+    /// Whether it is the mean over the step of the sun that surfaces absorb, which is averaged on request only.
+    #[must_use]
+    pub fn averages_absorbed_sun(&self) -> bool {
+        matches!(self, Self::AbsorbedSolar { .. })
     }
 
     /// Reads the quantity after a step.
@@ -183,12 +219,19 @@ impl Output {
                 layer_mean(plan, surface, layer, |k| stepper.enthalpy(state, surface, k))
             }
             Self::IncidentSolar { surface } => stepper.incident(SurfaceId::outside(surface)),
-            Self::TransmittedSolar { surface } => {
-                let window = plan.windows.iter().position(|&w| w == surface);
-                window.map_or_else(S::zero, |window| stepper.weather.sun.windows[window])
+            Self::TransmittedSolar { surface } => transmitted(plan, stepper, surface),
+            Self::SolarTransmittance { surface } => {
+                let on = stepper.model.coefficients.walls[surface].area
+                    * stepper.incident(SurfaceId::outside(surface));
+                let dark = on.lt(S::constant(1e-9));
+                let part = transmitted(plan, stepper, surface) / S::select(dark, S::one(), on);
+                S::select(dark, S::zero(), part)
             }
             Self::ZoneTransmittedSolar { zone } => stepper.weather.sun.zones[zone],
             Self::ZoneLostSolar { zone } => stepper.weather.sun.lost[zone],
+            Self::AbsorbedSolar { surface, side } => stepper.weather.absorbed(SurfaceId::new(surface, side)),
+            Self::NetLongwave { surface, side } => stepper.net_longwave(state, SurfaceId::new(surface, side)),
+            Self::Convection { surface, side } => stepper.convection(state, SurfaceId::new(surface, side)),
             Self::SkyTemperature => stepper.sky_temperature(),
             Self::Sensor { sensor } => {
                 let surface = plan.description.sensors[sensor].surface;
@@ -197,6 +240,12 @@ impl Output {
             }
         }
     }
+}
+
+/// Sun that a window transmits, mean over the step [W].
+fn transmitted<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, surface: usize) -> S {
+    let window = plan.windows.iter().position(|&w| w == surface);
+    window.map_or_else(S::zero, |window| stepper.weather.sun.windows[window])
 }
 
 fn mean_radiant<S: Real>(plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>, zone: usize) -> S {

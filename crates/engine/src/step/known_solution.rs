@@ -181,7 +181,7 @@ impl<S: Real> Stepper<'_, S> {
     #[inline(always)]
     pub(crate) fn end_known_balance(&mut self, state: &mut State<S>) {
         state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
-        self.weather.average_instant();
+        self.weather.average_instant(&self.model);
     }
 
     /// Sets the ideal loads to those of the solution. False where none of them responds to the air.

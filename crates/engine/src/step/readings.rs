@@ -1,6 +1,7 @@
 //! What outputs read of a stepper after a step.
 
 use crate::building::ids::SurfaceId;
+use crate::building::layout::SurfaceRole;
 use crate::number::real::Real;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -15,6 +16,48 @@ impl<S: Real> Stepper<'_, S> {
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].
     pub(crate) fn incident(&self, surface: SurfaceId) -> S {
         self.weather.incident(surface)
+    }
+
+    /// Averages what outputs need beside the results of every run.
+    pub(crate) fn average_absorbed_sun(&mut self) {
+        self.weather.average_absorbed(&self.model);
+    }
+
+    /// Long-wave radiation that a surface gains in the weather of the last stage [W/m2]; zero where the heat transfer
+    /// coefficient contains it.
+    pub(crate) fn net_longwave(&self, state: &State<S>, surface: SurfaceId) -> S {
+        let Some(emission) = self.model.emission(surface) else { return S::zero() };
+        let numbers = &self.model.coefficients;
+        let own = emission.at(state.surfaces[surface]).0;
+        let SurfaceRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else {
+            return self.weather.conditions.surfaces[surface].longwave
+                - numbers.surfaces[surface].emissivity * own;
+        };
+        let (surfaces, zone) = (&self.model.plan.zones[zone].surfaces, &numbers.zones[zone]);
+        let n = surfaces.len();
+        let Some(i) = surfaces.iter().position(|&other| other == surface) else { return S::zero() };
+        let mut gain = S::zero();
+        for (j, &other) in surfaces.iter().enumerate() {
+            gain += zone.exchange[i * n + j] * (emission.at(state.surfaces[other]).0 - own);
+        }
+        gain / zone.areas[i]
+    }
+
+    /// Convective heat transfer coefficient of a surface in the weather of the last stage [W/(m2 K)].
+    pub(crate) fn convection(&self, state: &State<S>, surface: SurfaceId) -> S {
+        /// Smaller temperature differences count as this [K].
+        const LEAST: f64 = 1e-3;
+        let Some(law) = self.model.convection(surface) else { return S::zero() };
+        let at = &self.weather.conditions.surfaces[surface];
+        let air = match self.model.plan.surfaces[surface].role {
+            SurfaceRole::Zone { zone, .. } => state.air[zone],
+            SurfaceRole::Exterior => at.temperature,
+        };
+        let difference = state.surfaces[surface] - air;
+        let least = S::constant(LEAST);
+        let difference = S::select(difference.abs().lt(least), least, difference);
+        law.flux(difference, &at.forced).flux / difference
+            * self.model.coefficients.surfaces[surface].area_factor
     }
 
     /// Temperature of the sky at the end of the last stage [degC].

@@ -22,6 +22,9 @@ pub(crate) struct StageWeather<'a, S: Real> {
     other: Conditions<S>,
     /// Solar radiation, means over the last step.
     pub(crate) sun: SolarMeans<S>,
+    /// Sun absorbed by each surface, or by all panes of a window on both, mean over the last step [W/m2]; empty where nobody
+    /// reads it.
+    absorbed: Vec<S>,
 }
 
 impl<'a, S: Real> StageWeather<'a, S> {
@@ -34,6 +37,7 @@ impl<'a, S: Real> StageWeather<'a, S> {
             parameters,
             sun: SolarMeans::new(&conditions.sun),
             other: conditions.clone(),
+            absorbed: Vec::new(),
             conditions,
         }
     }
@@ -52,9 +56,9 @@ impl<'a, S: Real> StageWeather<'a, S> {
 
     /// The means over the last step are those of one moment.
     #[inline(always)]
-    pub(crate) fn average_instant(&mut self) {
-        self.sun.restart();
-        self.sun.add(&self.conditions.sun, 1.0);
+    pub(crate) fn average_instant(&mut self, model: &Model<'_, S>) {
+        self.restart_means();
+        self.add_to_means(model, 1.0);
     }
 
     /// The weather at a stage of a step, or of a part of it.
@@ -73,10 +77,10 @@ impl<'a, S: Real> StageWeather<'a, S> {
         let Tableau { weights, nodes, .. } = *tableau;
         self.set_instant(model, &weather.at(part.step, stage));
         if stage == 0 {
-            self.sun.restart();
+            self.restart_means();
         }
         if part.halvings == 0 || weights.len() == 1 {
-            self.sun.add(&self.conditions.sun, weights[stage]);
+            self.add_to_means(model, weights[stage]);
         } else {
             let (mut first, mut second) = (self.conditions.clone(), self.conditions.clone());
             self.evaluate(model, &weather.at(part.step, 0), &mut first);
@@ -85,9 +89,35 @@ impl<'a, S: Real> StageWeather<'a, S> {
                 // The mean is that of the whole step.
                 self.sun.add(&first.sun, weights[0]);
                 self.sun.add(&second.sun, weights[1]);
+                add_absorbed(&mut self.absorbed, model, &first, weights[0]);
+                add_absorbed(&mut self.absorbed, model, &second, weights[1]);
             }
             let place = part.from + part.share * nodes[stage];
             self.conditions.interpolate(&first, &second, (place - nodes[0]) / (nodes[1] - nodes[0]));
+        }
+    }
+
+    /// Averages the sun absorbed by surfaces from now on.
+    pub(crate) fn average_absorbed(&mut self, model: &Model<'_, S>) {
+        self.absorbed = vec![S::zero(); model.plan.surfaces.len()];
+    }
+
+    /// Sun absorbed by a surface, or by all panes of a window, mean over the last step [W/m2].
+    pub(crate) fn absorbed(&self, surface: SurfaceId) -> S {
+        self.absorbed.get(surface.index()).copied().unwrap_or_else(S::zero)
+    }
+
+    #[inline(always)]
+    fn restart_means(&mut self) {
+        self.sun.restart();
+        self.absorbed.fill(S::zero());
+    }
+
+    #[inline(always)]
+    fn add_to_means(&mut self, model: &Model<'_, S>, weight: f64) {
+        self.sun.add(&self.conditions.sun, weight);
+        if !self.absorbed.is_empty() {
+            add_absorbed(&mut self.absorbed, model, &self.conditions, weight);
         }
     }
 
@@ -105,5 +135,23 @@ impl<'a, S: Real> StageWeather<'a, S> {
     /// Temperature of the sky at the end of the last stage [degC].
     pub(crate) fn sky_temperature(&self) -> S {
         black_temperature(self.conditions.sky)
+    }
+}
+
+/// Adds the sun absorbed by surfaces in a stage, by its weight.
+#[inline(never)]
+fn add_absorbed<S: Real>(means: &mut [S], model: &Model<'_, S>, conditions: &Conditions<S>, weight: f64) {
+    for (mean, at) in means.iter_mut().zip(conditions.surfaces.iter()) {
+        *mean += at.solar.scale(weight);
+    }
+    if means.is_empty() {
+        return;
+    }
+    for (&w, window) in model.plan.windows.iter().zip(&conditions.sun.windows) {
+        let all = window.panes.iter().fold(S::zero(), |sum, &pane| sum + pane);
+        for surface in SurfaceId::pair(w) {
+            let shared = conditions.surfaces[surface].solar;
+            means[surface.index()] += (all - shared).scale(weight);
+        }
     }
 }

@@ -105,7 +105,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.begin_step(state, 0.0);
                 self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
-                self.weather.average_instant();
+                self.weather.average_instant(&self.model);
                 Ok(())
             },
         )

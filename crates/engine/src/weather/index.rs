@@ -49,6 +49,8 @@ pub(crate) struct WeatherIndex<S> {
     pub(crate) imposed: Vec<SurfaceId>,
     /// Surfaces not outdoors with a measured irradiance: its source and their absorptance [-].
     pub(crate) irradiated: Vec<(SurfaceId, usize, S)>,
+    /// Surfaces with a measured heat transfer coefficient: forcing channel and factor [-].
+    pub(crate) measured: Vec<(SurfaceId, usize, S)>,
 }
 
 impl<S: Real> WeatherIndex<S> {
@@ -61,9 +63,12 @@ impl<S: Real> WeatherIndex<S> {
             windy: Vec::new(),
             imposed: Vec::new(),
             irradiated: Vec::new(),
+            measured: Vec::new(),
         };
         for (index, surface) in coefficients.surfaces.entries() {
             let source = all.add_source(plan, coefficients, index);
+            let measured = surface.convection.as_ref().and_then(SurfaceConvection::measured);
+            all.measured.extend(measured.map(|(channel, factor)| (index, channel, factor)));
             match (&surface.boundary, source) {
                 (Boundary::Outdoors(outdoors), _) => {
                     let emission = outdoors.emission.as_ref().map(|law| all.add_emission(law));

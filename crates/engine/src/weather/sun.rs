@@ -177,6 +177,7 @@ impl<S: Real> SolarConditions<S> {
             }
             match distribution {
                 SolarDistribution::Fixed(fixed) => self.distribute_fixed(z, zone, fixed, surfaces),
+                SolarDistribution::Split(split) => self.distribute_split(z, zone, split, surfaces),
                 SolarDistribution::Traced(traced) => {
                     self.trace_beams(plan, z, traced, now);
                     self.distribute_traced(z, zone, traced, coefficients, surfaces);
@@ -186,6 +187,10 @@ impl<S: Real> SolarConditions<S> {
                 let Some(glass) = &coefficients.walls[plan.windows[window]].glass else { continue };
                 let on = match distribution {
                     SolarDistribution::Fixed(fixed) => fixed.on_glass[i] * self.zones[z].transmitted,
+                    SolarDistribution::Split([beam, diffuse]) => {
+                        let [direct, scattered] = self.parts(z, zone);
+                        beam.on_glass[i] * direct + diffuse.on_glass[i] * scattered
+                    }
                     SolarDistribution::Traced(traced) => traced.irradiance(i, &self.incidence[z]),
                 };
                 let panes = &mut self.windows[window].panes;
@@ -211,6 +216,31 @@ impl<S: Real> SolarConditions<S> {
         for (i, &surface) in zone.surfaces.iter().enumerate() {
             surfaces[surface].solar = fixed.absorbed[i] * transmitted;
         }
+    }
+
+    /// Distributes beam and diffuse sun in a zone by fractions of their own.
+    // A rare law: kept out of the code of the others.
+    #[inline(never)]
+    fn distribute_split(
+        &mut self,
+        z: usize,
+        zone: &ZonePlan,
+        [beam, diffuse]: &[FixedDistribution<S>; 2],
+        surfaces: &mut BySurface<SurfaceConditions<S>>,
+    ) {
+        let [direct, scattered] = self.parts(z, zone);
+        self.zones[z].lost = beam.lost * direct + diffuse.lost * scattered;
+        self.zones[z].in_glass = beam.in_glass * direct + diffuse.in_glass * scattered;
+        for (i, &surface) in zone.surfaces.iter().enumerate() {
+            surfaces[surface].solar = beam.absorbed[i] * direct + diffuse.absorbed[i] * scattered;
+        }
+    }
+
+    /// Beam and diffuse sun transmitted into a zone [W].
+    fn parts(&self, z: usize, zone: &ZonePlan) -> [S; 2] {
+        let beams = zone.windows.iter().map(|&(window, _)| self.windows[window].beam);
+        let direct = beams.fold(S::zero(), |sum, beam| sum + beam);
+        [direct, self.zones[z].transmitted - direct]
     }
 
     /// The power of first incidence on each surface of a zone.

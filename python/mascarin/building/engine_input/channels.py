@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mascarin.building.convection import measured_column
 from mascarin.building.description import Description
 from mascarin.building.rules import references
 
@@ -9,7 +10,13 @@ from mascarin.building.rules import references
 def channels(building: Description) -> list[str]:
     """Measured columns that a building refers to, in the order of the description."""
     sides = [side for surface in building.surfaces.values() for side in surface.sides]
-    columns = [column for side in sides for column in (side.measured, side.irradiance)]
+    columns = [
+        column
+        for side in sides
+        for column in (side.measured, side.irradiance, measured_column(side.convection))
+    ]
+    panes = (side for window in building.windows.values() for side in (window.outside, window.inside))
+    columns += [measured_column(side.convection) for side in panes]
     return list(dict.fromkeys(column for column in columns if column is not None))
 
 

@@ -109,8 +109,8 @@ def describe(
         "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
         "surfaces": [
             *each(building.surfaces, "surfaces", ids, partial(describe_surface, building, columns, ids)),
-            *each(building.windows, "windows", ids, partial(describe_window, building, ids)),
-            *(describe_frame(building, name, ids) for name in framed(building)),
+            *each(building.windows, "windows", ids, partial(describe_window, building, columns, ids)),
+            *(describe_frame(building, columns, name, ids) for name in framed(building)),
         ],
         "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
         "shades": [corners(shade.vertices) for shade in building.shades.values()],

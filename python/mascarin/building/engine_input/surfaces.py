@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mascarin.building.convection import Convection, Power
+from mascarin.building.convection import Convection, Measured, Power
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, corners, deeper, fields_of
 from mascarin.building.surface import Side, Surface
@@ -33,7 +33,7 @@ def describe_surface(
 def _side(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
     written = fields_of(side, ids) | {"facing": _facing(side, zones, columns, ids)}
     if side.convection is not None:
-        written["convection"] = describe_convection(side.convection, ids)
+        written["convection"] = describe_convection(side.convection, columns, ids)
     if side.longwave is not None:
         written["longwave"] = fields_of(side.longwave, ids, "longwave.")
     if side.irradiance is not None:
@@ -53,8 +53,14 @@ def _facing(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
     return {"kind": side.faces}
 
 
-def describe_convection(convection: Convection, ids: Ids) -> Json:
+def describe_convection(convection: Convection, columns: list[str], ids: Ids) -> Json:
     """Describe a surface heat transfer coefficient."""
+    if isinstance(convection, Measured):
+        return {
+            "kind": "measured",
+            "channel": columns.index(convection.column),
+            "factor": ids("convection.factor"),
+        }
     if isinstance(convection, Power):
         return {
             "kind": "power",

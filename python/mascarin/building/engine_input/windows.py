@@ -21,11 +21,11 @@ def describe_glazing(name: str, glazing: Glazing, ids: Ids) -> Json:
     """Describe a glazing as a construction."""
     if isinstance(glazing, SimpleGlazing):
         keys = ("u_value", "solar_heat_gain", "panes", "category")
-        films = [ids("outside_film"), ids("inside_film")]
-        return {
-            "name": name,
-            "glazing": {"kind": "simple", **{key: ids(key) for key in keys}, "films": films},
-        }
+        rated: Json = {"kind": "simple", **{key: ids(key) for key in keys}}
+        rated["films"] = [ids("outside_film"), ids("inside_film")]
+        if glazing.transmittance is not None:
+            rated["transmittance"] = ids("transmittance")
+        return {"name": name, "glazing": rated}
     panes = [_pane(pane, deeper(ids, f"panes.{k}")) for k, pane in enumerate(glazing.panes)]
     gaps = [_gap(gap, deeper(ids, f"gaps.{k}")) for k, gap in enumerate(glazing.gaps)]
     written: Json = {"kind": "panes", "panes": panes, "gaps": gaps}
@@ -77,14 +77,15 @@ def _angular(table: Angular, ids: Ids) -> Json:
         "transmittance_scale": ids("angular.transmittance_scale"),
         "absorptance_scale": ids("angular.absorptance_scale"),
     }
-    if table.diffuse is not None:
-        written["diffuse_transmittance"] = float(table.diffuse.transmittance)
-        written["diffuse_absorptance"] = list(map(float, table.diffuse.absorptance))
+    for key, optics in (("diffuse", table.diffuse), ("back", table.back)):
+        if optics is not None:
+            written[f"{key}_transmittance"] = float(optics.transmittance)
+            written[f"{key}_absorptance"] = list(map(float, optics.absorptance))
     return written
 
 
 def describe_window(
-    building: Description, every: Mapping[str, int], name: str, window: Window, ids: Ids
+    building: Description, columns: list[str], every: Mapping[str, int], name: str, window: Window, ids: Ids
 ) -> Json:
     """Describe the glass of a window as a surface."""
     glass = building.glazings[window.glazing]
@@ -98,7 +99,7 @@ def describe_window(
             glass.panes[last].emissivity, lambda key: every[f"{path}panes.{last}.{key}"], "emissivity"
         )
         emissivity = [outer[0], inner[1]]
-    written = _glazed(building, every, window, ids, emissivity) | {
+    written = _glazed(building, columns, every, window, ids, emissivity) | {
         "name": name,
         "construction": len(building.constructions) + list(building.glazings).index(window.glazing),
         "cavity_height": ids("cavity_height"),
@@ -108,11 +109,11 @@ def describe_window(
     return written
 
 
-def describe_frame(building: Description, name: str, every: Mapping[str, int]) -> Json:
+def describe_frame(building: Description, columns: list[str], name: str, every: Mapping[str, int]) -> Json:
     """Describe the frame of a window as a surface."""
     ids = below(every, f"windows.{name}")
     window = building.windows[name]
-    written = _glazed(building, every, window, ids, [ids("frame.emissivity")] * 2)
+    written = _glazed(building, columns, every, window, ids, [ids("frame.emissivity")] * 2)
     written["outside"]["absorptance"] = written["inside"]["absorptance"] = ids("frame.absorptance")
     return written | {
         "name": f"{name}.frame",
@@ -128,7 +129,12 @@ def describe_frame_construction(name: str, material: int) -> Json:
 
 
 def _glazed(
-    building: Description, every: Mapping[str, int], window: Window, ids: Ids, emissivity: list[int]
+    building: Description,
+    columns: list[str],
+    every: Mapping[str, int],
+    window: Window,
+    ids: Ids,
+    emissivity: list[int],
 ) -> Json:
     """Describe what glass and frame of a window have in common."""
     wall = building.surfaces[window.surface]
@@ -136,14 +142,14 @@ def _glazed(
     outside = fields_of(window.outside, deeper(ids, "outside")) | {
         "facing": {"kind": "outdoors"},
         "emissivity": emissivity[0],
-        "convection": describe_convection(window.outside.convection, deeper(ids, "outside")),
+        "convection": describe_convection(window.outside.convection, columns, deeper(ids, "outside")),
     }
     if window.outside.longwave is not None:
         outside["longwave"] = fields_of(window.outside.longwave, deeper(ids, "outside"), "longwave.")
     inside = {
         "facing": {"kind": "zone", "zone": list(building.zones).index(str(wall.inside.zone))},
         "emissivity": emissivity[1],
-        "convection": describe_convection(window.inside.convection, deeper(ids, "inside")),
+        "convection": describe_convection(window.inside.convection, columns, deeper(ids, "inside")),
     }
     shape = {"area": ids("area"), "vertices": corners(window.vertices), **direction}
     return shape | {"outside": outside, "inside": inside}

@@ -10,8 +10,8 @@ from mascarin.building.engine_input.ids import Ids, Json, Places, fields_of
 from mascarin.building.geometry import net_areas, view_factors
 from mascarin.building.part import Part
 from mascarin.building.rules import surface_names
-from mascarin.building.zone import AirPath, GivenSun, IdealLoads, Opening, Zone
-from mascarin.building.zone_surfaces import closed, surfaces_of_zone
+from mascarin.building.zone import AirPath, FloorSun, GivenSun, IdealLoads, Opening, SunShares, Zone
+from mascarin.building.zone_surfaces import closed, floors, surfaces_of_zone
 from mascarin.errors import InputError
 
 
@@ -67,14 +67,25 @@ def describe_opening(building: Description, places: Places, name: str, opening: 
 
 
 def _sun(building: Description, name: str, zone: Any, ids: Ids) -> Json:
+    seen = surfaces_of_zone(name, building.surfaces, building.windows)
+    if isinstance(zone.sun, FloorSun):
+        return {"kind": "floor", "floor": floors(seen)}
     if not isinstance(zone.sun, GivenSun):
         return {"kind": "area" if zone.sun is None else zone.sun.kind}
-    given = zone.sun.shares
-    shares = [
-        ids(f"sun.shares.{item.name}") if item.name in given and item.surface is not None else None
-        for item in surfaces_of_zone(name, building.surfaces, building.windows)
-    ]
-    return {"kind": "shares", "faces": shares, "lost": ids("sun.lost")}
+
+    def shares(part: GivenSun | SunShares, path: str) -> Json:
+        faces = [
+            ids(f"{path}.shares.{item.name}")
+            if item.name in part.shares and item.surface is not None
+            else None
+            for item in seen
+        ]
+        return {"faces": faces, "lost": ids(f"{path}.lost")}
+
+    written: Json = {"kind": "shares", **shares(zone.sun, "sun")}
+    if zone.sun.diffuse is not None:
+        written["diffuse"] = shares(zone.sun.diffuse, "sun.diffuse")
+    return written
 
 
 def view_weights(building: Description, zone: str) -> list[list[float]]:

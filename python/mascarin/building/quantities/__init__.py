@@ -78,6 +78,7 @@ from mascarin.building.quantities.materials import (
 )
 from mascarin.building.quantities.site import (
     AirDensity,
+    AirSpecificHeat,
     Altitude,
     BoundaryLayer,
     CloudBase,
@@ -121,6 +122,7 @@ from mascarin.building.quantities.windows import (
     SunShare,
     SurfaceResistance,
     Transmittance,
+    UnitTransmittance,
     WindowArea,
 )
 
@@ -130,6 +132,7 @@ __all__ = [
     "AirChangePerKelvin",
     "AirChangePerSpeed",
     "AirDensity",
+    "AirSpecificHeat",
     "Altitude",
     "Area",
     "AreaFactor",
@@ -218,6 +221,7 @@ __all__ = [
     "Thickness",
     "Tilt",
     "Transmittance",
+    "UnitTransmittance",
     "Ventilation",
     "ViewFactor",
     "Volume",

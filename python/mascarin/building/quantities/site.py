@@ -43,6 +43,15 @@ AirDensity = Annotated[
         Limits(above=0, at_most=3),
     ),
 ]
+AirSpecificHeat = Annotated[
+    Number,
+    Quantity(
+        "J/(kg K)",
+        "Specific heat of the air in the zones and of the air that flows into them; none: dry air, 1006",
+        Percent(2, "0 to 25 g of water vapour in a kilogram of air"),
+        Limits(at_least=500, at_most=5000),
+    ),
+]
 GroundReflectance = Annotated[
     Number,
     Quantity(

@@ -94,6 +94,15 @@ SolarHeatGain = Annotated[
         Limits(above=0, at_most=0.95),
     ),
 ]
+UnitTransmittance = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Solar transmittance of the whole glazing at normal incidence (EN 410, direct)",
+        Percent(3, "batch and dirt"),
+        Limits(at_least=1e-3, at_most=0.95),
+    ),
+]
 PaneCount = Annotated[
     Number,
     Quantity(

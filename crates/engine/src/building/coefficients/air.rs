@@ -1,14 +1,22 @@
-//! Density of the air in the zones.
+//! Density and heat capacity of the air in the zones.
 
 use crate::building::plan::Plan;
 use crate::input::values::Values;
 use crate::number::real::Real;
-use crate::physics::constants::AIR_GAS_CONSTANT;
+use crate::physics::constants::{AIR_GAS_CONSTANT, AIR_SPECIFIC_HEAT};
 
 /// Density of the air in the zones [kg/m3]: given, or by the altitude of the site.
 pub(crate) fn density<S: Real>(plan: &Plan, values: &Values<'_, S>) -> S {
     let site = &plan.description.site;
     site.air_density.map_or_else(|| density_at(values.get(site.altitude)), |id| values.get(id))
+}
+
+/// Heat capacity of a cubic metre of air of a density [kg/m3]: [J/(m3 K)].
+pub(crate) fn heat_capacity<S: Real>(plan: &Plan, values: &Values<'_, S>, density: S) -> S {
+    match plan.description.site.air_specific_heat {
+        Some(id) => density * values.get(id),
+        None => density.scale(AIR_SPECIFIC_HEAT),
+    }
 }
 
 /// Density of dry air [kg/m3] at an altitude [m]: pressure of the standard atmosphere (ICAO Doc 7488) at 15 degC.

@@ -45,11 +45,11 @@ impl<S: Real> Coefficients<S> {
         let surfaces: BySurface<_> =
             plan.surfaces.ids().map(|i| SurfaceCoefficients::new(plan, i, &values)).collect();
         let site = &description.site;
-        let density = air::density(plan, &values);
+        let heat = air::heat_capacity(plan, &values, air::density(plan, &values));
         let zones = (0..plan.zones.len())
-            .map(|i| ZoneCoefficients::new(plan, i, &values, &walls, &surfaces, density))
+            .map(|i| ZoneCoefficients::new(plan, i, &values, &walls, &surfaces, heat))
             .collect();
-        let paths = description.air_paths.iter().map(|path| Path::new(path, &values, density)).collect();
+        let paths = description.air_paths.iter().map(|path| Path::new(path, &values, heat)).collect();
         Self {
             walls,
             surfaces,

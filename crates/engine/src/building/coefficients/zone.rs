@@ -7,7 +7,6 @@ use crate::input::description::{Infiltration, ParamId, ZoneLongwave};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::{AirFlow, Opening};
-use crate::physics::constants::AIR_SPECIFIC_HEAT;
 use crate::physics::gains::{Gain, Thermostat};
 use crate::physics::longwave::{Emission, direct_exchange_areas, exchange_areas, self_weight};
 
@@ -48,13 +47,14 @@ pub struct ZoneCoefficients<S> {
 }
 
 impl<S: Real> ZoneCoefficients<S> {
+    /// `heat`: heat capacity of a cubic metre of air [J/(m3 K)].
     pub(crate) fn new(
         plan: &Plan,
         index: usize,
         values: &Values<'_, S>,
         walls: &[WallCoefficients<S>],
         surfaces: &BySurface<SurfaceCoefficients<S>>,
-        density: S,
+        heat: S,
     ) -> Self {
         let definition = &plan.description.zones[index];
         let zone_surfaces = &plan.zones[index].surfaces;
@@ -72,9 +72,8 @@ impl<S: Real> ZoneCoefficients<S> {
             Vec::new()
         };
         let exchange_sums = sums_of_others(&exchange, zone_surfaces.len());
-        let air_capacity = values.get(definition.volume) * density.scale(AIR_SPECIFIC_HEAT);
+        let air_capacity = values.get(definition.volume) * heat;
         let Infiltration { constant, temperature, wind } = &definition.infiltration;
-        let heat = density.scale(AIR_SPECIFIC_HEAT);
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
         let ventilation = definition.ventilation.iter();
         let thermostat = |ideal_load| Thermostat::new(ideal_load, values);

@@ -124,5 +124,10 @@ fn check_angular(place: &str, table: &Angular, panes: usize) -> Checked {
         check_count(&within("diffuse absorptance"), diffuse.len(), panes, "one for each pane")?;
         check_fractions(&within("diffuse absorptance"), diffuse)?;
     }
+    check_fractions(&within("transmittance from inside"), &table.back_transmittance)?;
+    if let Some(back) = &table.back_absorptance {
+        check_count(&within("absorptance from inside"), back.len(), panes, "one for each pane")?;
+        check_fractions(&within("absorptance from inside"), back)?;
+    }
     Ok(())
 }

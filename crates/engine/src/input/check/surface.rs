@@ -51,7 +51,7 @@ fn check_side(description: &Description, place: &str, side: &Side, glazed: bool)
         return refuse(place, "absorptance of a window", "none: its panes have their own");
     }
     check_irradiance(place, side, channels)?;
-    check_convection(place, side)
+    check_convection(place, side, channels)
 }
 
 fn check_irradiance(place: &str, side: &Side, channels: usize) -> Checked {
@@ -67,12 +67,15 @@ fn check_irradiance(place: &str, side: &Side, channels: usize) -> Checked {
 }
 
 /// A correlation that needs the wind stands outdoors or in a zone, and a rough surface has a perimeter.
-fn check_convection(place: &str, side: &Side) -> Checked {
+fn check_convection(place: &str, side: &Side, channels: usize) -> Checked {
     let Some(convection) = &side.convection else { return Ok(()) };
     if let Convection::Tarp { roughness, perimeter, .. } = convection
         && roughness.is_some() != perimeter.is_some()
     {
         return refuse(place, "only one of them", "roughness and perimeter together, or none");
+    }
+    if let Convection::Measured { channel, .. } = convection {
+        check_index(place, "convection in channel", *channel, channels)?;
     }
     let imposed = matches!(side.facing, Facing::Measured { .. } | Facing::Ground { .. });
     let correlation =

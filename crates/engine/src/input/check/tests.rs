@@ -226,7 +226,7 @@ fn parts_that_need_each_other_come_together() {
     refused(|d| d.constructions[0].layers[0].nodes = 0, &["layer board", "at least one node"]);
     refused(|d| d.constructions[0].layers[1].nodes = 1, &["layer gap", "without nodes"]);
     refused(
-        |d| d.zones[0].sun = ZoneSun::Shares { surfaces: vec![None; 2], lost: None },
+        |d| d.zones[0].sun = ZoneSun::Shares { surfaces: vec![None; 2], lost: None, diffuse: None },
         &["zone south, sun", "2 values", "expected 3"],
     );
     refused(|d| d.zones[0].sun = ZoneSun::Geometry, &["zone south, sun", "surface window without vertices"]);

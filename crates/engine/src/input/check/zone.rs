@@ -64,8 +64,16 @@ fn check_sun(description: &Description, index: usize, zone: &Zone, surfaces: usi
     let place = format!("zone {}, sun", zone.name);
     match &zone.sun {
         ZoneSun::Area => Ok(()),
-        ZoneSun::Shares { surfaces: given, .. } => {
-            check_count(&place, given.len(), surfaces, "one share for each of the zone's surfaces")
+        ZoneSun::Shares { surfaces: given, diffuse, .. } => {
+            let why = "one share for each of the zone's surfaces";
+            check_count(&place, given.len(), surfaces, why)?;
+            diffuse.as_ref().map_or(Ok(()), |diffuse| {
+                check_count(&format!("{place}, diffuse"), diffuse.faces.len(), surfaces, why)
+            })
+        }
+        ZoneSun::Floor { floor } => {
+            check_count(&place, floor.len(), surfaces, "one flag for each of the zone's surfaces")?;
+            if floor.contains(&true) { Ok(()) } else { refuse(place, "no floor", "at least one") }
         }
         ZoneSun::Geometry => {
             let drawn = |wall: &Surface| {

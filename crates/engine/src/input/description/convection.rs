@@ -13,6 +13,13 @@ pub enum Convection {
         /// [W/(m2 K)].
         coefficient: ParamId,
     },
+    /// A forcing channel [W/(m2 K)], times a factor.
+    Measured {
+        /// Index into [`Description::channels`](super::Description::channels).
+        channel: usize,
+        /// Multiplies the channel [-].
+        factor: ParamId,
+    },
     /// `constant + wind V`.
     LinearWind {
         /// Coefficient in still air [W/(m2 K)].

@@ -24,9 +24,12 @@ pub enum Glazing {
         u_value: ParamId,
         /// Total solar heat gain at normal incidence [-].
         solar_heat_gain: ParamId,
-        /// Number of panes, for the angular law [-].
+        /// Solar transmittance at normal incidence [-]; none: estimated.
+        #[serde(default)]
+        transmittance: Option<ParamId>,
+        /// Number of panes [-].
         panes: ParamId,
-        /// Category of coating, for the angular law [-].
+        /// Category of glass, for the angular law [-].
         category: ParamId,
         /// Rated resistances of the outside and inside surface [m2 K/W].
         #[serde(rename = "films")]
@@ -115,6 +118,12 @@ pub struct Angular {
     /// Hemispherical absorptance of each pane [-]; none: integrated.
     #[serde(default)]
     pub diffuse_absorptance: Option<Vec<f64>>,
+    /// Hemispherical transmittance from inside [-]; none: that from outside.
+    #[serde(default)]
+    pub back_transmittance: Option<f64>,
+    /// Hemispherical absorptance of each pane from inside, outside to inside [-]; none: that from outside, panes reversed.
+    #[serde(default)]
+    pub back_absorptance: Option<Vec<f64>>,
     /// Multiplies the transmittances [-].
     pub transmittance_scale: ParamId,
     /// Multiplies the absorptances [-].

@@ -31,4 +31,6 @@ pub use parameter::{ParamId, Parameter};
 pub use phase_change::{HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail};
 pub use site::{Clouds, DiffuseSky, Site, Sky, WindProfile};
 pub use surface::{Exposure, Facing, FrameShare, OutdoorLongwave, Sensor, Side, Surface};
-pub use zone::{Gain, IdealLoad, Infiltration, SetPoint, Ventilation, Zone, ZoneLongwave, ZoneSun};
+pub use zone::{
+    Gain, IdealLoad, Infiltration, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave, ZoneSun,
+};

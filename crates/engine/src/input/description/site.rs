@@ -13,6 +13,9 @@ pub struct Site {
     /// Density of the air in the zones [kg/m3]; none: from the altitude.
     #[serde(default)]
     pub air_density: Option<ParamId>,
+    /// Specific heat of the air [J/(kg K)]; none: that of dry air.
+    #[serde(default)]
+    pub air_specific_heat: Option<ParamId>,
     /// Solar reflectance of the ground [-].
     pub ground_reflectance: ParamId,
     /// Wind speed at a surface from that at the mast.

@@ -85,9 +85,28 @@ pub enum ZoneSun {
         /// Leaves through the windows [-]; none: nothing.
         #[serde(default)]
         lost: Option<ParamId>,
+        /// Shares of the diffuse part; none: the same for all.
+        #[serde(default)]
+        diffuse: Option<SunShares>,
+    },
+    /// The beam evenly on the floor; what it reflects, and the diffuse part, as by area.
+    Floor {
+        /// Which of the zone's surfaces, in their order, are floor.
+        floor: Vec<bool>,
     },
     /// The beam where its rays end, all else by view factors; what is reflected again by view factors.
     Geometry,
+}
+
+/// Shares of a part of the transmitted sun, scaled to a sum of one.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SunShares {
+    /// Absorbed by each of the zone's surfaces, in their order [-]; none: nothing.
+    pub faces: Vec<Option<ParamId>>,
+    /// Leaves through the windows [-]; none: nothing.
+    #[serde(default)]
+    pub lost: Option<ParamId>,
 }
 
 /// Heat from people, light and machines. The radiative part is absorbed by the surfaces of the zone.

@@ -6,6 +6,7 @@ use super::correlation::{Correlation, Placement, WindPart};
 use super::doe2::Doe2;
 use super::iso15099::Iso15099;
 use super::linear_wind::LinearWind;
+use super::measured::Measured;
 use super::mowitt::Mowitt;
 use super::natural::{Coefficient, Difference};
 use super::paper_eq5::PaperEq5;
@@ -85,13 +86,14 @@ macro_rules! laws {
     };
 }
 
-laws!(Constant, LinearWind, AlamdariHammond, PaperEq5, Tarp, Mowitt, Doe2, Iso15099, Power);
+laws!(Constant, LinearWind, AlamdariHammond, PaperEq5, Tarp, Mowitt, Doe2, Iso15099, Power, Measured);
 
 impl<S: Real> Law<S> {
     fn new(values: &Values<'_, S>, law: &Convection, surface: &Placement<S>) -> Self {
         let get = |id| values.get(id);
         match law {
             Convection::Constant { coefficient } => Self::Constant(Constant::new(get(*coefficient))),
+            Convection::Measured { channel, factor } => Self::Measured(Measured::new(*channel, get(*factor))),
             Convection::LinearWind { constant, wind } => {
                 Self::LinearWind(LinearWind::new(get(*constant), get(*wind), surface))
             }
@@ -182,6 +184,11 @@ impl<S: Real> SurfaceConvection<S> {
     /// The coefficient, where it depends neither on temperature nor on wind.
     pub fn constant(&self) -> Option<S> {
         if let Law::Constant(law) = &self.law { Some(law.coefficient) } else { None }
+    }
+
+    /// Forcing channel and factor of a measured coefficient.
+    pub(crate) fn measured(&self) -> Option<(usize, S)> {
+        if let Law::Measured(law) = &self.law { Some((law.channel, law.factor)) } else { None }
     }
 
     /// Whether the heat flow is linear in the temperature difference.

@@ -7,6 +7,7 @@
 //! | file | correlation | used |
 //! |---|---|---|
 //! | [`constant`] | one number | anywhere |
+//! | [`measured`] | a forcing channel | anywhere |
 //! | [`linear_wind`] | `a + b V` (`McAdams` 1954) | outdoors |
 //! | [`alamdari_hammond`] | Alamdari & Hammond (1983) | indoors |
 //! | [`paper_eq5`] | Guichard et al. (2016), eq. 5 as printed | indoors |
@@ -40,6 +41,7 @@ pub(crate) mod doe2;
 pub(crate) mod iso15099;
 pub(crate) mod law;
 pub(crate) mod linear_wind;
+pub(crate) mod measured;
 pub(crate) mod mowitt;
 pub(crate) mod natural;
 pub(crate) mod paper_eq5;

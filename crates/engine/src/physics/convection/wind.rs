@@ -34,6 +34,7 @@ impl WindTerms {
                 }
                 Convection::Power { .. } => terms.logarithm = true,
                 Convection::Constant { .. }
+                | Convection::Measured { .. }
                 | Convection::LinearWind { .. }
                 | Convection::AlamdariHammond { .. }
                 | Convection::PaperEq5 { .. }

@@ -10,14 +10,14 @@
 //!
 //! Sources:
 //! - Multiple reflection between panes: Duffie & Beckman (2013), ch. 5, doi:10.1002/9781118671603.
-//! - Angular behaviour of a unit known by U and g only: Karlsson & Roos (2000), Solar Energy 69(4),
-//!   doi:10.1016/S0038-092X(00)00083-9; its transmittance at normal incidence: Arasteh, Kohler & Griffith (2009),
-//!   LBNL-2804E.
+//! - A unit known by U and g only: `rated.rs`.
 
 mod curves;
 mod diffuse;
 mod pane;
+mod rated;
 mod unit;
 
 pub use diffuse::Diffuse;
+pub(crate) use rated::Rating;
 pub use unit::Optics;

@@ -9,7 +9,8 @@ use crate::number::real::Real;
 
 /// Angles at which a calculated unit is tabulated [deg], close together near grazing incidence, where the transmittance falls
 /// steeply.
-const ANGLES: [f64; 13] = [0.0, 20.0, 40.0, 50.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 87.5, 89.0, 90.0];
+pub(super) const ANGLES: [f64; 13] =
+    [0.0, 20.0, 40.0, 50.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 87.5, 89.0, 90.0];
 
 /// Optics of a unit.
 #[derive(Debug, Clone)]
@@ -46,7 +47,7 @@ impl<S: Real> Optics<S> {
         Self { front: beam.diffuse(), beam, back }
     }
 
-    /// A unit by its table. From inside it is taken to be the same as from outside.
+    /// A unit by its table. From inside it is the same as from outside where nothing else is given.
     pub fn of_table(values: &Values<'_, S>, table: &Angular) -> Self {
         let (scale, absorbing) = (values.get(table.transmittance_scale), values.get(table.absorptance_scale));
         let units: Vec<Unit<S>> = (0..table.angles.len())
@@ -65,43 +66,18 @@ impl<S: Real> Optics<S> {
         }
         let mut back = front.clone();
         back.absorptance.reverse();
+        if let Some(transmittance) = table.back_transmittance {
+            back.transmittance = scale.scale(transmittance);
+        }
+        if let Some(absorptance) = &table.back_absorptance {
+            back.absorptance = absorptance.iter().map(|pane| absorbing.scale(*pane)).collect();
+        }
         Self { beam, front, back }
     }
-
-    /// A single absorbing sheet in place of a unit; `panes` and `category` as in Karlsson & Roos.
-    pub fn of_sheet(transmittance: S, absorptance: S, panes: S, category: S) -> Self {
-        let units: Vec<Unit<S>> = ANGLES
-            .iter()
-            .map(|angle| {
-                let share = karlsson_roos(*angle, panes, category);
-                vec![transmittance * share, absorptance * share]
-            })
-            .collect();
-        let beam = Curves::new(&ANGLES, &units);
-        let front = beam.diffuse();
-        Self { beam, back: front.clone(), front }
-    }
-}
-
-/// `1 - a x^alpha - b x^2 - c x^gamma`, x the angle over 90 deg.
-fn karlsson_roos<S: Real>(angle: f64, panes: S, category: S) -> S {
-    if angle <= 0.0 {
-        return S::one();
-    }
-    if angle >= 90.0 {
-        return S::zero();
-    }
-    let x = angle / 90.0;
-    let (a, b) = (8.0, S::constant(0.25) / category);
-    let c = S::constant(1.0 - a) - b;
-    let alpha = S::constant(5.2) + category.scale(0.7);
-    let gamma = S::constant(5.26) + panes.scale(0.06) + (S::constant(0.73) + panes.scale(0.04)) * category;
-    let base = S::constant(x);
-    S::one() - base.powf(alpha).scale(a) - b.scale(x * x) - c * base.powf(gamma)
 }
 
 /// Transmittance and absorptances of panes in a row, for light that arrives on the first one (net-radiation method).
-fn combined<S: Real>(plates: &[Plate<S>]) -> Unit<S> {
+pub(super) fn combined<S: Real>(plates: &[Plate<S>]) -> Unit<S> {
     let n = plates.len();
     // Reflectance of all panes from k on, seen from the front.
     let mut behind = vec![S::zero(); n + 1];

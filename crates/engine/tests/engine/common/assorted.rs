@@ -106,6 +106,8 @@ pub fn assorted_windows() -> Description {
         ],
         diffuse_transmittance: Some(0.36),
         diffuse_absorptance: None,
+        back_transmittance: None,
+        back_absorptance: None,
         transmittance_scale: number(&mut d, "table.transmittance_scale", 0.98),
         absorptance_scale: number(&mut d, "table.absorptance_scale", 1.02),
     };

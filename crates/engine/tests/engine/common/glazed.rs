@@ -55,6 +55,7 @@ fn sheet(d: &mut Description) -> Glazing {
     Glazing::Simple {
         u_value: number(d, "sheet.u_value", 2.1),
         solar_heat_gain: number(d, "sheet.solar_heat_gain", 0.7),
+        transmittance: None,
         panes: number(d, "sheet.panes", 2.0),
         category: number(d, "sheet.category", 4.0),
         surface_resistances: [number(d, "sheet.outside_film", 0.04), number(d, "sheet.inside_film", 0.13)],
@@ -138,7 +139,7 @@ fn suns() -> [fn(&mut Description) -> ZoneSun; 3] {
         |d| {
             let shares = [0.1, 0.05, 0.03, 0.03, 0.6, 0.15].map(|share| Some(number(d, "share", share)));
             let surfaces = shares.into_iter().chain([None; 3]).collect();
-            ZoneSun::Shares { surfaces, lost: Some(number(d, "lost", 0.04)) }
+            ZoneSun::Shares { surfaces, lost: Some(number(d, "lost", 0.04)), diffuse: None }
         },
         |_| ZoneSun::Geometry,
     ]

@@ -47,6 +47,7 @@ impl Builder {
         let site = Site {
             altitude: add("site.altitude", 55.0),
             air_density: None,
+            air_specific_heat: None,
             ground_reflectance: add("site.ground_reflectance", 0.2),
             wind: WindProfile {
                 mast_height: add("site.wind.mast_height", 10.0),

@@ -617,6 +617,7 @@ impl Maker<'_> {
             Glazing::Simple {
                 u_value: number(d, "glass.u_value", self.random.between(1.0, 3.0)),
                 solar_heat_gain: number(d, "glass.solar_heat_gain", self.random.between(0.3, 0.75)),
+                transmittance: None,
                 panes: number(d, "glass.panes", 2.0),
                 category: number(d, "glass.category", 4.0),
                 surface_resistances: [
@@ -675,6 +676,7 @@ impl Maker<'_> {
             d.zones[zone].sun = ZoneSun::Shares {
                 surfaces,
                 lost: Some(number(d, "sun.lost", self.random.between(0.01, 0.2))),
+                diffuse: None,
             };
         }
         let put = |d: &mut Description, id: ParamId, value: f64| d.parameters[id.0 as usize].value = value;

@@ -1,0 +1,74 @@
+"""Rated values of the windows of a building, from the panes and gaps that a run uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mascarin.building.description import Description
+from mascarin.building.engine_input.description import describe
+from mascarin.building.parameters import parameters
+
+
+@dataclass(frozen=True)
+class WindowRating:
+    """What the glass of a window is rated at.
+
+    Attributes
+    ----------
+    u_value : float
+        Thermal transmittance. [W/(m2 K)]
+    solar_heat_gain : float
+        Total solar heat gain at normal incidence. [-]
+    transmittance : float
+        Solar transmittance at normal incidence. [-]
+    diffuse_transmittance : float
+        Hemispherical solar transmittance. [-]
+
+    Examples
+    --------
+    >>> WindowRating(1.1, 0.6, 0.52, 0.45).u_value
+    1.1
+    """
+
+    u_value: float
+    solar_heat_gain: float
+    transmittance: float
+    diffuse_transmittance: float
+
+
+def window_ratings(building: Description) -> dict[str, WindowRating]:
+    """U value, solar heat gain and transmittance of the glass of every window, without its frame.
+
+    The engine computes them with the gaps and optics of a run, with glass of 2.5 degC outside and 17.5 degC
+    inside and the surface resistances of EN 673 (0.04 and 0.13 m2 K/W). `<window>.solar_transmittance` is the
+    transmittance during a run.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+
+    Returns
+    -------
+    dict of str to WindowRating
+        By name of the window.
+
+    References
+    ----------
+    EN 673:2011 and EN 410:2011.
+
+    Examples
+    --------
+    >>> from mascarin.building import load
+    >>> from mascarin.verification.bestest.catalogue import CASES
+    >>> rating = window_ratings(load(CASES["600"].file))["south_west_window"]
+    >>> round(rating.transmittance, 3), round(rating.solar_heat_gain, 2)
+    (0.703, 0.76)
+    """
+    if not building.windows:
+        return {}
+    from mascarin import _engine
+
+    described = describe(building, parameters(building), 900.0, {})
+    found = _engine.Plan(described.json).window_ratings(described.values)
+    return {name: WindowRating(*map(float, row)) for name, row in zip(building.windows, found, strict=True)}
