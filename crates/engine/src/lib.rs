@@ -39,9 +39,9 @@ pub use step::state;
 
 /// Runs of one plan.
 pub mod march {
-    pub use crate::run::control::RunControl as Watch;
     pub use crate::run::march::{Run, march};
     pub use crate::run::options::{Options, Warmup};
+    pub use crate::step::control::RunControl as Watch;
     pub use crate::step::{Counters, Scheme};
 }
 

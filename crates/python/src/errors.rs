@@ -60,6 +60,31 @@ pub fn guarded<T>(work: impl FnOnce() -> Result<T, EngineError>) -> PyResult<T> 
     }
 }
 
+/// Runs `work` that cannot be stopped on another thread with the GIL released. After Ctrl-C the call returns at once and the thread,
+/// which owns all that it works on, ends by itself.
+pub fn abandonable<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T, EngineError> + Send + 'static,
+) -> PyResult<T> {
+    let (sender, receiver) = sync_channel(1);
+    std::thread::spawn(move || {
+        // After Ctrl-C nobody waits for the result.
+        let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
+    });
+    let receiver = Mutex::new(receiver);
+    let wait = || receiver.lock().map_or(Err(RecvTimeoutError::Disconnected), |end| end.recv_timeout(PULSE));
+    loop {
+        match py.detach(wait) {
+            Ok(Ok(result)) => return result.map_err(|error| to_python(&error)),
+            Ok(Err(panic)) => return Err(defect(&*panic)),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(EngineDefect::new_err("the engine gave no result"));
+            }
+        }
+    }
+}
+
 /// Runs `work` on another thread with the GIL released, passing Ctrl-C on to it and progress to `report`.
 pub fn attended<T: Send>(
     py: Python<'_>,

@@ -14,7 +14,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::errors::{EngineInputError, attended, guarded, to_python};
+use crate::errors::{EngineInputError, abandonable, attended, guarded, to_python};
 use crate::options::RunOptions;
 
 /// A building compiled for the engine.
@@ -33,10 +33,10 @@ type JacobianArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>
 #[allow(clippy::needless_pass_by_value, reason = "the binding hands arrays over by value")]
 impl Plan {
     #[new]
-    fn new(description: &str) -> PyResult<Self> {
+    fn new(py: Python<'_>, description: &str) -> PyResult<Self> {
         let description: Description = serde_json::from_str(description)
             .map_err(|error| EngineInputError::new_err(format!("unreadable description: {error}")))?;
-        let plan = guarded(|| EnginePlan::new(description))?;
+        let plan = abandonable(py, move || EnginePlan::new(description))?;
         Ok(Self { plan })
     }
 

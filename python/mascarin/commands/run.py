@@ -43,10 +43,11 @@ def run(
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
     settings: Settings = None,
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Simulate a building with a weather file.
 
     Writes the time series to a file, or prints minimum, mean and maximum of each and the energy balance.
+    Ends with exit code 1 where the energy balance does not close.
 
     Parameters
     ----------
@@ -110,6 +111,7 @@ def run(
         print_json(_summary(results))
     elif out is None:
         _print(results)
+    return 0 if results.energy.closes else 1
 
 
 def _print_warnings(building: Building, simulation: Simulation) -> None:

@@ -22,6 +22,9 @@ FLOWS: Final = (
 )
 """Heat flows into a building; cooling removes heat and is negative."""
 
+CLOSED: Final = 1e-10
+"""Relative energy-balance residual up to which an energy balance closes: rounding stays below it. [-]"""
+
 
 @dataclass(frozen=True)
 class EnergyLedger:
@@ -60,6 +63,22 @@ class EnergyLedger:
     def closure(self) -> float:
         """The same as `relative_residual`. [-]"""
         return self.relative_residual
+
+    @property
+    def closes(self) -> bool:
+        """Whether the heat stored is the heat that flowed in: a residual of 1e-10 at most."""
+        return self.relative_residual <= CLOSED
+
+    def warnings(self) -> list[str]:
+        """One line where the energy balance does not close, else nothing."""
+        if self.closes:
+            return []
+        return [
+            "the energy balance does not close: the heat stored and the heat that flowed in differ by "
+            f"{self.relative_residual:.1e} of all heat exchanged, expected {CLOSED:g} at most. Temperatures "
+            "may be wrong by as much or more: use another time-stepping scheme ('apparent-capacity' never "
+            "closes) or a shorter step"
+        ]
 
     @classmethod
     def read(cls, raw: Mapping[str, Any]) -> Self:

@@ -58,7 +58,8 @@ class Results(Mapping[str, "xr.DataArray"]):
     provenance : Provenance
         Version, inputs and options.
     warnings : tuple of str
-        Phase-change layers that neither melted nor froze.
+        An energy balance that does not close; phase-change layers that neither melted nor froze; a time step
+        that is too long.
 
     Examples
     --------

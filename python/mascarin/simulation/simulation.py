@@ -11,6 +11,7 @@ import numpy as np
 
 from mascarin._io.arguments import names_of
 from mascarin.progress import reporting
+from mascarin.simulation import coarse
 from mascarin.simulation.compiled import MEMORY, CompiledRun
 from mascarin.simulation.energy import EnergyLedger
 from mascarin.simulation.options import RunOptions, described
@@ -286,11 +287,15 @@ class Simulation(VectorRuns):
         watched = unmelted.watched(self.building)
         records, raw = self.compiled.run(vector, Readings.of([*self.outputs, *watched]))
         records, seen = np.split(records, [len(self.outputs)], axis=1)
+        energy = EnergyLedger.read(raw)
+        warnings = [*energy.warnings(), *unmelted.warnings(self.building, seen)]
+        if self.scheme == "sdirk2":
+            warnings += coarse.warnings(self.building, self.outputs, records, self.step_seconds)
         return Results(
             outputs=self.outputs,
             index=self.index,
             records=np.ascontiguousarray(records),
-            energy=EnergyLedger.read(raw),
+            energy=energy,
             provenance=Provenance(
                 building=self.building.name,
                 building_hash=self.compiled.hash,
@@ -304,7 +309,7 @@ class Simulation(VectorRuns):
                 halved_steps=int(raw["halvings"]),
                 reversals=int(raw["reversals"]),
             ),
-            warnings=tuple(unmelted.warnings(self.building, seen)),
+            warnings=tuple(warnings),
         )
 
     # --- times, weather, identity -------------------------------------------------------------------------

@@ -139,14 +139,26 @@ pub struct Ledger<S> {
     pub total_exchanged: S,
     /// Sum over steps of |stored - into|.
     pub imbalance: S,
+    /// Heat that counts as nothing [J], see [`Self::closure`].
+    pub nothing: S,
 }
+
+/// Part of the heat content of a building that counts as nothing in a step [-]. Stored heat is a difference of contents, which are
+/// rounded to 1e-16; some thousand roundings add up in a step.
+const NOTHING: f64 = 1e-12;
 
 impl<S: Real> Ledger<S> {
     /// No heat yet.
     #[must_use]
     pub fn new() -> Self {
         let zero = S::zero();
-        Self { into: [zero; Flow::ALL.len()], stored: zero, total_exchanged: zero, imbalance: zero }
+        Self {
+            into: [zero; Flow::ALL.len()],
+            stored: zero,
+            total_exchanged: zero,
+            imbalance: zero,
+            nothing: zero,
+        }
     }
 
     /// Adds a step: heat into the building and its magnitude over the step [J], and the heat stored [J].
@@ -162,11 +174,18 @@ impl<S: Real> Ledger<S> {
         self.imbalance += (stored - total).abs();
     }
 
+    /// Sets the heat that a building contains [J] and the number of steps, see [`Self::closure`].
+    pub(crate) fn set_content(&mut self, content: S, steps: usize) {
+        self.nothing = content.scale(NOTHING * steps as f64);
+    }
+
     /// Relative energy-balance residual [-]: imbalance over total heat exchanged, summed over steps so that opposite errors do
-    /// not cancel.
+    /// not cancel. Zero where a building at rest exchanges nothing, and the imbalance is rounding of the heat that it contains.
     #[must_use]
     pub fn closure(&self) -> S {
-        self.imbalance / self.total_exchanged.max(S::constant(1e-300))
+        let at_rest = self.total_exchanged.lt(self.nothing) & self.imbalance.lt(self.nothing);
+        let scale = self.total_exchanged.max(self.nothing).max(S::constant(f64::MIN_POSITIVE));
+        S::select(at_rest, S::zero(), self.imbalance / scale)
     }
 }
 

@@ -9,11 +9,11 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::dual::Dual;
 use crate::number::real::Real;
-use crate::run::control::RunControl;
 use crate::run::march::march_observed;
 use crate::run::options::Options;
 use crate::run::outputs::Output;
 use crate::step::Stepper;
+use crate::step::control::RunControl;
 use crate::step::state::State;
 use crate::weather::conditions::Weather;
 

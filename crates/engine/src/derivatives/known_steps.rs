@@ -66,6 +66,10 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         };
         match action {
             Action::WarmUp(step) | Action::Step(step) => self.step(state, weather, step, dt, solution),
+            // Made in parts, whose solutions are not kept.
+            Action::FirstStep => {
+                return action.take(&mut self.stepper, state, weather, dt, &mut Ledger::new());
+            }
             Action::Balance => self.balance_surfaces(state, &weather.at(0, 0), solution),
         }
         Ok(())

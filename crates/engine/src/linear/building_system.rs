@@ -13,7 +13,7 @@ use crate::linear::laws::{LinearisedLaws, StageInputs};
 use crate::linear::step_maps::StepMaps;
 use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces, SurfaceLaws, solve_pair};
 use crate::linear::unknowns::Unknowns;
-use crate::linear::wall::WallSystem;
+use crate::linear::wall::{Response, WallSystem};
 use crate::linear::zone_front::{Elimination, ZoneFronts};
 use crate::number::line::Line;
 use crate::number::real::Real;
@@ -26,8 +26,8 @@ pub(crate) struct BuildingSystem<'a, S> {
     pub(crate) walls: Vec<WallSystem<S>>,
     /// Steps of the linear walls.
     pub(crate) step_maps: StepMaps<S>,
-    /// Heat into surface e of each wall by the temperature of surface o [W/(m2 K)].
-    pub(crate) responses: Vec<[[S; 2]; 2]>,
+    /// How the heat from each wall follows its surfaces.
+    pub(crate) responses: Vec<Response<S>>,
     /// Heat of the walls into their surfaces at surfaces of 0 degC [W/m2].
     pub(crate) sources: Vec<[S; 2]>,
     /// Effective stage length that walls are factored for [s]; NaN: none.
@@ -49,7 +49,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         Self {
             step_maps: StepMaps::new(plan, coefficients, &walls, diagonal),
             walls,
-            responses: vec![[[S::zero(); 2]; 2]; count],
+            responses: vec![Response::none(); count],
             sources: vec![[S::zero(); 2]; count],
             factored_length: f64::NAN,
             exterior: vec![ExteriorSurfaces::None; count],
@@ -91,7 +91,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         let parts = &inputs.model.parts;
         let matrix = self.factor_linear_walls(inputs.model, inputs.length) | parts.wind_changes_balances;
         if stage == 0 {
-            self.step_maps.first_sources(cells, &mut self.sources);
+            self.step_maps.first_sources(&self.walls, cells, &mut self.sources);
         } else {
             self.step_maps.second_sources(&mut self.sources);
         }
@@ -237,13 +237,13 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             [SurfaceRole::Exterior, SurfaceRole::Exterior] => {
                 let [outer, inner] = SurfaceId::pair(w)
                     .map(|surface| exterior_balance(model, inputs.conditions, inputs.laws, surface));
-                ExteriorSurfaces::Both(solve_pair(outer, inner, source, response))
+                ExteriorSurfaces::Both(solve_pair(outer, inner, source, &response))
             }
             [SurfaceRole::Zone { row: outer, .. }, SurfaceRole::Zone { row: inner, .. }] => {
                 for (e, (mine, other)) in [(outer, inner), (inner, outer)].into_iter().enumerate() {
                     if matrix {
-                        self.coupled.add_diagonal(mine, -(area * response[e][e]));
-                        self.coupled.add(mine, other, -(area * response[e][1 - e]));
+                        self.coupled.add_diagonal(mine, -(area * response.own(e)));
+                        self.coupled.add(mine, other, -(area * response.other(e)));
                     }
                     self.coupled.right[mine] += area * source[e];
                 }
@@ -275,8 +275,8 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             (ExteriorBalance::Fixed(_), _) => S::zero(),
             (ExteriorBalance::Gain(_), ExteriorSurfaces::One { line, .. }) if !matrix => line.slope,
             (ExteriorBalance::Gain(gain), _) => {
-                self.inverses[w] = S::one() / (gain.slope - response[o][o]);
-                response[o][e] * self.inverses[w]
+                self.inverses[w] = S::one() / (gain.slope - response.own(o));
+                response.other(o) * self.inverses[w]
             }
         };
         let offset = match balance {
@@ -284,9 +284,14 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             ExteriorBalance::Gain(gain) => (source[o] + gain.offset) * self.inverses[w],
         };
         if matrix {
-            self.coupled.add_diagonal(row, -(area * (response[e][e] + response[e][o] * slope)));
+            // Heat that leaves the surface in the zone and does not come back, as in `zone_front::exterior`.
+            let lost = match balance {
+                ExteriorBalance::Fixed(_) => -response.own(e),
+                ExteriorBalance::Gain(gain) => response.stored[e] + slope * (gain.slope + response.stored[o]),
+            };
+            self.coupled.add_diagonal(row, area * lost);
         }
-        self.coupled.right[row] += area * (source[e] + response[e][o] * offset);
+        self.coupled.right[row] += area * (source[e] + response.other(e) * offset);
         ExteriorSurfaces::One { side: o, line: Line { offset, slope } }
     }
 

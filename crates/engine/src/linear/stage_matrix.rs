@@ -10,7 +10,7 @@ use crate::building::model::Model;
 use crate::building::plan::{Plan, SurfaceRole};
 use crate::linear::building_system::{BuildingSystem, exterior_balance, is_held};
 use crate::linear::laws::{LinearisedLaws, StageInputs};
-use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces};
+use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces, determinant};
 use crate::linear::wall::WallSystem;
 use crate::number::real::{LinearSystem, Real};
 use crate::weather::conditions::Conditions;
@@ -108,9 +108,10 @@ impl<'a> StageMatrix<'a> {
     #[inline(always)]
     fn pair(&self, w: usize) -> ([[f64; 2]; 2], f64) {
         let response = self.system.responses[w];
-        let ([a, b], _) = self.balance(SurfaceId::outside(w)).equation(0, [0.0; 2], response);
-        let ([d, c], _) = self.balance(SurfaceId::inside(w)).equation(1, [0.0; 2], response);
-        ([[a, b], [c, d]], 1.0 / (a * d - b * c))
+        let (outer, inner) = (self.balance(SurfaceId::outside(w)), self.balance(SurfaceId::inside(w)));
+        let ([a, b], _) = outer.equation(0, [0.0; 2], &response);
+        let ([d, c], _) = inner.equation(1, [0.0; 2], &response);
+        ([[a, b], [c, d]], 1.0 / determinant(outer, inner, &response))
     }
 
     /// Replaces the right-hand sides of all equations (cells, surfaces, airs) by their solution.
@@ -135,7 +136,7 @@ impl<'a> StageMatrix<'a> {
                     let (local, zone) = (SurfaceId::new(w, side), SurfaceId::new(w, 1 - side));
                     surfaces[local.index()] = surfaces[local.index()].scale(self.yields(local));
                     let gain =
-                        self.model.coefficients.walls[w].area * self.system.responses[w][1 - side][side];
+                        self.model.coefficients.walls[w].area * self.system.responses[w].other(1 - side);
                     block[self.model.plan.row(zone)] += surfaces[local.index()].scale(gain);
                 }
                 ExteriorSurfaces::Both(_) => {
@@ -225,7 +226,7 @@ impl<'a> StageMatrix<'a> {
             }
             if let ExteriorSurfaces::One { side, .. } = self.system.exterior[w] {
                 let (local, zone) = (SurfaceId::new(w, side), SurfaceId::new(w, 1 - side));
-                let gain = self.model.coefficients.walls[w].area * self.system.responses[w][1 - side][side];
+                let gain = self.model.coefficients.walls[w].area * self.system.responses[w].other(1 - side);
                 surfaces[local.index()] += self.yields(local) * gain * surfaces[zone.index()];
             }
             let heat =

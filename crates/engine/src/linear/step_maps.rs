@@ -8,6 +8,9 @@
 //!
 //! with one stage r is zero. The heat that a wall sends into a surface is the conductance of its last half cell times the
 //! temperature of that cell, and so another row of these maps. The cells themselves are needed only at the end of the step.
+//!
+//! `A` has as many rows as columns. Of a wall of more than [`LONGEST`] cells it is not formed: `A x` then takes two solves with the
+//! tridiagonal factors, so that memory and work grow with the number of cells and not with its square.
 
 use core::ops::Range;
 
@@ -21,6 +24,10 @@ use crate::number::simd::widened;
 /// at once.
 const ROWS: usize = 4;
 
+/// Largest number of cells of a wall whose map is formed. Measured (see `docs/engine.md`): a product with the map takes less time
+/// than two solves up to some 80 cells with one member, and up to some 40 with eight in lanes.
+const LONGEST: usize = 48;
+
 /// Some rows of a map, column by column.
 type Rows<S> = [S; ROWS];
 
@@ -29,6 +36,8 @@ type Rows<S> = [S; ROWS];
 struct StepMap<S> {
     wall: usize,
     cells: Range<usize>,
+    /// Whether it has more than [`LONGEST`] cells: there is no map from the cells.
+    long: bool,
     /// Numbers of [`Rows`] in the map from the cells and in the map from the surfaces.
     blocks: [usize; 2],
     /// Conductance between each surface and the cell behind it [W/(m2 K)].
@@ -70,6 +79,7 @@ impl<S: Real> StepMap<S> {
         self.end_conductances = [chain.links[0].right, chain.links[n].left];
         let (zeros, mut known) = (vec![S::zero(); n], vec![S::zero(); n]);
         let (mut start, mut reached, mut carried) = (zeros.clone(), zeros.clone(), zeros.clone());
+        let columns = if self.long { 0..0 } else { 0..n };
         // One stage from temperatures of the cells, between surfaces at 0 degC.
         let mut stage = |from: &[S], to: &mut [S]| {
             let held: Vec<S> =
@@ -77,7 +87,7 @@ impl<S: Real> StepMap<S> {
             chain.source_changes(&held, &mut known);
             chain.temperature_changes(&known, [S::zero(); 2], to);
         };
-        for column in 0..n {
+        for column in columns {
             start.fill(S::zero());
             start[column] = S::one();
             stage(&start, &mut reached);
@@ -105,6 +115,32 @@ impl<S: Real> StepMap<S> {
             self.carried[0][side] = self.end_conductances[0] * carried[0];
             self.carried[1][side] = self.end_conductances[1] * carried[n - 1];
         }
+    }
+}
+
+impl<S: Real> StepMap<S> {
+    /// What the map from the cells gives, for a wall without one.
+    // One copy only: inlining multiplies compile time.
+    #[inline(never)]
+    fn solve_start(&self, chain: &WallSystem<S>, ratio: f64, start: &[S], rows: &mut [S]) {
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let n = start.len();
+                let (cells, heat) = rows.split_at_mut(n);
+                cells.copy_from_slice(start);
+                chain.free_stage(cells);
+                heat[0] = self.end_conductances[0] * cells[0];
+                heat[1] = self.end_conductances[1] * cells[n - 1];
+                // With one stage its solution is the end of the step.
+                if ratio != 0.0 {
+                    for (cell, &start) in cells.iter_mut().zip(start) {
+                        *cell = start.scale(1.0 - ratio) + cell.scale(ratio);
+                    }
+                    chain.free_stage(cells);
+                }
+            },
+        );
     }
 }
 
@@ -152,13 +188,17 @@ impl<S: Real> StepMaps<S> {
             }
             let nothing = [S::zero(); 2];
             let blocks = [2, 0].map(|more| (of_plan.len() + more).div_ceil(ROWS));
-            step_maps.from_cells.resize(step_maps.from_cells.len() + blocks[0] * of_plan.len(), zero);
+            let long = of_plan.len() > LONGEST;
+            if !long {
+                step_maps.from_cells.resize(step_maps.from_cells.len() + blocks[0] * of_plan.len(), zero);
+            }
             step_maps.from_surfaces.resize(step_maps.from_surfaces.len() + blocks[1], [zero; 4]);
             step_maps.by_start.resize(step_maps.by_start.len() + blocks[0], zero);
             let carried = [nothing; 2];
             step_maps.walls.push(StepMap {
                 wall,
                 cells,
+                long,
                 blocks,
                 end_conductances: nothing,
                 carried,
@@ -176,7 +216,8 @@ impl<S: Real> StepMaps<S> {
         for step_map in &mut self.walls {
             let [of_cells, of_surfaces] = step_map.blocks;
             let (own_cells, own_surfaces);
-            (own_cells, from_cells) = from_cells.split_at_mut(of_cells * step_map.cells.len());
+            let columns = if step_map.long { 0 } else { step_map.cells.len() };
+            (own_cells, from_cells) = from_cells.split_at_mut(of_cells * columns);
             (own_surfaces, from_surfaces) = from_surfaces.split_at_mut(of_surfaces);
             step_map.compute(&chains[step_map.wall], self.ratio, own_cells, own_surfaces);
         }
@@ -191,22 +232,24 @@ impl<S: Real> StepMaps<S> {
 
     /// Heat into the surfaces [W/m2] in the first stage of a step that starts from cells.
     #[inline(always)]
-    pub(crate) fn first_sources(&mut self, cells: &[S], sources: &mut [[S; 2]]) {
+    pub(crate) fn first_sources(&mut self, chains: &[WallSystem<S>], cells: &[S], sources: &mut [[S; 2]]) {
         with_wide_instructions::<S, _>(
             #[inline(always)]
-            || self.multiply_start(cells, sources),
+            || self.multiply_start(chains, cells, sources),
         );
     }
 
     #[inline(always)]
-    fn multiply_start(&mut self, cells: &[S], sources: &mut [[S; 2]]) {
+    fn multiply_start(&mut self, chains: &[WallSystem<S>], cells: &[S], sources: &mut [[S; 2]]) {
         let (mut maps, mut by_start) = (&self.from_cells[..], &mut self.by_start[..]);
         for step_map in &self.walls {
             let x = &cells[step_map.cells.clone()];
             let n = x.len();
             let own;
             (own, by_start) = by_start.split_at_mut(step_map.blocks[0]);
-            if !self.started {
+            if !self.started && step_map.long {
+                step_map.solve_start(&chains[step_map.wall], self.ratio, x, own.as_flattened_mut());
+            } else if !self.started {
                 for rows in &mut *own {
                     let map;
                     (map, maps) = maps.split_at(n);

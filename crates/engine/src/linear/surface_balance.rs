@@ -1,9 +1,10 @@
 //! Heat balances of single surfaces, all laws as straight lines, and the elimination of exterior surfaces.
 //!
-//! An exterior surface is in no zone. A wall sends heat `source_e + sum_o response_eo T_o` into its surface e; what acts on the
+//! An exterior surface is in no zone. A wall sends heat `source_e + sum_o response_eo T_o` into its surface e ([`Response`]); what acts on the
 //! surface from outside is `offset - slope T`. The balance of an exterior surface therefore has two unknowns, the surfaces of its
 //! wall, and is solved before all others: for its own temperature as a line of the other one's, or for both.
 
+use crate::linear::wall::Response;
 use crate::number::line::Line;
 use crate::number::real::Real;
 
@@ -29,10 +30,10 @@ impl<S: Real> ExteriorBalance<S> {
     /// The balance of surface e as an equation: coefficients of its own temperature and of the other surface's, and the
     /// right-hand side.
     #[inline(always)]
-    pub(crate) fn equation(self, e: usize, source: [S; 2], response: [[S; 2]; 2]) -> ([S; 2], S) {
+    pub(crate) fn equation(self, e: usize, source: [S; 2], response: &Response<S>) -> ([S; 2], S) {
         match self {
             Self::Fixed(value) => ([S::one(), S::zero()], value),
-            Self::Gain(gain) => ([gain.slope - response[e][e], -response[e][1 - e]], source[e] + gain.offset),
+            Self::Gain(gain) => ([gain.slope - response.own(e), -response.other(e)], source[e] + gain.offset),
         }
     }
 }
@@ -54,12 +55,32 @@ pub(crate) fn solve_pair<S: Real>(
     outer: ExteriorBalance<S>,
     inner: ExteriorBalance<S>,
     source: [S; 2],
-    response: [[S; 2]; 2],
+    response: &Response<S>,
 ) -> [S; 2] {
     let ([a, b], f) = outer.equation(0, source, response);
     let ([d, c], g) = inner.equation(1, source, response);
-    let determinant = a * d - b * c;
+    let determinant = determinant(outer, inner, response);
     [(f * d - b * g) / determinant, (a * g - c * f) / determinant]
+}
+
+/// Determinant of the equations of both surfaces of a wall that touches no zone: a sum of positive numbers, which keeps its
+/// digits where the wall conducts far better than heat is exchanged at its surfaces.
+#[inline(always)]
+pub(crate) fn determinant<S: Real>(
+    outer: ExteriorBalance<S>,
+    inner: ExteriorBalance<S>,
+    response: &Response<S>,
+) -> S {
+    match (outer, inner) {
+        (ExteriorBalance::Gain(outer), ExteriorBalance::Gain(inner)) => {
+            // Heat that leaves a surface and does not reach the other one.
+            let [outside, inside] = [outer.slope + response.stored[0], inner.slope + response.stored[1]];
+            outside * (inside + response.across[1]) + response.across[0] * inside
+        }
+        (ExteriorBalance::Fixed(_), ExteriorBalance::Gain(inner)) => inner.slope - response.own(1),
+        (ExteriorBalance::Gain(outer), ExteriorBalance::Fixed(_)) => outer.slope - response.own(0),
+        (ExteriorBalance::Fixed(_), ExteriorBalance::Fixed(_)) => S::one(),
+    }
 }
 
 #[cfg(test)]
@@ -67,8 +88,8 @@ mod tests {
     use super::*;
 
     /// A wall of one conductance [W/(m2 K)] without storage.
-    fn response(conductance: f64) -> [[f64; 2]; 2] {
-        [[-conductance, conductance], [conductance, -conductance]]
+    fn response(conductance: f64) -> Response<f64> {
+        Response { across: [conductance; 2], stored: [0.0; 2] }
     }
 
     /// Air on both sides: resistances in series.
@@ -78,7 +99,7 @@ mod tests {
         let outer = ExteriorBalance::Gain(Line { offset: 25.0 * -10.0, slope: 25.0 });
         let inner = ExteriorBalance::Gain(Line { offset: 8.0 * 20.0, slope: 8.0 });
         let flux = 30.0 / (1.0 / 25.0 + 1.0 / 2.0 + 1.0 / 8.0);
-        let [outside, inside] = solve_pair(outer, inner, [0.0; 2], response(2.0));
+        let [outside, inside] = solve_pair(outer, inner, [0.0; 2], &response(2.0));
         assert!((outside - (-10.0 + flux / 25.0)).abs() < 1e-12, "{outside}");
         assert!((inside - (20.0 - flux / 8.0)).abs() < 1e-12, "{inside}");
     }
@@ -88,10 +109,10 @@ mod tests {
     fn a_held_surface_stays_at_its_temperature() {
         let (held, heated) =
             (ExteriorBalance::Fixed(15.0), ExteriorBalance::Gain(Line { offset: 12.0, slope: 0.0 }));
-        assert_eq!(solve_pair(held, heated, [40.0, 0.0], response(2.0)), [15.0, 21.0]);
-        assert_eq!(solve_pair(heated, held, [0.0, 40.0], response(2.0)), [21.0, 15.0]);
+        assert_eq!(solve_pair(held, heated, [40.0, 0.0], &response(2.0)), [15.0, 21.0]);
+        assert_eq!(solve_pair(heated, held, [0.0, 40.0], &response(2.0)), [21.0, 15.0]);
         // Heat from the wall's storage counts like heat from outside.
         let adiabatic = ExteriorBalance::Gain(Line { offset: 0.0, slope: 0.0 });
-        assert_eq!(solve_pair(held, adiabatic, [0.0, 12.0], response(2.0)), [15.0, 21.0]);
+        assert_eq!(solve_pair(held, adiabatic, [0.0, 12.0], &response(2.0)), [15.0, 21.0]);
     }
 }

@@ -13,6 +13,12 @@
 //! both surface temperatures. Storage is positive and each column sums up to it, so that the matrix is an M-matrix: pivots
 //! are positive in the order of the cells.
 //!
+//! Nothing is subtracted. A thin sheet of metal conducts `k/d` = 1e6 W/(m2 K) from cell to cell and stores 100 W/(m2 K) in a
+//! stage: as a difference of conductances the storage would keep ten digits only, and the heat balance of a wall would not
+//! close. Instead the sums of the columns, which are storage, pass from each eliminated cell to what is left, and pivots are sums of
+//! positive numbers (Grassmann, Taksar & Heyman 1985, Oper. Res. 33(5), doi:10.1287/opre.33.5.1107, for stochastic matrices). Every
+//! factor then keeps all its digits.
+//!
 //! Right-hand sides may be of another kind of number than the matrix, see [`Product`].
 
 use crate::linear::product::Product;
@@ -46,8 +52,50 @@ pub struct Condensed<S> {
     /// Heat into the outside and the inside surface at surfaces of 0 degC [W/m2].
     pub source: [S; 2],
 
+    /// How heat into the surfaces follows their temperatures.
+    pub response: Response<S>,
+}
+
+/// Heat that a wall sends into its surfaces per degree of each of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Response<S> {
+    /// Heat into the other surface by the outside and by the inside surface [W/(m2 K)].
+    pub across: [S; 2],
+
+    /// What the wall stores of the heat that it takes from a surface, by that surface [W/(m2 K)].
+    pub stored: [S; 2],
+}
+
+impl<S: Real> Response<S> {
+    /// No heat.
+    #[inline(always)]
+    pub(crate) fn none() -> Self {
+        Self { across: [S::zero(); 2], stored: [S::zero(); 2] }
+    }
+
+    /// Heat into a surface by its own temperature [W/(m2 K)]: what it loses, not positive.
+    #[inline(always)]
+    pub(crate) fn own(&self, e: usize) -> S {
+        -(self.across[e] + self.stored[e])
+    }
+
+    /// Heat into a surface by the temperature of the other one [W/(m2 K)].
+    #[inline(always)]
+    pub(crate) fn other(&self, e: usize) -> S {
+        self.across[1 - e]
+    }
+
+    /// Heat into a surface at temperatures of both [W/m2].
+    #[inline(always)]
+    pub(crate) fn heat(&self, e: usize, surfaces: [S; 2]) -> S {
+        self.own(e) * surfaces[e] + self.other(e) * surfaces[1 - e]
+    }
+
     /// Heat into surface e per degree of surface o [W/(m2 K)].
-    pub response: [[S; 2]; 2],
+    #[cfg(test)]
+    pub(crate) fn matrix(&self) -> [[S; 2]; 2] {
+        [[self.own(0), self.other(0)], [self.other(1), self.own(1)]]
+    }
 }
 
 /// The factors of a chain of cells.
@@ -59,7 +107,7 @@ pub(crate) struct Tridiagonal<S> {
     known: Vec<S>,
     to_outside: Vec<S>,
     next: Vec<S>,
-    /// Product of `next` of all cells before: how `known` of a cell acts on the first cell.
+    /// Heat into the outside surface per degree of `known` of each cell [W/(m2 K)].
     path: Vec<S>,
 }
 
@@ -72,7 +120,7 @@ impl<S: Real> Tridiagonal<S> {
 
     /// Eliminates the cells from the matrix. `storage`: heat per degree of each cell [W/(m2 K)].
     #[inline(always)]
-    pub(crate) fn factor(&mut self, links: &[Link<S>], storage: impl Fn(usize) -> S) -> [[S; 2]; 2] {
+    pub(crate) fn factor(&mut self, links: &[Link<S>], storage: impl Fn(usize) -> S) -> Response<S> {
         self.eliminate::<false>(links, storage, |_| S::zero()).response
     }
 
@@ -102,41 +150,39 @@ impl<S: Real> Tridiagonal<S> {
         let (inverses, nexts) = (&mut self.inverse[..n], &mut self.next[..n]);
         let (to_outsides, knowns) = (&mut self.to_outside[..n], &mut self.known[..n]);
         let paths = &mut self.path[..n];
-        // Of the node before: the outside surface is its own.
-        let (mut known, mut to_outside, mut next) = (S::zero(), S::one(), S::zero());
-        // The first cell: its known part, its slopes by the outside surface and by the next node.
-        let (mut first, mut first_outside, mut path) = (S::zero(), S::zero(), S::one());
+        let (outer, inner) = (&links[0], &links[n]);
+        if n == 0 {
+            let response = Response { across: [outer.left, outer.right], stored: [S::zero(); 2] };
+            return Condensed { source: [-outer.offset, outer.offset], response };
+        }
+        // Of the node before: the outside surface is its own. `passed` is what it stores by the temperature of this cell.
+        let (mut known, mut to_outside, mut passed) = (S::zero(), S::one(), S::zero());
+        // Heat into the outside surface: its known part, by the next node, and what is stored by its own temperature.
+        let (mut first, mut path, mut stored) = (S::zero(), outer.right, S::zero());
         for i in 0..n {
             let (before, after) = (&links[i], &links[i + 1]);
-            let mut diagonal = storage(i) + before.right + after.left;
-            // Before the first cell `next` is zero. Numbers on a tape are spared the product where it is not in a hot loop.
+            let mut holds = storage(i);
+            // Nothing is before the first cell. Numbers on a tape are spared the sum where it is not in a hot loop.
             if const { RIGHT } || i > 0 {
-                diagonal = diagonal - before.left * next;
+                holds += passed;
             }
-            let inverse = S::one() / diagonal;
+            let inverse = S::one() / (holds + path + after.left);
             if const { RIGHT } {
                 let right = heat(i) + before.offset - after.offset;
                 known = (right + before.left * known) * inverse;
                 first += path * known;
                 knowns[i] = known;
             }
-            next = after.right * inverse;
+            let next = after.right * inverse;
             to_outside = before.left * to_outside * inverse;
-            first_outside += path * to_outside;
+            stored += holds * to_outside;
+            passed = holds * next;
             (inverses[i], nexts[i], to_outsides[i], paths[i]) = (inverse, next, to_outside, path);
             path = path * next;
         }
-        let (outer, inner) = (&links[0], &links[n]);
-        if n == 0 {
-            let source = [-outer.offset, outer.offset];
-            return Condensed { source, response: [[-outer.left, outer.right], [outer.left, -outer.right]] };
-        }
         Condensed {
-            source: [outer.right * first - outer.offset, inner.left * known + inner.offset],
-            response: [
-                [outer.right * first_outside - outer.left, outer.right * path],
-                [inner.left * to_outside, inner.left * next - inner.right],
-            ],
+            source: [first - outer.offset, inner.left * known + inner.offset],
+            response: Response { across: [inner.left * to_outside, path], stored: [stored, passed] },
         }
     }
 
@@ -165,7 +211,7 @@ impl<S: Real> Tridiagonal<S> {
             *known = before;
             first += P::of(self.path[i], before);
         }
-        [P::of(links[0].right, first), P::of(links[self.inverse.len()].left, before)]
+        [first, P::of(links[self.inverse.len()].left, before)]
     }
 
     /// Cell temperatures from those of the surfaces and from what [`Self::forward`] left in `known`.
@@ -179,6 +225,18 @@ impl<S: Real> Tridiagonal<S> {
         let mut behind = inside;
         for (i, cell) in cells.iter_mut().enumerate().rev() {
             behind = known(i, *cell) + P::of(self.to_outside[i], outside) + P::of(self.next[i], behind);
+            *cell = behind;
+        }
+    }
+}
+
+impl<S: Real> Tridiagonal<S> {
+    /// [`Self::back`] with surfaces of 0 degC.
+    #[inline(always)]
+    pub(crate) fn back_between_zeros(&self, cells: &mut [S]) {
+        let mut behind = S::zero();
+        for (cell, &next) in cells.iter_mut().zip(&self.next).rev() {
+            behind = *cell + next * behind;
             *cell = behind;
         }
     }
@@ -207,7 +265,6 @@ impl Tridiagonal<f64> {
         [outside, inside]: [f64; 2],
         cells: &mut [f64],
     ) {
-        let outside = links[0].right * outside;
         let mut behind = links[self.inverse.len()].left * inside;
         for (i, cell) in cells.iter_mut().enumerate().rev() {
             let weight = (*cell + behind + outside * self.path[i]) * self.inverse[i];

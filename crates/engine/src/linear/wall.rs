@@ -11,7 +11,7 @@ use crate::linear::wall_linearisation::PhaseChange;
 use crate::number::real::Real;
 use crate::physics::pcm::PcmMemory;
 
-pub use crate::linear::tridiagonal::{Condensed, Link};
+pub use crate::linear::tridiagonal::{Condensed, Link, Response};
 pub use crate::linear::wall_linearisation::{Iterate, Start, Storage, StorageRule};
 
 /// The linearised wall of one Newton iteration and its elimination.
@@ -54,7 +54,7 @@ impl<S: Real> WallSystem<S> {
 
     /// Eliminates the cells for a stage of effective length `stage` [s]. Called again only when a coefficient changes.
     #[inline(always)]
-    pub fn factor(&mut self, wall: &WallCoefficients<S>, stage: f64) -> [[S; 2]; 2] {
+    pub fn factor(&mut self, wall: &WallCoefficients<S>, stage: f64) -> Response<S> {
         self.set_stage_length(wall, stage);
         let (storage, rate) = (&self.storage, &self.rate);
         self.elimination.factor(
@@ -115,6 +115,20 @@ impl<S: Real> WallSystem<S> {
             self.storage[i].change = change;
             cells[i] = self.storage[i].reference + change;
         }
+    }
+
+    /// Replaces the temperatures of cells of constant properties by those at the end of a stage that starts from them, between
+    /// surfaces at 0 degC.
+    #[inline(always)]
+    pub(crate) fn free_stage(&self, cells: &mut [S]) {
+        let (storage, rate) = (&self.storage[..cells.len()], &self.rate[..cells.len()]);
+        self.elimination.forward::<SameKind, _>(
+            &self.links,
+            cells,
+            #[inline(always)]
+            |i, cell| storage[i].capacity * rate[i] * cell,
+        );
+        self.elimination.back_between_zeros(cells);
     }
 
     /// How the heat into the surfaces [W/m2] changes with the enthalpies of the cells [J/m3]; `known` takes what

@@ -4,7 +4,7 @@ use crate::balance::ledger::Ledger;
 use crate::error::EngineError;
 use crate::number::real::Real;
 use crate::run::options::Options;
-use crate::step::state::State;
+use crate::step::state::{Initial, State};
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
 
@@ -15,6 +15,8 @@ pub(crate) enum Action {
     WarmUp(usize),
     /// The surfaces brought into balance with the weather of the start.
     Balance,
+    /// The first step of a run that starts from one temperature everywhere.
+    FirstStep,
     /// A step.
     Step(usize),
 }
@@ -32,6 +34,7 @@ impl Action {
     ) -> Result<(), EngineError> {
         match self {
             Self::WarmUp(step) | Self::Step(step) => stepper.step(state, weather, step, dt, ledger),
+            Self::FirstStep => stepper.first_step(state, weather, dt, ledger),
             Self::Balance => {
                 stepper.forget();
                 // The weather of the first stage is used for the start.
@@ -40,12 +43,21 @@ impl Action {
         }
     }
 
+    /// The actions of a run of some steps, without those of its warm-up. One temperature everywhere fits no weather; a periodic state,
+    /// and one that a run has reached, do.
+    pub(crate) fn all(steps: usize, options: &Options) -> impl Iterator<Item = Self> + use<> {
+        let jumps = options.warmup.is_none() && matches!(options.initial, Initial::Everywhere(_));
+        let first = if jumps { Self::FirstStep } else { Self::Step(0) };
+        [Self::Balance, first].into_iter().chain((1..steps).map(Self::Step))
+    }
+
     /// Row of the records that the state after it is written to.
     pub(crate) fn row(self, options: &Options) -> Option<usize> {
         // Row k is the state at the start of step `record_from + k * record_every`.
         let steps = match self {
             Self::WarmUp(_) => return None,
             Self::Balance => 0,
+            Self::FirstStep => 1,
             Self::Step(step) => step + 1,
         };
         let since = steps.checked_sub(options.record_from)?;
@@ -57,7 +69,6 @@ impl Action {
 mod tests {
     use super::*;
     use crate::step::scheme::Scheme;
-    use crate::step::state::Initial;
 
     /// The rows of the actions of a run are those that its options count, without gap.
     #[test]
@@ -75,7 +86,7 @@ mod tests {
                 record_every,
                 residuals: false,
             };
-            let actions = core::iter::once(Action::Balance).chain((0..steps).map(Action::Step));
+            let actions = Action::all(steps, &options);
             let rows: Vec<usize> = actions.filter_map(|action| action.row(&options)).collect();
             assert_eq!(
                 rows,

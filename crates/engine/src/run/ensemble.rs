@@ -9,9 +9,9 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::real::{Mask, Real};
 use crate::number::simd::{LaneTask, Level, WIDTH, run};
-use crate::run::control::RunControl;
 use crate::run::march::march_in;
 use crate::run::options::Options;
+use crate::step::control::RunControl;
 use crate::weather::conditions::Weather;
 
 /// Results of an ensemble, by member.

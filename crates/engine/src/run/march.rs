@@ -6,10 +6,10 @@ use crate::error::EngineError;
 use crate::input::forcing::Forcing;
 use crate::number::real::Real;
 use crate::run::action::Action;
-use crate::run::control::RunControl;
 use crate::run::options::Options;
 use crate::run::outputs::Output;
 use crate::run::warm_up::warm_up;
+use crate::step::control::RunControl;
 use crate::step::newton::Counters;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -71,10 +71,11 @@ pub(crate) fn march_observed<'a, S: Real>(
     mut stepper: Stepper<'a, S>,
     weather: &Weather<'_>,
     options: &Options,
-    control: &RunControl,
+    control: &'a RunControl,
     mut observe: impl FnMut(&Stepper<'a, S>, &State<S>, Action) -> Result<(), EngineError>,
 ) -> Result<Run<S>, EngineError> {
     let plan = stepper.model.plan;
+    stepper.attend(control);
     if options.residuals {
         stepper.evaluate_residuals();
     }
@@ -86,7 +87,7 @@ pub(crate) fn march_observed<'a, S: Real>(
         warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;
     let mut records = Vec::with_capacity(options.rows(weather.steps()) * options.probes.len());
     let mut ledger = Ledger::new();
-    for action in core::iter::once(Action::Balance).chain((0..weather.steps()).map(Action::Step)) {
+    for action in Action::all(weather.steps(), options) {
         control.check()?;
         action.take(&mut stepper, &mut state, weather, options.dt, &mut ledger)?;
         if action.row(options).is_some() {
@@ -94,6 +95,7 @@ pub(crate) fn march_observed<'a, S: Real>(
         }
         observe(&stepper, &state, action)?;
     }
+    ledger.set_content(state.heat_content(&stepper.model), weather.steps());
     Ok(Run {
         records,
         ledger,

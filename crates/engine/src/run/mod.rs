@@ -1,7 +1,7 @@
 //! Runs: options, warm-up, outputs, ensembles.
 
 mod action;
-pub mod control;
+
 pub mod ensemble;
 pub mod march;
 pub mod options;

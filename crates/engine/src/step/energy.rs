@@ -53,7 +53,6 @@ impl<S: Real> Stepper<'_, S> {
             let flux = system.walls[w].link_flux(e * wall.len(), surfaces);
             return if e == 0 { flux } else { -flux };
         }
-        let [by_outside, by_inside] = system.responses[w][e];
-        -(system.sources[w][e] + by_outside * surfaces[0] + by_inside * surfaces[1])
+        -(system.sources[w][e] + system.responses[w].heat(e, surfaces))
     }
 }

@@ -1,10 +1,23 @@
-//! Parts of a step: one that does not converge is replaced by its two halves.
+//! Parts of a step: one that does not converge is replaced by its two halves, and the first step of a run that starts from one
+//! temperature everywhere is made in parts that grow.
 
 use crate::error::EngineError;
 use crate::number::real::Real;
 
 /// How often a step may be halved before it counts as unsolvable.
 const MAX_HALVINGS: u32 = 6;
+
+/// How often the first step of a run is halved towards its start.
+///
+/// One temperature everywhere does not fit the weather: the surfaces jump, and behind them the temperature changes with the square root of time,
+/// which a scheme of second order does not follow over a whole step. Parts that double in length do: each is as long as the time since
+/// the start. With six halvings the first part is 14 s of a step of 15 min, shorter than the time constant of the air of a room
+/// (minutes); the error of the surface at the end of the step is then that of the steps after it (`docs/engine.md`).
+const FIRST_HALVINGS: u32 = 6;
+
+/// Iterations that a step may take with all its parts before it is given up: some thousand times those of a usual stage, so that a run
+/// stops in seconds where a step cannot be solved.
+pub(super) const MAX_WORK: usize = 3000;
 
 /// A part of a step.
 #[derive(Debug, Clone, Copy)]
@@ -40,18 +53,45 @@ pub(crate) struct StepParts<S> {
     left: Vec<Part>,
     /// Ideal load of each zone, summed over the parts solved so far, each by its share of the step [W].
     load: Vec<S>,
+    /// Iterations made before the step.
+    before: usize,
 }
 
 impl<S: Real> StepParts<S> {
     /// For a number of zones.
     pub(crate) fn new(zones: usize) -> Self {
-        Self { left: Vec::new(), load: vec![S::zero(); zones] }
+        Self { left: Vec::new(), load: vec![S::zero(); zones], before: 0 }
     }
 
     /// Begins with a whole step.
     #[inline(always)]
     pub(crate) fn begin(&mut self, step: usize) {
         self.left.push(Part::whole(step));
+    }
+
+    /// Begins with the first step of a run, in parts that grow.
+    #[cold]
+    pub(crate) fn begin_first(&mut self) {
+        self.load.fill(S::zero());
+        let mut rest = Part::whole(0);
+        while rest.halvings < FIRST_HALVINGS {
+            let [first, second] = rest.halves();
+            self.left.push(second);
+            rest = first;
+        }
+        self.left.push(rest);
+    }
+
+    /// Notes the iterations made so far: the step may take [`MAX_WORK`] more.
+    #[inline(always)]
+    pub(crate) fn count_from(&mut self, iterations: usize) {
+        self.before = iterations;
+    }
+
+    /// Whether the step has taken more iterations than it may, of those made so far.
+    #[inline(always)]
+    pub(crate) fn exhausted(&self, iterations: usize) -> bool {
+        iterations - self.before > MAX_WORK
     }
 
     /// The next part.

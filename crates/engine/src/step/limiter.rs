@@ -1,4 +1,5 @@
-//! How far an iterate moves: not across a melting range at once, and half of the step where the iteration may be in a cycle.
+//! How far an iterate moves: not across a melting range at once, not to more heat than the tangent has, and half of the step where the
+//! iteration may be in a cycle.
 
 use crate::building::coefficients::Matter;
 use crate::linear::unknowns::line;
@@ -7,6 +8,10 @@ use crate::number::real::Real;
 use crate::step::newton::{PATIENCE, StageSolver};
 use crate::step::stage::Stage;
 use crate::step::state::blend;
+
+/// Iterations before measured melting curves, and others whose second derivative has no bound, limit a step by its heat: what
+/// converges at once is spared the evaluation.
+const STRAIGHT: usize = 2;
 
 impl<S: Real> StageSolver<'_, S> {
     /// Moves the iterate of the active lanes to the solution, limited where it would cross a melting range.
@@ -29,6 +34,9 @@ impl<S: Real> StageSolver<'_, S> {
             let laws = numbers.cells.iter().zip(&stage.state.memory[cells.clone()]);
             for ((old, &new), (cell, memory)) in moves.zip(laws) {
                 let target = match cell.matter {
+                    Matter::Pcm(law) if limits && iteration >= STRAIGHT => {
+                        numbers.pcm[law].limit_heat(*old, new, memory)
+                    }
                     Matter::Pcm(law) if limits => numbers.pcm[law].limit(*old, new, memory),
                     Matter::Pcm(_) | Matter::Solid { .. } => new,
                 };

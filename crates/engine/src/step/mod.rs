@@ -1,6 +1,7 @@
 //! Time steps: schemes, Newton's iteration for a stage, ideal loads, parts of a step.
 
 mod accept;
+pub mod control;
 mod energy;
 mod guess;
 mod halving;

@@ -12,6 +12,8 @@ use crate::step::newton::{MAX_ITERATIONS, StageSolver, TOLERANCE};
 use crate::step::stage::Stage;
 use crate::step::state::State;
 
+/// Iterations in all before a stage is given up.
+const MAX_NESTED: usize = 10 * MAX_ITERATIONS;
 /// Colder than any melting range: there the second function is zero [degC].
 const SOLID: f64 = -273.15;
 
@@ -29,7 +31,8 @@ impl<S: Real> StageSolver<'_, S> {
             Unknowns { cells: state.cells.clone(), surfaces: state.surfaces.clone(), air: state.air.clone() };
         self.iterate.copy_from(&outer);
         outer.cells.fill(S::constant(SOLID));
-        for _ in 0..MAX_ITERATIONS {
+        let start = self.counters.iterations;
+        while self.counters.iterations - start < MAX_NESTED && self.check_stop().is_ok() {
             let Some(change) = self.solve_convex(stage, &outer.cells) else { return false };
             let places = [&outer, &self.solution];
             let moved = self.distance(model, &outer);

@@ -10,6 +10,7 @@ use crate::linear::building_system::BuildingSystem;
 use crate::linear::laws::StageInputs;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
+use crate::step::control::RunControl;
 use crate::step::linearisation::Linearisation;
 use crate::step::remainder::NonlinearLaws;
 use crate::step::scheme::Tableau;
@@ -63,6 +64,8 @@ pub(crate) struct StageSolver<'a, S: Real> {
     /// Lanes whose iteration failed: their numbers mean nothing any more.
     pub(crate) failed: S::Mask,
     pub(crate) counters: Counters<S>,
+    /// Where the caller can stop it.
+    pub(crate) control: Option<&'a RunControl>,
 }
 
 impl<'a, S: Real> StageSolver<'a, S> {
@@ -86,6 +89,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
                 largest_change: S::zero(),
                 largest_residual: None,
             },
+            control: None,
         }
     }
 
@@ -146,6 +150,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
         // Numbers with derivatives make one more iteration at the solution: it gives their slopes.
         let mut further = S::DERIVATIVES;
         for iteration in 0..MAX_ITERATIONS {
+            self.check_stop()?;
             self.solve_linearised(stage, None);
             let change = self.change(stage.model);
             active = active & !self.accepts(stage, change, iteration);
@@ -170,6 +175,12 @@ impl<'a, S: Real> StageSolver<'a, S> {
         }
         let error = self.not_converged(stage, active);
         if self.solve_nested(stage) { Ok(()) } else { Err(error) }
+    }
+
+    /// An error where the caller has stopped the run: a step may take long.
+    #[inline(always)]
+    pub(super) fn check_stop(&self) -> Result<(), EngineError> {
+        self.control.map_or(Ok(()), RunControl::check)
     }
 
     /// Solves for all that Newton's iteration did not need. False in the lanes where a wall that touches no zone is not a

@@ -109,6 +109,24 @@ impl<S: Real> State<S> {
         }
     }
 
+    /// Magnitudes of the heat in all cells and airs above 0 degC, or above the reference of a law, summed up [J].
+    pub(crate) fn heat_content(&self, model: &Model<'_, S>) -> S {
+        let mut content = S::zero();
+        for (wall, numbers) in model.plan.walls.iter().zip(&model.coefficients.walls) {
+            for (k, cell) in (wall.first_cell..).zip(&numbers.cells) {
+                let enthalpy = match &cell.matter {
+                    Matter::Solid { capacity, .. } => *capacity * self.cells[k],
+                    Matter::Pcm(_) => self.enthalpy[k],
+                };
+                content += numbers.area * cell.thickness * enthalpy.abs();
+            }
+        }
+        for (air, zone) in self.air.iter().zip(&model.coefficients.zones) {
+            content += zone.capacity * air.abs();
+        }
+        content
+    }
+
     #[inline(always)]
     pub(crate) fn view(&self) -> Temperatures<'_, S> {
         Temperatures { cells: &self.cells, surfaces: &self.surfaces, air: &self.air }

@@ -10,6 +10,7 @@ use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
+use crate::step::control::RunControl;
 use crate::step::guess::Guess;
 use crate::step::halving::{Part, StepParts};
 use crate::step::ideal_loads::loads::IdealLoads;
@@ -67,6 +68,11 @@ impl<'a, S: Real> Stepper<'a, S> {
         State::new(&self.model, initial)
     }
 
+    /// Lets the caller stop it, also within a step.
+    pub(crate) fn attend(&mut self, control: &'a RunControl) {
+        self.solver.control = Some(control);
+    }
+
     /// Counts of iterations, nested iterations and halvings since the start.
     pub fn counters(&self) -> Counters<S> {
         self.solver.counters
@@ -115,8 +121,6 @@ impl<'a, S: Real> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`EngineError::NotConverged`].
-    // One copy only: inlining multiplies compile time.
-    #[inline(never)]
     pub fn step(
         &mut self,
         state: &mut State<S>,
@@ -125,11 +129,40 @@ impl<'a, S: Real> Stepper<'a, S> {
         dt: f64,
         ledger: &mut Ledger<S>,
     ) -> Result<(), EngineError> {
+        self.parts.begin(step);
+        self.known.halved = false;
+        self.take_parts(state, weather, dt, ledger)
+    }
+
+    /// The first step of a run that starts from one temperature everywhere: in parts that grow, see [`StepParts::begin_first`].
+    ///
+    /// # Errors
+    /// [`EngineError::NotConverged`].
+    pub(crate) fn first_step(
+        &mut self,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        dt: f64,
+        ledger: &mut Ledger<S>,
+    ) -> Result<(), EngineError> {
+        self.parts.begin_first();
+        self.known.halved = true;
+        self.take_parts(state, weather, dt, ledger)
+    }
+
+    // One copy only: inlining multiplies compile time.
+    #[inline(never)]
+    fn take_parts(
+        &mut self,
+        state: &mut State<S>,
+        weather: &Weather<'_>,
+        dt: f64,
+        ledger: &mut Ledger<S>,
+    ) -> Result<(), EngineError> {
+        self.parts.count_from(self.solver.counters.iterations);
         S::vectorised(
             #[inline(always)]
             || {
-                self.parts.begin(step);
-                self.known.halved = false;
                 while let Some(part) = self.parts.next() {
                     match self.attempt(state, weather, part, dt, ledger) {
                         Ok(()) if part.halvings == 0 => {}
@@ -151,7 +184,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     #[cold]
     #[inline(never)]
     fn halve(&mut self, part: Part, error: EngineError) -> Result<(), EngineError> {
-        if S::LANES > 1 {
+        if S::LANES > 1 || self.exhausted() {
             self.parts.clear();
             return Err(error);
         }
@@ -160,6 +193,12 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.known.halved = true;
         self.forget();
         Ok(())
+    }
+
+    /// Whether the step has taken more iterations than it may.
+    #[inline(always)]
+    pub(super) fn exhausted(&self) -> bool {
+        self.parts.exhausted(self.solver.counters.iterations)
     }
 
     /// A part of a step; the state stays as it was when it fails.

@@ -1,6 +1,6 @@
 //! The elimination of a chain against a dense solver, its closed-form answers and its transpose.
 
-use super::{Link, Tridiagonal};
+use super::{Link, Response, Tridiagonal};
 use crate::linear::product::{PlainMatrix, SameKind};
 use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
 use crate::number::dual::Dual;
@@ -62,7 +62,7 @@ impl Chain {
         [-self.links[0].flux(all[0], all[1]), self.links[n].flux(all[n], all[n + 1])]
     }
 
-    fn factors(&self) -> (Tridiagonal<f64>, [[f64; 2]; 2]) {
+    fn factors(&self) -> (Tridiagonal<f64>, Response<f64>) {
         let mut factors = Tridiagonal::new(self.storage.len());
         let response = factors.factor(&self.links, |i| self.storage[i]);
         (factors, response)
@@ -86,13 +86,14 @@ fn the_chain_is_solved_as_the_dense_solver_solves_it() {
         }
         close(&cells, &chain.dense(&heat, SURFACES, true), 1e-13, &format!("{n} cells"));
         let expected = chain.heat(&cells, SURFACES);
-        let affine = [0, 1].map(|e| {
-            let [outside, inside] = condensed.response[e];
-            condensed.source[e] + outside * SURFACES[0] + inside * SURFACES[1]
-        });
+        let affine = [0, 1].map(|e| condensed.source[e] + condensed.response.heat(e, SURFACES));
         close(&affine, &expected, 1e-13, &format!("heat from {n} cells"));
         let (_, response) = chain.factors();
-        assert_eq!(response, condensed.response, "bits of {n} cells without their right-hand side");
+        assert_eq!(
+            response.matrix(),
+            condensed.response.matrix(),
+            "bits of {n} cells without their right-hand side"
+        );
     }
 }
 
@@ -109,7 +110,7 @@ fn a_chain_at_rest_is_a_series_of_resistances() {
         let total: f64 = resistances.iter().sum();
         let (factors, response) = chain.factors();
         let u = 1.0 / total;
-        close(response.as_flattened(), &[-u, u, u, -u], 1e-12, &format!("{n} cells"));
+        close(response.matrix().as_flattened(), &[-u, u, u, -u], 1e-12, &format!("{n} cells"));
         let mut cells = vec![0.0; n];
         factors.back::<SameKind, _>(|_, known| known, [20.0, -10.0], &mut cells);
         let mut outside_of = 0.0;
@@ -136,7 +137,7 @@ fn other_right_hand_sides_are_solved_with_the_same_factors() {
         close(&cells, &chain.dense(&heat, SURFACES, false), 1e-13, &format!("{n} cells"));
         let mut plain = chain;
         plain.links.iter_mut().for_each(|link| link.offset = 0.0);
-        let affine = [0, 1].map(|e| sources[e] + response[e][0] * SURFACES[0] + response[e][1] * SURFACES[1]);
+        let affine = [0, 1].map(|e| sources[e] + response.heat(e, SURFACES));
         close(&affine, &plain.heat(&cells, SURFACES), 1e-13, &format!("heat from {n} cells"));
         let mut duals: Vec<Dual<1>> =
             heat.iter().zip(&slopes).map(|(&value, &slope)| Dual { value, slope: [slope] }).collect();

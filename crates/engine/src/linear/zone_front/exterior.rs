@@ -6,6 +6,7 @@
 use crate::building::coefficients::{Boundary, Coefficients};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::linear::surface_balance::SurfaceLaws;
+use crate::linear::wall::Response;
 use crate::number::line::Line;
 use crate::number::real::{Chunk, Real};
 use crate::physics::longwave::Emission;
@@ -23,9 +24,11 @@ pub(super) struct Exterior<S> {
     pub(super) emissivity: Vec<S>,
     /// Whether a surface is at an imposed temperature.
     pub(super) fixed: Vec<bool>,
-    /// Responses of the walls: heat into the interior surface by its temperature and by that of the exterior one [W/K], heat
-    /// into the exterior surface likewise [W/(m2 K)].
-    pub(super) responses: [Vec<S>; 4],
+    /// Responses of the walls. By the temperature of the interior surface: the heat from it that stays in the wall, and with an
+    /// imposed temperature behind it all that leaves it [W/K]; heat into the exterior surface [W/(m2 K)]. By that of the exterior
+    /// surface: heat into the interior one [W/K]; all heat that leaves it, infinite where its temperature is imposed, and what of
+    /// it stays in the wall [W/(m2 K)].
+    pub(super) responses: [Vec<S>; 5],
     /// Heat from sun, sky and ground and from the wall at surfaces of 0 degC [W/m2].
     pub(super) heat: Vec<S>,
     /// Imposed temperature, else zero [degC].
@@ -69,7 +72,7 @@ impl<S: Real> Exterior<S> {
             emissivity: zeros(),
             fixed: Vec::new(),
             // Places without a wall are not divided by zero.
-            responses: [zeros(), zeros(), zeros(), vec![-S::one(); stride]],
+            responses: [zeros(), zeros(), zeros(), vec![S::one(); stride], zeros()],
             heat: zeros(),
             imposed: zeros(),
             inverse: zeros(),
@@ -78,16 +81,26 @@ impl<S: Real> Exterior<S> {
     }
 
     /// Sets the responses of the walls.
-    pub(super) fn set_responses(&mut self, layout: &Layout, responses: &[[[S; 2]; 2]]) {
+    pub(super) fn set_responses(&mut self, layout: &Layout, responses: &[Response<S>]) {
         for (i, interior) in layout.walls.iter().enumerate() {
-            let (response, area) = (responses[interior.wall()], self.wall_area[i]);
-            let (e, o) = (interior.side(), interior.opposite().side());
+            self.set_response(i, interior.side(), &responses[interior.wall()], self.fixed[i]);
+        }
+    }
+
+    /// Sets the response of the wall at a place; e is its interior surface.
+    pub(super) fn set_response(&mut self, i: usize, e: usize, response: &Response<S>, fixed: bool) {
+        let (o, area) = (1 - e, self.wall_area[i]);
+        let (to_exterior, to_interior) = (response.other(o), area * response.other(e));
+        let all = if fixed {
             // One over an infinite sum is zero: an imposed temperature does not rise.
-            let other = if self.fixed[i] { S::constant(f64::NEG_INFINITY) } else { response[o][o] };
-            let all = [area * response[e][e], area * response[e][o], response[o][e], other];
-            for (mine, response) in self.responses.iter_mut().zip(all) {
-                mine[i] = response;
-            }
+            let infinite = S::constant(f64::INFINITY);
+            [-(area * response.own(e)), to_exterior, to_interior, infinite, S::zero()]
+        } else {
+            let (stays, leaves) = (area * response.stored[e], -response.own(o));
+            [stays, to_exterior, to_interior, leaves, response.stored[o]]
+        };
+        for (mine, response) in self.responses.iter_mut().zip(all) {
+            mine[i] = response;
         }
     }
 
@@ -121,14 +134,17 @@ impl<S: Real> Exterior<S> {
         let (convection, emission): (Line<V>, Line<V>) =
             (self.laws.convection_at(start), self.laws.emission_at(start));
         let air: V = part!(self.laws.air, start);
-        let to_interior: V = part!(self.responses[1], start);
+        let to_interior: V = part!(self.responses[2], start);
         let emissivity: V = part!(self.emissivity, start);
         let mut gain = V::zero();
         if elimination == Elimination::Full {
             let slope = convection.slope + emissivity * emission.slope;
-            let inverse = V::one() / (slope - part!(self.responses[3], start));
-            let rise = part!(self.responses[2], start) * inverse;
-            gain = part!(self.responses[0], start) + to_interior * rise;
+            let inverse = V::one() / (slope + part!(self.responses[3], start));
+            let rise = part!(self.responses[1], start) * inverse;
+            // Heat that leaves the interior surface and does not come back: stored, or lost by the exterior one. A sum, as in
+            // `tridiagonal`; the difference of the conductances would lose digits behind a good conductor.
+            let lost: V = part!(self.wall_area, start) * rise * (slope + part!(self.responses[4], start));
+            gain = -(part!(self.responses[0], start) + lost);
             inverse.store(&mut self.inverse[places.clone()]);
             rise.store(&mut self.line[1][places.clone()]);
         }

@@ -6,6 +6,7 @@ use crate::building::plan::Plan;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
 use crate::linear::unknowns::Unknowns;
+use crate::linear::wall::Response;
 use crate::number::real::{Chunk, ChunkTask, Real};
 use crate::weather::conditions::Conditions;
 
@@ -82,8 +83,8 @@ impl<S: Real> ZoneFronts<S> {
         Self { zone_fronts: zones.map(|zone| ZoneFront::new(plan, numbers, laws, zone)).collect() }
     }
 
-    /// Sets the responses of the walls: heat into surface e by the temperature of surface o [W/(m2 K)].
-    pub(crate) fn set_responses(&mut self, responses: &[[[S; 2]; 2]]) {
+    /// Sets how the heat from the walls follows their surfaces.
+    pub(crate) fn set_responses(&mut self, responses: &[Response<S>]) {
         for front in &mut self.zone_fronts {
             front.exterior.set_responses(&front.layout, responses);
         }

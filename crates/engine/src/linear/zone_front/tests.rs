@@ -12,6 +12,7 @@ use crate::building::pattern::Pattern;
 use crate::linear::coupled::CoupledSystem;
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
+use crate::linear::wall::Response;
 use crate::number::dual::Dual;
 use crate::number::line::Line;
 use crate::number::real::{Chunk, ChunkTask, Real};
@@ -66,9 +67,10 @@ fn front<S: Real>(surfaces: usize, eliminated: usize, nonlinear: bool) -> ZoneFr
         let exterior = &mut front.exterior;
         (exterior.emissivity[i], exterior.heat[i]) = (numbers.next(), numbers.next::<S>().scale(50.0));
         exterior.laws.air[i] = numbers.next::<S>().scale(20.0);
-        for (response, sign) in exterior.responses.iter_mut().zip([-2.0, 1.0, 1.0, -2.0]) {
-            response[i] = numbers.next::<S>().scale(sign);
-        }
+        exterior.wall_area[i] = numbers.next();
+        let response =
+            Response { across: [numbers.next(), numbers.next()], stored: [numbers.next(), numbers.next()] };
+        exterior.set_response(i, 1, &response, false);
     }
     front
 }
@@ -135,11 +137,11 @@ fn balances(front: &ZoneFront<f64>) -> (Vec<f64>, Vec<f64>) {
         }
         // The wall and its exterior surface.
         let other = surfaces + 1 + i;
-        let [to_self, to_interior, to_exterior, to_other] = [0, 1, 2, 3].map(|k| exterior.responses[k][i]);
-        add(i, i, -to_self);
+        let [stays, to_exterior, to_interior, leaves, _] = [0, 1, 2, 3, 4].map(|k| exterior.responses[k][i]);
+        add(i, i, stays + exterior.wall_area[i] * to_exterior);
         add(i, other, -to_interior);
         add(other, i, -to_exterior);
-        add(other, other, -to_other);
+        add(other, other, leaves);
         let (convection, emission, emissivity) =
             (&exterior.laws.convection, &exterior.laws.emission, exterior.emissivity[i]);
         add(other, other, convection[1][i] + emissivity * emission[1][i]);

@@ -102,7 +102,7 @@ impl<S: Real> Response<S> {
                 let mut heat = source[e];
                 if let ExteriorSurfaces::One { side, .. } = system.exterior[w] {
                     let rise = exterior_rise(model, system, SurfaceId::new(w, side), source[side]);
-                    heat += system.responses[w][e][side] * rise;
+                    heat += system.responses[w].other(e) * rise;
                 }
                 right[row] += area * heat;
             }

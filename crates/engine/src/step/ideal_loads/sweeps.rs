@@ -6,7 +6,7 @@ use crate::error::EngineError;
 use crate::linear::unknowns::line;
 use crate::number::real::{Mask, Real};
 use crate::step::halving::Part;
-use crate::step::newton::Search;
+use crate::step::newton::{PATIENCE, Search};
 use crate::step::stage::Stage;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -66,6 +66,10 @@ impl<S: Real> Stepper<'_, S> {
         let mut active = S::Mask::splat(true);
         let mut further = self.further_sweeps();
         for number in 0..MAX_SWEEPS {
+            self.solver.check_stop()?;
+            if self.exhausted() {
+                break;
+            }
             let whole = number >= SINGLE_SWEEPS;
             let Swept { mut energy, change, accepted } =
                 self.sweep(state, weather, Sweep { part, length, number, active })?;
@@ -172,7 +176,7 @@ impl<S: Real> Stepper<'_, S> {
                 place: (part.step, index + 1),
             };
             if again {
-                solver.advance(&stage, active, 0);
+                solver.advance(&stage, active, number.min(PATIENCE - 1));
             }
             let search = if number < SINGLE_SWEEPS { Search::Once } else { Search::Whole(active) };
             let sound = solver.solve(&stage, search)?;
