@@ -17,7 +17,14 @@ from mascarin.building.reading import explained, files_of
 from mascarin.errors import InputError
 from mascarin.simulation.compiling import in_climate, require_inputs
 from mascarin.study.description import StudyFile, StudyPlan, read_study
-from mascarin.study.inputs import filled, find, open_climate, open_measurements, require_one_clock
+from mascarin.study.inputs import (
+    Beside,
+    filled,
+    find,
+    open_climate,
+    open_measurements,
+    require_one_clock,
+)
 from mascarin.study.locations import Faults, Places
 from mascarin.study.names import check_names
 from mascarin.validation.criteria import Criterion
@@ -65,13 +72,15 @@ class Inputs:
     path: Path | None = None
 
 
-def from_file(path: Path) -> Inputs:
+def from_file(path: Path, *, allow_outside: bool = False) -> Inputs:
     """Read a study file and the files that it names.
 
     Parameters
     ----------
     path : Path
         The study file.
+    allow_outside : bool
+        Whether it may name files outside its folder.
 
     Returns
     -------
@@ -84,7 +93,7 @@ def from_file(path: Path) -> Inputs:
         A file or a name cannot be used.
     """
     file = read_study(path)
-    places, beside, faults = Places(path), path.parent, Faults()
+    places, beside, faults = Places(path), Beside(path.parent, allow_outside), Faults()
     with places.blame("building"):
         described = find(file.building, beside)
     as_described = load(described)
