@@ -120,11 +120,11 @@ def epw_text() -> str:
     for stamp in _hours():
         warm = 10.0 + 8.0 * np.sin(2.0 * np.pi * (stamp.hour - 8) / 24.0)
         # Solar noon is at 12:52 there.
-        sun = max(600.0 * np.sin(np.pi * (stamp.hour + 0.5 - 8.87) / 8.0), 0.0)
+        sun = 600.0 * np.cos(np.pi * np.clip((stamp.hour + 0.5 - 12.87) / 8.0, -0.5, 0.5))
         fields = ["0"] * 35
         fields[:6] = [str(stamp.year), str(stamp.month), str(stamp.day), str(stamp.hour + 1), "60", "?"]
         fields[6:13] = [f"{warm:.1f}", "4.0", "70", "101325", "0", "0", "300"]
-        fields[13:16] = [f"{0.8 * sun:.0f}", f"{sun:.0f}", f"{0.3 * sun:.0f}"]
+        fields[13:16] = [f"{0.3 * sun:.0f}", "0", f"{0.3 * sun:.0f}"]  # overcast
         fields[20:24] = ["200", "3.1", "5", "5"]
         rows.append(",".join(fields))
     return "\n".join([*head, *rows]) + "\n"

@@ -13,14 +13,19 @@ use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
 use pyo3::prelude::*;
 
 create_exception!(
-    _engine,
+    mascarin._engine,
     EngineInputError,
     PyException,
     "Arrays, options or descriptions the engine refuses."
 );
-create_exception!(_engine, EngineSolverError, PyException, "A step or a warm-up that did not converge.");
 create_exception!(
-    _engine,
+    mascarin._engine,
+    EngineSolverError,
+    PyException,
+    "A step or a warm-up that did not converge."
+);
+create_exception!(
+    mascarin._engine,
     EngineDefect,
     PyException,
     "A defect of the engine itself: it stopped on a panic."
