@@ -316,6 +316,16 @@ def test_a_study_reads_no_file_outside_its_folder(
     assert "outside the folder of the study" in text  # whether it exists is not said
 
 
+@pytest.mark.parametrize(("name", "said"), [("a" * 5000, "a" * 60), ('"a\\0b"', "expected that of a file")])
+def test_a_name_that_no_file_has_is_refused(name: str, said: str, tmp_path: Path) -> None:
+    from mascarin.study import Study
+
+    with pytest.raises(InputError, match=r"study.yaml:\d+: ") as error:
+        Study.from_yaml(_study(tmp_path, STUDY.replace("building: building.yaml", f"building: {name}")))
+    assert said in str(error.value)
+    assert len(str(error.value)) < 1000
+
+
 def test_the_data_folder_may_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from mascarin.study import Study
 

@@ -78,8 +78,13 @@ def find(name: str, beside: Beside) -> Path:
     if name.startswith(KNOWN):
         return data_file(name.removeprefix(KNOWN))
     path = beside.folder / name
-    beside.require_inside(path)
-    if not path.is_file():
+    try:
+        beside.require_inside(path)
+        there = path.is_file()
+    except (OSError, ValueError) as error:  # longer than the system allows; a zero in the name
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"found the name {name[:60]!r} ({reason}), expected that of a file") from None
+    if not there:
         raise InputError(
             f"found no file {path}; expected a file, its path counted from the folder of the study. "
             + _neighbours(path)
