@@ -290,20 +290,25 @@ def _study(folder: Path, text: str) -> Path:
     return folder / "study.yaml"
 
 
-@pytest.mark.parametrize("way", ["above", "absolute", "link"])
+@pytest.mark.parametrize("way", ["above", "absolute", "link", "extends"])
 def test_a_study_reads_no_file_outside_its_folder(
     way: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("MASCARIN_DATA", raising=False)
     (tmp_path / "secret.yaml").write_text("password: swordfish\n", encoding="utf-8")
     inside = tmp_path / "study"
-    named = {"above": "../secret.yaml", "absolute": str(tmp_path / "secret.yaml"), "link": "building.yaml"}[
-        way
-    ]
+    named = {
+        "extends": "building.yaml",
+        "above": "../secret.yaml",
+        "absolute": str(tmp_path / "secret.yaml"),
+        "link": "building.yaml",
+    }[way]
     study = _study(inside, STUDY.replace("building: building.yaml", f"building: {named}"))
     if way == "link":
         (inside / "building.yaml").unlink()
         (inside / "building.yaml").symlink_to(tmp_path / "secret.yaml")
+    if way == "extends":
+        (inside / "building.yaml").write_text("extends: ../secret.yaml\n", encoding="utf-8")
     text = refused(["validate", str(study)], capsys)
     assert "outside the folder of the study" in text
     assert "--allow-outside" in text

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import stat
+from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from pathlib import Path
+from typing import Final
 
 from mascarin._io import memory
 from mascarin.errors import InputError
@@ -14,6 +18,26 @@ _SPECIAL = {
     stat.S_IFBLK: "a device",
     stat.S_IFSOCK: "a socket",
 }
+
+
+#: What else is required of every file that is read, such as that it is inside a folder.
+_REQUIRED: Final[ContextVar[Callable[[Path], object] | None]] = ContextVar("required", default=None)
+
+
+@contextlib.contextmanager
+def requiring(check: Callable[[Path], object]) -> Iterator[None]:
+    """Check every file that is read meanwhile, files that other files name included.
+
+    Parameters
+    ----------
+    check : callable
+        Raises an error for a file that may not be read.
+    """
+    token = _REQUIRED.set(check)
+    try:
+        yield
+    finally:
+        _REQUIRED.reset(token)
 
 
 def special(path: Path) -> str | None:
@@ -63,6 +87,9 @@ def require_regular(path: Path, expected: str = "a file") -> Path:
     """
     if "\0" in str(path):
         raise InputError(f"{str(path)!r}: found a name with a zero in it, expected {expected}")
+    further = _REQUIRED.get()
+    if further is not None:
+        further(path)
     found = special(path)
     if found is not None:
         raise InputError(f"{path}: found {found}, expected {expected}; copy its content to a file first")

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from mascarin._io.atomic import drafted
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson, Settings, Step, read_building, seconds
+from mascarin.commands.inputs import AsJson, Outside, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
 from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError, did_you_mean
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
+    from mascarin.weather import Climate
 
 FORMATS = (".nc", ".csv")
 
@@ -42,6 +43,7 @@ def run(
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
     settings: Settings = None,
+    allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> None:
     """Simulate a building with a weather file.
@@ -84,7 +86,13 @@ def run(
     _require_format(out)
     with writing(out):
         climate, measured = run_inputs(
-            described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps
+            described,
+            weather,
+            measurements,
+            columns=columns or [],
+            timezone=timezone,
+            stamps=stamps,
+            allow_outside=allow_outside,
         )
         results = _simulated(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,

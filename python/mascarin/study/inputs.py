@@ -15,7 +15,7 @@ from mascarin.building.engine_input import measured_columns
 from mascarin.errors import InputError, did_you_mean
 from mascarin.study.locations import Faults, Places
 from mascarin.weather import Climate, Measurements
-from mascarin.weather.data import FOLDER, data_file
+from mascarin.weather.data import FOLDER, cache_folder, data_file
 from mascarin.weather.table import read_table
 
 if TYPE_CHECKING:
@@ -50,7 +50,8 @@ class Beside:
         if self.allow_outside:
             return
         data = os.environ.get(FOLDER)
-        allowed = [self.folder, *([Path(data)] if data else [])]
+        # Known data sets are downloaded to a cache.
+        allowed = [self.folder, *([Path(data)] if data else []), cache_folder()]
         target = path.resolve()
         if not any(target.is_relative_to(folder.resolve()) for folder in allowed):
             raise InputError(

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from mascarin._io.regular import requiring
 from mascarin.building import Building, load
 from mascarin.building.reading import explained, files_of
 from mascarin.errors import InputError
@@ -92,8 +93,14 @@ def from_file(path: Path, *, allow_outside: bool = False) -> Inputs:
     InputError
         A file or a name cannot be used.
     """
+    beside = Beside(path.parent, allow_outside)
+    with requiring(beside.require_inside):  # also of what a description extends
+        return _from_file(path, beside)
+
+
+def _from_file(path: Path, beside: Beside) -> Inputs:
     file = read_study(path)
-    places, beside, faults = Places(path), Beside(path.parent, allow_outside), Faults()
+    places, faults = Places(path), Faults()
     with places.blame("building"):
         described = find(file.building, beside)
     as_described = load(described)
