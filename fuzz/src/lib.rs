@@ -1,4 +1,6 @@
 //! The functions that Python calls, each with a call read from bytes. What they refuse is fine; a panic is a defect.
+//!
+//! Each returns whether the engine took the call.
 
 use mascarin_engine::derivatives::{self, Trajectory};
 use mascarin_engine::description::Description;
@@ -83,72 +85,69 @@ impl Ready {
 }
 
 /// `Plan(description)`: the description alone.
-pub fn plan(data: &[u8]) {
+pub fn plan(data: &[u8]) -> bool {
     if let Ok(description) = serde_json::from_slice::<Description>(data) {
-        let _ = Plan::new(description);
-        return;
+        return Plan::new(description).is_ok();
     }
-    let _ = Ready::read(data);
+    Ready::read(data).is_some()
 }
 
 /// `Plan.simulate`.
-pub fn march(data: &[u8]) {
-    let Some(ready) = Ready::read(data) else { return };
-    let Some(forcing) = ready.forcing() else { return };
+pub fn march(data: &[u8]) -> bool {
+    let Some(ready) = Ready::read(data) else { return false };
+    let Some(forcing) = ready.forcing() else { return false };
     let found = march::march(&ready.plan, &ready.values, &forcing, &ready.options, &Watch::default());
+    let taken = found.is_ok();
     if let Ok(run) = found {
         assert!(
             run.records.iter().all(|value| value.is_finite()),
             "a run without an error has records that are not finite"
         );
     }
+    taken
 }
 
 /// `Plan.ensemble`, with two members.
-pub fn ensemble(data: &[u8]) {
-    let Some(ready) = Ready::read(data) else { return };
-    let Some(forcing) = ready.forcing() else { return };
+pub fn ensemble(data: &[u8]) -> bool {
+    let Some(ready) = Ready::read(data) else { return false };
+    let Some(forcing) = ready.forcing() else { return false };
     let members = [ready.values.clone(), ready.values.clone()].concat();
-    let _ = batch::ensemble(&ready.plan, &members, &forcing, &ready.options, &Watch::default());
+    batch::ensemble(&ready.plan, &members, &forcing, &ready.options, &Watch::default()).is_ok()
 }
 
 /// `Plan.jacobian`, by the first and the last parameter.
-pub fn jacobian(data: &[u8]) {
-    let Some(ready) = Ready::read(data) else { return };
-    let Some(forcing) = ready.forcing() else { return };
+pub fn jacobian(data: &[u8]) -> bool {
+    let Some(ready) = Ready::read(data) else { return false };
+    let Some(forcing) = ready.forcing() else { return false };
     let which = [0, ready.values.len().saturating_sub(1)];
-    let _ = derivatives::jacobian(
-        &ready.plan,
-        &ready.values,
-        &which,
-        &forcing,
-        &ready.options,
-        &Watch::default(),
-    );
+    derivatives::jacobian(&ready.plan, &ready.values, &which, &forcing, &ready.options, &Watch::default())
+        .is_ok()
 }
 
 /// `Trajectory` and `Trajectory.pull`.
-pub fn reverse(data: &[u8]) {
-    let Some(ready) = Ready::read(data) else { return };
-    let Some(forcing) = ready.forcing() else { return };
+pub fn reverse(data: &[u8]) -> bool {
+    let Some(ready) = Ready::read(data) else { return false };
+    let Some(forcing) = ready.forcing() else { return false };
     let watch = Watch::default();
     let kept = Trajectory::new(&ready.plan, &ready.values, &forcing, &ready.options, &watch, 1 << 20);
     if let Ok(kept) = kept {
         let weights = vec![1.0; kept.run.records.len()];
-        let _ = kept.pull(&ready.plan, &ready.values, &forcing, &ready.options, &watch, &weights);
+        return kept.pull(&ready.plan, &ready.values, &forcing, &ready.options, &watch, &weights).is_ok();
     }
+    false
 }
 
 /// `Plan.state_space`.
-pub fn state_space(data: &[u8]) {
-    let Some(ready) = Ready::read(data) else { return };
+pub fn state_space(data: &[u8]) -> bool {
+    let Some(ready) = Ready::read(data) else { return false };
     if ready.values.len() == ready.plan.description.parameters.len() {
-        let _ = linear::state_space(&ready.plan, &ready.values);
+        return linear::state_space(&ready.plan, &ready.values).is_ok();
     }
+    false
 }
 
 /// Every function by its name.
-pub const TARGETS: [(&str, fn(&[u8])); 6] = [
+pub const TARGETS: [(&str, fn(&[u8]) -> bool); 6] = [
     ("plan", plan),
     ("march", march),
     ("ensemble", ensemble),

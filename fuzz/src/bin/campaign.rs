@@ -65,21 +65,23 @@ fn main() -> std::io::Result<()> {
         std::process::exit(2);
     }
     std::panic::set_hook(Box::new(|_| {}));
-    println!("| function | inputs | panics | longest s |\n|---|---:|---:|---:|");
+    println!("| function | inputs | taken | panics | longest s |\n|---|---:|---:|---:|---:|");
     let mut defects = 0;
     for (name, target) in TARGETS {
-        let (mut panics, mut longest) = (0, 0.0_f64);
+        let (mut taken, mut panics, mut longest) = (0, 0, 0.0_f64);
         for n in 0..count {
             let mut random = Random((seed << 32) ^ (n.wrapping_mul(0x9e37_79b9_7f4a_7c15)) | 1);
             let input = mutated(&seeds[random.below(seeds.len())], &mut random);
             let began = Instant::now();
-            if catch_unwind(|| target(&input)).is_err() {
+            let ended = catch_unwind(|| target(&input));
+            taken += u64::from(matches!(ended, Ok(true)));
+            if ended.is_err() {
                 panics += 1;
                 std::fs::write(Path::new(folder).join(format!("panic-{name}-{seed}-{n}.txt")), &input)?;
             }
             longest = longest.max(began.elapsed().as_secs_f64());
         }
-        println!("| {name} | {count} | {panics} | {longest:.1} |");
+        println!("| {name} | {count} | {taken} | {panics} | {longest:.2} |");
         defects += panics;
     }
     std::process::exit(i32::from(defects > 0));
