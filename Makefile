@@ -4,6 +4,7 @@
 #   make test   build, run formatting, lints, types and every test
 #   make coverage     build, run the Python tests, print the lines that no test reaches
 #   make test-lowest  run the Python tests with the lowest versions that pyproject.toml declares
+#   make fuzz   build, run the long campaign of random and mutated inputs; FUZZ="--inputs 5000" for more of them
 #   make bench  build, measure, and write the tables of docs/speed.md; make bench ENERGYPLUS=path with its peer
 #
 # They need Python 3.11 or later, cargo and make, and nothing else.
@@ -30,7 +31,9 @@ export PIP_NO_INPUT := 1
 # The same interpreter for every cargo call, so that the binding is not rebuilt between them.
 export PYO3_PYTHON := $(CURDIR)/$(PY)
 
-.PHONY: help demo test coverage test-lowest bench build check-tools check-rust check-python pytest
+FUZZ_CALLS ?= 20000
+
+.PHONY: help demo test coverage test-lowest bench fuzz build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:
 
 help:
@@ -69,6 +72,13 @@ bench: $(BUILT) $(HYPERFINE)
 
 $(HYPERFINE): | check-tools
 	cargo install hyperfine --version $(HYPERFINE_VERSION) --locked --quiet --root target/bench/tools
+
+# Bounded by the counts: those of FUZZ (see tests/fuzz_campaign.py --help), and calls of each function of the engine.
+fuzz: $(BUILT)
+	$(PY) -u tests/fuzz_campaign.py $(FUZZ)
+	$(PY) fuzz/calls.py target/fuzz/calls
+	cargo run --quiet --release --manifest-path fuzz/Cargo.toml --target-dir target/fuzz --bin campaign -- \
+		target/fuzz/calls $(FUZZ_CALLS) 1
 
 build: $(BUILT)
 

@@ -12,6 +12,8 @@ from typing import Any
 
 import xarray as xr
 
+from mascarin import _engine
+
 JOINT = "wall.interface_1_temperature"
 
 
@@ -54,3 +56,9 @@ class Forgetful(Executor):
             except Exception as error:
                 future.set_exception(error)
         return future
+
+
+def panicking(run: xr.Dataset) -> xr.DataArray:
+    """Fails as a panic of the engine does."""
+    _engine._panic("a defect of the engine")
+    return run["room.air_temperature"].max("time")

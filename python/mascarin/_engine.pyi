@@ -14,6 +14,7 @@ __all__ = [
     "Plan",
     "Trajectory",
     "_panic",
+    "interrupt",
 ]
 
 _Array = npt.NDArray[np.float64]
@@ -30,8 +31,11 @@ class EngineSolverError(Exception):
 class EngineDefect(Exception):
     """An internal error of the engine (a panic)."""
 
-def _panic(message: str) -> None:
-    """Panic on purpose, to test how an internal error of the engine is handled."""
+def interrupt() -> None:
+    """Stop all calls that are running now, on whatever thread, with KeyboardInterrupt."""
+
+def _panic(message: str, border: bool = False) -> None:
+    """Panic on purpose, in the engine or at its border, to test how an internal error is handled."""
 
 @final
 class Plan:

@@ -8,6 +8,7 @@ Data go to standard output, everything else to standard error.
 from __future__ import annotations
 
 import contextlib
+import errno
 import gc
 import os
 import signal
@@ -15,11 +16,12 @@ import sys
 import traceback
 import warnings
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple, TextIO, cast
+from typing import Any, Final, NamedTuple, NoReturn, TextIO, cast
 
 from cyclopts import App, CycloptsError, Group
 
 from mascarin import __version__
+from mascarin._io import memory
 from mascarin.errors import InputError, MascarinError, SolverError
 
 EXIT_OK: Final = 0
@@ -28,6 +30,11 @@ EXIT_INPUT: Final = InputError.exit_code
 EXIT_SOLVER: Final = SolverError.exit_code
 EXIT_DEFECT: Final = 70  # an internal error of Mascarin: a code that no result has
 EXIT_INTERRUPTED: Final = 130
+EXIT_TERMINATED: Final = 143  # as of every program that SIGTERM ends
+
+
+class Terminated(KeyboardInterrupt):
+    """The process was asked to end (SIGTERM): it stops as after Ctrl-C, with its workers and programs."""
 
 
 class Command(NamedTuple):
@@ -165,6 +172,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         gc.set_threshold(100_000)
         # A shell starts background jobs with the signal ignored; a command must still be possible to stop.
         signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, _terminate)
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = _take_debug(words)
     out, err = (cast("TextIO", _Output(stream)) for stream in (sys.stdout, sys.stderr))
@@ -174,14 +182,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             code = build_app(words[0] if words else None)(words)
             sys.stdout.flush()
+        except Terminated:
+            _say("terminated")
+            return EXIT_TERMINATED
         except KeyboardInterrupt:
             _say("interrupted")
             return EXIT_INTERRUPTED
-        except Exception as error:
+        except (SystemExit, GeneratorExit):
+            raise
+        except BaseException as error:  # a panic of compiled code is no Exception
             if debug:
                 traceback.print_exc()
             return _report(error)
     return code if isinstance(code, int) else EXIT_OK
+
+
+def _terminate(number: int, frame: object) -> NoReturn:
+    raise Terminated
 
 
 def _take_debug(words: list[str]) -> bool:
@@ -193,7 +210,7 @@ def _take_debug(words: list[str]) -> bool:
     return os.environ.get("MASCARIN_DEBUG", "") not in ("", "0")
 
 
-def _report(error: Exception) -> int:
+def _report(error: BaseException) -> int:
     """Print the error; return its exit code."""
     if isinstance(error, CycloptsError):
         command = " ".join(("mascarin", *(error.command_chain or ())))
@@ -202,14 +219,30 @@ def _report(error: Exception) -> int:
     if isinstance(error, MascarinError):
         _say(f"error: {error}")
         return error.exit_code
-    if isinstance(error, OSError) and error.filename is not None:
-        _say(f"error: cannot use '{error.filename}': {error.strerror}")
+    if isinstance(error, OSError):
+        place = "a file" if error.filename is None else f"'{error.filename}'"
+        _say(f"error: cannot use {place}: {error.strerror or error}{_ADVICE.get(error.errno or 0, '')}")
+        return EXIT_INPUT
+    if isinstance(error, MemoryError):
+        free = memory.available()
+        _say(
+            f"error: there is not enough memory{'' if free is None else f'; {memory.amount(free)} are free'} "
+            f"({str(error) or 'the size is not known'}). Take a longer step, a shorter period, "
+            "fewer members or fewer outputs"
+        )
         return EXIT_INPUT
     _say(
         f"error: a defect in Mascarin {__version__}: {type(error).__name__}: {error}\n"
         "Please report it: the command, its input files, and what it prints with --debug."
     )
     return EXIT_DEFECT
+
+
+_ADVICE: Final = {
+    errno.ENOSPC: ". Make room on the disk and run the command again; files that were there are unchanged",
+    errno.EDQUOT: ". Make room in your quota and run the command again; files that were there are unchanged",
+    errno.EMFILE: ". Allow more open files (ulimit -n), or use fewer workers",
+}
 
 
 def _usage_text(error: CycloptsError) -> str:
@@ -236,9 +269,16 @@ class _Output:
         """Write, or drop the text when the pipe is closed."""
         try:
             return self._stream.write(text)
+        except (
+            UnicodeEncodeError
+        ) as error:  # a letter that the terminal does not have, such as in a file name
+            return self._stream.write(text.encode(error.encoding, "backslashreplace").decode(error.encoding))
         except BrokenPipeError:
             self._discard()
             return len(text)
+        except OSError:
+            self._discard()  # Python would try, and fail, again when it exits
+            raise
 
     def flush(self) -> None:
         """Flush, or drop the text when the pipe is closed."""
@@ -246,6 +286,9 @@ class _Output:
             self._stream.flush()
         except BrokenPipeError:
             self._discard()
+        except OSError:
+            self._discard()
+            raise
 
     def _discard(self) -> None:
         # Python flushes the stream again when it exits, so its file descriptor is directed to the null

@@ -28,6 +28,10 @@ class InputError(MascarinError):
     exit_code = 2
 
 
+class InUse(InputError):
+    """Another process is writing to the same output; nothing has been run or written."""
+
+
 class SolverError(MascarinError):
     """A calculation did not converge; the text states when, where and with which residual."""
 

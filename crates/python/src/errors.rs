@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
@@ -13,14 +13,19 @@ use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
 use pyo3::prelude::*;
 
 create_exception!(
-    _engine,
+    mascarin._engine,
     EngineInputError,
     PyException,
     "Arrays, options or descriptions the engine refuses."
 );
-create_exception!(_engine, EngineSolverError, PyException, "A step or a warm-up that did not converge.");
 create_exception!(
-    _engine,
+    mascarin._engine,
+    EngineSolverError,
+    PyException,
+    "A step or a warm-up that did not converge."
+);
+create_exception!(
+    mascarin._engine,
     EngineDefect,
     PyException,
     "A defect of the engine itself: it stopped on a panic."
@@ -28,6 +33,15 @@ create_exception!(
 
 /// How often a waiting call checks for Ctrl-C and reports progress.
 const PULSE: Duration = Duration::from_millis(50);
+
+/// How often `interrupt` was called: a call that finds another number than at its start stops.
+static INTERRUPTIONS: AtomicUsize = AtomicUsize::new(0);
+
+/// Stops all calls that are running now, on whatever thread: Python gives Ctrl-C to its first thread only.
+#[pyfunction]
+pub fn interrupt() {
+    INTERRUPTIONS.fetch_add(1, Ordering::Relaxed);
+}
 
 /// The Python exception of an engine error.
 pub fn to_python(error: &EngineError) -> PyErr {
@@ -51,13 +65,10 @@ fn defect(panic: &(dyn std::any::Any + Send)) -> PyErr {
     EngineDefect::new_err(format!("the engine stopped on an internal fault: {text}"))
 }
 
-/// Calls the engine on this thread; an engine error or a panic becomes a Python exception.
-pub fn guarded<T>(work: impl FnOnce() -> Result<T, EngineError>) -> PyResult<T> {
+/// The whole of a call from Python: a panic in it becomes an exception that Python catches as any other.
+pub fn caught<T>(work: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
     // What `work` was changing is dropped with it: nothing half-changed is seen afterwards.
-    match catch_unwind(AssertUnwindSafe(work)) {
-        Ok(result) => result.map_err(|error| to_python(&error)),
-        Err(panic) => Err(defect(&*panic)),
-    }
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(defect(&*panic)))
 }
 
 /// Runs `work` that cannot be stopped on another thread with the GIL released. After Ctrl-C the call returns at once and the thread,
@@ -96,18 +107,22 @@ pub fn attended<T: Send>(
     let receiver = Mutex::new(receiver);
     let wait = || receiver.lock().map_or(Err(RecvTimeoutError::Disconnected), |end| end.recv_timeout(PULSE));
     let mut interruption = None;
+    let before = INTERRUPTIONS.load(Ordering::Relaxed);
     let result = std::thread::scope(|scope| {
         let watch = &watch;
-        let worker = scope.spawn(move || {
+        let worker = std::thread::Builder::new().spawn_scoped(scope, move || {
             let result = work(watch);
             // The receiver lives until the worker is joined.
             let _ = sender.send(());
             result
-        });
+        })?; // the system gives no more threads: an OSError
         let mut reported = 0;
         while let Err(RecvTimeoutError::Timeout) = py.detach(wait) {
             let done = watch.done.load(Ordering::Relaxed);
             let mut attend = py.check_signals();
+            if attend.is_ok() && INTERRUPTIONS.load(Ordering::Relaxed) != before {
+                attend = Err(PyKeyboardInterrupt::new_err("interrupted"));
+            }
             if let (Ok(()), Some(report), true) = (&attend, report, done != reported) {
                 reported = done;
                 attend = report.call1((done,)).map(drop);
@@ -118,8 +133,8 @@ pub fn attended<T: Send>(
                 break;
             }
         }
-        py.detach(|| worker.join())
-    });
+        Ok::<_, PyErr>(py.detach(|| worker.join()))
+    })?;
     match (result, interruption) {
         (_, Some(interruption)) => Err(interruption),
         (Ok(Ok(value)), None) => Ok(value),

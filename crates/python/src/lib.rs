@@ -8,10 +8,13 @@ mod trajectory;
 use mascarin_engine::forcing::CLIMATE_CHANNELS;
 use pyo3::prelude::*;
 
-/// Panics on purpose, so that tests can see what becomes of a defect of the engine.
+/// Panics on purpose, in the engine or at the border, so that tests can see what becomes of a defect.
 #[pyfunction]
-fn _panic(py: Python<'_>, message: &str) -> PyResult<()> {
-    errors::attended(py, None, |_| panic!("{message}"))
+#[pyo3(signature = (message, border=false))]
+fn _panic(py: Python<'_>, message: &str, border: bool) -> PyResult<()> {
+    errors::caught(|| {
+        if border { panic!("{message}") } else { errors::attended(py, None, |_| panic!("{message}")) }
+    })
 }
 
 /// Compiled part of mascarin.
@@ -19,6 +22,7 @@ fn _panic(py: Python<'_>, message: &str) -> PyResult<()> {
 fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<plan::Plan>()?;
     module.add_class::<trajectory::Trajectory>()?;
+    module.add_function(wrap_pyfunction!(errors::interrupt, module)?)?;
     module.add_function(wrap_pyfunction!(_panic, module)?)?;
     module.add("EngineInputError", module.py().get_type::<errors::EngineInputError>())?;
     module.add("EngineSolverError", module.py().get_type::<errors::EngineSolverError>())?;

@@ -14,7 +14,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::errors::{EngineInputError, abandonable, attended, guarded, to_python};
+use crate::errors::{EngineInputError, abandonable, attended, caught, to_python};
 use crate::options::RunOptions;
 
 /// A building compiled for the engine.
@@ -34,10 +34,11 @@ type JacobianArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>
 impl Plan {
     #[new]
     fn new(py: Python<'_>, description: &str) -> PyResult<Self> {
-        let description: Description = serde_json::from_str(description)
-            .map_err(|error| EngineInputError::new_err(format!("unreadable description: {error}")))?;
-        let plan = abandonable(py, move || EnginePlan::new(description))?;
-        Ok(Self { plan })
+        caught(|| {
+            let description: Description = serde_json::from_str(description)
+                .map_err(|error| EngineInputError::new_err(format!("unreadable description: {error}")))?;
+            Ok(Self { plan: abandonable(py, move || EnginePlan::new(description))? })
+        })
     }
 
     #[getter]
@@ -61,16 +62,20 @@ impl Plan {
         py: Python<'py>,
         values: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let values = contiguous(values.as_slice())?;
-        if values.len() != self.plan.description.parameters.len() {
-            return Err(EngineInputError::new_err("as many values as parameters are needed"));
-        }
-        let found = guarded(|| Ok(window_ratings(&self.plan, values)))?;
-        let rows: Vec<f64> = found
-            .iter()
-            .flat_map(|one| [one.u_value, one.solar_heat_gain, one.transmittance, one.diffuse_transmittance])
-            .collect();
-        PyArray1::from_vec(py, rows).reshape([found.len(), 4])
+        caught(|| {
+            let values = contiguous(values.as_slice())?;
+            if values.len() != self.plan.description.parameters.len() {
+                return Err(EngineInputError::new_err("as many values as parameters are needed"));
+            }
+            let found = window_ratings(&self.plan, values);
+            let rows: Vec<f64> = found
+                .iter()
+                .flat_map(|one| {
+                    [one.u_value, one.solar_heat_gain, one.transmittance, one.diffuse_transmittance]
+                })
+                .collect();
+            PyArray1::from_vec(py, rows).reshape([found.len(), 4])
+        })
     }
 
     /// One run: a dictionary of records, ledger and counters.
@@ -81,13 +86,15 @@ impl Plan {
         forcing: PyReadonlyArray3<'py, f64>,
         options: RunOptions,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let options = options.read()?;
-        let (values, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
-        let drive =
-            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
-        let plan = &self.plan;
-        let run = attended(py, None, |watch| march(plan, values, &drive, &options, watch))?;
-        describe_run(py, &run, [options.rows(drive.steps()), options.probes.len()])
+        caught(|| {
+            let options = options.read()?;
+            let (values, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
+            let drive =
+                Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+            let plan = &self.plan;
+            let run = attended(py, None, |watch| march(plan, values, &drive, &options, watch))?;
+            describe_run(py, &run, [options.rows(drive.steps()), options.probes.len()])
+        })
     }
 
     /// Members (rows of `values`): records (members x rows x probes), closures, failures.
@@ -100,18 +107,21 @@ impl Plan {
         options: RunOptions,
         report: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<EnsembleArrays<'py>> {
-        let options = options.read()?;
-        let members = values.as_array().dim().0;
-        let (numbers, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
-        let drive =
-            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
-        let plan = &self.plan;
-        let result = attended(py, report, |watch| batch::ensemble(plan, numbers, &drive, &options, watch))?;
-        let rows = options.rows(drive.steps());
-        let records =
-            PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;
-        let failures = result.failures.iter().map(|(member, error)| (*member, error.to_string()));
-        Ok((records, PyArray1::from_vec(py, result.closure), PyList::new(py, failures)?))
+        caught(|| {
+            let options = options.read()?;
+            let members = values.as_array().dim().0;
+            let (numbers, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
+            let drive =
+                Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+            let plan = &self.plan;
+            let result =
+                attended(py, report, |watch| batch::ensemble(plan, numbers, &drive, &options, watch))?;
+            let rows = options.rows(drive.steps());
+            let records =
+                PyArray1::from_vec(py, result.records).reshape([members, rows, options.probes.len()])?;
+            let failures = result.failures.iter().map(|(member, error)| (*member, error.to_string()));
+            Ok((records, PyArray1::from_vec(py, result.closure), PyList::new(py, failures)?))
+        })
     }
 
     /// Records (rows x probes) and their slopes (parameters x rows x probes) by some parameters.
@@ -125,15 +135,18 @@ impl Plan {
         options: RunOptions,
         report: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<JacobianArrays<'py>> {
-        let options = options.read()?;
-        let (numbers, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
-        let drive =
-            Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
-        let plan = &self.plan;
-        let result = attended(py, report, |watch| jacobian(plan, numbers, &which, &drive, &options, watch))?;
-        let (rows, probes) = (options.rows(drive.steps()), options.probes.len());
-        let records = PyArray1::from_vec(py, result.records).reshape([rows, probes])?;
-        Ok((records, PyArray1::from_vec(py, result.slopes).reshape([which.len(), rows, probes])?))
+        caught(|| {
+            let options = options.read()?;
+            let (numbers, shape) = (contiguous(values.as_slice())?, forcing.as_array().dim());
+            let drive =
+                Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
+            let plan = &self.plan;
+            let result =
+                attended(py, report, |watch| jacobian(plan, numbers, &which, &drive, &options, watch))?;
+            let (rows, probes) = (options.rows(drive.steps()), options.probes.len());
+            let records = PyArray1::from_vec(py, result.records).reshape([rows, probes])?;
+            Ok((records, PyArray1::from_vec(py, result.slopes).reshape([which.len(), rows, probes])?))
+        })
     }
 
     /// A, B, C, D and the names of states, inputs and outputs of a linear building.
@@ -142,21 +155,23 @@ impl Plan {
         py: Python<'py>,
         values: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let values = contiguous(values.as_slice())?;
-        let system = guarded(|| state_space::state_space(&self.plan, values))?;
-        let (n, m, p) = (system.states.len(), system.inputs.len(), system.outputs.len());
-        let result = PyDict::new(py);
-        let matrix = |values: &[f64], shape: [usize; 2]| -> PyResult<Bound<'py, PyArray2<f64>>> {
-            PyArray1::from_slice(py, values).reshape(shape)
-        };
-        result.set_item("a", matrix(&system.a, [n, n])?)?;
-        result.set_item("b", matrix(&system.b, [n, m])?)?;
-        result.set_item("c", matrix(&system.c, [p, n])?)?;
-        result.set_item("d", matrix(&system.d, [p, m])?)?;
-        result.set_item("states", system.states)?;
-        result.set_item("inputs", system.inputs)?;
-        result.set_item("outputs", system.outputs)?;
-        Ok(result)
+        caught(|| {
+            let values = contiguous(values.as_slice())?;
+            let system = state_space::state_space(&self.plan, values).map_err(|error| to_python(&error))?;
+            let (n, m, p) = (system.states.len(), system.inputs.len(), system.outputs.len());
+            let result = PyDict::new(py);
+            let matrix = |values: &[f64], shape: [usize; 2]| -> PyResult<Bound<'py, PyArray2<f64>>> {
+                PyArray1::from_slice(py, values).reshape(shape)
+            };
+            result.set_item("a", matrix(&system.a, [n, n])?)?;
+            result.set_item("b", matrix(&system.b, [n, m])?)?;
+            result.set_item("c", matrix(&system.c, [p, n])?)?;
+            result.set_item("d", matrix(&system.d, [p, m])?)?;
+            result.set_item("states", system.states)?;
+            result.set_item("inputs", system.inputs)?;
+            result.set_item("outputs", system.outputs)?;
+            Ok(result)
+        })
     }
 }
 

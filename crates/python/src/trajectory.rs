@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::{attended, to_python};
+use crate::errors::{attended, caught, to_python};
 use crate::options::RunOptions;
 use crate::plan::{Plan, contiguous, describe_run};
 
@@ -36,22 +36,26 @@ impl Trajectory {
         options: RunOptions,
         memory: usize,
     ) -> PyResult<Self> {
-        let options = options.read()?;
-        let (_, stages, channels) = forcing.as_array().dim();
-        let (values, forcing) =
-            (contiguous(values.as_slice())?.to_vec(), contiguous(forcing.as_slice())?.to_vec());
-        let drive = Forcing::new(&forcing, stages, channels).map_err(|e| to_python(&e))?;
-        let model = &plan.get().plan;
-        let kept = attended(py, None, |watch| {
-            derivatives::Trajectory::new(model, &values, &drive, &options, watch, memory)
-        })?;
-        Ok(Self { plan, values, forcing, stages, channels, options, kept })
+        caught(|| {
+            let options = options.read()?;
+            let (_, stages, channels) = forcing.as_array().dim();
+            let (values, forcing) =
+                (contiguous(values.as_slice())?.to_vec(), contiguous(forcing.as_slice())?.to_vec());
+            let drive = Forcing::new(&forcing, stages, channels).map_err(|e| to_python(&e))?;
+            let model = &plan.get().plan;
+            let kept = attended(py, None, |watch| {
+                derivatives::Trajectory::new(model, &values, &drive, &options, watch, memory)
+            })?;
+            Ok(Self { plan, values, forcing, stages, channels, options, kept })
+        })
     }
 
     /// What `Plan.simulate` gives.
     fn run<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let steps = self.forcing.len() / (self.stages * self.channels);
-        describe_run(py, &self.kept.run, [self.options.rows(steps), self.options.probes.len()])
+        caught(|| {
+            let steps = self.forcing.len() / (self.stages * self.channels);
+            describe_run(py, &self.kept.run, [self.options.rows(steps), self.options.probes.len()])
+        })
     }
 
     /// Slopes by all parameters of the sum of weights (rows x probes) times records.
@@ -60,12 +64,14 @@ impl Trajectory {
         py: Python<'py>,
         weights: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let weights = contiguous(weights.as_slice())?;
-        let drive = Forcing::new(&self.forcing, self.stages, self.channels).map_err(|e| to_python(&e))?;
-        let plan = &self.plan.get().plan;
-        let slopes = attended(py, None, |watch| {
-            self.kept.pull(plan, &self.values, &drive, &self.options, watch, weights)
-        })?;
-        Ok(PyArray1::from_vec(py, slopes))
+        caught(|| {
+            let weights = contiguous(weights.as_slice())?;
+            let drive = Forcing::new(&self.forcing, self.stages, self.channels).map_err(|e| to_python(&e))?;
+            let plan = &self.plan.get().plan;
+            let slopes = attended(py, None, |watch| {
+                self.kept.pull(plan, &self.values, &drive, &self.options, watch, weights)
+            })?;
+            Ok(PyArray1::from_vec(py, slopes))
+        })
     }
 }

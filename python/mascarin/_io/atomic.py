@@ -11,6 +11,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, Final
 
+from mascarin._io.regular import special
+from mascarin.errors import InputError
+
 PART: Final = ".part"
 """Ending of a file that is being written; one that is found later was left by a killed process."""
 
@@ -47,7 +50,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     'a,b\n'
     """
     _require_folder(path)
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PART, dir=path.parent)
+    handle, name = tempfile.mkstemp(prefix=_prefix(path), suffix=PART, dir=path.parent)
     draft = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
@@ -63,9 +66,17 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
 
 
 def _require_folder(path: Path) -> None:
-    """Name the folder that is missing, not the temporary file in it."""
+    """Name the folder that is missing, not the temporary file in it; keep pipes and devices."""
+    found = special(path)
+    if found is not None:
+        raise InputError(f"{path}: found {found}, expected a file to write; choose another name")
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"cannot write {path.name}: no such folder", str(path.parent))
+
+
+def _prefix(path: Path) -> str:
+    """Beginning of the name of a temporary file; that of the file may be as long as the system allows."""
+    return f".{path.name[:40]}."
 
 
 @contextlib.contextmanager
@@ -88,7 +99,7 @@ def drafted(path: Path) -> Iterator[Path]:
         The file cannot be written; the file that was there before is unchanged.
     """
     _require_folder(path)
-    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", suffix=PART, dir=path.parent) as folder:
+    with tempfile.TemporaryDirectory(prefix=_prefix(path), suffix=PART, dir=path.parent) as folder:
         draft = Path(folder) / path.name
         yield draft
         with draft.open("rb+") as file:

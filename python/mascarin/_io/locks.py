@@ -1,13 +1,19 @@
-"""A folder used by one process at a time."""
+"""Outputs used by one process at a time, and refused before the work if they cannot be written."""
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Final, Self
+from typing import TYPE_CHECKING, Final, Self
 
-import filelock
+from mascarin._io.regular import special
+from mascarin.errors import InputError, InUse
 
-from mascarin.errors import InputError
+if TYPE_CHECKING:
+    import filelock
 
 NAME: Final = ".lock"
 
@@ -21,11 +27,15 @@ class FolderLock:
         The folder; it exists.
     file : Path, optional
         The file that is locked; default ``.lock`` in the folder.
+    remove : bool
+        Whether the file is removed at the end, so that only the results are in the folder.
 
     Raises
     ------
-    InputError
+    InUse
         Another process holds the lock.
+    InputError
+        The folder cannot be written.
 
     Examples
     --------
@@ -34,15 +44,11 @@ class FolderLock:
     ...     pass
     """
 
-    def __init__(self, folder: Path, file: Path | None = None) -> None:
-        self._lock = filelock.FileLock(file or folder / NAME, timeout=0)
-        try:
-            self._lock.acquire()
-        except filelock.Timeout:
-            raise InputError(
-                f"{folder}: another process is writing to this folder; expected one at a time. Wait until it "
-                "has finished, or choose another folder (-o)"
-            ) from None
+    def __init__(self, folder: Path, file: Path | None = None, *, remove: bool = False) -> None:
+        self._file, self._remove = file or folder / NAME, remove
+        self._lock = _acquired(
+            self._file, f"{folder}: another process is writing to this folder", "another folder (-o)"
+        )
 
     def __enter__(self) -> Self:
         return self
@@ -52,4 +58,131 @@ class FolderLock:
 
     def release(self) -> None:
         """Release the lock; a second call changes nothing."""
-        self._lock.release()
+        _release(self._lock, self._file if self._remove else None)
+
+
+def _acquired(file: Path, held: str, other: str) -> filelock.BaseFileLock:
+    """Lock a file, at once or not at all."""
+    import filelock  # some commands write nothing
+
+    lock = filelock.FileLock(file, timeout=0)
+    try:
+        lock.acquire()
+    except filelock.Timeout:
+        raise InUse(
+            f"{held}; expected one at a time. Wait until it has finished, or choose {other}"
+        ) from None
+    except OSError as error:
+        raise InputError(f"{file.parent}: cannot be written ({error.strerror}); choose {other}") from None
+    return lock
+
+
+def _release(lock: filelock.BaseFileLock, remove: Path | None) -> None:
+    if not lock.is_locked:
+        return
+    if remove is not None:
+        # Before the release: whoever waits for the removed file finds that it has no name, and makes it anew.
+        with contextlib.suppress(OSError):
+            remove.unlink()
+    lock.release()
+
+
+@contextlib.contextmanager
+def writing(*files: Path | None) -> Iterator[None]:
+    """Hold output files for this process, and refuse those that cannot be written, before the work begins.
+
+    Parameters
+    ----------
+    files : Path or None
+        Files to write; None where an output is not wanted.
+
+    Yields
+    ------
+    None
+        While the files are held.
+
+    Raises
+    ------
+    InputError
+        There is no such folder, it cannot be written, the name is that of a folder, a pipe or a device, or
+        another process is writing to the file.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with writing(Path(tempfile.mkdtemp()) / "results.csv", None):
+    ...     pass
+    """
+    with contextlib.ExitStack() as held:
+        for file in files:
+            if file is not None:
+                _require_writable(file)
+                # The name of the output may be as long as the system allows.
+                place = file.resolve()
+                name = (
+                    place.name
+                    if len(place.name.encode()) < 200
+                    else hashlib.sha256(place.name.encode()).hexdigest()
+                )
+                guard = place.with_name(f".{name}{NAME}")
+                taken = f"{file}: another process is writing to this file"
+                held.callback(_release, _acquired(guard, taken, "another file"), guard)
+        yield
+
+
+def _require_writable(file: Path) -> None:
+    """Refuse a file that cannot be written; nothing is changed by trying."""
+    found = "a folder" if file.is_dir() else special(file)
+    if found is not None:
+        raise InputError(f"{file}: found {found}, expected a file to write; choose another name")
+    if not file.parent.is_dir():
+        raise InputError(f"{file}: expected an existing folder; make '{file.parent}' first")
+    try:
+        with tempfile.TemporaryFile(dir=file.parent):
+            pass
+    except OSError as error:
+        raise InputError(f"{file}: cannot be written ({error.strerror}); choose another folder") from None
+
+
+@contextlib.contextmanager
+def writing_into(folder: Path | None) -> Iterator[None]:
+    """Hold an output folder for this process; it is made, and removed again if nothing was written.
+
+    Parameters
+    ----------
+    folder : Path or None
+        The folder; None where no output is wanted.
+
+    Yields
+    ------
+    None
+        While the folder is held.
+
+    Raises
+    ------
+    InputError
+        The name is that of a file, the folder cannot be made or written, or another process is writing to it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with writing_into(Path(tempfile.mkdtemp()) / "results"):
+    ...     pass
+    """
+    if folder is None:
+        yield
+        return
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: found a file, expected a folder; choose another folder (-o)")
+    before = folder.exists()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made ({error.strerror}); choose another folder (-o)") from None
+    try:
+        with FolderLock(folder, remove=True):
+            yield
+    finally:
+        if not before:
+            with contextlib.suppress(OSError):  # there is something in it
+                folder.rmdir()

@@ -137,6 +137,8 @@ def diffusion_count(thickness: float, conductivity: float, capacity: float, step
         At least 1.
     """
     depth = math.sqrt(2.0 * step_seconds * conductivity / (math.pi * capacity))
+    if depth <= thickness * 1e-9:  # also 0, of a conductivity so small that the product vanishes
+        return MOST_IN_LAYER + 1
     return max(1, math.ceil(thickness / depth * (1.0 - 1e-12)))
 
 

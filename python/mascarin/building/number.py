@@ -332,7 +332,10 @@ class Quantity:
             return Number(self.words[raw], source=Remark(f"'{raw}'"))
         if isinstance(raw, bool) or not isinstance(raw, int | float):
             raise problem(shown(raw), self.expectation, self._advice(raw))
-        return raw if isinstance(raw, Number) else Number(raw)
+        try:
+            return raw if isinstance(raw, Number) else Number(raw)
+        except OverflowError:
+            raise problem("a whole number beyond 1e308", self.expectation, "Check the exponent.") from None
 
     def _advice(self, raw: object) -> str:
         if isinstance(raw, str) and _COMMA.fullmatch(raw):

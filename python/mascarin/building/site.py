@@ -46,7 +46,7 @@ class Wind(Part):
     @model_validator(mode="before")
     @classmethod
     def _by_terrain(cls, raw: Any) -> Any:
-        if not isinstance(raw, dict) or raw.get("terrain", "open") not in TERRAINS:
+        if not isinstance(raw, dict) or str(raw.get("terrain", "open")) not in TERRAINS:
             return raw
         terrain = raw.get("terrain", "open")
         exponent, layer = (

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from pydantic import ValidationError
 
 from mascarin._io.arguments import require_type
+from mascarin._io.regular import require_regular
 from mascarin.building.explaining import Place, explained
 from mascarin.building.inheriting import EXTENDS, Inherited, inherited
 from mascarin.building.part import Part
@@ -22,6 +23,10 @@ AnyPart = TypeVar("AnyPart", bound=Part)
 
 #: Aliases can make a small file expand to any size; no building has more values than this.
 MOST_VALUES = 100_000
+#: No description has values deeper than this.
+MOST_LEVELS = 50
+#: Longer whole numbers are no quantities; the time to read one grows with the square of its digits.
+MOST_DIGITS = 40
 
 
 def read(
@@ -87,7 +92,7 @@ def merged(path: Path, what: str, *, blanks: bool, file_keys: Collection[str] = 
 
     def one(file: Path) -> tuple[dict[str, Any], dict[Place, int]]:
         try:
-            text = file.read_text(encoding="utf-8")
+            text = require_regular(file, f"a YAML file of {what}").read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
             raise InputError(f"{file}: cannot be read ({reason}); expected a YAML file of {what}") from error
@@ -170,6 +175,13 @@ class _Document:
             )
         except YAMLError as error:
             self._refuse(0, "", f"text that is no YAML: {error}", "valid YAML 1.2", "Save it as UTF-8 text.")
+        except RecursionError:
+            self._too_deep(0)
+        except (ValueError, OverflowError) as error:
+            # Numbers of a character beyond the last one end in such errors of the parser.
+            self._refuse(
+                0, "", f"text that is no YAML: {error}", "valid YAML 1.2", "Check the text in double quotes."
+            )
         if not self.faults and not isinstance(plain, Mapping):
             self._refuse(0, "", "no keys", "a mapping with site:, surfaces: and so on", "See the examples.")
         if self.faults:
@@ -179,6 +191,12 @@ class _Document:
     def _refuse(self, line: int, place: str, found: str, expected: str, help_: str) -> None:
         where = f"{self.name}:{line + 1}: {place or 'the whole description'}"
         self.faults.append((line, f"{where}\n  found: {found}\n  expected: {expected}\n  {help_}"))
+
+    def _too_deep(self, line: int) -> NoReturn:
+        raise InputError(
+            f"{self.name}:{line + 1}: found values inside each other more than {MOST_LEVELS} times; expected "
+            "a description, whose values are a few levels deep"
+        )
 
     def _value(self, node: Node, place: Place, above: frozenset[int]) -> Any:
         from ruamel.yaml.nodes import MappingNode, SequenceNode
@@ -195,6 +213,8 @@ class _Document:
                 "Write it out.",
             )
             return None
+        if len(above) > MOST_LEVELS:
+            self._too_deep(node.start_mark.line)
         self.lines.setdefault(place, node.start_mark.line + 1)
         inside = above | {id(node)}
         if isinstance(node, MappingNode) and node.tag == "tag:yaml.org,2002:map":
@@ -211,6 +231,8 @@ class _Document:
                 self._refuse(
                     line, _text(place), "a key that is no text", "a plain key", "Quote or simplify it."
                 )
+                continue
+            if self._words(key_node, (*place, "?")) is None:
                 continue
             if key in seen:
                 self._refuse(
@@ -236,15 +258,43 @@ class _Document:
                 help_ = "Write decimals with a point, as in 0.4." if comma else "Write one or remove the key."
                 self._refuse(line, _text(place), "nothing", "a value", help_)
                 return None
-            case "bool" | "int" | "float":
-                return getattr(self.scalars, f"construct_yaml_{kind}")(node)
-            case "str" | "timestamp":
-                return node.value
+            case "bool" | "int" | "float" if isinstance(node.value, str):
+                return self._number(node, place, kind)
+            case "str" | "timestamp" if isinstance(node.value, str):
+                return self._words(node, place)
             case _:
                 self._refuse(
                     node.start_mark.line, _text(place), f"the tag '{kind}'", "plain values", "Remove the tag."
                 )
                 return None
+
+    def _number(self, node: Any, place: Place, kind: str) -> Any:
+        """A number or a truth value; a tag can stand on a text that is neither."""
+        line = node.start_mark.line
+        if kind == "int" and len(node.value) > MOST_DIGITS:
+            self._refuse(
+                line,
+                _text(place),
+                f"a whole number of {len(node.value)} digits",
+                f"at most {MOST_DIGITS} digits",
+                "Write it with an exponent, as in 1e21.",
+            )
+            return None
+        try:
+            return getattr(self.scalars, f"construct_yaml_{kind}")(node)
+        except (ValueError, KeyError, IndexError, OverflowError):
+            found = f"the tag '{kind}' on the text '{node.value[:40]}'"
+            self._refuse(line, _text(place), found, "plain values", "Remove the tag.")
+            return None
+
+    def _words(self, node: Any, place: Place) -> str | None:
+        """A text; half of a surrogate pair, which an escape can write, is no character."""
+        text: str = node.value
+        if any("\ud800" <= letter <= "\udfff" for letter in text):
+            found = f"the text {text[:40]!r} with half of a surrogate pair"
+            self._refuse(node.start_mark.line, _text(place), found, "text", "Write the letter itself.")
+            return None
+        return text
 
 
 def _extends(root: Any) -> bool:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from mascarin._io.locks import writing_into
 from mascarin.commands.inputs import AsJson, Flag, Step, seconds
 from mascarin.commands.output import number, print_json, print_table
 from mascarin.errors import InputError, did_you_mean
@@ -75,6 +76,24 @@ def bestest(
     _require_own(own, known)
     if workers < 1:
         raise InputError(f"--workers: found {workers}; expected 1 or more")
+    with writing_into(out):
+        rows_found = _compared(cases, own, wanted, known, weather, out, step, workers)
+    if as_json:
+        print_json([row.to_dict() for row in rows_found])
+    else:
+        _print(rows_found)
+    held = [row.passed for row in rows_found if row.passed is not None]
+    outside = held.count(False)
+    of = "the six programs" if known is None else "the six programs, or of --ranges"
+    print(f"{len(held) - outside} of {len(held)} numbers inside the range of {of}", file=sys.stderr)
+    return 1 if outside else 0
+
+
+def _compared(
+    words: Sequence[str], own: Sequence[Path], wanted: Sequence[Case], known: Ranges | None,
+    weather: Path | None, out: Path | None, step: str, workers: int,
+) -> list[Quantity]:  # fmt: skip
+    """Run the cases, and write the page."""
     from mascarin.progress import Progress
     from mascarin.verification.bestest.quantities import quantities, quantities_of
     from mascarin.verification.bestest.running import run
@@ -92,22 +111,13 @@ def bestest(
         from mascarin.report.bestest import write
 
         facts = {
-            "Command": " ".join(("mascarin bestest", *cases, "--weather", climate.file, "--step", step)),
+            "Command": " ".join(("mascarin bestest", *words, "--weather", climate.file, "--step", step)),
             "Weather": f"{climate.file}, SHA-256 {climate.sha256}",
             "Time step": step,
             "Took": f"{took:.0f} s",
         }
-        out.mkdir(exist_ok=True)
         print(f"wrote {write(out / PAGE, rows_found, years, facts)}", file=sys.stderr)
-    if as_json:
-        print_json([row.to_dict() for row in rows_found])
-    else:
-        _print(rows_found)
-    held = [row.passed for row in rows_found if row.passed is not None]
-    outside = held.count(False)
-    of = "the six programs" if known is None else "the six programs, or of --ranges"
-    print(f"{len(held) - outside} of {len(held)} numbers inside the range of {of}", file=sys.stderr)
-    return 1 if outside else 0
+    return rows_found
 
 
 def _list(wanted: Sequence[Case], *, as_json: bool) -> int:

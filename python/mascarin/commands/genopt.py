@@ -62,7 +62,7 @@ def optimize(
     int
         Exit code.
     """
-    from mascarin.errors import MascarinError
+    from mascarin.errors import InUse, MascarinError
 
     try:
         return _optimize(
@@ -77,6 +77,8 @@ def optimize(
             check=check,
             quiet=quiet,
         )
+    except InUse:  # GenOpt has no such error: exit code 2, and the log is that of the other process
+        raise
     except MascarinError as error:
         _say(f"error: {error}")
         if not check and project.is_file():

@@ -7,6 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from mascarin.commands.inputs import Outside
+
 
 def genopt(
     study: str,
@@ -20,6 +22,7 @@ def genopt(
     seed: int | None = None,
     program: str | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
+    allow_outside: Outside = False,
 ) -> int:
     """Write the calibration of a study as a GenOpt project.
 
@@ -49,7 +52,7 @@ def genopt(
     """
     from mascarin.genopt.export.writing import Options, write_project
 
-    options = Options(algorithm, starts, evaluations, seed, reductions, program, force)
+    options = Options(algorithm, starts, evaluations, seed, reductions, program, force, allow_outside)
     print(write_project(study, out, options))
     return 0
 
@@ -61,6 +64,7 @@ def cost(
     study: str | None = None,
     out: Annotated[Path, Parameter(alias="-o")] = Path("result.txt"),
     log: Path = Path("log.txt"),
+    allow_outside: Outside = False,
 ) -> int:
     """Evaluate the calibration cost of a study once.
 
@@ -85,5 +89,5 @@ def cost(
         from mascarin.examples import locate
 
         chosen = locate(study)
-    print("\n".join(evaluate_files(parameters, out, log, chosen)))
+    print("\n".join(evaluate_files(parameters, out, log, chosen, allow_outside=allow_outside)))
     return 0

@@ -24,6 +24,14 @@ Settings = Annotated[
     ),
 ]
 AsJson = Annotated[bool, Flag, Parameter(name="--json", help="Print the result as JSON.")]
+Outside = Annotated[
+    bool,
+    Flag,
+    Parameter(
+        help="Let the study read files outside its folder and the data folder (MASCARIN_DATA); for "
+        "studies that you trust."
+    ),
+]
 Step = Annotated[str, Parameter(help="Time step, such as 900, 15min or 1h.")]
 
 

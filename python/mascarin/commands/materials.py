@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from mascarin._io.atomic import drafted
+from mascarin._io.locks import writing
 from mascarin.commands.inputs import AsJson
 from mascarin.commands.output import print_json, print_table
 from mascarin.errors import InputError
@@ -64,7 +65,8 @@ def materials(
     if plot is not None:
         from mascarin.materials.plots import plot as draw
 
-        draw(chosen).savefig(plot)
+        with writing(plot):
+            draw(chosen).savefig(plot)
         print(f"wrote {plot}", file=sys.stderr)
 
 
@@ -264,11 +266,12 @@ def dsc(
         conductivity=_values(conductivity, "--conductivity"),
         density=_values(density, "--density"),
     )
-    if out is not None:
-        _write(material, name or material.name, described, out)
-    if plot is not None:
-        material.plot().savefig(plot)
-        print(f"wrote {plot}", file=sys.stderr)
+    with writing(out, plot):
+        if out is not None:
+            _write(material, name or material.name, described, out)
+        if plot is not None:
+            material.plot().savefig(plot)
+            print(f"wrote {plot}", file=sys.stderr)
     if as_json:
         print_json({"material": described, **material.to_dict()})
     else:

@@ -8,6 +8,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from mascarin._io.atomic import write
+from mascarin._io.locks import writing_into
 from mascarin.errors import InputError, did_you_mean
 
 
@@ -34,11 +36,10 @@ def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example"
         raise InputError(f"{folder}: is a file; expected a new folder: choose another name")
     if folder.is_dir() and any(folder.iterdir()):
         raise InputError(f"{folder}: is not empty; expected a new folder, as nothing is overwritten")
-    folder.mkdir(parents=True, exist_ok=True)
-    for source in sorted(STUDIES[example].parent.iterdir()):
-        if source.is_file():
-            (folder / source.name).write_bytes(source.read_bytes())
-            print(folder / source.name)
+    with writing_into(folder):
+        for source in sorted(STUDIES[example].parent.iterdir()):
+            if source.is_file():
+                print(write(folder / source.name, source.read_bytes()))
     study = folder / "study.yaml"
     print(
         f"next: mascarin check '{folder / 'building.yaml'}'\n"

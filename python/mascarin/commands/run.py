@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import tempfile
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -12,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from mascarin._io.atomic import drafted
-from mascarin.commands.inputs import AsJson, Settings, Step, read_building, seconds
+from mascarin._io.locks import writing
+from mascarin.commands.inputs import AsJson, Outside, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
 from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError, did_you_mean
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
+    from mascarin.weather import Climate
 
 FORMATS = (".nc", ".csv")
 
@@ -42,6 +43,7 @@ def run(
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
     settings: Settings = None,
+    allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> int:
     """Simulate a building with a weather file.
@@ -82,36 +84,50 @@ def run(
         Time-stepping scheme.
     """
     described = read_building(building, settings)
-    if out is not None:
-        _require_writable(out)
-    from mascarin.simulation.simulation import Simulation
-
-    climate, measured = run_inputs(
-        described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps
-    )
-    simulation = Simulation(
-        described,
-        climate,
-        measurements=measured,
-        step=seconds(step),
-        start=start,
-        end=end,
-        outputs=_matching(described, outputs),
-        scheme=scheme,
-    )
-    _print_warnings(described, simulation)
-    results = simulation.run()
-    for line in results.warnings:
-        print(f"warning: {line}", file=sys.stderr)
-    if interval is not None:
-        results = results.every(interval)
-    if out is not None:
-        _write(results, out)
+    _require_format(out)
+    with writing(out):
+        climate, measured = run_inputs(
+            described,
+            weather,
+            measurements,
+            columns=columns or [],
+            timezone=timezone,
+            stamps=stamps,
+            allow_outside=allow_outside,
+        )
+        results = _simulated(
+            described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
+            scheme=scheme,
+        )  # fmt: skip
+        if interval is not None:
+            results = results.every(interval)
+        if out is not None:
+            _write(results, out)
     if as_json:
         print_json(_summary(results))
     elif out is None:
         _print(results)
     return 0 if results.energy.closes else 1
+
+
+def _simulated(
+    building: Building, climate: Climate, *, step: str, outputs: Sequence[str] | None, **options: Any
+) -> Results:
+    """Run once, with the warnings about building and results on standard error."""
+    from mascarin.simulation.simulation import Simulation
+
+    simulation = Simulation(
+        building,
+        climate,
+        step=seconds(step),
+        outputs=_matching(building, outputs),
+        **options,
+    )
+    _print_warnings(building, simulation)
+    results = simulation.run()
+    for line in results.warnings:
+        print(f"warning: {line}", file=sys.stderr)
+    return results
 
 
 def _print_warnings(building: Building, simulation: Simulation) -> None:
@@ -127,18 +143,9 @@ def _print_warnings(building: Building, simulation: Simulation) -> None:
         print(f"{assumed} assumed values: 'mascarin check' lists them", file=sys.stderr)
 
 
-def _require_writable(out: Path) -> None:
-    """Refuse a file that cannot be written, before the simulation starts."""
-    if out.suffix.lower() not in FORMATS:
+def _require_format(out: Path | None) -> None:
+    if out is not None and out.suffix.lower() not in FORMATS:
         raise InputError(f"--out: found '{out}'; expected a file ending in {' or '.join(FORMATS)}")
-    if not out.parent.is_dir():
-        raise InputError(f"--out: found '{out}'; expected an existing folder; make '{out.parent}' first")
-    try:
-        with tempfile.TemporaryFile(dir=out.parent):
-            pass
-    except OSError as error:
-        why = f"cannot be written ({error.strerror})"
-        raise InputError(f"--out: found '{out}', which {why}; choose another folder") from None
 
 
 def _matching(building: Building, patterns: Sequence[str] | None) -> list[str] | None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 from cyclopts import Parameter
 
 from mascarin._io.numbers import beside_limit, with_interval
-from mascarin.commands.inputs import AsJson
+from mascarin.commands.inputs import AsJson, Outside
 from mascarin.commands.output import number, print_json, print_table
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ def study(
     /,
     *,
     out: Annotated[Path, Parameter(alias="-o")],
+    allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> int:
     """Run a whole study: compare, calibrate, validate.
@@ -42,7 +43,7 @@ def study(
     out : Path
         Folder for study.json, tables, figures, the report and intermediate results.
     """
-    opened = _open(file)
+    opened = _open(file, allow_outside)
     results = opened.run(out, progress=True)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
@@ -56,6 +57,7 @@ def sensitivity(
     *,
     out: Annotated[Path, Parameter(alias="-o")],
     method: Literal["spectral", "rbd-fast", "sobol", "morris"] | None = None,
+    allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> None:
     """Run the sensitivity analysis of a study.
@@ -74,7 +76,7 @@ def sensitivity(
     """
     from mascarin.study import steps
 
-    content = steps.sensitivity(_open(file), out, method=method)
+    content = steps.sensitivity(_open(file, allow_outside), out, method=method)
     if as_json:
         print_json(content)
         return
@@ -93,6 +95,7 @@ def calibrate(
     /,
     *,
     out: Annotated[Path, Parameter(alias="-o")],
+    allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> int:
     """Calibrate the parameters of a study.
@@ -110,7 +113,7 @@ def calibrate(
     """
     from mascarin.study import steps
 
-    content = steps.calibration(_open(file), out)
+    content = steps.calibration(_open(file, allow_outside), out)
     if as_json:
         print_json(content)
     else:
@@ -136,6 +139,7 @@ def validate(
     /,
     *,
     out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> int:
     """Compare the uncalibrated model with measurements.
@@ -151,7 +155,7 @@ def validate(
     """
     from mascarin.study import steps
 
-    content = steps.validation(_open(file), out)
+    content = steps.validation(_open(file, allow_outside), out)
     if as_json:
         print_json(content)
     else:
@@ -159,12 +163,12 @@ def validate(
     return _exit_code(_verdicts(content, "nominal"))
 
 
-def _open(file: str) -> Study:
+def _open(file: str, allow_outside: bool) -> Study:
     """Open a study, and say on standard error what is suspicious in its tables and what is left out."""
     from mascarin.examples import locate
     from mascarin.study import Study
 
-    opened = Study.from_yaml(locate(file))
+    opened = Study.from_yaml(locate(file), allow_outside=allow_outside)
     said = dict.fromkeys((*opened.climate.provenance, *opened.measurements.provenance))
     lines = [note for note in said if ": warning: " in note]
     if opened.quality:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.commands.inputs import AsJson, Settings, Step, read_building, read_weather, seconds
 from mascarin.commands.output import print_json, print_table
@@ -116,6 +117,7 @@ def _samples(
 def _read(file: Path) -> pd.DataFrame:
     import pandas as pd
 
+    require_regular(file, "a table of samples")
     try:
         match file.suffix.lower():
             case ".csv":

@@ -29,6 +29,7 @@ def run_inputs(
     columns: Sequence[str],
     timezone: str | None,
     stamps: Stamps,
+    allow_outside: bool = False,
 ) -> tuple[Climate, Measurements | None]:
     """Read the weather of a run, and the measured columns that its building names.
 
@@ -46,6 +47,8 @@ def run_inputs(
         Zone of the tables; None: that of the site.
     stamps : str
         Which end of its interval a stamp marks.
+    allow_outside : bool
+        Whether a YAML file may name files outside its folder.
 
     Raises
     ------
@@ -71,7 +74,7 @@ def run_inputs(
                 f"--weather: found '{weather}', a file without the key climate; expected .epw, a table, or a "
                 "YAML file with climate and measurements as in a study"
             )
-        climate, measured = open_run_inputs(weather, building)
+        climate, measured = open_run_inputs(weather, building, allow_outside=allow_outside)
     elif columns or weather.suffix.lower() in _TABLES[1:]:
         climate = _measured_weather(building, weather, columns, zone, stamps)
         table = table or weather

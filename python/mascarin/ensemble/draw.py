@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from mascarin._io import memory
 from mascarin.building.set_points import tied_set_points
 from mascarin.errors import InputError
 
@@ -66,6 +67,11 @@ def latin_hypercube(
     free = [p for p in chosen if not p.structural and p.low < p.high and p.path not in second]
     if not free:
         raise InputError("no parameter to draw: all ranges are empty")
+    memory.require(
+        4.0 * 8.0 * members * len(free),  # the draw, its scrambled ranks, the table, and a copy
+        f"members: {members} members of {len(free)} parameters",
+        "draw fewer members, or vary fewer parameters",
+    )
     unit = qmc.LatinHypercube(len(free), seed=seed).random(members)
     drawn = {p.path: p.low + (p.high - p.low) * unit[:, k] for k, p in enumerate(free)}
     following = {tied[path]: values for path, values in drawn.items() if path in tied}

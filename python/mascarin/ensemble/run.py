@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin import __version__
+from mascarin._io import memory
 from mascarin._io.arguments import kind_of, mapping_of
 from mascarin._io.locks import FolderLock
 from mascarin.ensemble.members import Members
@@ -109,6 +110,7 @@ def sweep(
         initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
     inputs, found = _prepared(building, climate, samples, options, objectives)
+    _require_room(inputs, found)
     with reporting(progress, "members") as report:
         chunks = _chunks(inputs, found, [(0, found.count)], workers, lambda done: report(done, found.count))
         whole, closure, failures = _gathered(found, chunks)
@@ -247,6 +249,18 @@ def _prepared(
     whole = hashlib.sha256(inputs.compiled(_first_structure(members)).identity.encode())
     whole.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives)]).encode())
     return replace(inputs, identity=whole.hexdigest()), members
+
+
+def _require_room(inputs: EnsembleInputs, members: Members) -> None:
+    """Refuse results of all members that memory does not hold."""
+    simulation = _first(inputs, members)
+    rows = 1 if inputs.objectives else len(simulation.index)
+    columns = len(inputs.objectives) or len(simulation.outputs)
+    memory.require(
+        2.0 * 8.0 * members.count * rows * columns,  # of the members that ran last, and of all
+        f"{members.count} members, each with {rows} x {columns} results,",
+        "keep objectives instead of series, or sweep into a folder (sweep_into, 'mascarin sweep')",
+    )
 
 
 def _first_structure(members: Members) -> dict[str, Any]:

@@ -97,7 +97,8 @@ class Store:
         _require_parquet()
         if (path / MANIFEST).exists() or not path.exists():
             return
-        if any(file.name != locks.NAME for file in path.iterdir()):
+        # What is left where the first file could not be written: the lock, drafts, an empty folder.
+        if not path.is_dir() or any(_foreign(file) for file in path.iterdir()):
             raise InputError(f"{path}: found a folder that is not empty and no ensemble; choose another")
 
     @classmethod
@@ -390,3 +391,10 @@ def _require_parquet() -> None:
         raise InputError(
             "a store needs pyarrow, which is not installed: pip install 'mascarin[parquet]'"
         ) from None
+
+
+def _foreign(file: Path) -> bool:
+    """Whether a file is none that the beginning of an ensemble leaves."""
+    if file.name == locks.NAME or file.suffix == atomic.PART:
+        return False
+    return not (file.name == "pieces" and file.is_dir() and not any(file.iterdir()))

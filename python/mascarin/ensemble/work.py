@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin import _engine
 from mascarin.errors import InputError, MascarinError
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.simulation import Simulation
@@ -198,6 +199,8 @@ def _reduced(inputs: EnsembleInputs, simulation: Simulation, records: Array) -> 
     for name, objective in inputs.objectives.items():
         try:
             column = np.asarray(objective(series), dtype=np.float64)
+        except _engine.EngineDefect:
+            raise
         except Exception as error:  # a function of the user can raise anything
             raise InputError(f"objective '{name}' failed: {error!r}") from error
         if column.shape != (len(records),):

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from multiprocessing.process import BaseProcess
 from typing import Final
 
+from mascarin import _engine
 from mascarin._io.arguments import whole_number
 from mascarin.ensemble.members import Members
 from mascarin.ensemble.work import Chunk, EnsembleInputs, run_chunk
@@ -62,7 +66,7 @@ def elsewhere(
     try:
         yield from dispatcher.chunks()
     finally:
-        dispatcher.executor.shutdown(wait=False, cancel_futures=True)
+        _end(dispatcher.executor)
 
 
 class _Dispatcher:
@@ -126,8 +130,8 @@ class _Dispatcher:
     def _result(self, future: Future[Chunk], gap: Gap) -> Chunk | None:
         try:
             return future.result()
-        except MascarinError:
-            # An input that cannot be run by any worker.
+        except (MascarinError, _engine.EngineDefect):
+            # An input that cannot be run by any worker, or a defect, which another attempt does not mend.
             raise
         except Exception as error:  # executors differ in what they raise when a worker is gone
             self._lost(gap, error)
@@ -149,7 +153,7 @@ class _Dispatcher:
                     del self.running[other]
                     self.gaps.append(lost)
                     self.attempts.setdefault(lost, 0)
-            self.executor.shutdown(wait=False, cancel_futures=True)
+            _end(self.executor)
             self.executor = self.renew(self.slots)
 
 
@@ -163,12 +167,32 @@ def _processes(workers: int) -> ProcessPoolExecutor:
     # New processes: a copy of one whose threads are running may never continue.
     whole_number("workers", workers, 1)
     context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(workers, mp_context=context, initializer=_one_thread)
+    return ProcessPoolExecutor(workers, mp_context=context, initializer=_prepare)
 
 
-def _one_thread() -> None:
-    """One thread for each worker, because the workers use all cores together."""
+def _prepare() -> None:
+    """Prepare a worker: one thread, because the workers use all cores together, and no life of its own."""
     os.environ["RAYON_NUM_THREADS"] = "1"
+    # Ctrl-C in a terminal reaches all processes of a command; the first one ends the workers.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_follow, args=(parent,), daemon=True).start()
+
+
+def _follow(parent: BaseProcess) -> None:
+    """End this worker as soon as its parent has ended, also when it was killed and could not say so."""
+    parent.join()
+    signal.raise_signal(signal.SIGTERM)
+
+
+def _end(executor: Executor) -> None:
+    """End a pool; workers that are still busy are stopped, so that nobody waits for them."""
+    running = [one for one in (getattr(executor, "_processes", None) or {}).values() if one.is_alive()]
+    executor.shutdown(wait=False, cancel_futures=True)
+    for process in running:
+        process.terminate()
 
 
 def _slots(executor: Executor) -> int:

@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mascarin._io.regular import require_regular
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import functions
 from mascarin.genopt.command_line import place_word, split_command, variables
@@ -371,7 +372,7 @@ class Program:
 def _read_template(entry: FileEntry) -> str:
     """Text of a template with every line ended."""
     try:
-        lines = lines_of(entry.path.read_text(**_ENCODING))
+        lines = lines_of(require_regular(entry.path).read_text(**_ENCODING))
     except OSError as error:
         msg = f"{entry.place}: cannot read template '{entry.path}': {error.strerror}"
         raise InputError(msg) from error

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mascarin import __version__
+from mascarin._io.locks import FolderLock, writing
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt import records
 from mascarin.genopt.algorithm import Built, build, chosen
@@ -26,6 +27,8 @@ from mascarin.optimization import EXHAUSTED
 from mascarin.progress import Progress
 
 LOG_NAME = "GenOpt.log"
+#: Held in the folder of a project while it is optimized.
+LOCK = ".mascarin.lock"
 
 
 @dataclass(frozen=True)
@@ -191,6 +194,12 @@ def optimize(path: str | Path, options: Options | None = None, *, run: Runner | 
         if blank.ini.is_file():
             _write_log(blank, Outcome(blank, ""), started, str(error))
         raise
+    with FolderLock(project.folder, project.folder / LOCK, remove=True), writing(o.table):
+        return _optimized(project, o, run, started)
+
+
+def _optimized(project: Project, o: Options, run: Runner | None, started: dt.datetime) -> Outcome:
+    """Optimize in a folder that this process holds."""
     listings = Listings(project)
     built: Built | None = None
     outcome = Outcome(project, "")

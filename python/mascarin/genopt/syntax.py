@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from mascarin._io.regular import require_regular
 from mascarin.errors import InputError, did_you_mean
 from mascarin.genopt.numbers import normalised
 
@@ -154,7 +155,7 @@ def read(path: Path, report: Report) -> Block:
         The file cannot be read or has a syntax error.
     """
     try:
-        text = path.read_text(encoding="utf-8", errors="surrogateescape")
+        text = require_regular(path).read_text(encoding="utf-8", errors="surrogateescape")
     except OSError as error:
         msg = f"cannot read '{path}': {error.strerror}"
         raise InputError(msg) from error

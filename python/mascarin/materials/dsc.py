@@ -8,6 +8,7 @@ for the file as for the engine. The rest is melting.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -290,7 +291,14 @@ def _melting(
             f"{where}: {scan.direction}: found no peak above the sensible heat ({heat.max():.4g} against "
             f"{max(solid, liquid):.4g} J/(kg K)); expected a run through the whole melting range"
         )
-    fraction, latent = _fractions(t, heat, (solid, liquid), (low, high))
+    with np.errstate(all="ignore"):  # a curve that cannot be used is refused below
+        fraction, latent = _fractions(t, heat, (solid, liquid), (low, high))
+    if not (np.isfinite(fraction).all() and math.isfinite(latent) and latent > 0.0):
+        raise InputError(
+            f"{where}: {scan.direction}: found no latent heat that is positive between {low:.4g} and "
+            f"{high:.4g} degC (the signal is {heat.min():.4g} to {heat.max():.4g} J/(kg K)); expected a peak "
+            "above the sensible heat of solid and liquid. Remove rows that are wrong, or give melting_range"
+        )
     steepest = 0.03 * height
     for part, name in ((t <= low, "begins"), (t >= high, "ends")):
         if span is None and np.ptp(heat[part]) > steepest + 0.1 * max(solid, liquid):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin._io.regular import require_regular
 from mascarin.errors import InputError
 from mascarin.materials.units import OF_SAMPLE, UNITS, Column, check_unit, column_of, plain_unit, to_celsius
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 LEAST_ROWS: Final = 10
+#: Larger numbers are no measurement in any unit: water has 4e6 J/(kg K) at its sharpest peaks.
+LARGEST: Final = 1e9
 SIGNALS: Final = ("heat flow", "specific heat", "enthalpy")
 
 
@@ -131,7 +134,7 @@ def _with_unit(column: Column, unit: str) -> Column:
 def _table(path: Path) -> tuple[list[str], list[list[str]], int]:
     """Names of the columns, the rows below, and the line of the names."""
     try:
-        raw = path.read_bytes()
+        raw = require_regular(path, "a DSC file as CSV").read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); expected a DSC file as CSV") from None
     try:
@@ -205,8 +208,11 @@ def _number(row: list[str], column: Column, number: int, place: str) -> float:
         value = float(text.replace(",", "."))
     except ValueError:
         value = float("nan")
-    if not np.isfinite(value):
-        raise InputError(f"{place}: row {number}, column '{column.name}': found '{text}'; expected a number")
+    if not abs(value) <= LARGEST:  # NaN, too
+        raise InputError(
+            f"{place}: row {number}, column '{column.name}': found '{text}'; expected a number of at most "
+            f"{LARGEST:g}. Correct the row or remove it"
+        )
     return value
 
 

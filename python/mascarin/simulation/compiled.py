@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import _engine
+from mascarin._io import memory
 from mascarin.simulation.engine_errors import translated
 from mascarin.simulation.readings import Readings
 from mascarin.weather.timezones import parse_timezone
@@ -179,6 +180,8 @@ class CompiledRun:
             Members that failed, and why.
         """
         options = self.options(None, record_from, record_every)
+        rows = self._rows(record_from, record_every)
+        self._require_room(len(vectors), rows, f"{len(vectors)} members", "run fewer at a time")
         with translated(self.dated):
             raw, residuals, failed = self.plan.ensemble(
                 vectors, self.forcing, options, _of_total(progress, len(vectors))
@@ -222,6 +225,8 @@ class CompiledRun:
         """
         options = self.options(None, record_from, record_every)
         report = _of_total(progress, len(positions))
+        rows, many = self._rows(record_from, record_every), len(positions) + 1
+        self._require_room(many, rows, f"derivatives by {len(positions)} parameters", "take fewer")
         with translated(self.dated):
             raw, slopes = self.plan.jacobian(vector, list(positions), self.forcing, options, report)
         return self.readings.values(raw), self.readings.slopes(raw, slopes)
@@ -254,6 +259,19 @@ class CompiledRun:
         with translated(self.dated):
             run = _engine.Trajectory(self.plan, vector, self.forcing, options, memory)
         return Trajectory(run, run.run()["records"], self.readings)
+
+    def _rows(self, record_from: int, record_every: int) -> int:
+        return max(len(self.forcing) - record_from, 0) // max(record_every, 1) + 1
+
+    def _require_room(self, times: int, rows: int, what: str, advice: str) -> None:
+        """Refuse results that memory does not hold; the engine would end the process."""
+        columns = len(self.readings.recipes)
+        # As the engine records them, and as outputs.
+        memory.require(
+            2.0 * 8.0 * times * rows * columns,
+            f"{what}, {rows} records and {columns} outputs",
+            f"{advice}, record fewer outputs, or take a longer step or a shorter period",
+        )
 
     def dated(self, message: str) -> str:
         """Add the local time to a message of the engine that names a step.

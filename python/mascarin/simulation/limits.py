@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from mascarin.building import Building, Parameter
 
     Array = npt.NDArray[np.float64]
+
+
+#: Comparisons made at once: members times steps would not fit into memory.
+_AT_ONCE: Final = 2**22
 
 
 class Limits:
@@ -106,10 +110,10 @@ def require_set_points_apart(
         if zone.heating is None or zone.cooling is None:
             continue
         heating, cooling = set_point(name, "heating"), set_point(name, "cooling")
-        bad = np.argwhere(heating > cooling + 1e-9)
-        if not len(bad):
+        found = _first_above(heating, cooling + 1e-9)
+        if found is None:
             continue
-        member, step = (int(i) for i in bad[0])
+        member, step = found
         warm, cold = (
             float(np.broadcast_to(x, (len(vectors), len(forcing)))[member, step]) for x in (heating, cooling)
         )
@@ -119,3 +123,15 @@ def require_set_points_apart(
             f"{f' (member {member})' if len(vectors) > 1 else ''}; expected a heating set point at or "
             "below the cooling set point at all times: lower the one or raise the other"
         )
+
+
+def _first_above(high: Array, low: Array) -> tuple[int, int] | None:
+    """First place where `high` is above `low`; the two are broadcast, a part of the rows at a time."""
+    rows, columns = np.broadcast_shapes(high.shape, low.shape)
+    part = max(_AT_ONCE // columns, 1)
+    for first in range(0, rows, part):
+        above, below = (one if len(one) == 1 else one[first : first + part] for one in (high, low))
+        bad = np.argwhere(above > below)
+        if len(bad):
+            return first + int(bad[0][0]), int(bad[0][1])
+    return None

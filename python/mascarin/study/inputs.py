@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +15,7 @@ from mascarin.building.engine_input import measured_columns
 from mascarin.errors import InputError, did_you_mean
 from mascarin.study.locations import Faults, Places
 from mascarin.weather import Climate, Measurements
-from mascarin.weather.data import data_file
+from mascarin.weather.data import FOLDER, cache_folder, data_file
 from mascarin.weather.table import read_table
 
 if TYPE_CHECKING:
@@ -25,25 +27,65 @@ if TYPE_CHECKING:
 KNOWN = "data:"
 
 
-def find(name: str, beside: Path) -> Path:
+@dataclass(frozen=True)
+class Beside:
+    """The folder of a study, and whether the study may name files elsewhere.
+
+    A study from somewhere else must not read what it likes: what it names could end in an error, a table or a
+    report that is passed on.
+
+    Attributes
+    ----------
+    folder : Path
+        Folder of the study; paths start there.
+    allow_outside : bool
+        Whether files outside of it may be read. Those of the data folder (MASCARIN_DATA) always may.
+    """
+
+    folder: Path
+    allow_outside: bool = False
+
+    def require_inside(self, path: Path) -> None:
+        """Refuse a file elsewhere, links followed; whether it exists is not said."""
+        if self.allow_outside:
+            return
+        data = os.environ.get(FOLDER)
+        # Known data sets are downloaded to a cache.
+        allowed = [self.folder, *([Path(data)] if data else []), cache_folder()]
+        target = path.resolve()
+        if not any(target.is_relative_to(folder.resolve()) for folder in allowed):
+            raise InputError(
+                f"found the file {path}, which is outside the folder of the study; expected a file in "
+                f"{self.folder.resolve()}. If you trust the study, allow it with --allow-outside (in Python "
+                "allow_outside=True), or copy the file there"
+            )
+
+
+def find(name: str, beside: Beside) -> Path:
     """A file beside the study, or a known data set.
 
     Parameters
     ----------
     name : str
         Relative path, or ``data:NAME``.
-    beside : Path
+    beside : Beside
         Folder of the study.
 
     Raises
     ------
     InputError
-        There is no such file.
+        There is no such file, or it is outside the folder.
     """
     if name.startswith(KNOWN):
         return data_file(name.removeprefix(KNOWN))
-    path = beside / name
-    if not path.is_file():
+    path = beside.folder / name
+    try:
+        beside.require_inside(path)
+        there = path.is_file()
+    except (OSError, ValueError) as error:  # longer than the system allows; a zero in the name
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"found the name {name[:60]!r} ({reason}), expected that of a file") from None
+    if not there:
         raise InputError(
             f"found no file {path}; expected a file, its path counted from the folder of the study. "
             + _neighbours(path)
@@ -59,7 +101,7 @@ def _neighbours(path: Path) -> str:
     return did_you_mean(path.name, same) or "Correct the path."
 
 
-def open_climate(source: ClimateSource, beside: Path, building: Building, places: Places) -> Climate:
+def open_climate(source: ClimateSource, beside: Beside, building: Building, places: Places) -> Climate:
     """The weather of a study.
 
     Raises
@@ -78,7 +120,7 @@ def open_climate(source: ClimateSource, beside: Path, building: Building, places
     raise InputError("climate: nothing given; expected one of epw, tmy, measured")
 
 
-def _measured_climate(table: MeasuredWeather, beside: Path, site: Site, places: Places) -> Climate:
+def _measured_climate(table: MeasuredWeather, beside: Beside, site: Site, places: Places) -> Climate:
     with places.blame("climate", "measured", "table"):
         path = find(table.table, beside)
     with places.blame("climate", "measured", "columns"):
@@ -127,7 +169,7 @@ def _column(given: object) -> str | dict[str, object]:
 
 
 def open_measurements(
-    study: StudyFile, beside: Path, building: Building, places: Places, of_building: Places
+    study: StudyFile, beside: Beside, building: Building, places: Places, of_building: Places
 ) -> Measurements:
     """The measured columns that sensors and boundaries need.
 
@@ -135,7 +177,7 @@ def open_measurements(
     ----------
     study : StudyFile
         Names table and sensors.
-    beside : Path
+    beside : Beside
         Folder of the study.
     building : Building
         Names the columns of its measured boundaries.

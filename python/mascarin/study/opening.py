@@ -12,12 +12,20 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from mascarin._io.regular import requiring
 from mascarin.building import Building, load
 from mascarin.building.reading import explained, files_of
 from mascarin.errors import InputError
 from mascarin.simulation.compiling import in_climate, require_inputs
 from mascarin.study.description import StudyFile, StudyPlan, read_study
-from mascarin.study.inputs import filled, find, open_climate, open_measurements, require_one_clock
+from mascarin.study.inputs import (
+    Beside,
+    filled,
+    find,
+    open_climate,
+    open_measurements,
+    require_one_clock,
+)
 from mascarin.study.locations import Faults, Places
 from mascarin.study.names import check_names
 from mascarin.validation.criteria import Criterion
@@ -65,13 +73,15 @@ class Inputs:
     path: Path | None = None
 
 
-def from_file(path: Path) -> Inputs:
+def from_file(path: Path, *, allow_outside: bool = False) -> Inputs:
     """Read a study file and the files that it names.
 
     Parameters
     ----------
     path : Path
         The study file.
+    allow_outside : bool
+        Whether it may name files outside its folder.
 
     Returns
     -------
@@ -83,8 +93,14 @@ def from_file(path: Path) -> Inputs:
     InputError
         A file or a name cannot be used.
     """
+    beside = Beside(path.parent, allow_outside)
+    with requiring(beside.require_inside):  # also of what a description extends
+        return _from_file(path, beside)
+
+
+def _from_file(path: Path, beside: Beside) -> Inputs:
     file = read_study(path)
-    places, beside, faults = Places(path), path.parent, Faults()
+    places, faults = Places(path), Faults()
     with places.blame("building"):
         described = find(file.building, beside)
     as_described = load(described)

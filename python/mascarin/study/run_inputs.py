@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field, model_validator
 
+from mascarin._io.regular import requiring
 from mascarin.building.engine_input import measured_columns
 from mascarin.building.part import Part
 from mascarin.building.yaml_document import validated
 from mascarin.study.description import FILE_KEYS, ClimateSource, Table, with_shared_table
-from mascarin.study.inputs import filled, find, open_climate
+from mascarin.study.inputs import Beside, filled, find, open_climate
 from mascarin.study.locations import Places
 from mascarin.weather import Measurements
 
@@ -39,7 +40,9 @@ class RunInputs(Part):
         return with_shared_table(kept) if "measurements" in kept or weather else kept
 
 
-def open_run_inputs(path: Path, building: Building) -> tuple[Climate, Measurements | None]:
+def open_run_inputs(
+    path: Path, building: Building, *, allow_outside: bool = False
+) -> tuple[Climate, Measurements | None]:
     """Read the weather of a run, and the measured columns that its building names.
 
     Parameters
@@ -48,6 +51,8 @@ def open_run_inputs(path: Path, building: Building) -> tuple[Climate, Measuremen
         Study, or a file with ``climate`` and ``measurements`` as in a study.
     building : Building
         Names the columns of its measured boundaries.
+    allow_outside : bool
+        Whether the file may name files outside its folder.
 
     Returns
     -------
@@ -61,16 +66,22 @@ def open_run_inputs(path: Path, building: Building) -> tuple[Climate, Measuremen
     InputError
         A file, column or time zone is missing, or a value cannot be used.
     """
+    beside = Beside(path.parent, allow_outside)
+    with requiring(beside.require_inside):
+        return _opened(path, building, beside)
+
+
+def _opened(path: Path, building: Building, beside: Beside) -> tuple[Climate, Measurements | None]:
     inputs = validated(
         path, RunInputs, "weather and measurements", only=("climate", "measurements"), file_keys=FILE_KEYS
     )
     places = Places(path)
-    climate = open_climate(inputs.climate, path.parent, building, places)
+    climate = open_climate(inputs.climate, beside, building, places)
     columns, table = measured_columns(building), inputs.measurements
     if not columns or table is None:
         return climate, None
     with places.blame("measurements", "table"):
-        file = find(table.table, path.parent)
+        file = find(table.table, beside)
     with places.blame("measurements"):
         read = Measurements.from_table(file, columns=columns, **{**table.options, "mean": ()})
         means = [name for name in table.mean if name in columns]

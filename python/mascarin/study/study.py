@@ -66,6 +66,8 @@ class Study(Setup):
         Other options of the calibration, such as ``method``, ``starts`` and ``lead``.
     variants : mapping, optional
         Other choices of model: name -> ``changes`` and more.
+    allow_outside : bool
+        Whether the file may name files outside its folder and the data folder (MASCARIN_DATA).
     **options
         Further keys of a study file: ``name``, ``about``, ``observed``, ``step``, ``scheme``, ``initial``,
         ``quality``, ``reference``.
@@ -114,6 +116,7 @@ class Study(Setup):
         sensitivity: SensitivityPlan | Mapping[str, Any] | bool | None = None,
         identification: Mapping[str, Any] | None = None,
         variants: Mapping[str, Variant | Mapping[str, Any]] | None = None,
+        allow_outside: bool = False,
         **options: Any,
     ) -> None:
         given = dict(zip(_OBJECTS, (building, climate, measurements, sensors, periods), strict=True))
@@ -124,7 +127,7 @@ class Study(Setup):
                     f"study: found a file and {', '.join(unused)}, expected one of the two; leave out the "
                     "file, or write these keys into it"
                 )
-            super().__init__(opening.from_file(Path(path)))
+            super().__init__(opening.from_file(Path(path), allow_outside=allow_outside))
         else:
             plan = {"sensors": sensors, "periods": periods, "criteria": criteria, "aims": aims, **options}
             if parameters or identification:
@@ -143,13 +146,16 @@ class Study(Setup):
         check(self)
 
     @classmethod
-    def from_yaml(cls, path: str | Path) -> Self:
+    def from_yaml(cls, path: str | Path, *, allow_outside: bool = False) -> Self:
         """Read a study file with the files that it names.
 
         Parameters
         ----------
         path : str or Path
             The study file.
+        allow_outside : bool
+            Whether it may name files outside its folder and the data folder (MASCARIN_DATA). Allow it for a
+            study that you trust.
 
         Returns
         -------
@@ -168,7 +174,7 @@ class Study(Setup):
         >>> Study.from_yaml(STUDIES["lgi"]).building.name
         'LGI cell'
         """
-        return cls(path)
+        return cls(path, allow_outside=allow_outside)
 
     def to_yaml(self, path: str | Path | None = None) -> str:
         """Write the study as a file, which `from_yaml` reads.

@@ -10,6 +10,7 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mascarin._io.regular import require_regular
 from mascarin._io.tables import read_csv
 from mascarin.errors import InputError
 from mascarin.weather.layout import Layout, decoded, find_layout
@@ -24,8 +25,9 @@ def file_hash(path: Path) -> str:
     Raises
     ------
     InputError
-        There is no such file.
+        There is no such file, or it is a pipe or a device.
     """
+    require_regular(path)
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except FileNotFoundError as error:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date, tzinfo
 from pathlib import Path
@@ -53,6 +54,10 @@ _WHOLE: Final = (
     "Climate.from_table in Python)"
 )
 _NO_VALUE_TMY: Final = -9900.0
+_TMY_STAMP: Final = ("Date (MM/DD/YYYY)", "Time (HH:MM)")
+_TMY_DATE: Final = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}) (\d{1,2}):\d{2}(?::\d{2})?")
+#: Largest size of the entries that state the place; time zone in h, altitude in m, angles in degrees.
+_PLACE: Final = {"latitude": 90.0, "longitude": 180.0, "time zone": 14.0, "altitude": 9000.0}
 
 _STAMPS_NOTE: Final = (
     "{where}: stamps are hour-ending. Radiation stamped h is the mean of the hour before and was moved to "
@@ -146,7 +151,7 @@ def read_tmy3(path: Path) -> Year:
     _check_tmy(text.splitlines(), where)
     try:
         frame, meta = iotools.read_tmy3(str(path), map_variables=True)
-    except (ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError) as error:
         raise InputError(
             f"{where}: cannot be read as TMY3 CSV ({error}); use from_table for other tables."
         ) from error
@@ -190,13 +195,18 @@ def _check_tmy(lines: list[str], where: str) -> None:
             "command "
             "line with --column."
         )
+    place = lines[0].split(",")
+    _check_place(where, [("latitude", place[4]), ("longitude", place[5]), ("time zone", place[3])])
+    _check_place(where, [("altitude", place[6])])
     names = [name.strip() for name in lines[1].split(",")]
-    missing = [name for _, _, name, _ in _TMY if name not in names]
+    missing = [name for name in (*_TMY_STAMP, *(entry[2] for entry in _TMY)) if name not in names]
     if missing:
         raise InputError(
             f"{where}:2: no column {missing[0]!r}, which TMY3 has; found {', '.join(names[:8])}, ..."
         )
     places = [(f"{channel} ({name})", names.index(name)) for channel, _, name, _ in _TMY]
+    stamp = [names.index(name) for name in _TMY_STAMP]
+    previous: tuple[int, int, int] | None = None
     for line, row in enumerate(lines[2:], start=3):
         fields = row.split(",")
         if len(fields) < len(names):
@@ -204,8 +214,22 @@ def _check_tmy(lines: list[str], where: str) -> None:
                 f"{where}:{line}: found {len(fields)} fields, expected {len(names)}; the file is cut or "
                 f"damaged here: {_WHOLE}."
             )
-        for name, place in places:
-            _number(fields[place], name, where, line, _NO_VALUE_TMY)
+        for name, column in places:
+            _number(fields[column], name, where, line, _NO_VALUE_TMY)
+        date_, time = (fields[column].strip() for column in stamp)
+        previous = _check_order(previous, _tmy_stamp(date_, time, where, line), where, line)
+
+
+def _tmy_stamp(day: str, time: str, where: str, line: int) -> tuple[int, int, int, int]:
+    """Year, month, day and hour of a row."""
+    found = _TMY_DATE.fullmatch(f"{day} {time}")
+    if found is None:
+        raise InputError(
+            f"{where}:{line}: date and time are {day!r} and {time!r}, expected MM/DD/YYYY and HH:00; correct "
+            "the row."
+        )
+    month, number, year, hour = (int(part) for part in found.groups())
+    return year, month, number, hour
 
 
 def _read_epw_rows(lines: list[str], where: str) -> tuple[list[int], Array]:
@@ -250,16 +274,20 @@ def _check_location(line: str, where: str) -> None:
     fields = line.split(",")
     if len(fields) < 10:
         raise InputError(f"{where}:1: LOCATION has {len(fields)} fields, expected 10.")
-    limits = ((6, "latitude", 90.0), (7, "longitude", 180.0), (8, "time zone", 14.0), (9, "altitude", 9000.0))
-    for field, name, limit in limits:
+    names = ("latitude", "longitude", "time zone", "altitude")
+    _check_place(where, list(zip(names, fields[6:10], strict=True)))
+
+
+def _check_place(where: str, entries: Sequence[tuple[str, str]]) -> None:
+    """Refuse entries of the first line that are no numbers, or too far from zero."""
+    for name, text in entries:
+        limit = _PLACE[name]
         try:
-            good = abs(float(fields[field])) <= limit
+            good = abs(float(text)) <= limit
         except ValueError:
             good = False
         if not good:
-            raise InputError(
-                f"{where}:1: {name} is {fields[field]!r}, expected a number within {limit:g} of zero."
-            )
+            raise InputError(f"{where}:1: {name} is {text!r}, expected a number within {limit:g} of zero.")
 
 
 def _check_periods(line: str, where: str) -> None:
@@ -276,7 +304,7 @@ def _check_periods(line: str, where: str) -> None:
 def _integers(fields: list[str], where: str, line: int) -> tuple[int, int, int, int]:
     try:
         year, month, day, hour = (int(float(field)) for field in fields[:4])
-    except ValueError as error:
+    except (ValueError, OverflowError) as error:
         raise InputError(
             f"{where}:{line}: date {','.join(fields[:4])!r} is not year,month,day,hour."
         ) from error

@@ -8,9 +8,16 @@ from typing import Final
 
 import numpy as np
 
+from mascarin._io import memory
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array
 from mascarin.weather.timezones import moment
+
+#: Most steps of a run: a year in steps of 1.6 s. More are a mistake in the unit, and take hours.
+MOST_STEPS: Final = 20_000_000
+#: Memory for a stage of a step while the forcing is made: some twenty channels and as many intermediate
+#: results of eight bytes (measured: 480). [B]
+BYTES: Final = 500
 
 _GAMMA: Final = 1.0 - 0.5 * float(np.sqrt(2.0))
 
@@ -71,15 +78,28 @@ class Steps:
         nodes, weights = STAGES[scheme]
         first = moment(start, zone, "start").timestamp()
         last = moment(end, zone, "end").timestamp()
-        count = _count(first, last, step_seconds)
+        count = _count(first, last, step_seconds, len(nodes))
         edges = step_seconds * np.arange(count + 1)
         return cls(first, last, edges, edges[:-1, None] + step_seconds * np.array(nodes), weights)
 
 
-def _count(first: float, last: float, step: float) -> int:
+def _count(first: float, last: float, step: float, stages: int) -> int:
     if not step > 0.0:
         raise InputError(f"step: found {step!r} s, expected a positive length.")
-    count = round((last - first) / step)
+    wanted = (last - first) / step
+    least = (last - first) / MOST_STEPS
+    if wanted > MOST_STEPS:
+        raise InputError(
+            f"step: {last - first:.6g} s in steps of {step:.6g} s are {wanted:.3g} steps, which would take "
+            f"{memory.amount(wanted * stages * BYTES)} of memory; expected at most {MOST_STEPS:.0e} steps. "
+            f"Take a step of {least:.3g} s or more, or a shorter period"
+        )
+    count = round(wanted)
+    memory.require(
+        count * stages * BYTES,
+        f"step: {count} steps of {step:.6g} s",
+        "take a longer step or a shorter period",
+    )
     if count < 1 or abs(count * step - (last - first)) > 1e-6:
         raise InputError(
             f"period: {last - first:g} s from start to end is not a whole number of steps of {step:g} s, at "

@@ -11,13 +11,21 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from mascarin._io import memory
 from mascarin._io.arguments import require_type
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.files import file_hash, read_frame, with_time_column
 from mascarin.weather.layout import EMPTY
 from mascarin.weather.times import epoch_seconds, seconds_of, stamps_of
-from mascarin.weather.timezones import fixed_offset, localize, parse_timezone, zone_name, zone_of
+from mascarin.weather.timezones import (
+    YEARS,
+    fixed_offset,
+    localize,
+    parse_timezone,
+    zone_name,
+    zone_of,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -211,7 +219,7 @@ def _stamps(
     if isinstance(text.dtype, pd.DatetimeTZDtype):
         return pd.DatetimeIndex(text).tz_convert(zone)
     if pd.api.types.is_datetime64_any_dtype(text.dtype):
-        return localize(pd.DatetimeIndex(text), zone, where)
+        return localize(_possible(pd.DatetimeIndex(text), lines, where), zone, where)
     written = text.astype(str).str.strip()
     offset = bool(written.str.contains(_HAS_OFFSET).any())
     late = written.str.contains(_MIDNIGHT)
@@ -226,8 +234,22 @@ def _stamps(
             f"{where}:{lines[row]}: time {text.iloc[row]!r} cannot be read, expected {expected}; "
             "state time_format (for example '%d/%m/%Y %H:%M'), or repair the row."
         )
-    index = pd.DatetimeIndex(parsed) + pd.to_timedelta(late.to_numpy().astype(np.int64), unit="D")
+    index = _possible(pd.DatetimeIndex(parsed), lines, where)
+    index = index + pd.to_timedelta(late.to_numpy().astype(np.int64), unit="D")
     return index.tz_convert(zone) if offset else localize(index, zone, where)
+
+
+def _possible(index: pd.DatetimeIndex, lines: Lines, where: str) -> pd.DatetimeIndex:
+    """Refuse years of which there are no measurements: the calendar of the computer does not reach them."""
+    years = index.year.to_numpy()
+    bad = np.flatnonzero((years < YEARS[0]) | (years > YEARS[1]))
+    if len(bad):
+        row = int(bad[0])
+        raise InputError(
+            f"{where}:{lines[row]}: found a time in the year {years[row]}, expected one from {YEARS[0]} to "
+            f"{YEARS[1]} ({len(bad)} such rows in all); repair the row."
+        )
+    return index
 
 
 def _regular(
@@ -258,6 +280,12 @@ def _regular(
             f"{index[row + 1]:%Y-%m-%d %H:%M:%S} is {gaps[row]:g} s, expected a multiple of {interval:g} s "
             f"({len(odd)} such steps in all); put the table on a regular step first."
         )
+    size = float(np.round(ratio).sum()) + 1.0
+    memory.require(
+        size * (frame.shape[1] + 4) * 16.0,  # the table twice, stamps and lines
+        f"{where}: {len(frame)} rows over {size:.3g} steps of {interval:g} s",
+        "check the first and the last time, or state the step",
+    )
     place = np.concatenate([[0], np.cumsum(np.round(ratio).astype(np.int64))])
     notes = [
         f"{where}: {len(frame)} rows of {_length(interval)}, {index[0]:%Y-%m-%d %H:%M} .. "

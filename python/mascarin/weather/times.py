@@ -22,6 +22,10 @@ _SECONDS: Final = {
 }
 """Units of a length of time."""
 
+#: Stamps are kept to the microsecond; the calendar has 400 years (`YEARS` in timezones). [s]
+_SHORTEST: Final = 1e-6
+_LONGEST: Final = 400 * 366 * 86400.0
+
 _TIMES: Final = "a positive time such as 900, 15min or 1h"
 
 _LENGTH_OF_TIME: Final = re.compile(rf"(\d+\.?\d*(?:e[+-]?\d+)?)\s*({'|'.join(_SECONDS)})?", re.IGNORECASE)
@@ -56,8 +60,10 @@ def seconds_of(step: str | float, where: str = "step") -> float:
     if match is None or isinstance(step, bool):
         raise InputError(f"{where}: found {step!r}; expected {_TIMES}")
     seconds = float(match[1]) * _SECONDS[(match[2] or "s").lower()]
-    if not 0.0 < seconds < float("inf"):
-        raise InputError(f"{where}: found {step!r}; expected {_TIMES}")
+    if not _SHORTEST <= seconds <= _LONGEST:
+        raise InputError(
+            f"{where}: found {step!r}; expected {_TIMES}, from {_SHORTEST:g} s to {_LONGEST:g} s"
+        )
     return seconds
 
 

@@ -19,6 +19,9 @@ _WANTED = (
 )
 
 
+YEARS: Final = (1800, 2200)
+"""First and last year of stamps."""
+
 _ISO_DATE: Final = re.compile(r"\d{4}-\d{2}-\d{2}(?:[T ]|$)|\d{8}T")
 """How a date begins in ISO 8601: year, month, day."""
 
@@ -223,12 +226,16 @@ def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:
         raise InputError(f"{what}: {value!r} is not a date; write it as 2012-09-20 or 2012-09-20 06:30.")
     try:
         stamp = pd.Timestamp(value)  # type: ignore[arg-type]
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, OverflowError) as error:
         raise InputError(
             f"{what}: {value!r} is not a date; write it as 2012-09-20 or 2012-09-20 06:30."
         ) from error
     if pd.isna(stamp):
         raise InputError(f"{what}: found {value!r}, expected a date such as 2012-09-20 06:30.")
+    if not YEARS[0] <= stamp.year <= YEARS[1]:
+        raise InputError(
+            f"{what}: found {value!r}, in the year {stamp.year}; expected one from {YEARS[0]} to {YEARS[1]}"
+        )
     if stamp.tzinfo is not None:
         return stamp.tz_convert(zone)
     try:

@@ -11,14 +11,14 @@ from mascarin.building.reading import files_of
 from mascarin.errors import InputError
 from mascarin.genopt.export.case import Case, Observed, inputs_of, open_case
 from mascarin.study import Study
-from mascarin.study.inputs import find
+from mascarin.study.inputs import Beside, find
 from mascarin.weather.times import epoch_seconds
 
 if TYPE_CHECKING:
     from mascarin.study.description import StudyFile
 
 
-def compiled(study: Path, kept: Path | None = None) -> Case:
+def compiled(study: Path, kept: Path | None = None, *, allow_outside: bool = False) -> Case:
     """The case of a study: the saved one if it is valid, else a new one, which is then saved.
 
     Parameters
@@ -27,6 +27,8 @@ def compiled(study: Path, kept: Path | None = None) -> Case:
         The study file.
     kept : Path, optional
         File of the case.
+    allow_outside : bool
+        Whether the study may name files outside its folder.
 
     Raises
     ------
@@ -36,7 +38,7 @@ def compiled(study: Path, kept: Path | None = None) -> Case:
     name = str(study.resolve())
     case = None if kept is None else open_case(kept, name)
     if case is None:
-        case = compile_study(Study(study))
+        case = compile_study(Study(study, allow_outside=allow_outside))
         if kept is not None:
             case.save(kept)
     return case
@@ -87,6 +89,7 @@ def _files(path: Path, file: StudyFile) -> list[str]:
     climate = file.climate
     measured = None if climate.measured is None else climate.measured.table
     names = [file.building, climate.epw, climate.tmy, measured, file.measurements.table]
-    named = [find(name, path.parent) for name in names if name is not None]
+    beside = Beside(path.parent, allow_outside=True)  # they have been read
+    named = [find(name, beside) for name in names if name is not None]
     found = [*files_of(path), *files_of(named[0]), *named[1:]]
     return sorted({str(one.resolve()) for one in found})

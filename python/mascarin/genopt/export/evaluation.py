@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mascarin import __version__
+from mascarin._io.locks import writing
 from mascarin.errors import InputError, MascarinError
 from mascarin.genopt.export.exchange import COMPILED, FAILURE, read_parameters, read_settings, result_lines
 
@@ -14,7 +15,9 @@ if TYPE_CHECKING:
     from mascarin.genopt.export.case import Case
 
 
-def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = None) -> list[str]:
+def evaluate_files(
+    parameters: Path, out: Path, log: Path, study: Path | None = None, *, allow_outside: bool = False
+) -> list[str]:
     """Evaluate the parameters of one file and write the costs to another one.
 
     Parameters
@@ -27,6 +30,8 @@ def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = 
         File for the result or the reason of a failure; always written.
     study : Path, optional
         The study; default: that of the project that the parameter file names.
+    allow_outside : bool
+        Whether the study may name files outside its folder.
 
     Returns
     -------
@@ -43,9 +48,10 @@ def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = 
     if len({path.absolute() for path in (parameters, out, log)}) < 3:
         raise InputError(f"'{parameters}', '{out}' and '{log}' must be three different files")
     try:
-        out.unlink(missing_ok=True)
-        lines, notes = _evaluated(parameters, study)
-        out.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+        with writing(out):
+            out.unlink(missing_ok=True)
+            lines, notes = _evaluated(parameters, study, allow_outside)
+            out.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
         _write_log(log, [*lines, *notes])
     except MascarinError as error:
         _write_log(log, _failure(str(error)))
@@ -56,11 +62,11 @@ def evaluate_files(parameters: Path, out: Path, log: Path, study: Path | None = 
     return lines
 
 
-def _evaluated(parameters: Path, study: Path | None) -> tuple[list[str], list[str]]:
+def _evaluated(parameters: Path, study: Path | None, allow_outside: bool) -> tuple[list[str], list[str]]:
     """Lines of the result, and notes for the log."""
     request = read_parameters(parameters)
     try:
-        costs = _case(request.project, study, parameters).evaluate(request.values)
+        costs = _case(request.project, study, parameters, allow_outside).evaluate(request.values)
     except InputError as error:
         if str(parameters) in str(error):
             raise
@@ -69,7 +75,7 @@ def _evaluated(parameters: Path, study: Path | None) -> tuple[list[str], list[st
     return result_lines(costs), notes
 
 
-def _case(project: Path | None, study: Path | None, parameters: Path) -> Case:
+def _case(project: Path | None, study: Path | None, parameters: Path, allow_outside: bool) -> Case:
     from mascarin.genopt.export.case import open_case
 
     if study is None and project is None:
@@ -90,7 +96,7 @@ def _case(project: Path | None, study: Path | None, parameters: Path) -> Case:
     # Imported here, because it imports everything that reads studies.
     from mascarin.genopt.export.compiling import compiled
 
-    return compiled(chosen, kept)
+    return compiled(chosen, kept, allow_outside=allow_outside)
 
 
 def _failure(text: str) -> list[str]:

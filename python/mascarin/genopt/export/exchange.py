@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from mascarin._io import atomic
+from mascarin._io.regular import require_regular
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def read_parameters(path: Path) -> Request:
         A line that cannot be read, with its number.
     """
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = require_regular(path).read_text(encoding="utf-8").splitlines()
     except OSError as error:
         raise InputError(
             f"{path}: cannot be read ({error.strerror}); expected the parameter file that the template "

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from mascarin._io import atomic
+from mascarin._io.locks import writing_into
 from mascarin.errors import InputError
 from mascarin.genopt.export.algorithms import INTERVALS, Algorithm, Plan, chosen
 from mascarin.genopt.export.exchange import (
@@ -67,6 +68,8 @@ class Options:
         Command of the simulation program; default ``mascarin`` or its full path.
     force : bool
         Whether to write into a folder that is not empty.
+    allow_outside : bool
+        Whether the study may name files outside its folder.
     """
 
     algorithm: str = "hooke-jeeves"
@@ -76,6 +79,7 @@ class Options:
     reductions: int = _REDUCTIONS
     program: str | None = None
     force: bool = False
+    allow_outside: bool = False
 
 
 @dataclass(frozen=True)
@@ -119,7 +123,7 @@ def write_project(study: str, out: Path, options: Options | None = None) -> Path
     o = options or Options()
     _check_folder(out, force=o.force)
     path = locate(study)
-    opened = Study(path)
+    opened = Study(path, allow_outside=o.allow_outside)
     plan = _plan(
         o,
         opened.sought.starts,
@@ -132,16 +136,16 @@ def write_project(study: str, out: Path, options: Options | None = None) -> Path
     variables = [variable(p, path, intervals=algorithm.intervals) for p in case.parameters]
     texts = {
         INITIALIZATION: _initialization(case.names),
-        _CONFIGURATION: _configuration(_program(o.program)),
+        _CONFIGURATION: _configuration(_program(o.program), " --allow-outside" if o.allow_outside else ""),
         _COMMAND: _command(variables, algorithm, plan),
         _TEMPLATE: _template(variables),
         _README: _readme(opened.file.name, case, algorithm),
     }
-    out.mkdir(parents=True, exist_ok=True)
-    for name, text in texts.items():
-        atomic.write(out / name, text)
-    write_settings(out, _reference(study, path, out))
-    case.save(out / COMPILED)
+    with writing_into(out):
+        for name, text in texts.items():
+            atomic.write(out / name, text)
+        write_settings(out, _reference(study, path, out))
+        case.save(out / COMPILED)
     return out / INITIALIZATION
 
 
@@ -299,7 +303,7 @@ Optimization {{
 """
 
 
-def _configuration(program: str) -> str:
+def _configuration(program: str, option: str) -> str:
     return f"""// Configuration file, written by mascarin genopt
 SimulationError {{
   ErrorMessage = "{FAILURE}";
@@ -309,7 +313,7 @@ IO {{
 }}
 // The program finds its files in the directory of the run: the command has no file names.
 SimulationStart {{
-  Command = "{program} cost";
+  Command = "{program} cost{option}";
   WriteInputFileExtension = true;
 }}
 """

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin import _engine
 from mascarin.progress import ProgressOption, Report, reporting
 from mascarin.verification.bestest.catalogue import CASES, Case
 from mascarin.verification.bestest.quantities import (
@@ -91,8 +92,13 @@ def run(
         others = {file: pool.submit(_run_own, one, climate, step) for file, one in buildings.items()}
         try:
             _await([*years.values(), *others.values()], report)
-        finally:
-            pool.shutdown(cancel_futures=True)
+        except BaseException:
+            # Ctrl-C reaches the first thread only; runs on the others are stopped here.
+            pool.shutdown(wait=False, cancel_futures=True)
+            left: set[Future[Any]] = {*years.values(), *others.values()}
+            while left := wait(left, timeout=0.1).not_done:
+                _engine.interrupt()
+            raise
     return {name: f.result() for name, f in years.items()}, {file: f.result() for file, f in others.items()}
 
 

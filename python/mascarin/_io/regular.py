@@ -1,0 +1,101 @@
+"""Input files: regular files only, and not more than memory can hold."""
+
+from __future__ import annotations
+
+import contextlib
+import stat
+from collections.abc import Callable, Iterator
+from contextvars import ContextVar
+from pathlib import Path
+from typing import Final
+
+from mascarin._io import memory
+from mascarin.errors import InputError
+
+_SPECIAL = {
+    stat.S_IFIFO: "a named pipe",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFSOCK: "a socket",
+}
+
+
+#: What else is required of every file that is read, such as that it is inside a folder.
+_REQUIRED: Final[ContextVar[Callable[[Path], object] | None]] = ContextVar("required", default=None)
+
+
+@contextlib.contextmanager
+def requiring(check: Callable[[Path], object]) -> Iterator[None]:
+    """Check every file that is read meanwhile, files that other files name included.
+
+    Parameters
+    ----------
+    check : callable
+        Raises an error for a file that may not be read.
+    """
+    token = _REQUIRED.set(check)
+    try:
+        yield
+    finally:
+        _REQUIRED.reset(token)
+
+
+def special(path: Path) -> str | None:
+    """What a path is, in words, if it is neither a file nor a folder; links are followed.
+
+    Parameters
+    ----------
+    path : Path
+        The path; there may be nothing.
+
+    Returns
+    -------
+    str or None
+        Such as ``a named pipe``.
+    """
+    try:
+        return _SPECIAL.get(stat.S_IFMT(path.stat().st_mode))
+    except (OSError, ValueError):  # nothing there; ValueError: a zero in the name
+        return None
+
+
+def require_regular(path: Path, expected: str = "a file") -> Path:
+    """Refuse what may never end (a pipe, a device) and what no memory holds, before it is opened.
+
+    Parameters
+    ----------
+    path : Path
+        File to read. That it is missing is said where it is opened.
+    expected : str
+        What it should be, in words.
+
+    Returns
+    -------
+    Path
+        The same path.
+
+    Raises
+    ------
+    InputError
+        It is a pipe, a device or a socket; it has no possible name; or it is larger than the free memory.
+
+    Examples
+    --------
+    >>> require_regular(Path("/dev/zero"))  # doctest: +SKIP
+    Traceback (most recent call last):
+    mascarin.errors.InputError: /dev/zero: found a device, expected a file; copy its content to a file first
+    """
+    if "\0" in str(path):
+        raise InputError(f"{str(path)!r}: found a name with a zero in it, expected {expected}")
+    further = _REQUIRED.get()
+    if further is not None:
+        further(path)
+    found = special(path)
+    if found is not None:
+        raise InputError(f"{path}: found {found}, expected {expected}; copy its content to a file first")
+    try:
+        size = path.stat().st_size
+    except OSError:
+        return path
+    memory.require(size, f"{path}: the file", "use a part of the file")
+    return path
