@@ -201,7 +201,9 @@ impl<S: Real> Optics<S> {
         let above = |panes: usize| {
             #[allow(clippy::cast_precision_loss, reason = "a few panes")]
             let more = rating.panes - S::constant(panes as f64);
-            more.max(S::zero()).min(S::one())
+            let part = more.max(S::zero()).min(S::one());
+            // Smooth where the number is whole.
+            part * part * (S::constant(3.0) - part.scale(2.0))
         };
         for panes in 1..=MOST {
             // Between two whole numbers of panes both units count. Without any, or with more than most, the nearest.
