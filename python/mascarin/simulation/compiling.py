@@ -245,10 +245,6 @@ def settings_of(
         temperatures = initial
     else:
         temperatures = {key: list(getattr(initial, key)) for key in ("cells", "faces", "air")}
-        values = {value for of_kind in temperatures.values() for value in of_kind}
-        if len(values) == 1:
-            # One temperature everywhere, however it is written: the engine makes its first step in parts.
-            temperatures = float(values.pop())
     return {
         "dt": step_seconds,
         "scheme": scheme,

@@ -4,7 +4,7 @@ use crate::balance::ledger::Ledger;
 use crate::error::EngineError;
 use crate::number::real::Real;
 use crate::run::options::Options;
-use crate::step::state::{Initial, State};
+use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
 
@@ -46,7 +46,7 @@ impl Action {
     /// The actions of a run of some steps, without those of its warm-up. One temperature everywhere fits no weather; a periodic state,
     /// and one that a run has reached, do.
     pub(crate) fn all(steps: usize, options: &Options) -> impl Iterator<Item = Self> + use<> {
-        let jumps = options.warmup.is_none() && matches!(options.initial, Initial::Everywhere(_));
+        let jumps = options.warmup.is_none() && options.initial.is_uniform();
         let first = if jumps { Self::FirstStep } else { Self::Step(0) };
         [Self::Balance, first].into_iter().chain((1..steps).map(Self::Step))
     }
@@ -69,6 +69,7 @@ impl Action {
 mod tests {
     use super::*;
     use crate::step::scheme::Scheme;
+    use crate::step::state::Initial;
 
     /// The rows of the actions of a run are those that its options count, without gap.
     #[test]

@@ -26,6 +26,14 @@ pub enum Initial {
 }
 
 impl Initial {
+    /// Whether it is one temperature everywhere, however it is written.
+    pub(crate) fn is_uniform(&self) -> bool {
+        let Self::Given { cells, surfaces, air } = self else { return true };
+        let mut all = cells.iter().chain(surfaces).chain(air);
+        let first = all.next();
+        all.all(|temperature| Some(temperature) == first)
+    }
+
     /// Checks that it fits a plan.
     pub(crate) fn check(&self, plan: &Plan) -> Result<(), EngineError> {
         let Self::Given { cells, surfaces, air } = self else { return Ok(()) };
