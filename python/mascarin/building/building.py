@@ -406,7 +406,7 @@ class Building(Description):
         >>> cell.output("room.air_temperature").unit
         'degC'
         """
-        return results.find(self, name)
+        return results.named(self, [name])[0]
 
     def sources(self) -> list[str]:
         """Sources of the numbers that act in this building and of the methods of a run, once each.

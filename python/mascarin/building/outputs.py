@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -137,16 +137,22 @@ def outputs(building: Description) -> list[Output]:
             kind: Kind = "heating_load" if which == "heating" else "cooling_load"
             found.append(Output(f"{name}.{kind}", "W", kind, zone=index))
         found.append(Output(f"{name}.air_changes", "1/h", "air_changes", zone=index))
+    lit = _lit_zones(building)
     for index, name in enumerate(building.surfaces):
         found += _of_surface(building, index, name)
         if building.surfaces[name].outside.outdoors:
             found.append(Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index))
-        found += _of_sides(building, index, name)
+        found += _of_sides(building, index, name, lit)
     found += _of_windows(building)
     found.append(Output("sky_temperature", "degC", "sky_temperature"))
     for index, name in enumerate(building.sensors):
         found.append(Output(f"{name}.temperature", "degC", "sensor", sensor=index))
     return found
+
+
+def _lit_zones(building: Description) -> set[str | None]:
+    """Zones that the sun enters through windows."""
+    return {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
 
 
 def _of_windows(building: Description) -> Iterator[Output]:
@@ -164,18 +170,22 @@ def _of_windows(building: Description) -> Iterator[Output]:
             if exchanged[side]:
                 yield Output(f"{name}.{word}_longwave", "W/m2", "net_longwave", surface=index, side=side)
             yield Output(f"{name}.{word}_convection", "W/(m2 K)", "convection", surface=index, side=side)
-    lit = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
+    lit = _lit_zones(building)
     for index, name in enumerate(building.zones):
         if name in lit:
             yield Output(f"{name}.transmitted_solar", "W", "zone_transmitted_solar", zone=index)
             yield Output(f"{name}.lost_solar", "W", "zone_lost_solar", zone=index)
 
 
-def find(building: Description, name: str) -> Output:
-    """One result by its name or another name of it; see `Building.output`."""
-    known = {}
+def named(building: Description, names: Iterable[str]) -> list[Output]:
+    """Results by their names or other names of them; see `Building.output`."""
+    known: dict[str, Output] = {}
     for output in reversed(outputs(building)):
         known.update(dict.fromkeys((*output.aliases, output.name), output))
+    return [_known(known, name) for name in names]
+
+
+def _known(known: Mapping[str, Output], name: str) -> Output:
     if name not in known:
         owner, _, what = str(name).partition(".")
         own = [one for one in known if one.partition(".")[0] == owner]
@@ -189,9 +199,8 @@ def find(building: Description, name: str) -> Output:
     return known[name]
 
 
-def _of_sides(building: Description, index: int, name: str) -> Iterator[Output]:
-    """Solar and long-wave radiation and convection at the two sides of a surface."""
-    lit = {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
+def _of_sides(building: Description, index: int, name: str, lit: Set[str | None]) -> Iterator[Output]:
+    """Solar and long-wave radiation and convection at the two sides of a surface; zones with windows."""
     for number, (word, side) in enumerate(zip(_SIDES, building.surfaces[name].sides, strict=True)):
         make = partial(Output, surface=index, side=number)
         if side.sunlit or side.irradiance is not None or (side.zone is not None and side.zone in lit):

@@ -11,6 +11,7 @@ from mascarin._io.arguments import mapping_of, require_type
 from mascarin.building import Building
 from mascarin.building.convection import measured_column
 from mascarin.building.initial_state import Ambient, GivenStart
+from mascarin.building.outputs import named
 from mascarin.errors import InputError
 from mascarin.simulation.initial import MeasuredStart, resolved
 from mascarin.simulation.initial import read as read_initial
@@ -166,7 +167,7 @@ def period(
 def chosen_outputs(building: Building, names: Sequence[str] | None) -> list[Output]:
     """Outputs by name, or the usual ones."""
     if names is not None:
-        return [building.output(name) for name in names]
+        return named(building, names)
     return [output for output in building.outputs() if output.kind in _USUAL]
 
 
