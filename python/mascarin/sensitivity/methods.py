@@ -76,6 +76,10 @@ def plan(
         raise InputError(msg + did_you_mean(method, METHODS))
     whole_number("replicates", replicates)
     whole_number("seed", seed)
+    if samples is not None:
+        whole_number("samples", samples, 1)
+    if order is not None:
+        whole_number("order", order, 1)
     if replicates > MOST_REPLICATES:
         raise InputError(f"replicates: found {replicates}, expected at most {MOST_REPLICATES}")
     # A replicate has at least as many runs as samples, and two for each harmonic.
@@ -85,10 +89,6 @@ def plan(
             f"found {replicates} replicates with samples {samples} and order {order}: {least:.3g} runs or "
             f"more, expected at most {MOST_RUNS:.0e}. Take fewer samples or replicates, or a lower order"
         )
-    if samples is not None:
-        whole_number("samples", samples, 1)
-    if order is not None:
-        whole_number("order", order, 1)
     if method == "spectral":
         return spectral.design(factors, replicates=replicates, order=order, runs=samples, seed=seed)
     return salib.plan(factors, method, replicates=replicates, samples=samples, order=order, seed=seed)

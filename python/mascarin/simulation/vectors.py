@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mascarin.building.set_points import tied_set_points
 from mascarin.errors import InputError
 from mascarin.simulation.compiled import MEMORY, CompiledRun, Failure, Trajectory
 from mascarin.simulation.limits import Limits, require_set_points_apart
@@ -121,6 +120,9 @@ class VectorRuns:
 
     def followers(self, paths: Sequence[str]) -> dict[str, str]:
         """Parameters that follow varied ones: varied path -> path of the equal set point."""
+        # The package imports pydantic, which an evaluation for GenOpt does without.
+        from mascarin.building.set_points import tied_set_points
+
         tied = tied_set_points(self.building)
         full = [self.building.parameter(path).path for path in paths] if tied else []
         return {path: tied[path] for path in full if path in tied and tied[path] not in full}

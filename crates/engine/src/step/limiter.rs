@@ -9,8 +9,8 @@ use crate::step::newton::{PATIENCE, StageSolver};
 use crate::step::stage::Stage;
 use crate::step::state::blend;
 
-/// Iterations before measured melting curves, and others whose second derivative has no bound, limit a step by its heat: what
-/// converges at once is spared the evaluation.
+/// Iterations before measured melting curves, tables and hysteresis limit a step by its heat: what converges at once is spared the
+/// evaluation.
 const STRAIGHT: usize = 2;
 
 impl<S: Real> StageSolver<'_, S> {

@@ -148,6 +148,12 @@ impl<S: Real> Curve<S> {
         if let Shape::Tanh(tanh) = &self.shape { Some(tanh) } else { None }
     }
 
+    /// Whether it is read from a measurement and may have several bends.
+    #[inline(always)]
+    pub(super) fn is_measured(&self) -> bool {
+        matches!(self.shape, Shape::Measured(_))
+    }
+
     /// The curve with its tails cut off and the rest stretched to 0..1: fraction and slope.
     #[inline(never)]
     pub(super) fn compact(&self, temperature: S) -> (S, S) {

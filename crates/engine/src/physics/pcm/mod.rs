@@ -280,10 +280,9 @@ impl<S: Real> PcmCoefficients<S> {
     /// doi:10.1108/eb017528). The smaller of both moves converged from all of 400 random states of a wall; each alone did not from 100.
     #[inline(always)]
     pub fn limit_heat(&self, from: S, to: S, memory: &PcmMemory<S>) -> S {
-        if self.curvature().is_some() {
-            self.limit(from, to, memory)
-        } else {
-            self.move_by_heat(from, to, memory)
+        match &self.law {
+            Law::Melting(_, curve) if !curve.is_measured() => self.limit(from, to, memory),
+            Law::Melting(..) | Law::Table(_) | Law::Hysteresis(..) => self.move_by_heat(from, to, memory),
         }
     }
 

@@ -135,6 +135,7 @@ impl<S: Real> Stepper<'_, S> {
     }
 
     /// All stages of a step at the present loads: one linear solve of each; after many sweeps, iterations to convergence.
+    // Long because each part depends on whether the sweep is the first and the stage the first.
     #[inline(always)]
     fn sweep(
         &mut self,
