@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from mascarin._io import display
 from mascarin._io.numbers import with_interval
-from mascarin.building.set_points import tied_set_points
 from mascarin.calibration.cost import ONE_NUMBER, Cost, CostName
 from mascarin.calibration.evaluations import Trace
 from mascarin.calibration.problem import CalibrationProblem
@@ -174,6 +173,9 @@ class Calibration:
         """
         if self.nominal_building is None:
             raise InputError("building: this calibration was made by solve() on arrays and has no building")
+        # The package imports pydantic, which an evaluation for GenOpt does without.
+        from mascarin.building.set_points import tied_set_points
+
         tied = tied_set_points(self.nominal_building)
         following = {tied[path]: value for path, value in self.values.items() if path in tied}
         return self.nominal_building.with_values({**following, **self.values})
