@@ -224,6 +224,10 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         self.coupled.right[air] +=
             storage * inputs.air[zone] + entering.offset + entering.slope * inputs.conditions.outdoor_air;
         self.coupled.right[air] += inputs.conditions.zones[zone].convective + inputs.load[zone];
+        if let Some(holding) = inputs.holding.get(zone) {
+            self.coupled.add_diagonal(air, holding.slope);
+            self.coupled.right[air] += holding.offset;
+        }
     }
 
     /// Adds a wall to the coupled system, its exterior surfaces eliminated.

@@ -123,6 +123,12 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
         back::<S, SameKind, S>(self.pattern, &self.matrix, right, 0..self.first);
     }
 
+    /// The inverse pivot of a row of the rest: how its unknown responds to its own right-hand side, unknowns eliminated later held.
+    #[inline(always)]
+    pub(crate) fn inverse_pivot(&self, row: usize) -> S {
+        self.matrix[self.pattern.row(row - self.before).diagonal]
+    }
+
     /// The solution for another right-hand side, with the factors already computed.
     #[inline(always)]
     pub(crate) fn solve_again(&self, right: &mut [S]) {

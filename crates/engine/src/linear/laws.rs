@@ -73,6 +73,8 @@ pub(crate) struct StageInputs<'s, S: Real> {
     pub(crate) air: &'s [S],
     /// Ideal load of each zone [W].
     pub(crate) load: &'s [S],
+    /// Heat `offset - slope T` that holds the air of each zone at a set point [W]; empty where nothing is held.
+    pub(crate) holding: &'s [Line<S>],
     /// Effective length of the stage [s].
     pub(crate) length: f64,
 }

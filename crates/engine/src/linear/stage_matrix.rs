@@ -68,7 +68,7 @@ impl<'a> StageMatrix<'a> {
             *mine = theirs.lane(0);
         }
         let Self { model, laws, conditions, zeros, system } = self;
-        let inputs = StageInputs { model, conditions, laws, air: zeros, load: zeros, length };
+        let inputs = StageInputs { model, conditions, laws, air: zeros, load: zeros, holding: &[], length };
         if !model.parts.balances_stay() || new {
             system.zone_fronts.copy_laws(&laws.surfaces);
             system.assemble_linear(&inputs, true, None);

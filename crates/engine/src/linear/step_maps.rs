@@ -9,12 +9,16 @@
 //! with one stage r is zero. The heat that a wall sends into a surface is the conductance of its last half cell times the
 //! temperature of that cell, and so another row of these maps. The cells themselves are needed only at the end of the step.
 //!
+//! Walls of the same cells and links have the same maps, which are formed and stored once: a building of many rooms has few kinds of walls,
+//! whose maps stay in the fast memory of the processor.
+//!
 //! `A` has as many rows as columns. Of a wall of more than [`LONGEST`] cells it is not formed: `A x` then takes two solves with the
 //! tridiagonal factors, so that memory and work grow with the number of cells and not with its square.
 
 use core::ops::Range;
+use std::collections::HashMap;
 
-use crate::building::coefficients::Coefficients;
+use crate::building::coefficients::{Coefficients, WallCoefficients};
 use crate::building::plan::Plan;
 use crate::linear::wall::WallSystem;
 use crate::number::real::Real;
@@ -38,8 +42,12 @@ struct StepMap<S> {
     cells: Range<usize>,
     /// Whether it has more than [`LONGEST`] cells: there is no map from the cells.
     long: bool,
+    /// An earlier wall with the same maps, counted in [`StepMaps::walls`].
+    same_as: Option<usize>,
     /// Numbers of [`Rows`] in the map from the cells and in the map from the surfaces.
     blocks: [usize; 2],
+    /// Where they begin in [`StepMaps::from_cells`] and [`StepMaps::from_surfaces`].
+    places: [usize; 2],
     /// Conductance between each surface and the cell behind it [W/(m2 K)].
     end_conductances: [S; 2],
     /// Heat into surface e in the second stage per degree of surface o in the first [W/(m2 K)].
@@ -67,6 +75,18 @@ pub(crate) struct StepMaps<S> {
 }
 
 impl<S: Real> StepMap<S> {
+    /// The map from the cells, of all walls' maps.
+    #[inline(always)]
+    fn of_cells<'m>(&self, maps: &'m [Rows<S>]) -> &'m [Rows<S>] {
+        &maps[self.places[0]..][..self.blocks[0] * self.cells.len()]
+    }
+
+    /// The map from the surfaces, of all walls' maps.
+    #[inline(always)]
+    fn of_surfaces<'m>(&self, maps: &'m [[Rows<S>; 4]]) -> &'m [[Rows<S>; 4]] {
+        &maps[self.places[1]..][..self.blocks[1]]
+    }
+
     /// Computes the maps from a factored wall, see [`WallSystem::factor`], column by column.
     fn compute(
         &mut self,
@@ -144,6 +164,18 @@ impl<S: Real> StepMap<S> {
     }
 }
 
+/// Walls of one kind have the same maps: the bits of everything that these are computed from. Numbers with derivatives are a kind
+/// each, since their derivatives may differ.
+fn kind<S: Real>(wall: &WallCoefficients<S>, chain: &WallSystem<S>, index: usize) -> Vec<u64> {
+    if S::DERIVATIVES {
+        return vec![index as u64];
+    }
+    let cells =
+        wall.cells.iter().zip(&chain.storage).flat_map(|(cell, storage)| [cell.thickness, storage.capacity]);
+    let links = chain.links.iter().flat_map(|link| [link.left, link.right]);
+    cells.chain(links).flat_map(|number| (0..S::LANES).map(move |lane| number.lane(lane).to_bits())).collect()
+}
+
 /// `sum + map x` for some rows.
 #[inline(always)]
 fn multiply<S: Real>(mut sum: Rows<S>, map: &[Rows<S>], x: &[S]) -> Rows<S> {
@@ -179,6 +211,7 @@ impl<S: Real> StepMaps<S> {
             started: false,
         };
         let zero = [S::zero(); ROWS];
+        let mut kinds = HashMap::new();
         let constant = plan.walls.iter().enumerate().filter(|(_, wall)| !wall.nonlinear && !wall.is_empty());
         for (wall, of_plan) in constant {
             let cells = of_plan.first_cell..of_plan.first_cell + of_plan.len();
@@ -186,22 +219,30 @@ impl<S: Real> StepMaps<S> {
             for (capacity, (cell, storage)) in step_maps.capacity[cells.clone()].iter_mut().zip(of_cells) {
                 *capacity = numbers.walls[wall].area * cell.thickness * storage.capacity;
             }
-            let nothing = [S::zero(); 2];
             let blocks = [2, 0].map(|more| (of_plan.len() + more).div_ceil(ROWS));
             let long = of_plan.len() > LONGEST;
-            if !long {
-                step_maps.from_cells.resize(step_maps.from_cells.len() + blocks[0] * of_plan.len(), zero);
-            }
-            step_maps.from_surfaces.resize(step_maps.from_surfaces.len() + blocks[1], [zero; 4]);
+            let index = step_maps.walls.len();
+            let first = *kinds.entry(kind(&numbers.walls[wall], &chains[wall], wall)).or_insert(index);
+            let places = if first < index {
+                step_maps.walls[first].places
+            } else {
+                let places = [step_maps.from_cells.len(), step_maps.from_surfaces.len()];
+                let columns = if long { 0 } else { of_plan.len() };
+                step_maps.from_cells.resize(places[0] + blocks[0] * columns, zero);
+                step_maps.from_surfaces.resize(places[1] + blocks[1], [zero; 4]);
+                places
+            };
             step_maps.by_start.resize(step_maps.by_start.len() + blocks[0], zero);
-            let carried = [nothing; 2];
+            let nothing = [S::zero(); 2];
             step_maps.walls.push(StepMap {
                 wall,
                 cells,
                 long,
+                same_as: (first < index).then_some(first),
                 blocks,
+                places,
                 end_conductances: nothing,
-                carried,
+                carried: [nothing; 2],
                 first_surfaces: nothing,
             });
         }
@@ -212,14 +253,18 @@ impl<S: Real> StepMaps<S> {
     #[cold]
     #[inline(never)]
     pub(crate) fn factor(&mut self, chains: &[WallSystem<S>]) {
-        let (mut from_cells, mut from_surfaces) = (&mut self.from_cells[..], &mut self.from_surfaces[..]);
-        for step_map in &mut self.walls {
-            let [of_cells, of_surfaces] = step_map.blocks;
-            let (own_cells, own_surfaces);
+        for i in 0..self.walls.len() {
+            let (before, rest) = self.walls.split_at_mut(i);
+            let step_map = &mut rest[0];
+            if let Some(first) = step_map.same_as {
+                step_map.end_conductances = before[first].end_conductances;
+                step_map.carried = before[first].carried;
+                continue;
+            }
             let columns = if step_map.long { 0 } else { step_map.cells.len() };
-            (own_cells, from_cells) = from_cells.split_at_mut(of_cells * columns);
-            (own_surfaces, from_surfaces) = from_surfaces.split_at_mut(of_surfaces);
-            step_map.compute(&chains[step_map.wall], self.ratio, own_cells, own_surfaces);
+            let of_cells = &mut self.from_cells[step_map.places[0]..][..step_map.blocks[0] * columns];
+            let of_surfaces = &mut self.from_surfaces[step_map.places[1]..][..step_map.blocks[1]];
+            step_map.compute(&chains[step_map.wall], self.ratio, of_cells, of_surfaces);
         }
         self.started = false;
     }
@@ -241,7 +286,7 @@ impl<S: Real> StepMaps<S> {
 
     #[inline(always)]
     fn multiply_start(&mut self, chains: &[WallSystem<S>], cells: &[S], sources: &mut [[S; 2]]) {
-        let (mut maps, mut by_start) = (&self.from_cells[..], &mut self.by_start[..]);
+        let mut by_start = &mut self.by_start[..];
         for step_map in &self.walls {
             let x = &cells[step_map.cells.clone()];
             let n = x.len();
@@ -250,9 +295,7 @@ impl<S: Real> StepMaps<S> {
             if !self.started && step_map.long {
                 step_map.solve_start(&chains[step_map.wall], self.ratio, x, own.as_flattened_mut());
             } else if !self.started {
-                for rows in &mut *own {
-                    let map;
-                    (map, maps) = maps.split_at(n);
+                for (rows, map) in own.iter_mut().zip(step_map.of_cells(&self.from_cells).chunks_exact(n)) {
                     *rows = multiply([S::zero(); ROWS], map, x);
                 }
             }
@@ -308,13 +351,12 @@ impl<S: Real> StepMaps<S> {
     fn multiply_surfaces(&self, surfaces: &[S], cells: &mut [S]) -> S {
         // As many sums as rows, none of which depends on another.
         let mut stored = [S::zero(); ROWS];
-        let (mut maps, mut by_start) = (&self.from_surfaces[..], &self.by_start[..]);
+        let mut by_start = &self.by_start[..];
         let (pairs, _) = surfaces.as_chunks::<2>();
         for step_map in &self.walls {
-            let [of_cells, of_surfaces] = step_map.blocks;
-            let (own, map);
-            (own, by_start) = by_start.split_at(of_cells);
-            (map, maps) = maps.split_at(of_surfaces);
+            let own;
+            (own, by_start) = by_start.split_at(step_map.blocks[0]);
+            let map = step_map.of_surfaces(&self.from_surfaces);
             let ([a, b], [c, d]) = (step_map.first_surfaces, pairs[step_map.wall]);
             let mut reached = own.iter().zip(map).map(
                 #[inline(always)]

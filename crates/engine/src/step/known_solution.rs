@@ -39,7 +39,7 @@ impl<S: Real> Stepper<'_, S> {
     pub(crate) fn linearise_at_rest(&mut self) {
         let row = vec![0.0; self.model.plan.n_channels()];
         if let Ok(forcing) = Forcing::new(&row, 1, row.len()) {
-            let weather = Weather::for_single_run(self.model.plan, &forcing);
+            let weather = Weather::for_single_run(self.model.plan, &forcing, 0);
             self.conditions_now(&weather.at(0, 0));
         }
         let (solver, conditions) = (&mut self.solver, &self.weather.conditions);
@@ -217,6 +217,6 @@ impl<S: Real> Stepper<'_, S> {
     #[inline(always)]
     pub(crate) fn correct_ideal_loads(&mut self) {
         let StageSolver { start, solution, .. } = &mut self.solver;
-        self.ideal_loads.correct(&solution.air, &mut start.load, S::Mask::splat(true), true);
+        self.ideal_loads.correct(&solution.air, &mut start.load, (0, S::Mask::splat(true), true));
     }
 }

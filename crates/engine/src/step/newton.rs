@@ -303,6 +303,7 @@ fn inputs<'s, S: Real>(
         laws: &linearisation.laws,
         air: &start.air,
         load: &start.load,
+        holding: &start.holding,
         length: stage.length,
     }
 }

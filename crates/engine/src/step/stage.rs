@@ -3,6 +3,7 @@
 use crate::building::model::Model;
 use crate::linear::unknowns::{Unknowns, copy_ranges, line};
 use crate::linear::wall::{StorageRule, WallSystem};
+use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::step::state::State;
 use crate::weather::conditions::Conditions;
@@ -39,6 +40,8 @@ pub(crate) struct StageStart<S> {
     pub(crate) air: Vec<S>,
     /// Ideal load of each zone [W].
     pub(crate) load: Vec<S>,
+    /// Heat `offset - slope T` that holds the air of each zone at a set point [W]; empty where nothing is held.
+    pub(crate) holding: Vec<Line<S>>,
     /// Liquid fractions of the cells at the first stage of the step [-].
     pub(crate) first_fraction: Vec<S>,
 }
@@ -47,7 +50,13 @@ impl<S: Real> StageStart<S> {
     pub(crate) fn new(model: &Model<'_, S>) -> Self {
         let zeros = |n: usize| vec![S::zero(); n];
         let (cells, zones) = (model.plan.n_cells, model.plan.zones.len());
-        Self { enthalpy: zeros(cells), air: zeros(zones), load: zeros(zones), first_fraction: zeros(cells) }
+        Self {
+            enthalpy: zeros(cells),
+            air: zeros(zones),
+            load: zeros(zones),
+            holding: Vec::new(),
+            first_fraction: zeros(cells),
+        }
     }
 
     /// The first stage starts from the state.

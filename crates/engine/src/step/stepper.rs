@@ -215,7 +215,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         self.begin_step(state, tableau.nodes[0]);
         let with_loads = !self.model.plan.ideal_loads.is_empty();
         if with_loads {
-            self.guess_loads(state, weather.row(part.step, tableau.weights.len() - 1));
+            self.guess_loads(state, weather.row(part.step, tableau.weights.len() - 1), length);
         }
         self.guess.remember(&self.model, state);
         let energy = if with_loads {
@@ -256,6 +256,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         let Self { model, solver, .. } = self;
         solver.start.begin(model, state);
         solver.start.load.copy_from_slice(&state.load);
+        solver.start.holding.clear();
         solver.system.step_maps.begin();
         self.known.restart();
         self.guess.first(model, state, node, &mut solver.iterate);

@@ -70,7 +70,7 @@ pub struct Weather<'a> {
     terms: WindTerms,
     /// Whether a ground temperature depends on the day of the year.
     ground: bool,
-    /// All stages, evaluated; empty where each is evaluated on demand.
+    /// The stages of the first steps, evaluated; the others are evaluated on demand.
     stages: Vec<Instant<'a>>,
 }
 
@@ -78,18 +78,23 @@ impl<'a> Weather<'a> {
     /// Evaluates all stages of a forcing, for many runs.
     #[must_use]
     pub fn new(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
-        let mut weather = Self::on_demand(plan, forcing);
-        let stages = forcing.stages();
-        weather.stages =
-            (0..forcing.steps() * stages).map(|k| weather.evaluate(k / stages, k % stages)).collect();
-        weather
+        Self::on_demand(plan, forcing).with_steps(forcing.steps())
     }
 
-    /// The weather for a single run: stages that are read once are evaluated on demand.
+    /// The weather for a single run that repeats some first steps before it: stages that are read once are evaluated on demand,
+    /// so that memory does not grow with the length of the run.
     #[must_use]
-    pub fn for_single_run(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
-        // Tracing beams is expensive: stages that warm-up reads again are then evaluated once.
-        if plan.solar_geometry.is_empty() { Self::on_demand(plan, forcing) } else { Self::new(plan, forcing) }
+    pub fn for_single_run(plan: &'a Plan, forcing: &Forcing<'a>, repeated: usize) -> Self {
+        // Tracing beams is expensive: stages that are read again are then evaluated once.
+        let steps = if plan.solar_geometry.is_empty() { 0 } else { repeated.min(forcing.steps()) };
+        Self::on_demand(plan, forcing).with_steps(steps)
+    }
+
+    /// Evaluates all stages of some first steps.
+    fn with_steps(mut self, steps: usize) -> Self {
+        let stages = self.forcing.stages();
+        self.stages = (0..steps * stages).map(|k| self.evaluate(k / stages, k % stages)).collect();
+        self
     }
 
     fn on_demand(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
@@ -145,14 +150,18 @@ mod tests {
             .collect();
         let forcing = Forcing::new(&rows, 2, CLIMATE_CHANNELS).unwrap();
         let plan = Plan::new(glazed_zone("area", false)).unwrap();
-        let (all, single) = (Weather::new(&plan, &forcing), Weather::for_single_run(&plan, &forcing));
+        let (all, single) = (Weather::new(&plan, &forcing), Weather::for_single_run(&plan, &forcing, 1));
         assert_eq!((all.steps(), all.stages.len(), single.stages.len()), (2, 4, 0));
         for weather in [&all, &single] {
             assert_eq!(weather.at(1, 0).row[channel::AIR_TEMPERATURE], 2.0);
             assert_eq!(weather.row(0, 1)[channel::AIR_TEMPERATURE], 1.0);
         }
-        // Tracing beams is done once: all stages are evaluated before the run.
+        // Beams are traced once for steps that are repeated.
         let traced = Plan::new(glazed_zone("geometry", false)).unwrap();
-        assert_eq!(Weather::for_single_run(&traced, &forcing).stages.len(), 4);
+        for (repeated, kept) in [(0, 0), (1, 2), (9, 4)] {
+            let weather = Weather::for_single_run(&traced, &forcing, repeated);
+            assert_eq!(weather.stages.len(), kept);
+            assert_eq!(weather.at(1, 0).row[channel::AIR_TEMPERATURE], 2.0);
+        }
     }
 }

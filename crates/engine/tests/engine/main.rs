@@ -14,6 +14,7 @@ mod first_step;
 mod golden;
 mod halved_steps;
 mod halving;
+mod held_airs;
 mod hysteresis;
 mod levels;
 mod lone_surface;

@@ -6,11 +6,15 @@ use crate::building::coefficients::ZoneCoefficients;
 use crate::building::model::Model;
 use crate::linear::building_system::BuildingSystem;
 use crate::linear::unknowns::Unknowns;
+use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
+use crate::step::ideal_loads::held_airs::HeldAirs;
 use crate::step::ideal_loads::responses::Response;
 
 /// Airs closer to their set points than this count as on them [K].
-const TOLERANCE: f64 = 1e-8;
+pub(super) const TOLERANCE: f64 = 1e-8;
+/// A load is found when correcting it would change the air by less than this [K]: the last stage supplies so little.
+pub(super) const CLOSE: f64 = 1e-5;
 /// Magnitude of the set point without heating or cooling, which is never reached [degC].
 const NEVER: f64 = 1e6;
 
@@ -34,6 +38,15 @@ impl<S: Real> Limits<S> {
             if let Some(ideal_load) = &zone.cooling { ideal_load.at(row) } else { nothing[1] };
         Self { set_points: [heating, cooling], most: [most_heating, most_cooling] }
     }
+
+    /// Where an air asks for heating, and where for cooling.
+    #[inline(always)]
+    pub(super) fn asks(&self, air: S) -> [S::Mask; 2] {
+        let slack = S::constant(TOLERANCE);
+        let cold = air.lt(self.set_points[0] - slack) & S::zero().lt(self.most[0]);
+        let hot = (self.set_points[1] + slack).lt(air) & S::zero().lt(self.most[1]);
+        [cold, hot]
+    }
 }
 
 /// What the guess of the next step is made from.
@@ -42,6 +55,7 @@ pub(crate) struct LoadHistory<S> {
     first: Option<Unknowns<S>>,
     outdoor: [S; 2],
     earlier: Vec<S>,
+    slopes: Vec<S>,
 }
 
 /// The ideal loads of a building and the search for them in one step.
@@ -50,8 +64,10 @@ pub(crate) struct IdealLoads<S: Real> {
     /// Zone of each load.
     pub(super) zones: Vec<usize>,
     pub(super) limits: Vec<Limits<S>>,
-    /// Response of the building to each load.
+    /// Response of the building to each load, where there are few.
     pub(crate) responses: Vec<Response<S>>,
+    /// The airs that the last stage holds, where there are many.
+    pub(super) held: Option<HeldAirs<S>>,
     /// Iterate about which each stage was last linearised, and its solution.
     iterates: Vec<Unknowns<S>>,
     solved: Vec<Unknowns<S>>,
@@ -79,10 +95,14 @@ impl<S: Real> IdealLoads<S> {
         let count = zones.len();
         let nothing = Limits { set_points: [S::zero(); 2], most: [S::zero(); 2] };
         let kept = if count == 0 { 0 } else { stages };
+        // Numbers with derivatives take the responses: slopes of loads follow from them without iteration.
+        let direct = S::DERIVATIVES || count == 1;
+        let few = if direct { count } else { 0 };
         Self {
             zones: zones.clone(),
             limits: vec![nothing; count],
-            responses: vec![Response::new(unknowns, rows, stages); count],
+            responses: vec![Response::new(unknowns, rows, stages); few],
+            held: (!direct).then(|| HeldAirs::new(count, rows)),
             iterates: vec![unknowns.clone(); kept],
             solved: vec![unknowns.clone(); kept],
             first: unknowns.clone(),
@@ -92,8 +112,8 @@ impl<S: Real> IdealLoads<S> {
             needed: S::Mask::splat(false),
             responses_known: S::Mask::splat(false),
             correction: zeros(count),
-            matrix: zeros(count * count),
-            right: zeros(count),
+            matrix: zeros(few * few),
+            right: zeros(few),
         }
     }
 
@@ -125,6 +145,7 @@ impl<S: Real> IdealLoads<S> {
             first: self.solved.first().cloned(),
             outdoor: self.outdoor,
             earlier: self.earlier.clone(),
+            slopes: self.held.as_ref().map(HeldAirs::slopes).unwrap_or_default(),
         }
     }
 
@@ -135,6 +156,9 @@ impl<S: Real> IdealLoads<S> {
         }
         self.outdoor = history.outdoor;
         self.earlier.clone_from(&history.earlier);
+        if let Some(held) = &mut self.held {
+            held.set_slopes(&history.slopes);
+        }
     }
 
     /// Marks the lanes that start with a load, or whose air is expected outside its set points.
@@ -150,13 +174,39 @@ impl<S: Real> IdealLoads<S> {
     /// Whether some active lane needs a load.
     #[inline(always)]
     pub(super) fn any_needed(&self, active: S::Mask) -> bool {
-        (self.needed & active).any()
+        self.held.as_ref().map_or_else(|| (self.needed & active).any(), |held| held.any(active))
+    }
+
+    /// Begins to hold airs, where loads are found so: in a step with stages of a length [s], guessed loads, and airs that are
+    /// expected without them.
+    #[inline(always)]
+    pub(super) fn begin_holding(
+        &mut self,
+        model: &Model<'_, S>,
+        length_and_ratio: (f64, f64),
+        loads: &[S],
+        expected: impl Fn(usize) -> S,
+    ) {
+        if let Some(held) = &mut self.held {
+            let of_zones = (&self.limits[..], &self.zones[..]);
+            held.begin(model, length_and_ratio, of_zones, (loads, expected));
+        }
+    }
+
+    /// Writes what holds the airs in a stage: in the last one, where loads are found so, else nothing.
+    #[inline(always)]
+    pub(super) fn hold(&self, last: bool, holding: &mut Vec<Line<S>>) {
+        holding.clear();
+        if let (true, Some(held)) = (last, &self.held) {
+            holding.resize(self.earlier.len(), Line::zero());
+            held.write(&self.zones, holding);
+        }
     }
 
     /// Whether a sweep finds the responses: the second uses those of the first, which are close enough.
     #[inline(always)]
     pub(crate) fn finds_responses(&mut self, sweep: usize, active: S::Mask) -> bool {
-        let finds = sweep != 1 && self.any_needed(active);
+        let finds = self.held.is_none() && sweep != 1 && self.any_needed(active);
         if finds {
             self.responses_known = self.needed;
         }
@@ -181,6 +231,11 @@ impl<S: Real> IdealLoads<S> {
     ) {
         core::mem::swap(iterate, &mut self.iterates[stage]);
         solved.copy_some(cells, &self.solved[stage].view());
+        if let (Some(held), 0) = (&self.held, stage) {
+            for (p, &zone) in self.zones.iter().enumerate() {
+                solved.air[zone] += held.first_rise(p);
+            }
+        }
         for (response, &change) in self.responses.iter().zip(&self.correction) {
             let rises = &response.stages[stage];
             let shift = |values: &mut [S], rises: &[S]| {
@@ -199,12 +254,9 @@ impl<S: Real> IdealLoads<S> {
     /// True where every air lies between its set points.
     #[inline(always)]
     pub(super) fn within_set_points(&self, air: impl Fn(usize) -> S) -> S::Mask {
-        let slack = S::constant(TOLERANCE);
         let mut within = S::Mask::splat(true);
         for (limits, &zone) in self.limits.iter().zip(&self.zones) {
-            let [heat, cool] = limits.set_points;
-            let cold = air(zone).lt(heat - slack) & S::zero().lt(limits.most[0]);
-            let hot = (cool + slack).lt(air(zone)) & S::zero().lt(limits.most[1]);
+            let [cold, hot] = limits.asks(air(zone));
             within = within & !(cold | hot);
         }
         within
@@ -219,7 +271,10 @@ impl<S: Real> IdealLoads<S> {
 
     /// Zone whose load changes most in a lane, and by how much its air would change [K].
     pub(super) fn worst(&self, lane: usize) -> (usize, f64) {
-        let moved = |p: usize| (self.correction[p] * self.gain(p, p)).lane(lane).abs();
+        let moved = |p: usize| match &self.held {
+            Some(held) => held.distance(p).lane(lane).abs(),
+            None => (self.correction[p] * self.gain(p, p)).lane(lane).abs(),
+        };
         let worst = (0..self.zones.len()).max_by(|&a, &b| moved(a).total_cmp(&moved(b))).unwrap_or(0);
         (self.zones[worst], moved(worst))
     }
@@ -238,9 +293,57 @@ impl<S: Real> IdealLoads<S> {
         }
     }
 
+    /// Corrects the solution of the coupled system of the last stage by the loads that are missing there.
+    #[inline(always)]
+    pub(super) fn complete(
+        &mut self,
+        model: &Model<'_, S>,
+        system: &mut BuildingSystem<'_, S>,
+        air: &[S],
+        loads: &[S],
+    ) {
+        if let Some(held) = &mut self.held {
+            held.complete(model, system, (&self.zones, air), &mut self.correction);
+            return;
+        }
+        self.respond_last(model, system);
+        self.complete_by_responses(air, loads, &mut system.coupled.right);
+    }
+
+    /// Adds the heat that still holds the airs at the end to the corrections: some millionth.
+    #[inline(always)]
+    pub(super) fn add_held(&mut self, air: &[S]) {
+        if let Some(held) = &self.held {
+            for (p, (&zone, correction)) in self.zones.iter().zip(&mut self.correction).enumerate() {
+                *correction += held.missing(p, air[zone]);
+            }
+        }
+    }
+
+    /// Heat that holds the airs at temperatures in the last stage, by zone: what their loads lack there [W].
+    pub(super) fn holding_heat<'h>(&'h self, air: &'h [S]) -> impl Iterator<Item = (usize, S)> + 'h {
+        let of_load = move |held: &'h HeldAirs<S>| {
+            self.zones.iter().enumerate().map(move |(p, &zone)| (zone, held.missing(p, air[zone])))
+        };
+        self.held.iter().flat_map(of_load)
+    }
+
+    /// Gives loads the heat that they lacked after sweep `number`, where airs are held, in the first stage just solved. True where loads
+    /// change.
+    #[inline(always)]
+    pub(super) fn supply(
+        &mut self,
+        model: &Model<'_, S>,
+        system: &BuildingSystem<'_, S>,
+        number: usize,
+        loads: &mut [S],
+    ) -> bool {
+        self.held.as_mut().is_some_and(|held| held.supply(model, system, (number, &self.zones), loads))
+    }
+
     /// Response of the airs at the end of the step to a watt of each load in the last stage only.
     #[inline(always)]
-    pub(super) fn respond_last(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>) {
+    fn respond_last(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>) {
         for (response, &zone) in self.responses.iter_mut().zip(&self.zones) {
             response.find_last(model, system, zone);
         }

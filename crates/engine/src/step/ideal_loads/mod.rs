@@ -15,6 +15,7 @@
 //! After the last sweep the air differs from its set point by some 1e-5 K at most. A correction of the load in the last stage
 //! removes this difference to round-off; the load reported is the mean over the step, with the correction.
 
+mod held_airs;
 pub(crate) mod loads;
 pub(crate) mod responses;
 mod search;

@@ -2,10 +2,7 @@
 
 use crate::number::dense::solve_many;
 use crate::number::real::{Mask, Real};
-use crate::step::ideal_loads::loads::{IdealLoads, Limits};
-
-/// A load is found when correcting it would change the air by less than this [K]: the last stage supplies so little.
-const CLOSE: f64 = 1e-5;
+use crate::step::ideal_loads::loads::{CLOSE, IdealLoads, Limits};
 
 /// What an ideal load does: it holds the air on a set point, or gives a fixed load.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +31,17 @@ impl<S: Real> IdealLoads<S> {
     /// Compares the airs at the end of a sweep with the set points. True in the lanes whose loads are right; in the other
     /// active lanes whose responses are known (with `all`, in every active one) the loads are corrected.
     #[inline(always)]
-    pub(crate) fn correct(&mut self, air: &[S], loads: &mut [S], active: S::Mask, all: bool) -> S::Mask {
+    pub(crate) fn correct(
+        &mut self,
+        air: &[S],
+        loads: &mut [S],
+        (number, active, all): (usize, S::Mask, bool),
+    ) -> S::Mask {
+        if let Some(held) = &mut self.held {
+            let limits = (&self.limits[..], &self.zones[..]);
+            self.correction.fill(S::zero());
+            return held.correct(limits, (air, loads), (number, active, all));
+        }
         let quiet = self.within_set_points(|zone| air[zone]);
         let known = self.responses_known;
         self.needed = self.needed | !quiet;
@@ -60,7 +67,7 @@ impl<S: Real> IdealLoads<S> {
 
     /// Corrects the solution of the coupled system of the last stage by the missing loads.
     #[inline(always)]
-    pub(super) fn complete(&mut self, air: &[S], loads: &[S], solution: &mut [S]) {
+    pub(super) fn complete_by_responses(&mut self, air: &[S], loads: &[S], solution: &mut [S]) {
         let needed = self.needed;
         self.solve(air, loads);
         for (p, &zone) in self.zones.iter().enumerate() {

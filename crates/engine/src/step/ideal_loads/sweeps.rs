@@ -39,15 +39,17 @@ struct Swept<S: Real> {
 }
 
 impl<S: Real> Stepper<'_, S> {
-    /// Guesses the loads of a step that ends with a forcing row, and the first stage.
+    /// Guesses the loads of a step of a length [s] that ends with a forcing row, and the first stage.
     #[inline(always)]
-    pub(in crate::step) fn guess_loads(&mut self, state: &State<S>, row: &[f64]) {
+    pub(in crate::step) fn guess_loads(&mut self, state: &State<S>, row: &[f64], length: f64) {
         let Self { model, solver, ideal_loads, guess, .. } = self;
         let (load, iterate) = (&mut solver.start.load, &mut solver.iterate);
         let previous = guess.previous();
         ideal_loads.begin(&model.coefficients.zones, row, load, previous.is_some());
-        let diagonal = self.scheme.tableau().diagonal;
-        ideal_loads.mark_needed(load, |zone| line(state.air[zone], iterate.air[zone], 1.0 / diagonal));
+        let tableau = self.scheme.tableau();
+        let expected = |zone: usize| line(state.air[zone], iterate.air[zone], 1.0 / tableau.diagonal);
+        ideal_loads.mark_needed(load, expected);
+        ideal_loads.begin_holding(model, (tableau.diagonal * length, tableau.ratio), load, expected);
         if let Some(previous) = previous {
             let known = [previous, ideal_loads.first.view()];
             iterate.shift(&model.parts.zone_surfaces, &state.view(), &known);
@@ -75,7 +77,7 @@ impl<S: Real> Stepper<'_, S> {
                 self.sweep(state, weather, Sweep { part, length, number, active })?;
             let still = accepted | S::Mask::splat(whole);
             let (air, load) = (&self.solver.solution.air, &mut self.solver.start.load);
-            let found = self.ideal_loads.correct(air, load, active, further > 0);
+            let found = self.ideal_loads.correct(air, load, (number, active, further > 0));
             let moving = active & !(found & still) & !self.solver.failed;
             if moving.any() {
                 active = moving;
@@ -179,8 +181,15 @@ impl<S: Real> Stepper<'_, S> {
             if again {
                 solver.advance(&stage, active, number.min(PATIENCE - 1));
             }
+            ideal_loads.hold(index + 1 == weights.len(), &mut solver.start.holding);
             let search = if number < SINGLE_SWEEPS { Search::Once } else { Search::Whole(active) };
-            let sound = solver.solve(&stage, search)?;
+            let mut sound = solver.solve(&stage, search)?;
+            if again
+                && index == 0
+                && ideal_loads.supply(model, &solver.system, number - 1, &mut solver.start.load)
+            {
+                sound = solver.solve(&stage, search)?;
+            }
             known.keep(&solver.solution);
             let moved = S::select(sound, solver.change(model), S::constant(f64::INFINITY));
             change = change.max(moved);
@@ -192,13 +201,26 @@ impl<S: Real> Stepper<'_, S> {
             }
             ideal_loads.keep(index, &mut solver.iterate, &solver.solution);
             if self.residuals.is_some() {
-                self.record_residual(state, length_of_stage, index);
+                self.record_residual_of_sweep(state, length_of_stage, index);
             }
             if again && index + 1 < weights.len() {
                 self.add_heat(weight * length, &mut energy);
             }
         }
         Ok(Swept { energy, change, accepted })
+    }
+
+    /// Records the residual of a stage. The heat that holds the airs in the last one counts as part of their loads.
+    #[cold]
+    fn record_residual_of_sweep(&mut self, state: &State<S>, length: f64, index: usize) {
+        let loads = self.solver.start.load.clone();
+        if index + 1 == self.scheme.weights().len() {
+            for (zone, heat) in self.ideal_loads.holding_heat(&self.solver.solution.air) {
+                self.solver.start.load[zone] += heat;
+            }
+        }
+        self.record_residual(state, length, index);
+        self.solver.start.load = loads;
     }
 
     /// Brings the airs to their set points by the loads of the last stage, and adds its heat.
@@ -208,11 +230,11 @@ impl<S: Real> Stepper<'_, S> {
         let weight = weights[weights.len() - 1];
         let Self { model, solver, ideal_loads, known, .. } = self;
         if ideal_loads.any_needed(!solver.failed) {
-            ideal_loads.respond_last(model, &solver.system);
-            ideal_loads.complete(&solver.solution.air, &solver.start.load, &mut solver.system.coupled.right);
+            ideal_loads.complete(model, &mut solver.system, &solver.solution.air, &solver.start.load);
             solver.system.resolve_all(model, &mut solver.solution);
             known.amend(&solver.solution);
         }
+        ideal_loads.add_held(&solver.solution.air);
         for (&correction, &zone) in ideal_loads.correction.iter().zip(&model.plan.ideal_loads) {
             solver.start.load[zone] += correction;
         }
