@@ -12,7 +12,8 @@ use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::weather::conditions::Weather;
 
-/// Largest number of sweeps over the stages of a step, and how many of the first ones solve each stage only once.
+/// Largest number of sweeps over the stages of a step, beside one for each load that may begin or end; and how many of the first
+/// ones solve each stage only once.
 const MAX_SWEEPS: usize = 40;
 const SINGLE_SWEEPS: usize = 12;
 
@@ -67,7 +68,7 @@ impl<S: Real> Stepper<'_, S> {
     ) -> Result<Power<S>, EngineError> {
         let mut active = S::Mask::splat(true);
         let mut further = self.further_sweeps();
-        for number in 0..MAX_SWEEPS {
+        for number in 0..self.most_sweeps() {
             self.solver.check_stop()?;
             if self.exhausted() {
                 break;
@@ -93,13 +94,18 @@ impl<S: Real> Stepper<'_, S> {
         Err(self.loads_not_found(active, part.step))
     }
 
+    /// Sweeps before a step counts as unsolved.
+    fn most_sweeps(&self) -> usize {
+        MAX_SWEEPS + self.ideal_loads.zones.len()
+    }
+
     /// Names the load that changes most in the first lane that did not converge.
     #[cold]
     fn loads_not_found(&self, active: S::Mask, step: usize) -> EngineError {
         let lane = (0..S::LANES).find(|&lane| active.lane(lane)).unwrap_or(0);
         let (zone, residual) = self.ideal_loads.worst(lane);
         let place = format!("zone {} (ideal load)", self.model.plan.description.zones[zone].name);
-        let (stage, iterations) = (self.scheme.weights().len(), MAX_SWEEPS);
+        let (stage, iterations) = (self.scheme.weights().len(), self.most_sweeps());
         EngineError::NotConverged { step, stage, place, residual, iterations }
     }
 
