@@ -46,7 +46,8 @@ pub fn march<S: Real>(
     control: &RunControl,
 ) -> Result<Run<S>, EngineError> {
     options.check(plan, parameters.len(), forcing)?;
-    march_in(plan, parameters, &Weather::for_single_run(plan, forcing), options, control)
+    let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);
+    march_in(plan, parameters, &Weather::for_single_run(plan, forcing, repeated), options, control)
 }
 
 /// Runs a plan at a parameter vector in a weather that many runs share. What [`Options::check`] checks must hold.

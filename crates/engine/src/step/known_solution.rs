@@ -39,7 +39,7 @@ impl<S: Real> Stepper<'_, S> {
     pub(crate) fn linearise_at_rest(&mut self) {
         let row = vec![0.0; self.model.plan.n_channels()];
         if let Ok(forcing) = Forcing::new(&row, 1, row.len()) {
-            let weather = Weather::for_single_run(self.model.plan, &forcing);
+            let weather = Weather::for_single_run(self.model.plan, &forcing, 0);
             self.conditions_now(&weather.at(0, 0));
         }
         let (solver, conditions) = (&mut self.solver, &self.weather.conditions);

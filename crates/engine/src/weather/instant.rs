@@ -1,6 +1,7 @@
 //! The weather at an instant, as far as it is the same for all members of an ensemble.
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 use crate::building::coefficients::surface::PER_DAY;
 use crate::building::ids::SurfaceId;
@@ -51,13 +52,9 @@ impl<'a> Instant<'a> {
         }
     }
 
-    /// Fractions that obstacles leave of sun and sky on a surface: obstacles stand outside only.
+    /// Fractions that obstacles leave of sun, sky and ground on a surface.
     pub(crate) fn visibility(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
-        if surface.is_outside() {
-            plan.solar_geometry.visibility(surface.wall(), &self.fractions)
-        } else {
-            SkyVisibility::FULL
-        }
+        plan.solar_geometry.visibility(surface, &self.fractions)
     }
 }
 
@@ -70,33 +67,31 @@ pub struct Weather<'a> {
     terms: WindTerms,
     /// Whether a ground temperature depends on the day of the year.
     ground: bool,
-    /// All stages, evaluated; empty where each is evaluated on demand.
-    stages: Vec<Instant<'a>>,
+    /// The stages of the first steps, each kept once it has been evaluated; empty where none is kept.
+    stages: Vec<OnceLock<Instant<'a>>>,
 }
 
 impl<'a> Weather<'a> {
-    /// Evaluates all stages of a forcing, for many runs.
+    /// The weather for many runs: each stage is evaluated when it is first read, and kept.
     #[must_use]
     pub fn new(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
-        let mut weather = Self::on_demand(plan, forcing);
-        let stages = forcing.stages();
-        weather.stages =
-            (0..forcing.steps() * stages).map(|k| weather.evaluate(k / stages, k % stages)).collect();
-        weather
+        Self::keeping(plan, forcing, forcing.steps())
     }
 
-    /// The weather for a single run: stages that are read once are evaluated on demand.
+    /// The weather for a single run that reads the stages of some first steps again and again.
     #[must_use]
-    pub fn for_single_run(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
-        // Tracing beams is expensive: stages that warm-up reads again are then evaluated once.
-        if plan.solar_geometry.is_empty() { Self::on_demand(plan, forcing) } else { Self::new(plan, forcing) }
+    pub fn for_single_run(plan: &'a Plan, forcing: &Forcing<'a>, repeated: usize) -> Self {
+        // Shadows and beams are expensive: stages that warm-up reads again are evaluated once. All else is cheap.
+        let kept = if plan.solar_geometry.is_empty() { 0 } else { repeated.min(forcing.steps()) };
+        Self::keeping(plan, forcing, kept)
     }
 
-    fn on_demand(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
+    fn keeping(plan: &'a Plan, forcing: &Forcing<'a>, steps: usize) -> Self {
         let sides = || plan.surfaces.ids().map(|surface| plan.side(surface));
         let terms = WindTerms::of(sides().filter_map(|side| side.convection.as_ref()));
         let ground = sides().any(|side| matches!(side.facing, Facing::Ground { .. }));
-        Self { plan, forcing: *forcing, terms, ground, stages: Vec::new() }
+        let stages = (0..steps * forcing.stages()).map(|_| OnceLock::new()).collect();
+        Self { plan, forcing: *forcing, terms, ground, stages }
     }
 
     fn evaluate(&self, step: usize, stage: usize) -> Instant<'a> {
@@ -119,7 +114,7 @@ impl<'a> Weather<'a> {
     #[must_use]
     pub fn at(&self, step: usize, stage: usize) -> Cow<'_, Instant<'a>> {
         match self.stages.get(step * self.forcing.stages() + stage) {
-            Some(instant) => Cow::Borrowed(instant),
+            Some(kept) => Cow::Borrowed(kept.get_or_init(|| self.evaluate(step, stage))),
             None => Cow::Owned(self.evaluate(step, stage)),
         }
     }
@@ -133,7 +128,7 @@ mod tests {
 
     /// Two steps of two stages, the air one degree warmer at each.
     #[test]
-    fn stages_evaluated_before_or_on_demand() {
+    fn stages_kept_or_evaluated_again() {
         let rows: Vec<f64> = (0..4 * CLIMATE_CHANNELS)
             .map(|k| {
                 if k % CLIMATE_CHANNELS == channel::AIR_TEMPERATURE {
@@ -145,14 +140,14 @@ mod tests {
             .collect();
         let forcing = Forcing::new(&rows, 2, CLIMATE_CHANNELS).unwrap();
         let plan = Plan::new(glazed_zone("area", false)).unwrap();
-        let (all, single) = (Weather::new(&plan, &forcing), Weather::for_single_run(&plan, &forcing));
+        let (all, single) = (Weather::new(&plan, &forcing), Weather::for_single_run(&plan, &forcing, 2));
         assert_eq!((all.steps(), all.stages.len(), single.stages.len()), (2, 4, 0));
         for weather in [&all, &single] {
             assert_eq!(weather.at(1, 0).row[channel::AIR_TEMPERATURE], 2.0);
             assert_eq!(weather.row(0, 1)[channel::AIR_TEMPERATURE], 1.0);
         }
-        // Tracing beams is done once: all stages are evaluated before the run.
+        // Beams are traced once: stages that are read again are kept.
         let traced = Plan::new(glazed_zone("geometry", false)).unwrap();
-        assert_eq!(Weather::for_single_run(&traced, &forcing).stages.len(), 4);
+        assert_eq!(Weather::for_single_run(&traced, &forcing, 1).stages.len(), 2);
     }
 }
