@@ -159,6 +159,45 @@ def test_the_sun_that_passes_by_area() -> None:
     np.testing.assert_allclose(run["inner.absorbed_solar"], glass, rtol=1e-9, atol=1e-9)
 
 
+def test_zones_in_a_row_by_area() -> None:
+    """Four zones without vertices: the powers that pass solve a linear system, built here from areas."""
+    count, area, window = 4, 12.0, 5.0
+    wall = {"construction": "shell", "area": area, "tilt": 90}
+    surfaces: dict[str, Any] = {
+        "south": wall | {"azimuth": 180, "outside": OUTDOORS, "inside": side("z0", 0.5)},
+        "end": wall | {"azimuth": 0, "outside": {"adiabatic": True}, "inside": side("z3", 0.9)},
+    }
+    windows = {"front": WINDOW | {"surface": "south", "glazing": "outer", "area": window}}
+    for k in range(count - 1):
+        surfaces[f"w{k}"] = wall | {
+            "azimuth": 180, "outside": side(f"z{k}", 0.6), "inside": side(f"z{k + 1}", 0.7)
+        }  # fmt: skip
+        inner = WINDOW | {"surface": f"w{k}", "glazing": "inner", "area": window}
+        windows[f"p{k}"] = inner | {"outside": {"convection": 3}}
+    described = house("area", zones={f"z{k}": {"volume": 40} for k in range(count)}, surfaces=surfaces,
+                      windows=windows)  # fmt: skip
+    names = [f"z{k}.transmitted_solar" for k in range(count)]
+    run = day(described, climate(400.0, 100.0), "front.transmitted_solar", "z0.lost_solar", *names)
+    opaque = area - window
+    taken = np.zeros(count)  # areas times what is absorbed or transmitted
+    taken[0] = opaque * (0.5 + 0.6) + window * (0.6 + sum(OUTER[2])) + window * (0.5 + sum(INNER[1]))
+    taken[1:-1] = opaque * (0.7 + 0.6) + window * (1.0 + sum(INNER[1]) + sum(INNER[2]))
+    taken[-1] = opaque * 0.7 + area * 0.9 + window * (0.5 + sum(INNER[2]))
+    # Sun that reaches each zone: from outdoors, and what its neighbours let pass.
+    matrix = np.eye(count)
+    for k in range(count - 1):
+        matrix[k, k + 1] = -window * 0.5 / taken[k + 1]
+        matrix[k + 1, k] = -window * 0.5 / taken[k]
+    entering = run["front.transmitted_solar"].to_numpy()
+    reaching = np.linalg.solve(matrix, np.outer([1.0, 0.0, 0.0, 0.0], entering))
+    for k, name in enumerate(names):
+        inner_windows = (k > 0) + (k < count - 1)
+        kept = reaching[k] * (1.0 - inner_windows * window * 0.5 / taken[k])
+        np.testing.assert_allclose(run[name], kept, rtol=1e-9, atol=1e-9)
+    lost = window * 0.6 / taken[0] * reaching[0]
+    np.testing.assert_allclose(run["z0.lost_solar"], lost, rtol=1e-9, atol=1e-9)
+
+
 @pytest.mark.parametrize("sun", ["area", "floor", "geometry"])
 def test_all_of_the_sun_is_absorbed_or_lost(sun: str) -> None:
     """What enters is absorbed by the surfaces of both zones and by glass, or lost outdoors."""
@@ -268,7 +307,7 @@ def test_derivatives_and_ensembles_with_a_window_between_zones() -> None:
     )
     slopes = simulation.jacobian(paths)[f"d {name}"]
     mean = simulation.gradient(Mean(name))
-    base = simulation.compiled.values
+    base = simulation.compiled.values  # noqa: PD011
     vectors = [base]
     for path in paths:
         value = described.parameter(path).value
