@@ -128,11 +128,8 @@ impl Receiver {
     /// Adds thin shades, before the walls; whether there are any.
     fn add_shades(&mut self, shades: &[PlaneSurface]) -> bool {
         let pieces = shades.iter().flat_map(|shade| self.in_front(shade));
-        let obstacle = |corners: Vec<Vertex>| {
-            let (cone, _) = Cone::round(&self.surface.pieces, &corners);
-            Obstacle { corners, cone, wall: false }
-        };
-        let mut all: Vec<Obstacle> = pieces.map(obstacle).collect();
+        let mut all: Vec<Obstacle> =
+            pieces.map(|corners| Obstacle { corners, cone: None, wall: false }).collect();
         let any = !all.is_empty();
         all.append(&mut self.obstacles);
         self.obstacles = all;
