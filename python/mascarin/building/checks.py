@@ -16,6 +16,7 @@ from mascarin.building.parameters import parameters
 from mascarin.building.phase_change import CUT, ClosedLaw, FractionLaw, FractionsLaw, TanhLaw
 from mascarin.building.plausibility import warnings
 from mascarin.building.ratings import window_ratings
+from mascarin.building.self_shading import in_words
 from mascarin.building.site import wind_factor
 from mascarin.building.surface import Side, Surface
 from mascarin.building.u_values import (
@@ -65,6 +66,7 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
         *_constructions(building, mesh),
         *_winds(building),
         *_melting(building),
+        *(f"shading: {words}" for words in [in_words(building)] if words),
         *(f"warning: {text}" for text in warnings(building, mesh, step_seconds)),
         *(f"assumed: {text}" for text in assumptions(building)),
     ]
@@ -79,7 +81,7 @@ def _zones(building: Description) -> Iterator[str]:
         surfaces = [building.surfaces[surface] for surface, _ in sides_of_zone(name, building.surfaces)]
         area = sum(surface.area or 0.0 for surface in surfaces)
         shell = [surface for surface in surfaces if not surface.internal_mass]
-        names = {surface for surface, side in sides_of_zone(name, building.surfaces) if side == "inside"}
+        names = {surface for surface, _ in sides_of_zone(name, building.surfaces)}
         total = sum(_own_area(building, surface) * u_value(building, surface) for surface in shell)
         glazed = [window for window in building.windows.values() if window.surface in names]
         total += sum(float(window.area or 0.0) * window_u_value(building, window) for window in glazed)
@@ -186,7 +188,11 @@ def _winds(building: Description) -> Iterator[str]:
     """Heights of the sides outdoors, and the wind there."""
     sides: list[tuple[str, Side | WindowOutside]] = [
         *((f"surface {name}", surface.outside) for name, surface in building.surfaces.items()),
-        *((f"window {name}", window.outside) for name, window in building.windows.items()),
+        *(
+            (f"window {name}", window.outside)
+            for name, window in building.windows.items()
+            if building.surfaces[window.surface].outside.outdoors
+        ),
     ]
     for name, side in sides:
         if not (side.outdoors and side.exposed.wind):

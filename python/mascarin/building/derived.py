@@ -208,11 +208,16 @@ def _derived_window(window: Window, wall: Surface, polygon: Polygon | None) -> W
         update["cavity_height"] = derived_number(Window, "cavity_height", high, source)
     outside, inside = window.outside, window.inside
     films = {
-        side: _derived_convection(film, side == "outside", area, float(wall.tilt or 0.0), polygon)
-        for side, film in (("outside", outside.convection), ("inside", inside.convection))
+        side: _derived_convection(film, bool(face.outdoors), area, float(wall.tilt or 0.0), polygon)
+        for side, film, face in (
+            ("outside", outside.convection, wall.outside),
+            ("inside", inside.convection, wall.inside),
+        )
     }
     height = outside.height
-    if height is None and polygon is not None and polygon.centroid[2] > 0.0:
+    if not wall.outside.outdoors:
+        height = None
+    elif height is None and polygon is not None and polygon.centroid[2] > 0.0:
         source = Remark("centroid of the vertices")
         height = derived_number(WindowOutside, "height", float(polygon.centroid[2]), source)
     elif height is None and wall.outside.height is not None:

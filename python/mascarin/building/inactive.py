@@ -23,7 +23,7 @@ from mascarin.building.derived import sides_of_zone
 from mascarin.building.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.leaves import leaves
 from mascarin.building.surface import NoLongwave, Side, Surface
-from mascarin.building.window import WindowInside, WindowOutside, windows_in
+from mascarin.building.window import WindowInside, WindowOutside, outer_side, windows_in
 from mascarin.building.zone import GivenSun
 from mascarin.building.zone_surfaces import closed, surfaces_of_zone
 
@@ -94,7 +94,8 @@ def sides(building: Description) -> list[SurfaceSide]:
 def _window_sides(building: Description, name: str) -> Iterator[SurfaceSide]:
     window = building.windows[name]
     tilt = float(building.surfaces[window.surface].tilt or 0.0)
-    yield SurfaceSide(f"windows.{name}.outside", window.outside, tilt)
+    outer = outer_side(window, building.surfaces[window.surface])
+    yield SurfaceSide(f"windows.{name}.outside", outer, tilt)
     yield SurfaceSide(f"windows.{name}.inside", window.inside, 180.0 - tilt)
 
 

@@ -14,7 +14,7 @@ from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
-    from mascarin.building.window import Window, WindowOutside
+    from mascarin.building.window import WindowOutside
 
 Kind = Literal[
     "air_temperature",
@@ -70,7 +70,8 @@ class Output:
     Solar radiation is the mean over the step that ends at the record: incident on a surface or window after
     shading [W/m2], transmitted by a window or by all windows of a zone, and lost by a zone through its
     windows [W]; absorbed by a side of a surface, or by all panes of a window [W/m2]. The solar transmittance
-    of a window is what it transmits over what is incident on its glass, 0 without sun.
+    of a window is what it transmits over what is incident on its glass, 0 without sun. A window between two
+    zones transmits into the zone of its inside, less what it transmits the other way.
 
     The long-wave radiation that a side gains from its surroundings [W/m2] and its convective heat transfer
     coefficient [W/(m2 K)] are those at the time of the record.
@@ -152,7 +153,8 @@ def outputs(building: Description) -> list[Output]:
 
 def _lit_zones(building: Description) -> set[str | None]:
     """Zones that the sun enters through windows."""
-    return {building.surfaces[window.surface].inside.zone for window in building.windows.values()}
+    walls = [building.surfaces[window.surface] for window in building.windows.values()]
+    return {side.zone for wall in walls for side in wall.sides} - {None}
 
 
 def _of_windows(building: Description) -> Iterator[Output]:
@@ -160,12 +162,16 @@ def _of_windows(building: Description) -> Iterator[Output]:
     for index, name in enumerate(building.windows, start=first):
         for side, word in enumerate(_SIDES):
             yield Output(f"{name}.{word}_temperature", "degC", "face_temperature", surface=index, side=side)
-        yield Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index)
-        yield Output(f"{name}.transmitted_solar", "W", "transmitted_solar", surface=index)
-        yield Output(f"{name}.solar_transmittance", "-", "solar_transmittance", surface=index)
-        yield Output(f"{name}.absorbed_solar", "W/m2", "absorbed_solar", surface=index, side=0)
         window = building.windows[name]
-        exchanged = (_radiates(building, window.outside), _radiates(building, _wall_inside(building, window)))
+        wall = building.surfaces[window.surface]
+        if wall.outside.outdoors:
+            yield Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index)
+        yield Output(f"{name}.transmitted_solar", "W", "transmitted_solar", surface=index)
+        if wall.outside.outdoors:
+            yield Output(f"{name}.solar_transmittance", "-", "solar_transmittance", surface=index)
+        yield Output(f"{name}.absorbed_solar", "W/m2", "absorbed_solar", surface=index, side=0)
+        outside = window.outside if wall.outside.outdoors else wall.outside
+        exchanged = (_radiates(building, outside), _radiates(building, wall.inside))
         for side, word in enumerate(_SIDES):
             if exchanged[side]:
                 yield Output(f"{name}.{word}_longwave", "W/m2", "net_longwave", surface=index, side=side)
@@ -209,10 +215,6 @@ def _of_sides(building: Description, index: int, name: str, lit: Set[str | None]
             yield make(f"{name}.{word}_longwave", "W/m2", "net_longwave")
         if side.convection is not None and (side.outdoors or side.zone is not None):
             yield make(f"{name}.{word}_convection", "W/(m2 K)", "convection")
-
-
-def _wall_inside(building: Description, window: Window) -> Side:
-    return building.surfaces[window.surface].inside
 
 
 def _radiates(building: Description, side: Side | WindowOutside) -> bool:

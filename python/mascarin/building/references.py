@@ -14,6 +14,7 @@ from mascarin.building.leaves import leaves
 from mascarin.building.material import PhaseChangeMaterial
 from mascarin.building.number import Number, Remark
 from mascarin.building.phase_change import FractionsLaw, TableLaw
+from mascarin.building.self_shading import obstructions
 from mascarin.building.site import ASHRAE_WIND, CLARK, MARTIN
 from mascarin.building.zone import ASHRAE_OPENING, TracedSun
 from mascarin.building.zone_surfaces import closed, surfaces_of_zone
@@ -110,7 +111,8 @@ def _of_methods(building: Description) -> Iterator[str]:
     if any(zone.loads for zone in building.zones.values()):
         yield _IDEAL_LOADS
     yield from _of_glazings(building)
-    if building.shades or any(isinstance(zone.sun, TracedSun) for zone in building.zones.values()):
+    traced = any(isinstance(zone.sun, TracedSun) for zone in building.zones.values())
+    if building.shades or traced or obstructions(building):
         yield _SHADOWS
     if _tabulated(building):
         yield _CURVE

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
-from mascarin.building.derived import drawn_areas, outlines, shade_outlines, sides_of_zone, window_outlines
+from mascarin.building.derived import shade_outlines, sides_of_zone
 from mascarin.building.material import Resistance
 from mascarin.building.part import Location, fault
 from mascarin.building.schedule import DAYS, Piece
 from mascarin.building.surface import NoLongwave, Side
+from mascarin.building.window_rules import windows_lie_in_walls
 from mascarin.building.zone import FloorSun, GivenSun, SunShares, TracedSun
 from mascarin.building.zone_surfaces import ZoneSurface, floors, surfaces_of_zone
 from mascarin.errors import did_you_mean
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
     from mascarin.building.description import Description
-    from mascarin.building.geometry import Polygon
     from mascarin.building.zone import IdealLoads
 
 Faults = Iterator["InitErrorDetails"]
@@ -45,7 +44,7 @@ def faults(building: Description) -> Faults:
     yield from _view_factors_sum_to_one(building)
     yield from _schedules_suit_their_use(building)
     yield from _set_points_apart(building)
-    yield from _windows_lie_in_walls(building)
+    yield from windows_lie_in_walls(building)
     yield from _sun_can_be_absorbed(building)
     yield from _shades_can_act(building)
 
@@ -232,102 +231,6 @@ def surface_names(seen: list[ZoneSurface]) -> list[str]:
     return names
 
 
-def _windows_lie_in_walls(building: Description) -> Faults:
-    if not building.windows:
-        return
-    drawn, glazed = outlines(building.surfaces), window_outlines(building.windows)
-    outdoors = _Drawn(list(drawn.items()), list(glazed.items()))
-    for name, window in building.windows.items():
-        wall, at = building.surfaces[window.surface], ("windows", name)
-        if not wall.outside.outdoors or wall.inside.zone is None:
-            yield fault(
-                (*at, "surface"),
-                f"'{window.surface}', from {wall.outside.faces} to {wall.inside.faces}",
-                "a wall from outdoors (outside) to a zone (inside)",
-                "Put the window into such a wall: solar radiation can enter only from outdoors into a zone.",
-            )
-        if window.vertices is None:
-            continue
-        outline = drawn.get(window.surface)
-        if outline is None:
-            yield fault(
-                (*at, "vertices"),
-                f"vertices in '{window.surface}', which has none",
-                "a wall with vertices",
-                "Give the wall vertices, or the window an area.",
-            )
-            continue
-        polygon = glazed[name]
-        if not outline.contains(polygon):
-            yield fault((*at, "vertices"), *_outside_of_its_wall(polygon, outline))
-        for other in outdoors.overlapping(polygon, outline):
-            yield fault(
-                (*at, "vertices"),
-                f"a window that overlaps '{other}'",
-                "windows, doors and walls that do not overlap",
-                "Move its corners.",
-            )
-    yield from _walls_are_larger_than_their_windows(building, glazed)
-
-
-def _walls_are_larger_than_their_windows(building: Description, glazed: Mapping[str, Polygon]) -> Faults:
-    areas_in: dict[str, dict[str, float]] = {}
-    for one, window in building.windows.items():
-        area = glazed[one].area if window.area is None else float(window.area)
-        areas_in.setdefault(window.surface, {})[one] = area
-    drawn = drawn_areas(building.surfaces)
-    for name, surface in building.surfaces.items():
-        areas = areas_in.get(name)
-        if areas is None:
-            continue
-        gross = float(surface.area or drawn.get(name, 0.0))
-        if sum(areas.values()) >= gross:
-            listed = ", ".join(f"{one} {area:.2f}" for one, area in areas.items())
-            yield fault(
-                ("windows", max(areas, key=lambda one: areas[one]), "area"),
-                f"{sum(areas.values()):.2f} m2 of windows ({listed})",
-                f"less than the {gross:.2f} m2 of their wall '{name}'",
-                "The area of a wall includes its windows.",
-            )
-
-
-class _Drawn:
-    """Walls and windows with vertices, found by their place."""
-
-    def __init__(self, walls: list[tuple[str, Polygon]], windows: list[tuple[str, Polygon]]) -> None:
-        from mascarin.building.geometry import BoxIndex
-
-        self._parts, self._walls = [*walls, *windows], len(walls)
-        self._index = BoxIndex([polygon for _, polygon in self._parts])
-
-    def overlapping(self, window: Polygon, wall: Polygon) -> list[str]:
-        """Windows before a window, then walls beside the one it is in, that it overlaps."""
-        near = self._index.touching(window)
-        before = takewhile(
-            lambda one: one[1] is not window, (self._parts[k] for k in near if k >= self._walls)
-        )
-        walls = (self._parts[k] for k in near if k < self._walls)
-        others = [*before, *((name, one) for name, one in walls if not one.contains(wall))]
-        return [name for name, one in others if window.overlaps(one)]
-
-
-def _outside_of_its_wall(window: Polygon, wall: Polygon) -> tuple[str, str, str]:
-    off = float(max(abs(wall.height_of(window.points))))
-    if float(window.normal @ wall.normal) < 0.0:
-        return (
-            "corners in the wrong order",
-            f"corners counter-clockwise seen from outside, as those of '{wall.name}'",
-            "Reverse them.",
-        )
-    if off > 1e-3:
-        return f"a corner {off:.3f} m off the plane of '{wall.name}'", "corners in that plane", "Move it."
-    return (
-        f"corners outside the outline of '{wall.name}'",
-        "a window inside its wall",
-        "Compare the coordinates of both.",
-    )
-
-
 def _sun_can_be_absorbed(building: Description) -> Faults:
     for zone, definition in building.zones.items():
         seen = surfaces_of_zone(zone, building.surfaces, building.windows)
@@ -381,10 +284,11 @@ def shaded(building: Description) -> tuple[list[str], list[str]]:
     """Sunlit outdoor surfaces on which shades act, and those without vertices, on which they cannot."""
     found: tuple[list[str], list[str]] = ([], [])
     for name, surface in building.surfaces.items():
-        if surface.outside.sunlit:
+        if any(side.sunlit for side in surface.sides):
             found[surface.vertices is None].append(name)
     for name, window in building.windows.items():
-        found[window.vertices is None].append(name)
+        if building.surfaces[window.surface].outside.outdoors:
+            found[window.vertices is None].append(name)
     return found
 
 

@@ -258,6 +258,7 @@ class Site(Part):
     diffuse: Literal["perez", "hay_davies", "isotropic"] = Field(
         "perez", description="Model of diffuse short-wave radiation on a tilted plane"
     )
+    self_shading: bool = Field(True, description="Whether surfaces with vertices shade each other")
 
     @model_validator(mode="wrap")
     @classmethod

@@ -11,7 +11,7 @@ from mascarin.building.material import Material, Resistance
 from mascarin.building.mesh import Mesh
 from mascarin.building.phases import phase
 from mascarin.building.surface import Side, Surface
-from mascarin.building.window import Window, WindowInside, WindowOutside, emissivities
+from mascarin.building.window import Window, WindowInside, WindowOutside, emissivities, outer_side
 
 #: Surface resistances of ISO 6946:2017, table 7 [m2 K/W]: heat upwards, horizontal, downwards; and outdoors.
 _ISO_UP, _ISO_LEVEL, _ISO_DOWN, _ISO_OUTDOORS = 0.10, 0.13, 0.17, 0.04
@@ -39,7 +39,8 @@ def window_u_value(building: Description, window: Window) -> float:
         U value. [W/(m2 K)]
     """
     resistance = glazing_resistance(building.glazings[window.glazing])
-    glass = 1.0 / (_ISO_OUTDOORS + resistance + _ISO_LEVEL)
+    outdoors = building.surfaces[window.surface].outside.outdoors
+    glass = 1.0 / ((_ISO_OUTDOORS if outdoors else _ISO_LEVEL) + resistance + _ISO_LEVEL)
     if window.frame is None:
         return glass
     share = float(window.frame.fraction)
@@ -127,9 +128,12 @@ def described_window_u_value(building: Description, window: Window) -> float:
     glazing, wall = building.glazings[window.glazing], building.surfaces[window.surface]
     resistance = glazing_resistance(glazing)
     zone = building.zones[str(wall.inside.zone)]
-    outdoors = window.outside.longwave is None or window.outside.longwave.kind != "none"
-    exchanged = (outdoors, zone.longwave.kind != "none")
-    both: list[WindowOutside | WindowInside] = [window.outside, window.inside]
+    if wall.outside.zone is None:
+        outside = window.outside.longwave is None or window.outside.longwave.kind != "none"
+    else:
+        outside = building.zones[wall.outside.zone].longwave.kind != "none"
+    exchanged = (outside, zone.longwave.kind != "none")
+    both: list[WindowOutside | WindowInside] = [outer_side(window, wall), window.inside]
     for k, side in enumerate(both):
         radiation = float(emissivities(glazing)[k]) * _black(side) if exchanged[k] else 0.0
         resistance += _inverse(_coefficient(side, float(wall.tilt or 0.0)) + radiation)

@@ -13,7 +13,7 @@ from mascarin.building.glazing import PaneGlazing, both
 from mascarin.building.names import GlazingName, SurfaceName
 from mascarin.building.number import Number
 from mascarin.building.part import Part, fault, insist
-from mascarin.building.surface import Exposure, OutdoorLongwave
+from mascarin.building.surface import Exposure, OutdoorLongwave, Surface
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -131,7 +131,9 @@ class Shade(Part):
 
 
 class Window(Part):
-    """A glazing in a wall between outdoors and a zone; its area is subtracted from the area of the wall.
+    """A glazing in a wall between outdoors and a zone, or between two zones.
+
+    Its area is subtracted from the area of the wall.
 
     Examples
     --------
@@ -169,6 +171,13 @@ def emissivities(glazing: Any) -> tuple[float, float]:
     if isinstance(glazing, PaneGlazing):
         return both(glazing.panes[0].emissivity)[0], both(glazing.panes[-1].emissivity)[1]
     return glazing.emissivity, glazing.emissivity
+
+
+def outer_side(window: Window, wall: Surface) -> WindowOutside | WindowInside:
+    """The outer side of a window; in a wall between two zones, a side that faces a zone."""
+    if wall.outside.zone is None:
+        return window.outside
+    return WindowInside.model_construct(convection=window.outside.convection)
 
 
 def windows_in(surface: str, windows: Mapping[str, Window]) -> Iterator[tuple[str, Window]]:

@@ -53,8 +53,8 @@ def surfaces_of_zone(
 ) -> list[ZoneSurface]:
     """Surfaces of a zone: opaque surfaces, then the glass of windows, then their frames."""
     sides = sides_of_zone(zone, surfaces)
-    inside = [name for name, side in sides if side == "inside"]
-    seen = {name: window for name, window in windows.items() if window.surface in inside}
+    which = dict(sides)
+    seen = {name: window for name, window in windows.items() if window.surface in which}
     drawn = outlines({name: surfaces[name] for name, _ in sides}) | window_outlines(seen)
 
     def polygon(name: str, side: str) -> Polygon | None:
@@ -79,7 +79,8 @@ def surfaces_of_zone(
     ]
     for name, window, share in parts:
         area = share * float(window.area or 0.0)
-        found.append(ZoneSurface(name, "inside", area, share, polygon(name, "inside"), None, window))
+        side = which[window.surface]
+        found.append(ZoneSurface(name, side, area, share, polygon(name, side), None, window))
     return found
 
 
@@ -89,6 +90,8 @@ def floors(seen: list[ZoneSurface]) -> list[bool]:
     def floor(item: ZoneSurface) -> bool:
         if item.surface is None or item.surface.internal_mass:
             return False
+        if item.surface.tilt is None and item.polygon is not None:
+            return item.polygon.tilt <= _FLOOR
         tilt = float(item.surface.tilt or 0.0)
         return (tilt if item.side == "outside" else 180.0 - tilt) <= _FLOOR
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate
 
 FORMATS = (".nc", ".csv")
+#: Shadows that take longer are announced [s].
+LONG = 2.0
 
 
 def run(
@@ -124,6 +126,7 @@ def _simulated(
         **options,
     )
     _print_warnings(building, simulation)
+    _print_cost(building, simulation)
     results = simulation.run()
     for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
@@ -141,6 +144,20 @@ def _print_warnings(building: Building, simulation: Simulation) -> None:
     assumed = sum(line.startswith("assumed: ") for line in lines)
     if assumed:
         print(f"{assumed} assumed values: 'mascarin check' lists them", file=sys.stderr)
+
+
+def _print_cost(building: Building, simulation: Simulation) -> None:
+    """Say how long shadows take, where it is long."""
+    from mascarin.building.self_shading import expected_seconds, obstructions
+
+    steps, stages, _ = simulation.compiled.forcing.shape
+    expected = expected_seconds(obstructions(building), steps * stages)
+    if expected > LONG:
+        print(
+            f"shading: about {expected:.0f} s for the shadows; 'site: {{self_shading: false}}' turns "
+            "them off",
+            file=sys.stderr,
+        )
 
 
 def _require_format(out: Path | None) -> None:

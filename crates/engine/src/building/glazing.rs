@@ -12,6 +12,7 @@
 //! Source of the surface resistances of a rated U value: ISO 10292:1994 and EN 673.
 
 use super::cell::{Cell, Matter};
+use super::ids::SurfaceId;
 use crate::input::description::{Gap, Glazing, Pane, Surface};
 use crate::input::values::Values;
 use crate::number::real::Real;
@@ -200,6 +201,12 @@ pub(crate) fn rated_resistance<S: Real>(u_value: S, surface_resistances: S) -> S
 }
 
 impl<S: Real> Glass<S> {
+    /// Optics for diffuse radiation on one of its sides.
+    #[inline(always)]
+    pub(crate) fn facing(&self, surface: SurfaceId) -> &Diffuse<S> {
+        if surface.is_outside() { &self.optics.front } else { &self.optics.back }
+    }
+
     fn new(optics: Optics<S>, gaps: Vec<(usize, GasGap<S>)>, tilt: S) -> Self {
         let sine = tilt.scale(core::f64::consts::PI / 180.0).sin();
         Self { horizon: optics.beam.horizon(sine), optics, gaps }

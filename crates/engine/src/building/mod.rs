@@ -7,6 +7,7 @@ pub mod ids;
 pub(crate) mod layout;
 pub mod model;
 pub(crate) mod order;
+pub mod passages;
 pub(crate) mod pattern;
 pub mod plan;
 pub(crate) mod solar_distribution;

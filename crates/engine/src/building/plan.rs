@@ -3,6 +3,7 @@
 use super::ids::{BySurface, SurfaceId};
 pub use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
 use super::order::{Order, number_unknowns};
+use super::passages::Passage;
 use super::pattern::Pattern;
 use super::solar_geometry::SolarGeometry;
 use crate::error::EngineError;
@@ -25,6 +26,8 @@ pub struct Plan {
     pub ideal_loads: Vec<usize>,
     /// Walls that are windows.
     pub windows: Vec<usize>,
+    /// Ways of the sun through windows between zones.
+    pub passages: Vec<Passage>,
     /// Geometry of sun and shade.
     pub solar_geometry: SolarGeometry,
     /// Number of finite volumes in all walls.
@@ -59,10 +62,12 @@ impl Plan {
         let ideal_loads = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();
         let windows: Vec<usize> = (0..walls.len()).filter(|&w| walls[w].glass.is_some()).collect();
         for zone in &mut zones {
-            let place = |w: usize| zone.surfaces.iter().position(|&surface| surface == SurfaceId::inside(w));
-            zone.windows =
-                windows.iter().enumerate().filter_map(|(k, &w)| place(w).map(|at| (k, at))).collect();
+            let place = |surface: SurfaceId| zone.surfaces.iter().position(|&other| other == surface);
+            let sides =
+                windows.iter().enumerate().flat_map(|(k, &w)| SurfaceId::pair(w).map(|side| (k, side)));
+            zone.windows = sides.filter_map(|(k, side)| place(side).map(|at| (k, at))).collect();
         }
+        let passages = Passage::all(&windows, &zones);
         let solar_geometry = SolarGeometry::new(&description, &windows, &zones);
         Ok(Self {
             description,
@@ -70,6 +75,7 @@ impl Plan {
             surfaces: surfaces.into(),
             zones,
             ideal_loads,
+            passages,
             windows,
             solar_geometry,
             n_cells: first_cell,
@@ -98,6 +104,13 @@ impl Plan {
             SurfaceRole::Zone { row, .. } => row,
             SurfaceRole::Exterior => unreachable!("{} is in no zone", self.surface_name(surface)),
         }
+    }
+
+    /// Whether a surface is a side of a window between two zones.
+    #[must_use]
+    pub(crate) fn lets_pass(&self, surface: SurfaceId) -> bool {
+        let in_zone = |side| matches!(self.surfaces[side].role, SurfaceRole::Zone { .. });
+        self.walls[surface.wall()].glass.is_some() && in_zone(surface) && in_zone(surface.opposite())
     }
 
     /// Number of rows of the coupled system.

@@ -24,12 +24,19 @@ pub(crate) struct SolarSurface<'a, S> {
     pub(crate) absorptance: S,
     /// Optics of glass for diffuse radiation from inside; none: opaque.
     pub(crate) glass: Option<&'a Diffuse<S>>,
+    /// Whether what the glass transmits enters another zone; else it is lost outdoors.
+    pub(crate) passes: bool,
 }
 
 impl<S: Real> SolarSurface<'_, S> {
     /// Fraction that is not reflected [-].
     fn admitted(&self) -> S {
         self.glass.map_or(self.absorptance, Diffuse::admitted)
+    }
+
+    /// What glass loses outdoors of the power on it [W].
+    fn lost(&self, glass: &Diffuse<S>, on: S) -> S {
+        if self.passes { S::zero() } else { on * glass.transmittance }
     }
 }
 
@@ -115,7 +122,7 @@ impl<S: Real> FixedDistribution<S> {
             if let Some(glass) = surface.glass {
                 let on = surface.area * irradiance;
                 distribution.on_glass[i] = irradiance;
-                distribution.lost += on * glass.transmittance;
+                distribution.lost += surface.lost(glass, on);
                 distribution.in_glass += on * (glass.admitted() - glass.transmittance);
             } else {
                 distribution.absorbed[i] = irradiance * surface.absorptance;
@@ -150,7 +157,7 @@ impl<S: Real> FixedDistribution<S> {
         if let Some(glass) = surface.glass {
             let on = surface.area * irradiance;
             self.on_glass[i] += irradiance;
-            self.lost += on * glass.transmittance;
+            self.lost += surface.lost(glass, on);
             self.in_glass += on * (glass.admitted() - glass.transmittance);
         } else {
             self.absorbed[i] += irradiance * surface.absorptance;
@@ -195,6 +202,11 @@ impl<S: Real> TracedDistribution<S> {
         Self { views, irradiances }
     }
 
+    /// Number of surfaces.
+    pub(crate) fn size(&self) -> usize {
+        self.views.len().isqrt()
+    }
+
     /// Irradiance of a surface [W/m2] from the power of first incidence on each [W].
     #[inline(always)]
     pub fn irradiance(&self, surface: usize, incidence: &[S]) -> S {
@@ -212,14 +224,14 @@ mod tests {
     use super::*;
 
     fn opaque(area: f64, absorptance: f64) -> SolarSurface<'static, f64> {
-        SolarSurface { area, absorptance, glass: None }
+        SolarSurface { area, absorptance, glass: None, passes: false }
     }
 
     /// By area the irradiance is 1/sum(A a); what is absorbed, taken up by the glass and lost sums to one.
     #[test]
     fn by_area_every_watt_is_accounted_for() {
         let glass = Diffuse { transmittance: 0.6, absorptance: vec![0.1, 0.05] };
-        let window = SolarSurface { area: 2.0, absorptance: 0.0, glass: Some(&glass) };
+        let window = SolarSurface { area: 2.0, absorptance: 0.0, glass: Some(&glass), passes: false };
         let surfaces = [opaque(10.0, 0.6), opaque(20.0, 0.3), window];
         let distribution = FixedDistribution::by_area(&surfaces);
         let irradiance = 1.0 / (10.0 * 0.6 + 20.0 * 0.3 + 2.0 * 0.75);
@@ -234,7 +246,7 @@ mod tests {
     #[test]
     fn on_the_floor_every_watt_is_accounted_for() {
         let glass = Diffuse { transmittance: 0.6, absorptance: vec![0.1, 0.05] };
-        let window = SolarSurface { area: 2.0, absorptance: 0.0, glass: Some(&glass) };
+        let window = SolarSurface { area: 2.0, absorptance: 0.0, glass: Some(&glass), passes: false };
         let surfaces = [opaque(10.0, 0.6), opaque(20.0, 0.3), window];
         let even = FixedDistribution::by_area(&surfaces);
         let beam = FixedDistribution::on_floor(&surfaces, &[true, false, false], &even);

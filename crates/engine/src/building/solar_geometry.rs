@@ -5,23 +5,35 @@
 //!
 //! A frame has the same outline as its glass: rays that reach the outline end on the glass.
 
-use super::ids::SurfaceId;
+use rayon::prelude::*;
+
+use super::ids::{BySurface, SurfaceId};
 use super::layout::ZonePlan;
 use crate::geometry::patches::{BeamTracer, Target};
 use crate::geometry::shading::Receiver;
 use crate::geometry::surface::PlaneSurface;
-use crate::input::description::{Description, Facing, ZoneSun};
+use crate::input::description::{Description, Facing, Side, Surface, ZoneSun};
 use crate::physics::solar::{SkyVisibility, Sunlight};
 
 /// All geometry of sun and shade in a building.
 #[derive(Debug, Clone, Default)]
 pub struct SolarGeometry {
-    /// By wall: its outside surface where obstacles stand in front of it, and the place of its sunlit fraction.
-    receivers: Vec<Option<(usize, Receiver)>>,
+    /// Surfaces outdoors with obstacles in front of them.
+    receivers: BySurface<Option<Shaded>>,
     /// By window, in the order of the plan: the beam where it is traced, and the place of its first fraction.
     tracers: Vec<Option<(usize, BeamTracer)>>,
     /// Number of fractions at an instant.
     size: usize,
+}
+
+/// A surface outdoors with obstacles in front of it.
+#[derive(Debug, Clone)]
+struct Shaded {
+    receiver: Receiver,
+    /// Place of its sunlit fraction; none: no sun of the climate reaches it.
+    place: Option<usize>,
+    /// Whether the description gives the fraction of the sky that it sees past all obstacles.
+    given_sky: bool,
 }
 
 impl SolarGeometry {
@@ -31,39 +43,55 @@ impl SolarGeometry {
         let walls = &description.surfaces;
         let traced = |zone: usize| matches!(description.zones[zone].sun, ZoneSun::Geometry);
         let any_traced = (0..zones.len()).any(traced);
-        if description.shades.is_empty() && !any_traced {
-            let none = vec![None; walls.len()];
+        let any_walls = walls.iter().any(|wall| sides(wall).iter().any(|side| !side.shaded_by.is_empty()));
+        if description.shades.is_empty() && !any_traced && !any_walls {
+            let none = (0..2 * walls.len()).map(|_| None).collect();
             return Self { receivers: none, tracers: windows.iter().map(|_| None).collect(), size: 0 };
         }
-        let surfaces = net_surfaces(description);
-        let obstacles: Vec<PlaneSurface> =
-            description.shades.iter().map(|shade| PlaneSurface::of(shade)).collect();
+        let drawn = Drawn::new(description);
         let mut size = 0;
         let mut place = |count: usize| {
             size += count;
             size - count
         };
-        let receivers: Vec<_> = walls
+        let surfaces: Vec<SurfaceId> = (0..2 * walls.len()).map(SurfaceId::from_index).collect();
+        let outdoors = |surface: SurfaceId| side(description, surface).facing == Facing::Outdoors;
+        // What each sees of the sky takes milliseconds.
+        let all: Vec<Option<Receiver>> = surfaces
+            .par_iter()
+            .map(|&surface| outdoors(surface).then(|| drawn.receiver(description, surface)).flatten())
+            .collect();
+        let receivers: BySurface<_> = surfaces
             .iter()
-            .zip(&surfaces)
-            .map(|(wall, surface)| {
-                let outdoors = wall.outside.facing == Facing::Outdoors;
-                let receiver = Receiver::new(surface.clone().filter(|_| outdoors)?, &obstacles);
-                receiver.obstructed().then(|| (place(1), receiver))
+            .zip(all)
+            .map(|(&surface, receiver)| {
+                let side = side(description, surface);
+                let lit = side.exposure.sun && side.irradiance.is_none();
+                receiver.filter(Receiver::obstructed).map(|receiver| Shaded {
+                    receiver,
+                    place: lit.then(|| place(1)),
+                    given_sky: side.sky_view.is_some(),
+                })
             })
             .collect();
         let tracers = windows
             .iter()
             .map(|&w| {
                 let zone = zones.iter().position(|zone| zone.surfaces.contains(&(SurfaceId::inside(w))))?;
-                let window = surfaces[w].clone().filter(|_| traced(zone))?;
+                let outdoors = walls[w].outside.facing == Facing::Outdoors;
+                let window = drawn.net[w].as_ref().filter(|_| traced(zone) && outdoors)?;
                 let targets: Vec<_> = zones[zone]
                     .surfaces
                     .iter()
-                    .map(|&surface| target(description, &window, &surfaces, surface))
+                    .map(|&surface| target(description, window, &drawn.net, surface))
                     .collect();
                 let first = place(targets.len());
-                Some((first, BeamTracer::new(Receiver::new(window, &obstacles), targets)))
+                let outside = SurfaceId::outside(w);
+                let receiver = match &receivers[outside] {
+                    Some(shaded) => shaded.receiver.clone(),
+                    None => drawn.receiver(description, outside)?,
+                };
+                Some((first, BeamTracer::new(receiver, targets)))
             })
             .collect();
         Self { receivers, tracers, size }
@@ -76,8 +104,10 @@ impl SolarGeometry {
             return Box::default();
         }
         let mut fractions = vec![0.0; self.size];
-        for (place, receiver) in self.receivers.iter().flatten() {
-            fractions[*place] = receiver.sunlit_fraction(light.direction);
+        for shaded in self.receivers.iter().flatten() {
+            if let Some(place) = shaded.place {
+                fractions[place] = shaded.receiver.sunlit_fraction(light.direction);
+            }
         }
         for (first, tracer) in self.tracers.iter().flatten() {
             tracer.trace(light.direction, &mut fractions[*first..first + tracer.len()]);
@@ -91,20 +121,31 @@ impl SolarGeometry {
         self.size == 0
     }
 
-    /// Whether an obstacle shades the outside of a wall.
+    /// Whether an obstacle stands in front of a surface.
     #[must_use]
-    pub fn shaded(&self, wall: usize) -> bool {
-        self.receivers[wall].is_some()
+    pub fn shaded(&self, surface: SurfaceId) -> bool {
+        self.receivers[surface].is_some()
     }
 
-    /// Fractions that obstacles leave of sun and sky on the outside of a wall.
+    /// Fractions that obstacles leave of sun, sky and ground on a surface.
     #[must_use]
-    pub fn visibility(&self, wall: usize, fractions: &[f64]) -> SkyVisibility {
-        match &self.receivers[wall] {
-            Some((place, receiver)) => {
-                SkyVisibility { sun: fractions.get(*place).copied().unwrap_or(1.0), ..receiver.sky }
-            }
-            None => SkyVisibility::FULL,
+    pub fn visibility(&self, surface: SurfaceId, fractions: &[f64]) -> SkyVisibility {
+        let Some(Shaded { receiver, place, given_sky }) = &self.receivers[surface] else {
+            return SkyVisibility::FULL;
+        };
+        SkyVisibility {
+            sun: place.and_then(|place| fractions.get(place)).copied().unwrap_or(1.0),
+            sky: if *given_sky { 1.0 } else { receiver.sky.sky },
+            ..receiver.sky
+        }
+    }
+
+    /// Fraction of the sky that walls leave of a surface, for its long-wave radiation [-].
+    #[must_use]
+    pub fn open_sky(&self, surface: SurfaceId) -> f64 {
+        match &self.receivers[surface] {
+            Some(shaded) if !shaded.given_sky => shaded.receiver.open_sky,
+            _ => 1.0,
         }
     }
 
@@ -116,13 +157,46 @@ impl SolarGeometry {
     }
 }
 
-/// The walls with vertices as plane surfaces, without the openings that lie in them.
-fn net_surfaces(description: &Description) -> Vec<Option<PlaneSurface>> {
-    let walls = description.surfaces.iter();
-    let whole: Vec<Option<PlaneSurface>> =
-        walls.map(|wall| (wall.vertices.len() > 2).then(|| PlaneSurface::of(&wall.vertices))).collect();
-    let all: Vec<PlaneSurface> = whole.iter().flatten().cloned().collect();
-    whole.into_iter().map(|surface| surface.map(|surface| surface.without(&all))).collect()
+/// The two sides of a wall.
+fn sides(wall: &Surface) -> [&Side; 2] {
+    [&wall.outside, &wall.inside]
+}
+
+/// The description of a surface.
+fn side(description: &Description, surface: SurfaceId) -> &Side {
+    sides(&description.surfaces[surface.wall()])[surface.side()]
+}
+
+/// What has vertices.
+struct Drawn {
+    /// Walls and windows with the openings that lie in them.
+    whole: Vec<Option<PlaneSurface>>,
+    /// Without them.
+    net: Vec<Option<PlaneSurface>>,
+    shades: Vec<PlaneSurface>,
+}
+
+impl Drawn {
+    fn new(description: &Description) -> Self {
+        let walls = description.surfaces.iter();
+        let whole: Vec<Option<PlaneSurface>> =
+            walls.map(|wall| (wall.vertices.len() > 2).then(|| PlaneSurface::of(&wall.vertices))).collect();
+        let all: Vec<PlaneSurface> = whole.iter().flatten().cloned().collect();
+        let net = whole.iter().map(|surface| surface.clone().map(|surface| surface.without(&all))).collect();
+        Self { whole, net, shades: description.shades.iter().map(|shade| PlaneSurface::of(shade)).collect() }
+    }
+
+    /// A surface, and what stands in front of it; none without vertices.
+    fn receiver(&self, description: &Description, surface: SurfaceId) -> Option<Receiver> {
+        let net = self.net[surface.wall()].as_ref()?;
+        let walls: Vec<&PlaneSurface> = side(description, surface)
+            .shaded_by
+            .iter()
+            .filter_map(|&wall| self.whole[wall].as_ref())
+            .collect();
+        let net = if surface.is_outside() { net.clone() } else { net.reversed() };
+        Some(Receiver::new(net, &self.shades, &walls))
+    }
 }
 
 /// A surface of a zone on which the beam through a window may end.
@@ -168,7 +242,7 @@ mod tests {
         assert!(plan.solar_geometry.is_empty());
         let half = 0.5_f64.sqrt();
         assert!(plan.solar_geometry.at(&sunlight([0.0, -half, half])).is_empty());
-        assert_eq!(plan.solar_geometry.visibility(0, &[]), SkyVisibility::FULL);
+        assert_eq!(plan.solar_geometry.visibility(SurfaceId::outside(0), &[]), SkyVisibility::FULL);
         assert_eq!(plan.solar_geometry.beam_fractions(0, &[]), None);
     }
 
@@ -180,16 +254,16 @@ mod tests {
         let geometry = &plan.solar_geometry;
         let half = 0.5_f64.sqrt();
         let fractions = geometry.at(&sunlight([0.0, -half, half]));
-        assert!(geometry.shaded(0) && geometry.shaded(WINDOW));
-        let wall = geometry.visibility(0, &fractions);
+        assert!(geometry.shaded(SurfaceId::outside(0)) && geometry.shaded(SurfaceId::outside(WINDOW)));
+        let wall = geometry.visibility(SurfaceId::outside(0), &fractions);
         assert!((wall.sun - (8.0 * 1.7 - 3.0 * 1.5) / 15.6).abs() < 1e-12, "{wall:?}");
         assert!(wall.sky < 1.0 && wall.sky > 0.5);
-        assert!((geometry.visibility(WINDOW, &fractions).sun - 0.75).abs() < 1e-12);
+        assert!((geometry.visibility(SurfaceId::outside(WINDOW), &fractions).sun - 0.75).abs() < 1e-12);
         let beam = geometry.beam_fractions(0, &fractions).unwrap();
         assert!((beam[4] - 1.0).abs() < 1e-12 && beam.iter().sum::<f64>() < 1.0 + 1e-12, "{beam:?}");
         // At night no fractions are stored: all of the sun's disc, and no beam.
         let night = geometry.at(&sunlight([0.0, -half, -half]));
-        assert!(night.is_empty() && geometry.visibility(0, &night).sun == 1.0);
+        assert!(night.is_empty() && geometry.visibility(SurfaceId::outside(0), &night).sun == 1.0);
         assert_eq!(geometry.beam_fractions(0, &night), None);
     }
 }

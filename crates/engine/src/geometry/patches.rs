@@ -99,7 +99,7 @@ mod tests {
         let targets = surfaces.iter().map(|vertices| Target::new(&window, &PlaneSurface::of(vertices), -1.0));
         let targets = targets.collect();
         let obstacles: Vec<_> = obstacles.iter().map(|vertices| PlaneSurface::of(vertices)).collect();
-        BeamTracer::new(Receiver::new(window, &obstacles), targets)
+        BeamTracer::new(Receiver::new(window, &obstacles, &[]), targets)
     }
 
     /// Due south at 45 deg the whole beam ends on the floor, from 0.2 m to 2.2 m behind the window; at a slope of 0.2 the rays

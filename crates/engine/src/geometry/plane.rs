@@ -49,6 +49,12 @@ impl PlaneAxes {
         Self { origin, axes: [along, cross(normal, along), normal] }
     }
 
+    /// The same plane with the opposite normal; the first axis stays.
+    pub(crate) fn reversed(&self) -> Self {
+        let [along, across, normal] = self.axes;
+        Self { origin: self.origin, axes: [along, across.map(|x| -x), normal.map(|x| -x)] }
+    }
+
     /// Unit normal.
     pub(crate) fn normal(&self) -> Vertex {
         self.axes[2]

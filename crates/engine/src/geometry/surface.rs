@@ -41,6 +41,13 @@ impl PlaneSurface {
         self
     }
 
+    /// The same surface seen from its other side.
+    pub(crate) fn reversed(&self) -> Self {
+        let plane = self.plane.reversed();
+        let mirrored = |piece: &Vec<Point>| piece.iter().rev().map(|&[u, v]| [u, -v]).collect();
+        Self { plane, pieces: self.pieces.iter().map(mirrored).collect(), area: self.area }
+    }
+
     /// Vertices of its convex pieces in space [m].
     pub(crate) fn pieces_in_space(&self) -> Vec<Vec<Vertex>> {
         self.pieces.iter().map(|piece| piece.iter().map(|&p| self.plane.vertex(p)).collect()).collect()

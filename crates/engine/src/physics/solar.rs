@@ -123,7 +123,7 @@ impl Sunlight {
         let facing = cosine.max(S::zero());
         let bright = facing.scale(self.circumsolar * visible.sun);
         let sky = bright + plane.sky_view.scale(self.isotropic * visible.sky);
-        let ground = (ground_reflectance * plane.ground_view).scale(self.global_horizontal);
+        let ground = (ground_reflectance * plane.ground_view).scale(self.global_horizontal * visible.ground);
         // The negative horizon term of Perez may exceed the rest of the sky.
         let diffuse = (sky + plane.sin_tilt.scale(self.horizon * visible.horizon)).max(S::zero());
         let circumsolar = bright.min(diffuse);
@@ -132,7 +132,7 @@ impl Sunlight {
     }
 }
 
-/// Which part of sun and sky a shaded surface sees; 1 each without shades [-].
+/// Which part of sun, sky and ground a shaded surface sees; 1 each without obstacles [-].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SkyVisibility {
     /// Fraction of the surface that the sun's disc reaches.
@@ -141,11 +141,13 @@ pub struct SkyVisibility {
     pub sky: f64,
     /// Fraction of the horizon.
     pub horizon: f64,
+    /// Fraction of the ground.
+    pub ground: f64,
 }
 
 impl SkyVisibility {
-    /// No shades.
-    pub const FULL: Self = Self { sun: 1.0, sky: 1.0, horizon: 1.0 };
+    /// No obstacles.
+    pub const FULL: Self = Self { sun: 1.0, sky: 1.0, horizon: 1.0, ground: 1.0 };
 }
 
 /// Short-wave radiation on a plane by where it comes from [W/m2].
@@ -259,13 +261,13 @@ mod tests {
         }
     }
 
-    /// A surface that sees a quarter of the sun's disc and half of the sky.
+    /// A surface that sees a quarter of the sun's disc, half of the sky and a fifth of the ground.
     #[test]
     fn shades_take_their_parts() {
-        let visible = SkyVisibility { sun: 0.25, sky: 0.5, horizon: 1.0 };
+        let visible = SkyVisibility { sun: 0.25, sky: 0.5, horizon: 1.0, ground: 0.2 };
         let found = on_wall(DiffuseSky::HayDavies, &visible);
         assert_close(found.beam, 0.25 * 346.410);
         assert_close(found.diffuse, 0.5 * 30.0 + 0.25 * 69.2820);
-        assert_close(found.ground, 30.0);
+        assert_close(found.ground, 6.0);
     }
 }

@@ -78,16 +78,16 @@ struct Target<'a> {
 }
 
 /// A pack to be run in lanes.
-struct Pack<'a> {
+struct Pack<'a, 'w> {
     plan: &'a Plan,
     numbers: &'a [f64],
     members: usize,
-    weather: &'a Weather<'a>,
+    weather: &'a Weather<'w>,
     options: &'a Options,
     control: &'a RunControl,
 }
 
-impl LaneTask for Pack<'_> {
+impl LaneTask for Pack<'_, '_> {
     /// Records and closure of each member; none for one whose iteration failed.
     type Output = Result<Vec<Option<(Vec<f64>, f64)>>, EngineError>;
 

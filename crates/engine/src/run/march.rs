@@ -46,7 +46,7 @@ pub fn march<S: Real>(
     control: &RunControl,
 ) -> Result<Run<S>, EngineError> {
     options.check(plan, parameters.len(), forcing)?;
-    let repeated = options.warmup.map_or(0, |warmup| warmup.steps);
+    let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);
     march_in(plan, parameters, &Weather::for_single_run(plan, forcing, repeated), options, control)
 }
 

@@ -122,6 +122,10 @@ impl<S: Real> Conditions<S> {
         }
         if !self.sun.windows.is_empty() {
             self.sun.transmit(plan, coefficients, now);
+            self.sun.trace(plan, coefficients, now);
+            if !plan.passages.is_empty() {
+                self.sun.pass(plan, coefficients, now);
+            }
             self.sun.distribute(plan, coefficients, now, &mut self.surfaces);
             self.sun.absorb_in_panes(plan, &mut self.surfaces);
         }

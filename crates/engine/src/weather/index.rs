@@ -101,7 +101,7 @@ impl<S: Real> WeatherIndex<S> {
     /// Position of the source of a surface's irradiance, added where no earlier surface has the same; none: no sun.
     fn add_source(&mut self, plan: &Plan, coefficients: &Coefficients<S>, index: SurfaceId) -> Option<usize> {
         let source = source_of(coefficients, index)?;
-        let shaded = |surface: SurfaceId| surface.is_outside() && plan.solar_geometry.shaded(surface.wall());
+        let shaded = |surface: SurfaceId| plan.solar_geometry.shaded(surface);
         let unshaded = |a: SurfaceId, b: SurfaceId| !shaded(a) && !shaded(b);
         let known = self.irradiance_sources.iter().position(|known| match (known, &source) {
             (IrradianceSource::Measured(a), IrradianceSource::Measured(b)) => a == b,

@@ -1,6 +1,7 @@
 //! The weather at an instant, as far as it is the same for all members of an ensemble.
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 use crate::building::coefficients::surface::PER_DAY;
 use crate::building::ids::SurfaceId;
@@ -51,13 +52,9 @@ impl<'a> Instant<'a> {
         }
     }
 
-    /// Fractions that obstacles leave of sun and sky on a surface: obstacles stand outside only.
+    /// Fractions that obstacles leave of sun, sky and ground on a surface.
     pub(crate) fn visibility(&self, plan: &Plan, surface: SurfaceId) -> SkyVisibility {
-        if surface.is_outside() {
-            plan.solar_geometry.visibility(surface.wall(), &self.fractions)
-        } else {
-            SkyVisibility::FULL
-        }
+        plan.solar_geometry.visibility(surface, &self.fractions)
     }
 }
 
@@ -70,38 +67,31 @@ pub struct Weather<'a> {
     terms: WindTerms,
     /// Whether a ground temperature depends on the day of the year.
     ground: bool,
-    /// The stages of the first steps, evaluated; the others are evaluated on demand.
-    stages: Vec<Instant<'a>>,
+    /// The stages of the first steps, each kept once it has been evaluated; empty where none is kept.
+    stages: Vec<OnceLock<Instant<'a>>>,
 }
 
 impl<'a> Weather<'a> {
-    /// Evaluates all stages of a forcing, for many runs.
+    /// The weather for many runs: each stage is evaluated when it is first read, and kept.
     #[must_use]
     pub fn new(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
-        Self::on_demand(plan, forcing).with_steps(forcing.steps())
+        Self::keeping(plan, forcing, forcing.steps())
     }
 
-    /// The weather for a single run that repeats some first steps before it: stages that are read once are evaluated on demand,
-    /// so that memory does not grow with the length of the run.
+    /// The weather for a single run that reads the stages of some first steps again and again. Memory does not grow with its length.
     #[must_use]
     pub fn for_single_run(plan: &'a Plan, forcing: &Forcing<'a>, repeated: usize) -> Self {
-        // Tracing beams is expensive: stages that are read again are then evaluated once.
-        let steps = if plan.solar_geometry.is_empty() { 0 } else { repeated.min(forcing.steps()) };
-        Self::on_demand(plan, forcing).with_steps(steps)
+        // Shadows and beams are expensive: stages that warm-up reads again are evaluated once. All else is cheap.
+        let kept = if plan.solar_geometry.is_empty() { 0 } else { repeated.min(forcing.steps()) };
+        Self::keeping(plan, forcing, kept)
     }
 
-    /// Evaluates all stages of some first steps.
-    fn with_steps(mut self, steps: usize) -> Self {
-        let stages = self.forcing.stages();
-        self.stages = (0..steps * stages).map(|k| self.evaluate(k / stages, k % stages)).collect();
-        self
-    }
-
-    fn on_demand(plan: &'a Plan, forcing: &Forcing<'a>) -> Self {
+    fn keeping(plan: &'a Plan, forcing: &Forcing<'a>, steps: usize) -> Self {
         let sides = || plan.surfaces.ids().map(|surface| plan.side(surface));
         let terms = WindTerms::of(sides().filter_map(|side| side.convection.as_ref()));
         let ground = sides().any(|side| matches!(side.facing, Facing::Ground { .. }));
-        Self { plan, forcing: *forcing, terms, ground, stages: Vec::new() }
+        let stages = (0..steps * forcing.stages()).map(|_| OnceLock::new()).collect();
+        Self { plan, forcing: *forcing, terms, ground, stages }
     }
 
     fn evaluate(&self, step: usize, stage: usize) -> Instant<'a> {
@@ -124,7 +114,7 @@ impl<'a> Weather<'a> {
     #[must_use]
     pub fn at(&self, step: usize, stage: usize) -> Cow<'_, Instant<'a>> {
         match self.stages.get(step * self.forcing.stages() + stage) {
-            Some(instant) => Cow::Borrowed(instant),
+            Some(kept) => Cow::Borrowed(kept.get_or_init(|| self.evaluate(step, stage))),
             None => Cow::Owned(self.evaluate(step, stage)),
         }
     }
@@ -138,7 +128,7 @@ mod tests {
 
     /// Two steps of two stages, the air one degree warmer at each.
     #[test]
-    fn stages_evaluated_before_or_on_demand() {
+    fn stages_kept_or_evaluated_again() {
         let rows: Vec<f64> = (0..4 * CLIMATE_CHANNELS)
             .map(|k| {
                 if k % CLIMATE_CHANNELS == channel::AIR_TEMPERATURE {
@@ -150,13 +140,13 @@ mod tests {
             .collect();
         let forcing = Forcing::new(&rows, 2, CLIMATE_CHANNELS).unwrap();
         let plan = Plan::new(glazed_zone("area", false)).unwrap();
-        let (all, single) = (Weather::new(&plan, &forcing), Weather::for_single_run(&plan, &forcing, 1));
+        let (all, single) = (Weather::new(&plan, &forcing), Weather::for_single_run(&plan, &forcing, 2));
         assert_eq!((all.steps(), all.stages.len(), single.stages.len()), (2, 4, 0));
         for weather in [&all, &single] {
             assert_eq!(weather.at(1, 0).row[channel::AIR_TEMPERATURE], 2.0);
             assert_eq!(weather.row(0, 1)[channel::AIR_TEMPERATURE], 1.0);
         }
-        // Beams are traced once for steps that are repeated.
+        // Beams are traced once for steps that are read again, and these alone are kept.
         let traced = Plan::new(glazed_zone("geometry", false)).unwrap();
         for (repeated, kept) in [(0, 0), (1, 2), (9, 4)] {
             let weather = Weather::for_single_run(&traced, &forcing, repeated);

@@ -18,7 +18,7 @@ use crate::weather::surface::SurfaceConditions;
 /// The sun at a window.
 #[derive(Debug, Clone)]
 pub struct WindowConditions<S> {
-    /// Transmitted into its zone [W].
+    /// Transmitted into the zone of its inside; between zones less what it transmits the other way [W].
     pub transmitted: S,
     /// The part of it that comes from the sun's direction [W].
     pub beam: S,
@@ -50,6 +50,12 @@ pub struct SolarConditions<S> {
     pub zones: Vec<ZoneSolar<S>>,
     /// Per zone: power of first incidence on each of its surfaces, where beams are traced [W].
     incidence: Vec<Vec<S>>,
+    /// Per passage between zones: power that passes [W].
+    passing: Vec<S>,
+    /// Per zone, where there are such passages: diffuse sun that enters from other zones [W].
+    entering: Vec<S>,
+    /// Per zone, where there are such passages: what enters from other zones less what leaves to them [W].
+    pub(crate) exchanged: Vec<S>,
 }
 
 impl<S: Real> SolarConditions<S> {
@@ -67,6 +73,9 @@ impl<S: Real> SolarConditions<S> {
             windows: windows.collect(),
             zones: vec![ZoneSolar { transmitted: zero, lost: zero, in_glass: zero }; plan.zones.len()],
             incidence: plan.zones.iter().map(|zone| vec![zero; zone.surfaces.len()]).collect(),
+            passing: vec![zero; plan.passages.len()],
+            entering: vec![zero; if plan.passages.is_empty() { 0 } else { plan.zones.len() }],
+            exchanged: vec![zero; if plan.passages.is_empty() { 0 } else { plan.zones.len() }],
         }
     }
 
@@ -92,6 +101,9 @@ impl<S: Real> SolarConditions<S> {
             at.transmitted = line(a.transmitted, b.transmitted);
             at.lost = line(a.lost, b.lost);
             at.in_glass = line(a.in_glass, b.in_glass);
+        }
+        for (at, (&a, &b)) in self.exchanged.iter_mut().zip(first.exchanged.iter().zip(&second.exchanged)) {
+            *at = line(a, b);
         }
     }
 
@@ -157,6 +169,78 @@ impl<S: Real> SolarConditions<S> {
         }
     }
 
+    /// First incidence of what windows transmit, in zones where beams are traced.
+    #[inline(always)]
+    pub(crate) fn trace(&mut self, plan: &Plan, coefficients: &Coefficients<S>, now: &Instant<'_>) {
+        if now.sunlight.dark() {
+            return;
+        }
+        for (z, numbers) in coefficients.zones.iter().enumerate() {
+            if let Some(SolarDistribution::Traced(traced)) = &numbers.solar_distribution {
+                self.trace_beams(plan, z, traced, now);
+            }
+        }
+    }
+
+    /// What windows between zones let pass, back and forth.
+    // A rare part of a building: kept out of the code of the others.
+    #[inline(never)]
+    pub(crate) fn pass(&mut self, plan: &Plan, coefficients: &Coefficients<S>, now: &Instant<'_>) {
+        for powers in [&mut self.passing, &mut self.entering, &mut self.exchanged] {
+            powers.fill(S::zero());
+        }
+        if now.sunlight.dark() {
+            return;
+        }
+        let on = |(z, i): (usize, usize)| {
+            let distribution = coefficients.zones[z].solar_distribution.as_ref();
+            distribution.map_or_else(S::zero, |law| self.on_glass(law, z, &plan.zones[z], i))
+        };
+        let passing = &coefficients.passing;
+        let first: Vec<S> = plan
+            .passages
+            .iter()
+            .zip(&passing.areas)
+            .map(|(passage, &area)| area * on(passage.from))
+            .collect();
+        for ((power, row), passage) in
+            self.passing.iter_mut().zip(passing.multiples.chunks_exact(first.len())).zip(&plan.passages)
+        {
+            *power = row.iter().zip(&first).fold(S::zero(), |sum, (&multiple, &one)| sum + multiple * one);
+            let (from, (to, entrance)) = (passage.from.0, passage.to);
+            self.entering[to] += *power;
+            self.exchanged[to] += *power;
+            self.exchanged[from] += -*power;
+            self.windows[passage.window].transmitted += if passage.inwards { *power } else { -*power };
+            if let Some(SolarDistribution::Traced(traced)) = &coefficients.zones[to].solar_distribution {
+                let n = traced.size();
+                for (on, &view) in self.incidence[to].iter_mut().zip(&traced.views[entrance * n..]) {
+                    *on += *power * view;
+                }
+            }
+        }
+    }
+
+    /// Irradiance of the glass at a place among the surfaces of a zone [W/m2].
+    #[inline(always)]
+    fn on_glass(&self, distribution: &SolarDistribution<S>, z: usize, zone: &ZonePlan, i: usize) -> S {
+        match distribution {
+            SolarDistribution::Fixed(fixed) => fixed.on_glass[i] * self.reaching(z),
+            SolarDistribution::Split([beam, diffuse]) => {
+                let [direct, scattered] = self.parts(z, zone);
+                beam.on_glass[i] * direct + diffuse.on_glass[i] * scattered
+            }
+            SolarDistribution::Traced(traced) => traced.irradiance(i, &self.incidence[z]),
+        }
+    }
+
+    /// Sun that enters a zone from outdoors and from other zones [W].
+    #[inline(always)]
+    fn reaching(&self, z: usize) -> S {
+        let outdoors = self.zones[z].transmitted;
+        self.entering.get(z).map_or(outdoors, |&entering| outdoors + entering)
+    }
+
     /// Distributes what windows transmit over the surfaces of the zones and the insides of the panes.
     #[inline(always)]
     pub(crate) fn distribute(
@@ -179,22 +263,15 @@ impl<S: Real> SolarConditions<S> {
                 SolarDistribution::Fixed(fixed) => self.distribute_fixed(z, zone, fixed, surfaces),
                 SolarDistribution::Split(split) => self.distribute_split(z, zone, split, surfaces),
                 SolarDistribution::Traced(traced) => {
-                    self.trace_beams(plan, z, traced, now);
-                    self.distribute_traced(z, zone, traced, coefficients, surfaces);
+                    self.distribute_traced(plan, z, traced, coefficients, surfaces);
                 }
             }
             for &(window, i) in &zone.windows {
                 let Some(glass) = &coefficients.walls[plan.windows[window]].glass else { continue };
-                let on = match distribution {
-                    SolarDistribution::Fixed(fixed) => fixed.on_glass[i] * self.zones[z].transmitted,
-                    SolarDistribution::Split([beam, diffuse]) => {
-                        let [direct, scattered] = self.parts(z, zone);
-                        beam.on_glass[i] * direct + diffuse.on_glass[i] * scattered
-                    }
-                    SolarDistribution::Traced(traced) => traced.irradiance(i, &self.incidence[z]),
-                };
+                let on = self.on_glass(distribution, z, zone, i);
                 let panes = &mut self.windows[window].panes;
-                for (pane, &absorptance) in panes.iter_mut().zip(&glass.optics.back.absorptance) {
+                for (pane, &absorptance) in panes.iter_mut().zip(&glass.facing(zone.surfaces[i]).absorptance)
+                {
                     *pane += absorptance * on;
                 }
             }
@@ -210,7 +287,7 @@ impl<S: Real> SolarConditions<S> {
         fixed: &FixedDistribution<S>,
         surfaces: &mut BySurface<SurfaceConditions<S>>,
     ) {
-        let transmitted = self.zones[z].transmitted;
+        let transmitted = self.reaching(z);
         self.zones[z].lost = fixed.lost * transmitted;
         self.zones[z].in_glass = fixed.in_glass * transmitted;
         for (i, &surface) in zone.surfaces.iter().enumerate() {
@@ -236,11 +313,11 @@ impl<S: Real> SolarConditions<S> {
         }
     }
 
-    /// Beam and diffuse sun transmitted into a zone [W].
+    /// Beam and diffuse sun that enter a zone [W].
     fn parts(&self, z: usize, zone: &ZonePlan) -> [S; 2] {
         let beams = zone.windows.iter().map(|&(window, _)| self.windows[window].beam);
         let direct = beams.fold(S::zero(), |sum, beam| sum + beam);
-        [direct, self.zones[z].transmitted - direct]
+        [direct, self.reaching(z) - direct]
     }
 
     /// The power of first incidence on each surface of a zone.
@@ -269,19 +346,21 @@ impl<S: Real> SolarConditions<S> {
     #[inline(always)]
     fn distribute_traced(
         &mut self,
+        plan: &Plan,
         z: usize,
-        zone: &ZonePlan,
         traced: &TracedDistribution<S>,
         coefficients: &Coefficients<S>,
         surfaces: &mut BySurface<SurfaceConditions<S>>,
     ) {
         let (mut lost, mut in_glass) = (S::zero(), S::zero());
-        for (i, &surface) in zone.surfaces.iter().enumerate() {
+        for (i, &surface) in plan.zones[z].surfaces.iter().enumerate() {
             let on = traced.irradiance(i, &self.incidence[z]);
             surfaces[surface].solar = coefficients.surfaces[surface].absorptance * on;
             if let Some(glass) = &coefficients.walls[surface.wall()].glass {
-                let (power, back) = (coefficients.zones[z].areas[i] * on, &glass.optics.back);
-                lost += power * back.transmittance;
+                let (power, back) = (coefficients.zones[z].areas[i] * on, glass.facing(surface));
+                if !plan.lets_pass(surface) {
+                    lost += power * back.transmittance;
+                }
                 in_glass += power * (back.admitted() - back.transmittance);
             }
         }
@@ -322,7 +401,7 @@ pub struct SolarMeans<S> {
     pub(crate) irradiances: Vec<S>,
     /// Transmitted by each window [W].
     pub windows: Vec<S>,
-    /// Transmitted into each zone [W].
+    /// Transmitted into each zone, from other zones included [W].
     pub zones: Vec<S>,
     /// Lost outdoors from each zone [W].
     pub lost: Vec<S>,
@@ -361,6 +440,9 @@ impl<S: Real> SolarMeans<S> {
         for ((mean, lost), zone) in self.zones.iter_mut().zip(&mut self.lost).zip(&sun.zones) {
             *mean += zone.transmitted.scale(weight);
             *lost += zone.lost.scale(weight);
+        }
+        for (mean, exchanged) in self.zones.iter_mut().zip(&sun.exchanged) {
+            *mean += exchanged.scale(weight);
         }
     }
 }

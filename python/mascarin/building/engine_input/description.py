@@ -26,6 +26,7 @@ from mascarin.building.engine_input.zones import describe_air_path, describe_ope
 from mascarin.building.mesh import choose
 from mascarin.building.number import Interval
 from mascarin.building.parameters import Parameter
+from mascarin.building.self_shading import obstructions
 from mascarin.building.site import CloudFactor, CloudLayer, Site
 
 
@@ -107,11 +108,14 @@ def describe(
         "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
         "air_paths": each(building.air_paths, "air_paths", ids, partial(describe_air_path, building, places)),
         "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
-        "surfaces": [
-            *each(building.surfaces, "surfaces", ids, partial(describe_surface, building, columns, ids)),
-            *each(building.windows, "windows", ids, partial(describe_window, building, columns, ids)),
-            *(describe_frame(building, columns, name, ids) for name in framed(building)),
-        ],
+        "surfaces": _obstructed(
+            building,
+            [
+                *each(building.surfaces, "surfaces", ids, partial(describe_surface, building, columns, ids)),
+                *each(building.windows, "windows", ids, partial(describe_window, building, columns, ids)),
+                *(describe_frame(building, columns, name, ids) for name in framed(building)),
+            ],
+        ),
         "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
         "shades": [corners(shade.vertices) for shade in building.shades.values()],
         "channels": columns,
@@ -125,6 +129,18 @@ def describe(
         notes=mesh.warnings,
         nodes=mesh.nodes,
     )
+
+
+def _obstructed(building: Description, written: list[Json]) -> list[Json]:
+    """Surfaces, windows and frames with the surfaces in front of their sides."""
+    places = {name: place for place, name in enumerate(building.surfaces)}
+    names = [*building.surfaces, *building.windows, *framed(building)]
+    in_front = obstructions(building)
+    for name, part in zip(names, written, strict=True):
+        for side in ("outside", "inside"):
+            if others := in_front.get((name, side)):
+                part[side]["shaded_by"] = [places[other] for other in others]
+    return written
 
 
 def _clouds(clouds: CloudFactor | CloudLayer, ids: Ids) -> Json | list[int]:

@@ -139,15 +139,19 @@ def _glazed(
     """Describe what glass and frame of a window have in common."""
     wall = building.surfaces[window.surface]
     direction = {key: every[f"surfaces.{window.surface}.{key}"] for key in ("tilt", "azimuth")}
+    zones = list(building.zones)
+    beyond: Json = {"kind": "outdoors"}
+    if wall.outside.zone is not None:
+        beyond = {"kind": "zone", "zone": zones.index(wall.outside.zone)}
     outside = fields_of(window.outside, deeper(ids, "outside")) | {
-        "facing": {"kind": "outdoors"},
+        "facing": beyond,
         "emissivity": emissivity[0],
         "convection": describe_convection(window.outside.convection, columns, deeper(ids, "outside")),
     }
     if window.outside.longwave is not None:
         outside["longwave"] = fields_of(window.outside.longwave, deeper(ids, "outside"), "longwave.")
     inside = {
-        "facing": {"kind": "zone", "zone": list(building.zones).index(str(wall.inside.zone))},
+        "facing": {"kind": "zone", "zone": zones.index(str(wall.inside.zone))},
         "emissivity": emissivity[1],
         "convection": describe_convection(window.inside.convection, columns, deeper(ids, "inside")),
     }

@@ -17,16 +17,19 @@ from mascarin.building.geometry.exchange import (
     view_factors,
 )
 from mascarin.building.geometry.index import BoxIndex
+from mascarin.building.geometry.obstacles import InFront, in_front
 from mascarin.building.geometry.polygon import TOLERANCE, Polygon
 
 __all__ = [
     "CLOSURE_LIMIT",
     "TOLERANCE",
     "BoxIndex",
+    "InFront",
     "OpenEdge",
     "Polygon",
     "check_convex",
     "exchange_areas",
+    "in_front",
     "log_integral",
     "net_areas",
     "open_edges",

@@ -349,8 +349,10 @@ impl<S: Real> Balances<'_, S> {
             let absorbed = window.panes.iter().fold(S::zero(), |sum, heat| sum + *heat);
             sink.count(Flow::Glass, self.model.coefficients.walls[w].area * absorbed);
         }
-        for zone in &self.conditions.sun.zones {
-            sink.count(Flow::Transmitted, zone.transmitted - zone.lost - zone.in_glass);
+        let sun = &self.conditions.sun;
+        for (z, zone) in sun.zones.iter().enumerate() {
+            let kept = zone.transmitted - zone.lost - zone.in_glass;
+            sink.count(Flow::Transmitted, sun.exchanged.get(z).map_or(kept, |exchanged| kept + *exchanged));
         }
     }
 

@@ -1,10 +1,12 @@
 //! The coefficients of a building: a plan evaluated at a parameter vector, for one run or for a pack of members in lanes.
 
 pub(crate) mod air;
+pub(crate) mod passing;
 pub(crate) mod surface;
 pub(crate) mod wall;
 pub(crate) mod zone;
 
+pub use self::passing::Passing;
 pub use self::surface::{Boundary, Imposed, Outdoors, SurfaceCoefficients};
 pub use self::wall::WallCoefficients;
 pub use self::zone::ZoneCoefficients;
@@ -25,6 +27,8 @@ pub struct Coefficients<S> {
     pub surfaces: BySurface<SurfaceCoefficients<S>>,
     /// Zones.
     pub zones: Vec<ZoneCoefficients<S>>,
+    /// Sun that windows between zones let pass.
+    pub passing: Passing<S>,
     /// Air exchanged between zones.
     pub paths: Vec<Path<S>>,
     /// Solar reflectance of the ground [-].
@@ -46,14 +50,16 @@ impl<S: Real> Coefficients<S> {
             plan.surfaces.ids().map(|i| SurfaceCoefficients::new(plan, i, &values)).collect();
         let site = &description.site;
         let heat = air::heat_capacity(plan, &values, air::density(plan, &values));
-        let zones = (0..plan.zones.len())
+        let zones: Vec<_> = (0..plan.zones.len())
             .map(|i| ZoneCoefficients::new(plan, i, &values, &walls, &surfaces, heat))
             .collect();
+        let passing = Passing::new(plan, &walls, &zones);
         let paths = description.air_paths.iter().map(|path| Path::new(path, &values, heat)).collect();
         Self {
             walls,
             surfaces,
             zones,
+            passing,
             paths,
             ground_reflectance: values.get(site.ground_reflectance),
             clouds: CloudEffect::new(&site.cloud, &values),

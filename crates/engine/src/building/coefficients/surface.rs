@@ -101,7 +101,7 @@ impl<S: Real> SurfaceCoefficients<S> {
             emissivity: values.get_or(side.emissivity, 0.0),
             absorptance: values.get_or(side.absorptance, 0.0),
             irradiance: side.irradiance.map(|channel| CLIMATE_CHANNELS + channel),
-            boundary: boundary(wall, index, side, values),
+            boundary: boundary(plan, index, side, values),
             exposure: side.exposure,
         }
     }
@@ -116,7 +116,7 @@ fn radians<S: Real>(degrees: S) -> S {
     degrees.scale(core::f64::consts::PI / 180.0)
 }
 
-fn boundary<S: Real>(wall: &Surface, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Boundary<S> {
+fn boundary<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Boundary<S> {
     match side.facing {
         Facing::Zone { .. } => Boundary::Zone,
         Facing::Adiabatic => Boundary::Adiabatic,
@@ -126,19 +126,21 @@ fn boundary<S: Real>(wall: &Surface, index: SurfaceId, side: &Side, values: &Val
             let swing = [amplitude * angle.cos(), amplitude * angle.sin()];
             Boundary::Imposed(Imposed::Annual { mean: values.get(mean), swing })
         }
-        Facing::Outdoors => Boundary::Outdoors(Box::new(outdoors(wall, index, side, values))),
+        Facing::Outdoors => Boundary::Outdoors(Box::new(outdoors(plan, index, side, values))),
     }
 }
 
-fn outdoors<S: Real>(wall: &Surface, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
+fn outdoors<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
+    let wall = &plan.description.surfaces[index.wall()];
     let (plane, heading) = plane(wall, index, side, values);
     let sky_view = plane.sky_view;
+    let open = plan.solar_geometry.open_sky(index);
     Outdoors {
         plane,
         heading,
-        // F_sky sqrt(F_sky): near the horizon the sky has the temperature of the air.
+        // F_sky sqrt(F_sky): near the horizon the sky has the temperature of the air, and so have the walls that cover a part.
         to_sky: if side.exposure.sky {
-            sky_view * sky_view.max(S::constant(1e-300)).sqrt()
+            (sky_view * sky_view.max(S::constant(1e-300)).sqrt()).scale(open)
         } else {
             S::zero()
         },

@@ -92,7 +92,7 @@ impl<S: Real> ZoneCoefficients<S> {
             emission,
             solar_distribution: SolarDistribution::new(
                 &definition.sun,
-                &solar_surfaces(zone_surfaces, walls, surfaces),
+                &solar_surfaces(plan, zone_surfaces, walls, surfaces),
                 values,
                 || direct_exchange_areas(&areas, &view_weights(plan, index, &areas)),
             ),
@@ -103,14 +103,19 @@ impl<S: Real> ZoneCoefficients<S> {
 
 /// What the surfaces of a zone do with the sun.
 fn solar_surfaces<'a, S: Real>(
+    plan: &Plan,
     zone_surfaces: &[SurfaceId],
     walls: &'a [WallCoefficients<S>],
     surfaces: &BySurface<SurfaceCoefficients<S>>,
 ) -> Vec<SolarSurface<'a, S>> {
     let of = |&surface: &SurfaceId| {
         let wall = &walls[surface.wall()];
-        let glass = wall.glass.as_ref().map(|glass| &glass.optics.back);
-        SolarSurface { area: wall.area, absorptance: surfaces[surface].absorptance, glass }
+        SolarSurface {
+            area: wall.area,
+            absorptance: surfaces[surface].absorptance,
+            glass: wall.glass.as_ref().map(|glass| glass.facing(surface)),
+            passes: plan.lets_pass(surface),
+        }
     };
     zone_surfaces.iter().map(of).collect()
 }

@@ -16,11 +16,16 @@ pub(super) fn check_surface(description: &Description, wall: &Surface) -> Checke
         check_side(description, &format!("{place}, {name}"), side, glazed)?;
     }
     let between = (&wall.outside.facing, &wall.inside.facing);
-    if glazed && !matches!(between, (Facing::Outdoors, Facing::Zone { .. })) {
+    let fits = match between {
+        (Facing::Outdoors, Facing::Zone { .. }) => true,
+        (Facing::Zone { zone }, Facing::Zone { zone: other }) => zone != other,
+        _ => false,
+    };
+    if glazed && !fits {
         return refuse(
             place,
             "a window elsewhere",
-            "a window between outdoors (outside) and a zone (inside)",
+            "a window between outdoors (outside) and a zone (inside), or between two zones",
         );
     }
     Ok(())
@@ -49,6 +54,12 @@ fn check_side(description: &Description, place: &str, side: &Side, glazed: bool)
     }
     if glazed && side.absorptance.is_some() {
         return refuse(place, "absorptance of a window", "none: its panes have their own");
+    }
+    for &wall in &side.shaded_by {
+        check_index(place, "shaded by surface", wall, description.surfaces.len())?;
+        if description.surfaces[wall].vertices.is_empty() {
+            return refuse(place, format_args!("shaded by surface {wall} without vertices"), "vertices");
+        }
     }
     check_irradiance(place, side, channels)?;
     check_convection(place, side, channels)

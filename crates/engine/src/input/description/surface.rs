@@ -24,7 +24,7 @@ pub struct Surface {
     /// Height of the gaps of a window, for their convection [m].
     #[serde(default)]
     pub cavity_height: Option<ParamId>,
-    /// Corners seen from outside, counter-clockwise [m]; needed where shades or traced sun are.
+    /// Corners seen from outside, counter-clockwise [m]; needed where shades, other walls or traced sun are.
     #[serde(default)]
     pub vertices: Vec<[f64; 3]>,
     /// Tilt of the outside normal [deg]: 0 up, 90 vertical, 180 down.
@@ -68,7 +68,7 @@ pub struct Side {
     /// Convective area over plane area [-] (corrugated sheets).
     #[serde(default)]
     pub area_factor: Option<ParamId>,
-    /// Fraction of the sky seen [-]; none: (1 + cos tilt)/2.
+    /// Fraction of the sky seen past all obstacles [-]; none: (1 + cos tilt)/2, less what obstacles cover.
     #[serde(default)]
     pub sky_view: Option<ParamId>,
     /// Height of the surface above ground for the wind profile [m]; none: mast wind is used as it is.
@@ -83,6 +83,9 @@ pub struct Side {
     /// What of the weather reaches an `outdoors` side.
     #[serde(default)]
     pub exposure: Exposure,
+    /// Indices into [`Description::surfaces`](super::Description::surfaces): walls that stand in front of an `outdoors` side.
+    #[serde(default)]
+    pub shaded_by: Vec<usize>,
 }
 
 /// What of the weather reaches an `outdoors` side, beside the temperature of the air.

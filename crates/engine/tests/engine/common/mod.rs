@@ -264,6 +264,7 @@ pub fn facing(facing: Facing, convection: Option<Convection>) -> Side {
         longwave: OutdoorLongwave::Exact,
         irradiance: None,
         exposure: Exposure::default(),
+        shaded_by: Vec::new(),
     }
 }
 

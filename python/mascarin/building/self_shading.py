@@ -1,0 +1,147 @@
+"""Surfaces that stand in front of others outdoors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from mascarin.building.derived import outlines, window_outlines
+from mascarin.building.geometry import InFront
+
+if TYPE_CHECKING:
+    from mascarin.building.description import Description
+    from mascarin.building.geometry import Polygon
+    from mascarin.building.surface import Surface
+
+#: Names in a list before it is cut.
+_NAMES = 8
+#: Stages of a year of steps of 15 min by SDIRK2.
+_YEAR = 2 * 4 * 8760
+#: A side of a surface, or the outside of a window.
+SideName = tuple[str, str]
+
+
+def obstructions(building: Description) -> dict[SideName, list[str]]:
+    """Surfaces in front of each side outdoors.
+
+    Parameters
+    ----------
+    building : Description
+        The building.
+
+    Returns
+    -------
+    dict of (name, side) to list of str
+        Names of the surfaces of which a part stands in front of the plane of a surface or window, for those
+        where there are any. Surfaces between two zones or on the ground stand in front of nothing. A window
+        has the surfaces of its wall.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> obstructions(box())
+    {}
+    """
+    if not building.site.self_shading:
+        return {}
+    drawn = outlines(building.surfaces)
+    walls = [name for name in drawn if _can_obstruct(building.surfaces[name])]
+    standing = InFront([drawn[name] for name in walls])
+    found = {side: [walls[k] for k in standing.of(polygon)] for side, polygon in _outdoors(building, drawn)}
+    for name in window_outlines(building.windows):
+        found[name, "outside"] = found.get((building.windows[name].surface, "outside"), [])
+    return {side: names for side, names in found.items() if names}
+
+
+def expected_seconds(found: Mapping[SideName, list[str]], stages: int = _YEAR) -> float:
+    """Processor time of the shadows of a run on a usual machine of 2025 [s].
+
+    Parameters
+    ----------
+    found : mapping of (name, side) to list of str
+        Surfaces in front of each side, from `obstructions`.
+    stages : int
+        Stages of all steps; those of a year of 15 min by SDIRK2 if not given.
+
+    Returns
+    -------
+    float
+        Measured: 10 ms for what a side sees of sky and ground, 0.035 us for each pair in each stage, half of
+        which are at night. [s]
+
+    Examples
+    --------
+    >>> round(expected_seconds({("south", "outside"): ["east", "west"]}), 4)
+    0.0125
+    """
+    pairs = sum(map(len, found.values()))
+    return 1e-2 * len(found) + 0.5 * 3.5e-8 * pairs * stages
+
+
+def in_words(building: Description) -> str:
+    """Say which surfaces shade each other; empty where no side faces sun and sky.
+
+    Parameters
+    ----------
+    building : Description
+        The building.
+
+    Returns
+    -------
+    str
+        Number of pairs and their names, and surfaces without vertices.
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> in_words(box())
+    'nothing shades: no surface outdoors has vertices'
+    """
+    sides = [side for surface in building.surfaces.values() for side in surface.sides]
+    bare = undrawn(building)
+    if not any(side.exposed.sun or side.exposed.sky for side in sides):
+        return ""
+    if not building.site.self_shading:
+        return "surfaces do not shade each other (site.self_shading: false)"
+    if all(surface.vertices is None for surface in building.surfaces.values()):
+        return "nothing shades: no surface outdoors has vertices"
+    missing = f"; without vertices, unshaded: {_listed(bare)}" if bare else ""
+    found = obstructions(building)
+    if not found:
+        return f"no surface stands in front of another{missing}"
+    pairs = sum(map(len, found.values()))
+    who = _listed([f"{name} by {_listed(others)}" for (name, _), others in found.items()], "; ")
+    return f"{pairs} pairs of surfaces ({who}), about {expected_seconds(found):.1g} s in a year{missing}"
+
+
+def _listed(names: list[str], between: str = ", ") -> str:
+    return between.join([*names[:_NAMES], *([f"{len(names) - _NAMES} more"] if len(names) > _NAMES else [])])
+
+
+def undrawn(building: Description) -> list[str]:
+    """Surfaces and windows outdoors without vertices, which nothing shades."""
+    surfaces = [
+        name
+        for name, surface in building.surfaces.items()
+        if surface.vertices is None and any(side.outdoors for side in surface.sides)
+    ]
+    windows = [
+        name
+        for name, window in building.windows.items()
+        if window.vertices is None and building.surfaces[window.surface].outside.outdoors
+    ]
+    return surfaces + windows
+
+
+def _can_obstruct(surface: Surface) -> bool:
+    between_zones = all(side.zone is not None for side in surface.sides)
+    return not between_zones and all(side.ground is None for side in surface.sides)
+
+
+def _outdoors(building: Description, drawn: dict[str, Polygon]) -> Iterator[tuple[SideName, Polygon]]:
+    """Sides that see sun or sky, with their outline as seen from outdoors."""
+    for name, polygon in drawn.items():
+        surface = building.surfaces[name]
+        for which, side in (("outside", surface.outside), ("inside", surface.inside)):
+            if side.exposed.sun or side.exposed.sky:
+                yield (name, which), polygon if which == "outside" else polygon.reversed()
