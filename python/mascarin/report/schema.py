@@ -330,6 +330,10 @@ class Study(TypedDict, total=False):
     aims: list[Criterion]
     """Desired limits, which are not required."""
     shortfall: Shortfall
+    diagnosis: dict[str, Any]
+    """``causes`` in their order, ``noise`` by sensor and ``remaining`` [-]; shown as a table and as notes."""
+    days: dict[str, Any]
+    """Leverage and expected information of each day; shown as a table and as notes."""
     sensitivity: dict[str, dict[str, Share]]
     sensitivity_design: list[list[str]]
     frequencies: dict[str, int]
