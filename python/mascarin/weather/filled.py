@@ -105,7 +105,7 @@ def interpolated(values: Array) -> list[Run]:
         if last - first >= max(_FEWEST + 2, _LONGER * usual) and not level:
             slope = (steps[-1] - steps[0]) / (steps.size - 1)
             while first > 0 and abs(values[first - 1] - (values[first] - slope)) <= 2.0 * tolerance:
-                first -= 1  # noqa: PLW2901 (the line begins before the values that were examined)
+                first -= 1
             text = f"a straight line from {values[first]:g} to {values[last - 1]:g}"
             found.append((first + 1, last - 1, text))
     return found
