@@ -331,9 +331,9 @@ class Study(TypedDict, total=False):
     """Desired limits, which are not required."""
     shortfall: Shortfall
     diagnosis: dict[str, Any]
-    """``causes`` in their order, ``noise`` by sensor and ``remaining`` [-]; shown as a table and as notes."""
+    """``causes`` in their order, ``noise`` by sensor, ``remaining`` [-], and a ``table`` of the causes."""
     days: dict[str, Any]
-    """Leverage and expected information of each day; shown as a table and as notes."""
+    """Leverage and expected information of each day, and a ``table`` of the most important ones."""
     sensitivity: dict[str, dict[str, Share]]
     sensitivity_design: list[list[str]]
     frequencies: dict[str, int]

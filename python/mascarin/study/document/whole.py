@@ -60,9 +60,9 @@ def document(findings: Findings) -> dict[str, Any]:
             if run.fit is not None
         },
     }
-    content["tables"] = [*content["tables"], days_table(findings.days)]
+    content["days"]["table"] = days_table(findings.days)
     if findings.diagnosis.causes:
-        content["tables"].append(causes_table(findings.diagnosis))
+        content["diagnosis"]["table"] = causes_table(findings.diagnosis)
     if findings.error_sources is not None:
         content["shortfall"] = {**findings.error_sources.to_dict(), "period": "blind"}
     if findings.sensitivity is not None:
