@@ -114,7 +114,7 @@ class Model:
         run = simulation or self.simulation
 
         def make() -> Array:
-            return self.sampled(run, run.run_vector(vector).records[:, : self.sensors])
+            return np.asarray(self.sampled(run, run.run_vector(vector).records[:, : self.sensors]))
 
         return self.store.array(("run", run.identity, self.group, vector.tobytes()), make)
 
@@ -141,7 +141,7 @@ class Model:
             def make(chosen: Sequence[str] = chosen) -> Array:
                 _, slopes = run.jacobian_vector(chosen, vector)
                 width = np.array([self.range[p][1] - self.range[p][0] for p in chosen])
-                return self.sampled(run, slopes[..., : self.sensors]) * width[:, None, None]
+                return np.asarray(self.sampled(run, slopes[..., : self.sensors]) * width[:, None, None])
 
             key = ("slopes", run.identity, self.group, vector.tobytes(), tuple(chosen))
             parts.append(self.store.array(key, make))

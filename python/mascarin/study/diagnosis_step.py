@@ -270,7 +270,8 @@ class _Search:
             self.first = float(squares.before.sum())
         self.last = float(squares.before.sum())
         tried = 30 * len(self.names)
-        found, seen = [], set()
+        found: list[tuple[float, Fault, float]] = []
+        seen: set[int] = set()
         for fault in faults:
             # Of the faults of one sensor only the best one counts.
             if seen & set(fault.sensors):
