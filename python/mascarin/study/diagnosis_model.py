@@ -154,7 +154,7 @@ class Model:
             (low, high), at = self.range[path], self.simulation.position(path)
             bounds = min(low, vector[at]), max(high, vector[at])
             moved[at] = float(np.clip(vector[at] + step * (high - low), *bounds))
-        return self.simulation.varied([], np.zeros((1, 0)), moved)[0]
+        return np.asarray(self.simulation.varied([], np.zeros((1, 0)), moved)[0])
 
     def priors(self, paths: Sequence[str], vector: Array) -> tuple[Array, Array, Array]:
         """Centre, precision and limits of the changes of parameters from a vector. [ranges]"""
