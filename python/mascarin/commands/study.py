@@ -230,6 +230,13 @@ def _print_summary(opened: Study, results: StudyResults, out: Path) -> None:
     if results.aims:
         reached = sum(aim.passed for aim in results.aims)
         lines.append(f"aims reached: {reached} of {len(results.aims)}; the report shows the others")
+    if results.diagnosis.causes:
+        lines.append("causes of the remaining error:")
+        lines += [f"  {number}. {cause.text}" for number, cause in enumerate(results.diagnosis.causes, 1)]
+    if results.days.proposed:
+        named = ", ".join(results.days.days[d] for d in results.days.proposed)
+        far = int(results.days.extrapolated.sum())
+        lines.append(f"days outside of what the identification has excited: {far}; to use next: {named}")
     residual = results.fitted.results.energy.closure
     lines.append(f"relative energy-balance residual {residual:.1e}; {results.seconds:.0f} s")
     lines.append(f"report: {out / 'report.html'}")

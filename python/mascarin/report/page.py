@@ -153,9 +153,7 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
         if content:
             key = module.__name__.rpartition(".")[2]
             number = len(found) + 1
-            tables = [
-                _further_table(t) for t in study.get("tables", []) if t.get("section", "comparison") == key
-            ]
+            tables = [_further_table(t) for t in _tables(study) if t.get("section", "comparison") == key]
             found.append(
                 {
                     "id": key.replace("_", "-"),
@@ -167,6 +165,12 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
                 }
             )
     return found
+
+
+def _tables(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """All further tables: those by themselves, and those of the diagnosis and of the choice of days."""
+    own = [study.get(key, {}).get("table") for key in ("days", "diagnosis")]
+    return [*study.get("tables", []), *(table for table in own if table)]
 
 
 def _further_table(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -330,6 +330,10 @@ class Study(TypedDict, total=False):
     aims: list[Criterion]
     """Desired limits, which are not required."""
     shortfall: Shortfall
+    diagnosis: dict[str, Any]
+    """``causes`` in their order, ``noise`` by sensor, ``remaining`` [-], and a ``table`` of the causes."""
+    days: dict[str, Any]
+    """Leverage and expected information of each day, and a ``table`` of the most important ones."""
     sensitivity: dict[str, dict[str, Share]]
     sensitivity_design: list[list[str]]
     frequencies: dict[str, int]

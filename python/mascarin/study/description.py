@@ -151,8 +151,10 @@ class Periods(Part):
 class Quality(Part):
     """Treatment of suspicious values. They are always reported."""
 
-    mask: tuple[Literal["stuck", "forward_filled", "spike", "out_of_range"], ...] = Field(
-        ("stuck", "forward_filled"),
+    mask: tuple[
+        Literal["stuck", "forward_filled", "interpolated", "copied", "spike", "out_of_range"], ...
+    ] = Field(
+        ("stuck", "forward_filled", "interpolated", "copied"),
         description="Kinds that are excluded from all comparisons; [] excludes nothing",
     )
 

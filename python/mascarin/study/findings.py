@@ -15,8 +15,10 @@ if TYPE_CHECKING:
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.setup import Scores, Setup
+    from mascarin.validation.causes import Diagnosis
     from mascarin.validation.comparison import Metrics
     from mascarin.validation.criteria import Verdict
+    from mascarin.validation.days import DayChoice
     from mascarin.validation.error_sources import ErrorSources
     from mascarin.validation.residuals import ResidualAnalysis
     from mascarin.weather.quality import Stretch
@@ -100,6 +102,10 @@ class Findings:
         Analysis of the residuals of each sensor on the blind days.
     error_sources : ErrorSources or None
         Parameters that would explain the remaining error on the blind days; None where too few values exist.
+    diagnosis : Diagnosis
+        Causes of the difference between the fitted model and the measurements: data, parameters, forms.
+    days : DayChoice
+        How far each day is outside of what the identification has excited, and which to use next.
     prediction_intervals : PredictionIntervals
         Prediction intervals of the fitted model, with their coverage.
     profiles : list of Profile
@@ -122,6 +128,8 @@ class Findings:
     aims: list[Verdict]
     residuals: dict[str, ResidualAnalysis]
     error_sources: ErrorSources | None
+    diagnosis: Diagnosis
+    days: DayChoice
     prediction_intervals: PredictionIntervals
     profiles: list[Profile]
     notes: list[str]

@@ -30,6 +30,7 @@ from mascarin.study.locations import Faults, Places
 from mascarin.study.names import check_names
 from mascarin.validation.criteria import Criterion
 from mascarin.weather.files import file_hash
+from mascarin.weather.filled import filled_stretches
 from mascarin.weather.quality import mask
 
 if TYPE_CHECKING:
@@ -115,7 +116,7 @@ def _from_file(path: Path, beside: Beside) -> Inputs:
         read = open_measurements(file, beside, building, places, Places(described))
     faults.raise_all(path)
     building = _with_sky(building, climate, file)
-    quality = read.quality() + _weather_quality(file, climate)
+    quality = read.quality() + filled_stretches(read.data, _columns(file)) + _weather_quality(file, climate)
     longest = file.measurements.fill_gaps
     if longest is not None:
         read = filled(read, building, longest)
@@ -169,7 +170,7 @@ def from_objects(
     check_names(checked, building, places, faults)
     faults.raise_all(places.file)
     building = _with_sky(building, climate, checked)
-    quality = measurements.quality()
+    quality = measurements.quality() + filled_stretches(measurements.data, _columns(checked))
     read = _masked(measurements, checked, quality)
     hashes = {
         "study": _digest(checked.model_dump(mode="json")),
@@ -238,6 +239,11 @@ def _weather_quality(file: StudyFile, climate: Climate) -> list[Stretch]:
     if weather is None or weather.table == file.measurements.table:
         return []
     return climate.quality()
+
+
+def _columns(plan: StudyPlan) -> list[str]:
+    """Columns of the sensors."""
+    return list(dict.fromkeys(column for sensor in plan.sensors.values() for column in sensor.columns))
 
 
 def _masked(read: Measurements, plan: StudyPlan, quality: Sequence[Stretch]) -> Measurements:

@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 from mascarin._io import atomic
 from mascarin.calibration import plot_profiles
 from mascarin.figures import comparison
+from mascarin.figures import days as day_figures
 from mascarin.figures.files import save
 from mascarin.sensitivity.files import save_all
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
 from mascarin.study.tables import tables_of, write_tables
+from mascarin.validation.days import FAR
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,6 +49,7 @@ def write_all(findings: Findings, workspace: Workspace) -> None:
     figures.mkdir(parents=True, exist_ok=True)
     written = [
         *_figures(findings, figures),
+        save(_days(findings), figures / "days.svg"),
         *fit_figures(findings.calibration, findings.profiles, figures),
         *write_tables(out / "tables", tables_of(findings)),
         *(out / name for name in ("study.json", RUN, "report.html")),
@@ -108,6 +111,22 @@ def _figures(findings: Findings, folder: Path) -> list[Path]:
             hours = analyzed_hours(study, findings.sensitivity)
             drawn += save_all(findings.sensitivity, name, folder, name, hours)
     return drawn
+
+
+def _days(findings: Findings) -> Figure:
+    """Leverage of each day, and the information that it would add."""
+    from matplotlib.figure import Figure
+    from pandas import to_datetime
+
+    found = findings.days
+    dates = to_datetime(list(found.days))
+    figure = Figure(figsize=(9.0, 4.5), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    day_figures.leverage(upper, dates, found.ratio, found.used, found.proposed, FAR)
+    day_figures.information(lower, dates, found.information, found.used, found.proposed)
+    upper.legend(fontsize="small", ncols=4, frameon=False)
+    lower.set_xlabel(f"local time ({findings.setup.climate.timezone})")
+    return figure
 
 
 def _comparison(study: Setup, s: int, models: dict[str, Any]) -> Figure:

@@ -42,6 +42,10 @@ class StudyResults(Findings):
         Analysis of the residuals of each sensor on the blind days.
     error_sources : ErrorSources or None
         Parameters that would explain the remaining error on the blind days.
+    diagnosis : Diagnosis
+        Causes of the difference between the fitted model and the measurements: data, parameters, forms.
+    days : DayChoice
+        How far each day is outside of what the identification has excited, and which to use next.
     prediction_intervals : PredictionIntervals
         Prediction intervals of the fitted model, with their coverage.
     profiles : list of Profile
@@ -91,8 +95,8 @@ class StudyResults(Findings):
         Parameters
         ----------
         table : str
-            ``metrics``, ``parameters``, ``evaluations``, ``criteria``, ``quality``, ``series``, or
-            ``sensitivity`` if the study has a sensitivity analysis.
+            ``metrics``, ``parameters``, ``evaluations``, ``criteria``, ``quality``, ``causes``,
+            ``days``, ``series``, or ``sensitivity`` if the study has a sensitivity analysis.
 
         Returns
         -------

@@ -212,6 +212,10 @@ class Setup:
             ranges=self._ranges(building),
         )
 
+    def over_record(self, building: Building, further: Sequence[str] = ()) -> Simulation:
+        """A model of any building over the whole record, with the outputs of the sensors and further ones."""
+        return self._simulate(building, self.start, self.end, further)
+
     @cached_property
     def initial(self) -> Initial:
         """Initial state of the runs; sensors with `use: false` are not used for it."""

@@ -14,6 +14,8 @@ from mascarin.errors import InputError
 from mascarin.report.folder import read_folder
 from mascarin.study import opening
 from mascarin.study.checking import check
+from mascarin.study.days_step import days
+from mascarin.study.diagnosis_step import diagnosis
 from mascarin.study.model_runs import ModelRuns, judged, nominal
 from mascarin.study.outputs import write_all
 from mascarin.study.prediction_intervals import interval_words, prediction_intervals, slopes
@@ -231,6 +233,7 @@ class Study(Setup):
             write_all(results, workspace)
             report.write(workspace.out / "report.html", *read_folder(workspace.out))
             workspace.drop("sensitivity")
+            workspace.drop("diagnosis")
         return results
 
     def _carried_out(self, workspace: Workspace, progress: ProgressOption) -> StudyResults:
@@ -243,7 +246,12 @@ class Study(Setup):
         variants = runs.variants()
         residuals = examined(self, fitted)
         sources = error_sources(self, fitted, fit, progress)
-        intervals = prediction_intervals(self, fitted, fit, slopes(self, fitted, fit))
+        criteria = judged(self, before, fitted)
+        aims = judge(self.plan.aims, fitted.scores, where=f"{self.places.file}: aims")
+        missed = not all(verdict.passed for verdict in (*criteria["fitted"], *aims))
+        causes = diagnosis(self, fitted, fit, workspace, missed=missed, progress=progress)
+        slope = slopes(self, fitted, fit)
+        intervals = prediction_intervals(self, fitted, fit, slope)
         return StudyResults(
             setup=self,
             nominal=before,
@@ -251,10 +259,12 @@ class Study(Setup):
             variants=variants,
             sensitivity=sensitivity,
             calibration=fit,
-            criteria=judged(self, before, fitted),
-            aims=judge(self.plan.aims, fitted.scores, where=f"{self.places.file}: aims"),
+            criteria=criteria,
+            aims=aims,
             residuals=residuals,
             error_sources=sources,
+            diagnosis=causes,
+            days=days(self, fitted, fit, slope, intervals),
             prediction_intervals=intervals,
             profiles=runs.profiled(fit),
             notes=[*too_few(self), *interval_words(self, intervals), *diagnose(residuals.values())],

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
     from mascarin.calibration import Calibration
     from mascarin.study.findings import Findings, ModelRun
+    from mascarin.validation.causes import Diagnosis
     from mascarin.validation.criteria import Verdict
+    from mascarin.validation.days import DayChoice
     from mascarin.weather.quality import Stretch
 
 
@@ -31,7 +33,8 @@ def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:
     Returns
     -------
     dict of str to DataFrame
-        ``metrics``, ``parameters``, ``evaluations``, ``criteria``, ``quality``, ``series``, and
+        ``metrics``, ``parameters``, ``evaluations``, ``criteria``, ``quality``, ``causes``,
+        ``days``, ``series``, and
         ``sensitivity`` if the study has one.
     """
     tables = {
@@ -40,6 +43,8 @@ def tables_of(findings: Findings) -> dict[str, pd.DataFrame]:
         "evaluations": findings.calibration.evaluations(),
         "criteria": criteria_table(findings.criteria),
         "quality": quality_table(findings.quality),
+        "causes": causes_table(findings.diagnosis),
+        "days": days_table(findings.days),
         "series": series_table(findings),
     }
     if findings.sensitivity is not None:
@@ -104,6 +109,37 @@ def quality_table(stretches: Sequence[Stretch]) -> pd.DataFrame:
     return pd.DataFrame(
         [(s.channel, s.kind, s.start, s.end, s.count, s.detail) for s in stretches],
         columns=["channel", "kind", "start", "end", "count", "detail"],
+    )
+
+
+def causes_table(found: Diagnosis) -> pd.DataFrame:
+    """One row for each cause, in their order."""
+    import pandas as pd
+
+    columns = ["group", "what", "subject", "value", "error", "unit", "p", "share", "deviance", "same", "text"]
+    rows = [
+        {**cause.to_dict(), "subject": ", ".join(cause.subject), "same": ", ".join(cause.same)}
+        for cause in found.causes
+    ]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def days_table(found: DayChoice) -> pd.DataFrame:
+    """One row for each day: leverage, expected information, and parts outside of the identification."""
+    import pandas as pd
+
+    order = {d: k for k, d in enumerate(found.proposed, start=1)}
+    return pd.DataFrame(
+        {
+            "day": list(found.days),
+            "used": found.used,
+            "leverage": found.leverage,
+            "ratio": found.ratio,
+            "information": found.information,
+            "reduction": found.reduction,
+            "order": [order.get(d, "") for d in range(len(found.days))],
+            **{f"outside {name}": values for name, values in found.outside.items()},
+        }
     )
 
 

@@ -1,3 +1,5 @@
+from .causes import Cause as Cause
+from .causes import Diagnosis as Diagnosis
 from .comparison import METRICS as METRICS
 from .comparison import Metrics as Metrics
 from .comparison import compare_sensors as compare_sensors
@@ -6,6 +8,8 @@ from .criteria import Criterion as Criterion
 from .criteria import Verdict as Verdict
 from .criteria import judge as judge
 from .criteria import parse_criteria as parse_criteria
+from .days import DayChoice as DayChoice
+from .days import choose_days as choose_days
 from .diagnosis import diagnose as diagnose
 from .error_sources import ErrorSources as ErrorSources
 from .error_sources import explain_missed_aims as explain_missed_aims

@@ -94,8 +94,11 @@ def _cycle_words(e: ResidualAnalysis) -> list[str]:
         )
     if clear and abs(e.delay) > _LAG:
         late = "late" if e.delay > 0.0 else "early"
-        cause = "too much" if e.delay > 0.0 else "too little"
-        texts.append(f"the simulated daily peak is {abs(e.delay):.0f} min {late}: {cause} heat capacity")
+        # A delay alone has several causes; those of the remaining error are told apart by their fit.
+        texts.append(
+            f"the simulated daily peak is {abs(e.delay):.0f} min {late}: a heat capacity, or the clock "
+            "of the sensor"
+        )
     return texts
 
 

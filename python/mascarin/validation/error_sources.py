@@ -185,7 +185,9 @@ def find_error_sources(
     return ErrorSources(tuple(residuals), as_it_is, tuple(steps), every)
 
 
-def explain_missed_aims(aims: Iterable[Verdict], found: ErrorSources, period: str) -> list[str]:
+def explain_missed_aims(
+    aims: Iterable[Verdict], found: ErrorSources, period: str, noise: Mapping[str, float] | None = None
+) -> list[str]:
     """Say of each missed aim whether other values of parameters could reach it.
 
     Parameters
@@ -196,6 +198,8 @@ def explain_missed_aims(aims: Iterable[Verdict], found: ErrorSources, period: st
         From `find_error_sources`.
     period : str
         The period that it was found on.
+    noise : mapping of str to float, optional
+        White noise of each sensor, which no model takes away. [unit of each]
 
     Returns
     -------
@@ -215,7 +219,10 @@ def explain_missed_aims(aims: Iterable[Verdict], found: ErrorSources, period: st
         if aim.passed or aim.metric != "sd" or aim.period != period or aim.sensor not in found.sensors:
             continue
         floor, unit = found.floor(aim.sensor), aim.unit.replace("degC", "K")
-        if floor <= aim.limit:
+        white = (noise or {}).get(aim.sensor, 0.0)
+        if white > aim.limit:
+            why = f"the white noise of the sensor, {white:.2g} {unit}, is above the aim: no model reaches it"
+        elif floor <= aim.limit:
             why = "the equations are sufficient, but the identification data do not determine these values"
         else:
             why = "no parameter values reach the aim: the cause is in the equations or in the weather data"

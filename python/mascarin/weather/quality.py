@@ -20,7 +20,7 @@ from mascarin.weather.switching import is_switched, switched_levels
 if TYPE_CHECKING:
     import pandas as pd
 
-Defect = Literal["stuck", "forward_filled", "spike", "missing", "out_of_range"]
+Defect = Literal["stuck", "forward_filled", "interpolated", "copied", "spike", "missing", "out_of_range"]
 
 _LONGER: Final = 3.0
 """A run of equal values is long when it exceeds the longest usual run of the channel by this factor."""
@@ -56,7 +56,8 @@ class Stretch:
         Column.
     kind : str
         `stuck` (one channel repeats a value while it should change), `forward_filled` (several channels
-        repeat their values over the same rows), `spike`, `missing`, `out_of_range`.
+        repeat their values over the same rows), `interpolated` and `copied` (see `weather.filled`), `spike`,
+        `missing`, `out_of_range`.
     start, end : pandas.Timestamp
         First and last row. Where a value is repeated, `start` is its first repetition.
     count : int

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
+from mascarin.study.days_step import day_words, days_table
 from mascarin.study.document.comparison import comparison
 from mascarin.study.document.estimates import estimates, parameters, prediction_entries, profile_entries
 from mascarin.study.document.header import header
 from mascarin.study.document.phase_change import phase_change
 from mascarin.study.document.sensitivity import importance
+from mascarin.validation.causes import WORDS
 from mascarin.validation.error_sources import explain_missed_aims
 
 if TYPE_CHECKING:
     from mascarin.study.findings import Findings
+    from mascarin.validation.causes import Diagnosis
 
 
 #: Title of the notes on the calibration.
 ESTIMATES = "Calibrated parameters"
+#: Title of the notes on the causes of the remaining error.
+CAUSES = "Causes of the remaining error"
 
 
 def document(findings: Findings) -> dict[str, Any]:
@@ -45,6 +51,8 @@ def document(findings: Findings) -> dict[str, Any]:
         },
         "notes": _notes(findings),
         "aims": [{**verdict.to_dict(), "model": "fitted"} for verdict in findings.aims],
+        "diagnosis": findings.diagnosis.to_dict(),
+        "days": findings.days.to_dict(),
         "phase_change": phase_change(study, findings.fitted),
         "variant_parameters": {
             name: parameters(study, run.fit, study.plan_of(name if name in study.plan.variants else None))
@@ -52,6 +60,9 @@ def document(findings: Findings) -> dict[str, Any]:
             if run.fit is not None
         },
     }
+    content["days"]["table"] = days_table(findings.days)
+    if findings.diagnosis.causes:
+        content["diagnosis"]["table"] = causes_table(findings.diagnosis)
     if findings.error_sources is not None:
         content["shortfall"] = {**findings.error_sources.to_dict(), "period": "blind"}
     if findings.sensitivity is not None:
@@ -59,14 +70,48 @@ def document(findings: Findings) -> dict[str, Any]:
     return content
 
 
+def causes_table(found: Diagnosis) -> dict[str, Any]:
+    """Causes with their evidence, as a table of the report."""
+    rows = [
+        [
+            number,
+            WORDS[cause.what],
+            ", ".join(cause.subject),
+            cause.value if math.isfinite(cause.value) else None,
+            cause.error if math.isfinite(cause.error) else None,
+            cause.unit or "-",
+            100.0 * max(0.0, cause.share) if math.isfinite(cause.share) else None,
+            cause.p if math.isfinite(cause.p) else None,
+        ]
+        for number, cause in enumerate(found.causes, start=1)
+    ]
+    return {
+        "title": CAUSES,
+        "caption": (
+            "Faults of data are named before parameters and forms of the model. Each row takes away its part "
+            "of the sum of squares that is left by the rows above, with the calibrated parameters adjusted "
+            "again. p is the probability of chance. The remarks say what to check."
+        ),
+        "columns": ["no.", "kind", "where", "estimate", "standard error", "unit", "taken away, %", "p"],
+        "rows": rows,
+        "section": "error_sources",
+    }
+
+
 def _notes(findings: Findings) -> list[dict[str, str]]:
     """Notes with the titles under which the report shows them."""
     sources = findings.error_sources
-    missed = [] if sources is None else explain_missed_aims(findings.aims, sources, "blind")
+    missed = (
+        []
+        if sources is None
+        else explain_missed_aims(findings.aims, sources, "blind", findings.diagnosis.noise)
+    )
     titled = (
         (ESTIMATES, findings.calibration.warnings),
         (ESTIMATES, [profile.words for profile in findings.profiles if profile.words]),
+        (CAUSES, [cause.text for cause in findings.diagnosis.causes]),
         ("Residuals", findings.notes),
+        ("Choice of days", day_words(findings.days)),
         ("Aims that are not met", missed),
     )
     return [{"title": title, "text": text} for title, texts in titled for text in texts]

@@ -1,0 +1,132 @@
+"""Evidence for a cause: its significance, and the part of the sum of squares that it takes away."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.validation.joint import Extra, Joint, Solution, Whitening
+
+Floats = NDArray[np.float64]
+
+#: Fewest blocks of the record over which an improvement is compared.
+_BLOCKS: Final = 8
+_DAY: Final = 86400.0
+
+
+def chance(
+    before: tuple[Joint, Solution, Sequence[int]],
+    after: tuple[Joint, Solution, Sequence[int], Sequence[Extra]],
+    *,
+    interval: float,
+    tried: int,
+    deviance: float,
+) -> float:
+    """Probability of an improvement by chance.
+
+    The larger one of two: that of a likelihood ratio (errors with the autocorrelation of the residuals), and
+    that of a t-test over days, which asks that the improvement is not that of a few of them.
+
+    Parameters
+    ----------
+    before, after : tuple
+        Problem, solution and columns without and with the cause.
+    interval : float
+        Between the samples. [s]
+    tried : int
+        Number of causes that were compared (Bonferroni).
+    deviance : float
+        Fall of the deviance.
+
+    Returns
+    -------
+    float
+        [-]
+    """
+    from scipy import stats
+
+    ratio = float(stats.chi2.sf(max(deviance, 0.0), 1))
+    size = len(before[0].residual)
+    length = max(1, min(round(_DAY / interval), size // _BLOCKS))
+    block = np.arange(size) // length
+    improvement = np.zeros(int(block[-1]) + 1)
+    first = before[0].remaining(before[1], before[2])
+    second = after[0].remaining(after[1], after[2], after[3])
+    for s, (one, other) in enumerate(zip(first, second, strict=True)):
+        v, w = before[1].variance[s], after[1].variance[s]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            logs = math.log(v / w)
+        for rows, left, sign, variance in (
+            (before[0].rows[s], one, 1.0, v),
+            (after[0].rows[s], other, -1.0, w),
+        ):
+            improvement += sign * np.bincount(block[rows], left**2 / variance, improvement.size)
+        improvement += logs * np.bincount(block[before[0].rows[s]], minlength=improvement.size)
+    used = improvement[improvement != 0.0]
+    if used.size < 3:
+        return min(1.0, tried * ratio)
+    spread = float(np.std(used, ddof=1)) / math.sqrt(used.size)
+    t = float(np.mean(used)) / max(spread, 1e-300)
+    return min(1.0, max(tried * ratio, float(stats.t.sf(t, used.size - 1))))
+
+
+class Squares:
+    """Sums of squares over the stated uncertainties, before and after a cause; nothing is whitened.
+
+    Offsets within the stated uncertainty help to fit the other columns, and are not taken away themselves.
+
+    Parameters
+    ----------
+    joint : Joint
+        The problem.
+    active : sequence of int
+        Columns that are fitted with and without the cause.
+    uncertainty : ndarray, shape (S,)
+        Standard uncertainty of each sensor. [unit of each]
+    """
+
+    def __init__(self, joint: Joint, active: Sequence[int], uncertainty: Floats) -> None:
+        plain = Whitening(tuple(np.empty(0) for _ in range(joint.sensors)))
+        self._joint = Joint(joint.residual, joint.columns, joint.center, joint.precision, joint.limits, plain)
+        self._active, self._u = list(active), uncertainty
+        self._null = self._joint.solve(self._active)
+        self.before = self._of(self._joint, self._null, self._active, (), None)
+
+    def after(
+        self,
+        *,
+        column: int | None = None,
+        extra: Sequence[Extra] = (),
+        residual: dict[int, Floats] | None = None,
+        offset: int | None = None,
+    ) -> Floats:
+        """Sums with a cause: a column, a column of one sensor, or other residuals; shape (S,). [-]"""
+        joint = self._joint if residual is None else self._joint.with_residual(residual)
+        active = self._active if column is None else [*self._active, column]
+        solution = joint.solve(active, extra)
+        return self._of(joint, solution, active, extra, offset)
+
+    def share(self, after: Floats) -> tuple[float, float]:
+        """Part taken away over all sensors, and of the sensor where it is largest. [-]"""
+        whole = 1.0 - float(after.sum()) / max(float(self.before.sum()), 1e-300)
+        each = 1.0 - after / np.maximum(self.before, 1e-300)
+        return whole, float(each.max(initial=0.0))
+
+    def _of(
+        self,
+        joint: Joint,
+        solution: Solution,
+        active: Sequence[int],
+        extra: Sequence[Extra],
+        gone: int | None,
+    ) -> Floats:
+        left = joint.remaining(solution, active, extra)
+        first = len(joint.columns) - joint.sensors
+        for value, k in zip(solution.values, active, strict=False):
+            if k >= first and k - first != gone:
+                left[k - first] = left[k - first] + value
+        return np.array([float(r @ r) for r in left]) / self._u**2
