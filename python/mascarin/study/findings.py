@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.calibration.form_weights import form_weights
+from mascarin.study.forms import Choice, label
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration, Profile
+    from mascarin.calibration.joint import Joint
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
+    from mascarin.study.error_model import Unknowns
     from mascarin.study.setup import Scores, Setup
     from mascarin.validation.comparison import Metrics
     from mascarin.validation.criteria import Verdict
@@ -22,6 +28,9 @@ if TYPE_CHECKING:
     from mascarin.weather.quality import Stretch
 
     Array = npt.NDArray[np.float64]
+
+#: Forms with less weight are left out of the combination. [-]
+LEAST_WEIGHT: Final = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +62,66 @@ class ModelRun:
 
 
 @dataclass(frozen=True, eq=False)
+class FormFit:
+    """One form of the model with its calibration.
+
+    Attributes
+    ----------
+    choice : tuple
+        Parts and forms that differ from the building as described.
+    run : ModelRun
+        The calibrated model.
+    fit : Calibration
+        The calibration, with the errors.
+    joint : Joint
+        Parameters and errors together.
+    unknown : Unknowns
+        Numbers that are not estimated.
+    """
+
+    choice: Choice
+    run: ModelRun
+    fit: Calibration
+    joint: Joint
+    unknown: Unknowns
+
+    @property
+    def label(self) -> str:
+        """Name in tables."""
+        return label(self.choice)
+
+
+@dataclass(frozen=True, eq=False)
+class Combination:
+    """Calibrated forms of the model and their weights.
+
+    Attributes
+    ----------
+    forms : tuple of FormFit
+        The one with the largest weight first.
+    weights : ndarray
+        Of each; their sum is 1. [-]
+    """
+
+    forms: tuple[FormFit, ...]
+    weights: Array
+
+    @staticmethod
+    def of(forms: list[FormFit]) -> Combination:
+        """Weigh forms by the days left out of their calibration, the best first."""
+        weights = form_weights(np.array([form.joint.by_day for form in forms]))
+        order = np.argsort(-weights, kind="stable")
+        return Combination(tuple(forms[k] for k in order), weights[order])
+
+    @property
+    def kept(self) -> list[tuple[FormFit, float]]:
+        """Forms with a noticeable weight, and their weights, whose sum is 1."""
+        found = [(f, float(w)) for f, w in zip(self.forms, self.weights, strict=True) if w >= LEAST_WEIGHT]
+        total = sum(weight for _, weight in found)
+        return [(form, weight / total) for form, weight in found]
+
+
+@dataclass(frozen=True, eq=False)
 class PredictionIntervals:
     """95 % prediction intervals of the calibrated model.
 
@@ -67,6 +136,9 @@ class PredictionIntervals:
         and that of the model error in the identification period. [unit of each sensor]
     coverage : dict of str to ndarray, shape (S,)
         Part of the measured values inside the interval, by period; NaN where nothing was measured. [-]
+    center : ndarray, shape (n, S)
+        Middle of the interval minus the fitted series: estimated errors of sensor and model, and the distance
+        of other forms of the model; 0 where none are estimated. [unit of each sensor]
     """
 
     confidence: float
@@ -74,6 +146,7 @@ class PredictionIntervals:
     parameters: Array
     error: Array
     coverage: dict[str, Array]
+    center: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +183,8 @@ class Findings:
         Suspicious values of the measured columns.
     seconds : float
         Run time. [s]
+    combination : Combination or None
+        Forms of the model with their weights, where errors of sensors and model are estimated.
     """
 
     setup: Setup
@@ -127,6 +202,7 @@ class Findings:
     notes: list[str]
     quality: list[Stretch]
     seconds: float = field(default=0.0)
+    combination: Combination | None = None
 
     @property
     def passed(self) -> bool:

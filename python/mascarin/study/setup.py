@@ -16,6 +16,7 @@ from mascarin.simulation.initial import Initial, MeasuredStart
 from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, problem
 from mascarin.study.description import IdentificationPlan, StudyFile
+from mascarin.study.forms import Choice, Forms, label
 from mascarin.study.phase_change import melting_layers
 from mascarin.validation.comparison import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from mascarin.calibration import CalibrationProblem
     from mascarin.simulation.options import TimeLike
     from mascarin.simulation.results import Results
-    from mascarin.study.description import StudyPlan
+    from mascarin.study.description import StudyPlan, Variant
     from mascarin.study.locations import Places
     from mascarin.study.opening import Inputs
     from mascarin.validation.criteria import Criterion
@@ -227,8 +228,36 @@ class Setup:
         """The building of a variant; the study's own for None."""
         if variant is None:
             return self.building
+        if variant in self._further:
+            return self.building.replace(self._further[variant].changes)
         with self.places.blame("variants", variant, "changes"):
             return self.building.replace(self.plan.variants[variant].changes)
+
+    @cached_property
+    def forms(self) -> Forms:
+        """Alternatives of the study."""
+        return Forms(self.plan, self.building, self.places)
+
+    @cached_property
+    def _further(self) -> dict[str, Variant]:
+        """Variants that are combinations of alternatives, by name."""
+        return {}
+
+    def variant_of(self, choice: Choice) -> str | None:
+        """Name of the variant for a choice of alternatives; None for the building as described."""
+        if not choice:
+            return None
+        name = f"alternative {label(choice)}"
+        if name not in self._further:
+            self._further[name] = self.forms.variant(choice)
+        return name
+
+    @property
+    def estimates_errors(self) -> bool:
+        """Whether errors of sensors and model are estimated together with the parameters."""
+        plan = self.plan.identification
+        stated = any(sensor.states_errors for sensor in self.plan.sensors.values())
+        return plan is not None and (plan.discrepancy is not None or stated or bool(self.plan.alternatives))
 
     def whole(self, variant: str | None = None) -> Simulation:
         """A model over the whole record, with the state of its phase-change layers."""
@@ -313,7 +342,7 @@ class Setup:
         if variant is None:
             return plan
         known = {parameter.path for parameter in self.building_of(variant).parameters()}
-        own = self.plan.variants[variant]
+        own = self._further.get(variant) or self.plan.variants[variant]
         shared = {
             path: free
             for path, free in plan.parameters.items()

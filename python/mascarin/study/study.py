@@ -13,10 +13,12 @@ from mascarin._io import display
 from mascarin.errors import InputError
 from mascarin.report.folder import read_folder
 from mascarin.study import opening
+from mascarin.study.calibrated import calibrated
 from mascarin.study.checking import check
+from mascarin.study.document.errors import error_words
 from mascarin.study.model_runs import ModelRuns, judged, nominal
 from mascarin.study.outputs import write_all
-from mascarin.study.prediction_intervals import interval_words, prediction_intervals, slopes
+from mascarin.study.prediction_intervals import interval_words
 from mascarin.study.residuals_step import error_sources, examined, too_few
 from mascarin.study.results import StudyResults
 from mascarin.study.setup import Setup
@@ -66,6 +68,8 @@ class Study(Setup):
         Other options of the calibration, such as ``method``, ``starts`` and ``lead``.
     variants : mapping, optional
         Other choices of model: name -> ``changes`` and more.
+    alternatives : mapping, optional
+        Parts of the model whose form is not known: name -> forms with ``changes``, or path -> list of values.
     allow_outside : bool
         Whether the file may name files outside its folder and the data folder (MASCARIN_DATA).
     **options
@@ -116,6 +120,7 @@ class Study(Setup):
         sensitivity: SensitivityPlan | Mapping[str, Any] | bool | None = None,
         identification: Mapping[str, Any] | None = None,
         variants: Mapping[str, Variant | Mapping[str, Any]] | None = None,
+        alternatives: Mapping[str, Any] | None = None,
         allow_outside: bool = False,
         **options: Any,
     ) -> None:
@@ -136,6 +141,8 @@ class Study(Setup):
                 plan["sensitivity"] = {} if sensitivity is True else sensitivity
             if variants:
                 plan["variants"] = variants
+            if alternatives:
+                plan["alternatives"] = alternatives
             if building is None or climate is None or measurements is None:
                 missing = [key for key, value in given.items() if value is None]
                 raise InputError(
@@ -239,11 +246,11 @@ class Study(Setup):
         runs = ModelRuns(self, workspace, progress)
         before = nominal(self)
         sensitivity = None if self.plan.sensitivity is None else runs.sensitivity(self.plan.sensitivity)
-        fitted, fit = runs.fitted()
+        found = calibrated(self, runs)
+        fitted, fit, intervals = found.run, found.fit, found.intervals
         variants = runs.variants()
         residuals = examined(self, fitted)
         sources = error_sources(self, fitted, fit, progress)
-        intervals = prediction_intervals(self, fitted, fit, slopes(self, fitted, fit))
         return StudyResults(
             setup=self,
             nominal=before,
@@ -256,10 +263,16 @@ class Study(Setup):
             residuals=residuals,
             error_sources=sources,
             prediction_intervals=intervals,
-            profiles=runs.profiled(fit),
-            notes=[*too_few(self), *interval_words(self, intervals), *diagnose(residuals.values())],
+            profiles=found.profiles,
+            notes=[
+                *too_few(self),
+                *error_words(self, found.combination),
+                *interval_words(self, intervals),
+                *diagnose(residuals.values()),
+            ],
             quality=self.quality,
             seconds=time.monotonic() - began,
+            combination=found.combination,
         )
 
     def __repr__(self) -> str:
