@@ -108,6 +108,15 @@ def judge(study: Study, values: dict[str, float], chosen: dict[str, str]) -> dic
         # A parameter of another law than the true one has no true value.
         if path in values and not changed:
             held[path] = bool(fit.low[i] <= values[path] <= fit.high[i])
+    scores = {}
+    sd = (fit.high - fit.low) / 2.0
+    for i, path in enumerate(fit.problem.paths):
+        if path in held:
+            scores[path] = float((values[path] - 0.5 * (fit.low[i] + fit.high[i])) / sd[i])
+    run = found.forms[0].run
+    misses = study.observation.simulated(run.results.index, run.results.records) + intervals.center
+    use = study.during["blind"]
+    ratio = np.abs(misses - study.observation.measured)[use] / intervals.half_width[use]
     weight = sum(
         w for f, w in zip(found.forms, found.weights, strict=True)
         if {**dict.fromkeys(chosen, "as described"), **dict(f.choice)} == chosen
@@ -121,6 +130,8 @@ def judge(study: Study, values: dict[str, float], chosen: dict[str, str]) -> dic
         "blind": dict(zip(study.observation.names, intervals.coverage["blind"].tolist(), strict=True)),
         "half": dict(zip(study.observation.names, intervals.half_width.mean(axis=0).tolist(), strict=True)),
         "sd": [periods["blind"].sd for periods in found.forms[0].run.scores.values()],
+        "rms": float(np.sqrt(np.mean(np.square(list(scores.values()))))),
+        "ratio": np.quantile(ratio, 0.95, axis=0).round(2).tolist(),
         "weight": float(weight),
         "best": best,
     }
@@ -151,6 +162,7 @@ def main() -> None:
             f"of the true form {result['weight']:.2f}, {sum(result['held'].values())} of "
             f"{len(result['held'])} inside, blind {[round(100 * b) for b in result['blind'].values()]} %, "
             f"half-width {[round(h, 2) for h in result['half'].values()]} K, scatter {np.round(result['sd'], 2).tolist()}, missed {missed}, "
+            f"rms {result['rms']:.2f}, ratio {result['ratio']}, "
             f"{time.monotonic() - began:.0f} s\n"
         )
         sys.stdout.flush()

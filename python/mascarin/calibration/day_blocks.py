@@ -146,8 +146,8 @@ class DayGaussian:
     A bias of 1 that all days share, and errors of 1 of each value:
 
     >>> found = DayGaussian(np.ones((2, 1, 1)), np.ones((2, 1, 1)), np.ones((2, 1), dtype=bool))
-    >>> round(found.log_density(np.zeros((2, 1))), 6) == round(-0.5 * np.log(3.0) - np.log(2.0 * np.pi), 6)
-    True
+    >>> round(found.log_density(np.zeros((2, 1))), 3)  # -log(3) / 2 - log(2 pi)
+    -2.387
     """
 
     blocks: Floats

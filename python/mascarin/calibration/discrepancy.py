@@ -88,6 +88,9 @@ class Discrepancy:
         Variance of samples about the mean of their slot. [unit^2]
     correlation_hours : float
         Correlation time of the error within a day. [h]
+    alike : float
+        Variance of what the constants of all days have in common, over that of a single day about it, see
+        `alike_days`. [-]
 
     Examples
     --------
@@ -102,6 +105,7 @@ class Discrepancy:
     white: Floats
     within: Floats
     correlation_hours: float
+    alike: float = 0.0
 
     @property
     def spread(self) -> Floats:
@@ -111,7 +115,8 @@ class Discrepancy:
     @property
     def new_day(self) -> Floats:
         """Variance of what differs on each day, for a sample, shape (S,). [unit^2]"""
-        return np.asarray(np.diag(self.day) + np.diag(self.drift) + self.white + self.within)
+        day = (1.0 + self.alike) * np.diag(self.day)
+        return np.asarray(day + np.diag(self.drift) + self.white + self.within)
 
     @property
     def independent(self) -> Floats:
@@ -124,6 +129,37 @@ class Discrepancy:
         everywhere = np.ones_like(kernel)
         white = np.tile(self.white, grid.slots)
         return np.asarray(np.kron(kernel, self.drift) + np.kron(everywhere, self.day) + np.diag(white))
+
+
+def alike_days(days: int, persistence: float) -> float:
+    """Compute how much of the error of a day consecutive days have in common.
+
+    Weather lasts for some days, and so do the errors that depend on it. Consecutive days therefore differ less
+    than days of other weeks will. With correlations ``exp(-lag / persistence)``, whose mean over all pairs of
+    days is c, the common part has the variance ``c / (1 - c)`` times that of a day about it.
+
+    Parameters
+    ----------
+    days : int
+        Number of consecutive days. [-]
+    persistence : float
+        Correlation time of the errors of days. [d]
+
+    Returns
+    -------
+    float
+        [-]
+
+    Examples
+    --------
+    >>> round(alike_days(5, 5.0), 2), alike_days(1, 5.0)
+    (2.16, 0.0)
+    """
+    if days < 2 or persistence <= 0.0:
+        return 0.0
+    lag = np.arange(1, days)
+    mean = float(np.sum((days - lag) * np.exp(-lag / persistence)) / np.sum(days - lag))
+    return mean / (1.0 - mean)
 
 
 def drift_kernel(grid: DayGrid, hours: float) -> Floats:
@@ -172,13 +208,19 @@ class DayData:
         return np.asarray(wide.reshape(days, size, functions * self.sensors))
 
     def gaussian(self, sizes: Discrepancy) -> DayGaussian:
-        """Return the distribution of the errors; its shared effects: known ones, then those that repeat."""
-        columns = np.concatenate([self.known, self.repeating(_root(sizes.hour))], axis=2)
+        """Return the distribution of the errors; its shared effects: known ones, repeating ones, common level."""
+        shared = [self.known, self.repeating(_root(sizes.hour))]
+        if sizes.alike:
+            rows = np.tile(_root(sizes.alike * sizes.day), (self.grid.slots, 1))
+            shared.append(np.broadcast_to(rows, (self.grid.days, *rows.shape)))
+        columns = np.concatenate(shared, axis=2)
         block = sizes.block(self.grid)
         return DayGaussian(np.broadcast_to(block, (self.grid.days, *block.shape)), columns, self.present)
 
 
-def estimate_discrepancy(data: DayData, *, scale: Floats, limit: Floats) -> Discrepancy:
+def estimate_discrepancy(
+    data: DayData, *, scale: Floats, limit: Floats, persistence: float = 0.0
+) -> Discrepancy:
     """Estimate the sizes of the errors by marginal likelihood.
 
     Parameters
@@ -189,16 +231,18 @@ def estimate_discrepancy(data: DayData, *, scale: Floats, limit: Floats) -> Disc
         Standard deviation of each part about which its weak prior is. [unit]
     limit : ndarray, shape (S,)
         Largest standard deviation of each part. [unit]
+    persistence : float
+        Correlation time of the errors of days, see `alike_days`. [d]
 
     Returns
     -------
     Discrepancy
         That with the largest density over the correlation times `CORRELATION_HOURS`.
     """
-    prior = np.diag(scale**2)
+    prior, alike = np.diag(scale**2), alike_days(data.grid.days, persistence)
     best, density = None, -np.inf
     for hours in CORRELATION_HOURS:
-        start = Discrepancy(prior, prior, prior, scale**2, data.within, hours)
+        start = Discrepancy(prior, prior, prior, scale**2, data.within, hours, alike)
         found = _maximized(data, start, scale, limit, _TRIAL)
         reached = data.gaussian(found).log_density(data.error)
         if best is None or reached > density:
@@ -222,12 +266,17 @@ def _maximized(
         weighted = now.solve(data.error).reshape(shape)
         inverse = now.inverse_blocks.reshape(grid.days, grid.slots, sensors, grid.slots, sensors)
         found: dict[str, Floats] = {}
+        of_hour = (functions * weighted.reshape(grid.days, -1, 1)).sum(axis=(0, 1)).reshape(-1, sensors)
+        spread = (np.swapaxes(functions, 1, 2) @ now.solve(functions)).sum(axis=0)
         for name, kernel in kernels.items():
             square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
             trace = np.einsum("dhsgt,hg->st", inverse, kernel, optimize=True)
+            if name == "day" and sizes.alike:
+                # The first function of the error by hour is a constant, that of the common level.
+                level = sizes.alike / _SPECTRUM[0]
+                square = square + level * np.outer(of_hour[0], of_hour[0])
+                trace = trace + level * spread[:sensors, :sensors]
             found[name] = _step(getattr(sizes, name), square, trace, prior, limit)
-        of_hour = np.einsum("dnk,dn->k", functions, weighted.reshape(grid.days, -1)).reshape(-1, sensors)
-        spread = (np.swapaxes(functions, 1, 2) @ now.solve(functions)).sum(axis=0)
         count = of_hour.shape[0]
         trace = np.einsum("kskt->st", spread.reshape(count, sensors, count, sensors))
         found["hour"] = _step(sizes.hour, of_hour.T @ of_hour, trace, prior, limit)

@@ -13,12 +13,16 @@ Bayesian Analysis 13, 917, section 3.4 (pseudo-BMA+). https://doi.org/10.1214/17
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+
+CLEARLY: Final = 4.0
+"""Difference of the log density of all days below which no form is clearly better; odds of 55 to 1. [-]"""
 
 _REPLICATES: Final = 4000
 _SEED: Final = 20
@@ -52,6 +56,45 @@ def form_weights(by_day: Floats) -> Floats:
     weight /= weight.sum(axis=1, keepdims=True)
     mean = weight.mean(axis=0)
     return np.asarray(mean / mean.sum())
+
+
+def simplest(by_day: Floats, changes: list[int]) -> int:
+    """Choose the form to use: the simplest one that is not clearly worse than the best.
+
+    A form is clearly worse if the best one predicts the days left out better by more than two standard errors
+    of the difference, and by more than `CLEARLY`.
+
+    Parameters
+    ----------
+    by_day : ndarray, shape (K, D)
+        Log density of each day given all other days, by form.
+    changes : list of int, length K
+        In how many parts each form differs from the model as described. [-]
+
+    Returns
+    -------
+    int
+        Number of the form.
+
+    References
+    ----------
+    Hastie T., Tibshirani R., Friedman J. (2009), The Elements of Statistical Learning, 7.10 (rule of one
+    standard error). https://doi.org/10.1007/978-0-387-84858-7
+
+    Examples
+    --------
+    >>> simplest(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5], [9.0, 11.0, 12.0]]), [0, 1, 1])
+    2
+    >>> simplest(np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 3.5]]), [0, 1])
+    0
+    """
+    total = by_day.sum(axis=1)
+    best = int(total.argmax())
+    days = by_day.shape[1]
+    less = by_day[best] - by_day
+    doubt = 2.0 * math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
+    near = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, CLEARLY))
+    return int(min(near, key=lambda k: (changes[k], -total[k])))
 
 
 def weighted_quantiles(samples: list[Floats], weights: Floats, levels: Floats) -> Floats:

@@ -78,6 +78,8 @@ class ErrorStatement:
         Time between samples. [s]
     limit : ndarray, shape (S,)
         Largest standard deviation of each part of the error of the model. [unit]
+    persistence : float
+        Correlation time of the errors of days. [d]
     further : tuple of str
         Names of other unknown quantities of sensors, K of them; see `Linear`.
     """
@@ -86,6 +88,7 @@ class ErrorStatement:
     hours: Floats
     step: float
     limit: Floats
+    persistence: float = 5.0
     further: tuple[str, ...] = field(default=())
 
 
@@ -181,7 +184,9 @@ class Joint:
         root = np.linalg.cholesky(self.sizes.hour)
         repeating = hour_basis(hours)[:, None, :, None] * root[None, :, None, :]
         shape = (*jacobian.shape[:2], -1)
-        return np.concatenate([jacobian, known, repeating.reshape(shape)], axis=2)
+        # The level that the days of the identification have in common says nothing of other days.
+        level = np.zeros((*jacobian.shape[:2], root.shape[0] if self.sizes.alike else 0))
+        return np.concatenate([jacobian, known, repeating.reshape(shape), level], axis=2)
 
 
 def joint(
@@ -207,26 +212,57 @@ def joint(
     -------
     Joint
     """
-    center, spread = _priors(problem)
-    data = _data(problem, linear, stated, center, spread)
-    if sizes is None:
-        sizes = estimate_discrepancy(data, scale=_scale(problem), limit=stated.limit)
-    gaussian = data.gaussian(sizes)
-    count = center.size
-    unit = gaussian.coefficients(data.error)
-    scale = np.ones(unit.size)
-    scale[:count] = spread
-    mean = unit * scale
-    mean[:count] += center
+    gaussian, data, mean, scale, sizes = _estimated(problem, linear, stated, sizes)
+    count = len(problem.parameters)
     covariance = gaussian.covariance * np.outer(scale, scale)
-    z = _most_probable(gaussian, mean, scale, count)
     sample = within_bounds(mean[:count], covariance[:count, :count], np.zeros(count), np.ones(count))
     bounded_mean, bounded = _bounded(mean, covariance, sample)
     names = (*sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1], *stated.further)
     return Joint(
-        z, bounded_mean, bounded, sample, sizes, names,
-        gaussian.left_out(data.error), gaussian.log_density(data.error),
-    )  # fmt: skip
+        _most_probable(gaussian, mean, scale, count),
+        bounded_mean,
+        bounded,
+        sample,
+        sizes,
+        names,
+        gaussian.left_out(data.error),
+        gaussian.log_density(data.error),
+    )
+
+
+def best_positions(
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None = None
+) -> tuple[Floats, Discrepancy]:
+    """Find the most probable positions alone, with the sizes of the errors; the arguments are those of `joint`.
+
+    Returns
+    -------
+    ndarray, shape (P,)
+        Within the ranges. [-]
+    Discrepancy
+        Sizes of the errors of the model.
+    """
+    gaussian, _, mean, scale, sizes = _estimated(problem, linear, stated, sizes)
+    return _most_probable(gaussian, mean, scale, len(problem.parameters)), sizes
+
+
+def _estimated(
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None
+) -> tuple[DayGaussian, DayData, Floats, Floats, Discrepancy]:
+    """Distribution and data, mean of all coefficients without bounds and their scale, sizes of the errors."""
+    center, spread = _priors(problem)
+    data = _data(problem, linear, stated, center, spread)
+    if sizes is None:
+        sizes = estimate_discrepancy(
+            data, scale=_scale(problem), limit=stated.limit, persistence=stated.persistence
+        )
+    gaussian = data.gaussian(sizes)
+    unit = gaussian.coefficients(data.error)
+    scale = np.ones(unit.size)
+    scale[: center.size] = spread
+    mean = unit * scale
+    mean[: center.size] += center
+    return gaussian, data, mean, scale, sizes
 
 
 def objective(

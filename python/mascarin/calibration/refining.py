@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.evaluations import Evaluator
-from mascarin.calibration.joint import ErrorStatement, Joint, Linear, joint, objective
+from mascarin.calibration.joint import ErrorStatement, Joint, Linear, best_positions, joint, objective
 from mascarin.calibration.least_squares import residuals_and_derivatives
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.result import Calibration
@@ -86,9 +86,8 @@ def _searched(
     here = linear(first)
     sizes = None
     for step in range(_STEPS):
-        found = joint(problem, here, stated, sizes if step >= _ESTIMATED else None)
-        sizes = found.sizes
-        before, goal = objective(problem, here, stated, sizes), found.z
+        goal, sizes = best_positions(problem, here, stated, sizes if step >= _ESTIMATED else None)
+        before = objective(problem, here, stated, sizes)
         for _ in range(_HALVINGS):
             there = linear(goal)
             after = objective(problem, there, stated, sizes)

@@ -59,6 +59,7 @@ def calibrated(study: Setup, runs: ModelRuns) -> Calibrated:
     fit, intervals = estimates_of(study, found), combined_intervals(study, found)
     note = "after the calibration; its parameters are the same on all other days"
     if len(found.forms) > 1:
-        note += f"; of {len(found.forms)} forms '{best.label}' predicts the days left out best"
+        note += f"; of {len(found.forms)} forms '{best.label}' is the simplest of those that "
+        note += "predict the days left out best"
     run = replace(best.run, label="fitted", fit=fit, note=note)
-    return Calibrated(run, fit, intervals, runs.profiled(runs.candidate(None)[1]), found)
+    return Calibrated(run, fit, intervals, runs.profiled(runs.plain()), found)

@@ -69,10 +69,11 @@ def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
     observation, hours = study.observation, local_hours(study)
     shape = observation.measured.shape
     mean, square, of_parameters = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    effects: dict[str, Array] = {}
     new_day, noise = np.zeros(shape[1]), np.zeros(shape[1])
     fitted = observation.simulated(found.forms[0].run.results.index, found.forms[0].run.results.records)
     for form, weight in found.kept:
-        about, variance, parameters, own, white = _predicted(study, form, hours)
+        about, variance, parameters, own, white = _predicted(study, form, hours, effects)
         simulated = observation.simulated(form.run.results.index, form.run.results.records)
         there = simulated + about
         mean += weight * there
@@ -91,7 +92,9 @@ def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
     return PredictionIntervals(confidence, half, np.sqrt(of_parameters), np.sqrt(new_day), coverage, center)
 
 
-def _predicted(study: Setup, form: FormFit, hours: Array) -> tuple[Array, Array, Array, Array, Array]:
+def _predicted(
+    study: Setup, form: FormFit, hours: Array, effects: dict[str, Array]
+) -> tuple[Array, Array, Array, Array, Array]:
     """Expected measured minus simulated value, its variance, that of the parameters, of a day, of a value.
 
     Shapes (n, S), (n, S), (n, S), (S,) and (S,); sensors that are not used have an error of their own size.
@@ -101,20 +104,27 @@ def _predicted(study: Setup, form: FormFit, hours: Array) -> tuple[Array, Array,
     named = used_sensors(study)
     columns = [study.observation.names.index(name) for name in named]
     base = form.run.simulation.vector(form.fit.values)
-    every = effects_of_unknowns(study, form.run.simulation, base, form.unknown.numbers)
+    # Effects of one form serve all others that have the same numbers: they only give the width.
+    missing = [number for number in form.unknown.numbers if number.path not in effects]
+    if missing:
+        own_effects = effects_of_unknowns(study.observation, form.run.simulation, base, missing)
+        effects |= {number.path: own_effects[:, :, k] for k, number in enumerate(missing)}
+    every = np.zeros((*slope.shape[:2], len(form.unknown.numbers)))
+    for k, number in enumerate(form.unknown.numbers):
+        every[:, :, k] = effects[number.path]
     further = every @ form.unknown.directions
-    effects = np.concatenate([effects_of_sensors(study, form.run), further], axis=2)
+    simulated = study.observation.simulated(form.run.results.index, form.run.results.records)
+    known = np.concatenate([effects_of_sensors(study, simulated), further], axis=2)
     z = form.fit.problem.positions(form.fit.x)
     about, variance = np.zeros(slope.shape[:2]), np.zeros(slope.shape[:2])
     own, white = np.zeros(slope.shape[1]), np.zeros(slope.shape[1])
     parameters = np.einsum("tsp,pq,tsq->ts", slope, joint.covariance[:count, :count], slope, optimize=True)
-    used = joint.effects(slope[:, columns], effects[:, columns], hours)
+    used = joint.effects(slope[:, columns], known[:, columns], hours)
     about[:, columns], variance[:, columns] = joint.predicted(used, z)
     # What the identification does not tell of these numbers remains as uncertain as it was.
     variance += np.maximum(np.sum(every**2, axis=2) - np.sum(further**2, axis=2), 0.0)
     own[columns], white[columns] = joint.sizes.new_day, joint.sizes.independent
     seen = study.during["identification"]
-    simulated = study.observation.simulated(form.run.results.index, form.run.results.records)
     for s in range(own.size):
         if s not in columns:
             misses = (simulated - study.observation.measured)[seen, s]

@@ -221,6 +221,11 @@ class DiscrepancyPlan(Part):
         description="Largest standard deviation of each part of the error, relative to the measured range "
         "of the sensor in the identification period [-]",
     )
+    persistence: Duration = Field(
+        "5d",
+        description="Correlation time of the errors of days: consecutive days differ less than days of other "
+        "weeks will",
+    )
 
 
 class IdentificationPlan(Part):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,6 +14,7 @@ from mascarin.calibration.refining import refined
 from mascarin.calibration.sensor_errors import error_columns
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.description import DiscrepancyPlan
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
     from mascarin.calibration.joint import Joint
     from mascarin.calibration.sensor_errors import SensorError
     from mascarin.simulation.simulation import Simulation
-    from mascarin.study.findings import ModelRun
     from mascarin.study.setup import Setup
+    from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
 
@@ -120,6 +121,7 @@ def statement(study: Setup, fit: Calibration, further: tuple[str, ...] = ()) -> 
         local_hours(study)[seen],
         study.observation.interval,
         np.array([max(plan.limit * sensor.span, 1e-9) for sensor in fit.problem.sensors]),
+        seconds_of(plan.persistence) / 86400.0,
         further,
     )
 
@@ -150,7 +152,7 @@ def with_errors(study: Setup, variant: str | None, fit: Calibration) -> tuple[Ca
     columns = [s for s, name in enumerate(study.observation.names) if study.plan.sensors[name].use]
     base = short.vector(fit.values)
     every = unknowns(study, short, fit)
-    effects = effects_of_unknowns(study, short, base, every)[seen][:, columns]
+    effects = effects_of_unknowns(_part(study.observation, seen), short, base, every)[:, columns]
     sigma, mask = fit.problem.sigma, fit.problem.mask
     scaled = (effects / np.where(mask, sigma, 1.0)[:, :, None])[mask]
     # A thinned series has the same combinations; the product would take longer than all else.
@@ -164,9 +166,8 @@ def with_errors(study: Setup, variant: str | None, fit: Calibration) -> tuple[Ca
     return found, joint, Unknowns(tuple(every), directions)
 
 
-def effects_of_sensors(study: Setup, run: ModelRun) -> Array:
-    """Effects of the errors of used sensors on all series of a run, shape (n, S, k). [unit of each]"""
-    simulated = study.observation.simulated(run.results.index, run.results.records)
+def effects_of_sensors(study: Setup, simulated: Array) -> Array:
+    """Effects of the errors of used sensors on simulated series (n, S), shape (n, S, k). [unit of each]"""
     named = used_sensors(study)
     errors = sensor_errors(study, named)
     columns = [study.observation.names.index(name) for name in named]
@@ -176,15 +177,20 @@ def effects_of_sensors(study: Setup, run: ModelRun) -> Array:
     return wide
 
 
+def _part(observation: Observation, use: npt.NDArray[np.bool_]) -> Observation:
+    """The same observation at some of its instants."""
+    return replace(observation, times=observation.times[use], measured=observation.measured[use])
+
+
 def effects_of_unknowns(
-    study: Setup, simulation: Simulation, base: Array, unknown: Sequence[Unknown]
+    observation: Observation, simulation: Simulation, base: Array, unknown: Sequence[Unknown]
 ) -> Array:
     """Effects of numbers that are not estimated on all series.
 
     Parameters
     ----------
-    study : Setup
-        Gives the instants of the comparison.
+    observation : Observation
+        Gives the instants.
     simulation : Simulation
         The model.
     base : ndarray
@@ -197,7 +203,7 @@ def effects_of_unknowns(
     ndarray, shape (n, S, K)
         For one standard uncertainty; 0 where the model cannot be run. [unit of each sensor]
     """
-    sensors = len(study.observation.names)
+    sensors = len(observation.names)
     moved, steps = [base], []
     for one in unknown:
         parameter = simulation.building.parameter(one.path)
@@ -209,8 +215,7 @@ def effects_of_unknowns(
     parts = []
     for first in range(0, len(moved), _BATCH):
         records, _, _ = simulation.ensemble(np.array(moved[first : first + _BATCH]))
-        parts.append(study.observation.simulated(simulation.index, records[..., :sensors]))
+        parts.append(observation.simulated(simulation.index, records[..., :sensors]))
     series = np.concatenate(parts)
     found = (series[1:] - series[0]) / np.array(steps).reshape(-1, 1, 1)
-    # Outside of the run, such as before the identification, there is no value, and nobody asks for one.
     return np.moveaxis(np.nan_to_num(found), 0, -1)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.calibration.form_weights import form_weights
+from mascarin.calibration.form_weights import form_weights, simplest
 from mascarin.study.forms import Choice, label
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ class Combination:
     Attributes
     ----------
     forms : tuple of FormFit
-        The one with the largest weight first.
+        The one that is used first, then those with the largest weights.
     weights : ndarray
         Of each; their sum is 1. [-]
     """
@@ -108,15 +108,18 @@ class Combination:
 
     @staticmethod
     def of(forms: list[FormFit]) -> Combination:
-        """Weigh forms by the days left out of their calibration, the best first."""
-        weights = form_weights(np.array([form.joint.by_day for form in forms]))
-        order = np.argsort(-weights, kind="stable")
+        """Weigh forms by the days left out of their calibration; the one to use comes first."""
+        by_day = np.array([form.joint.by_day for form in forms])
+        weights = form_weights(by_day)
+        used = simplest(by_day, [len(form.choice) for form in forms])
+        order = [used, *(int(k) for k in np.argsort(-weights, kind="stable") if k != used)]
         return Combination(tuple(forms[k] for k in order), weights[order])
 
     @property
     def kept(self) -> list[tuple[FormFit, float]]:
         """Forms with a noticeable weight, and their weights, whose sum is 1."""
-        found = [(f, float(w)) for f, w in zip(self.forms, self.weights, strict=True) if w >= LEAST_WEIGHT]
+        pairs = list(zip(self.forms, self.weights.tolist(), strict=True))
+        found = [pairs[0], *(pair for pair in pairs[1:] if pair[1] >= LEAST_WEIGHT)]
         total = sum(weight for _, weight in found)
         return [(form, weight / total) for form, weight in found]
 
@@ -222,8 +225,8 @@ class Findings:
 def scores_of(runs: Mapping[str, ModelRun]) -> dict[str, dict[str, dict[str, Metrics]]]:
     """Metrics as sensor -> period -> model."""
     found: dict[str, dict[str, dict[str, Metrics]]] = {}
-    for label, run in runs.items():
+    for model, run in runs.items():
         for sensor, periods in run.scores.items():
             for period, metrics in periods.items():
-                found.setdefault(sensor, {}).setdefault(period, {})[label] = metrics
+                found.setdefault(sensor, {}).setdefault(period, {})[model] = metrics
     return found

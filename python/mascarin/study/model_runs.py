@@ -51,6 +51,7 @@ class ModelRuns:
         self._setup = setup
         self._workspace = workspace
         self._progress = progress
+        self._fits: dict[str | None, Calibration] = {}
         self._calibrated: dict[str | None, tuple[ModelRun, Calibration]] = {}
 
     def sensitivity(self, plan: SensitivityPlan) -> Sensitivity:
@@ -144,36 +145,45 @@ class ModelRuns:
     def _form(self, choice: Choice) -> FormFit:
         """One form of the model, its search started at the estimates of the building as described."""
         setup, name = self._setup, self._setup.variant_of(choice)
-        note = "the building as described" if name is None else label(choice)
-        if name is None:
-            run, plain = self.candidate(None)
-        else:
-            run, plain = self._identified(label(choice), name, note, self.candidate(None)[1])
+        first = None if name is None else self._plain(None)
+        plain = self._plain(name, first)
         with reporting(self._progress, f"errors of sensors and model ({label(choice)})"):
             fit, joint, unknown = with_errors(setup, name, plain)
-        whole = run.simulation
+        whole = setup.whole(name)
+        note = "the building as described" if name is None else label(choice)
         run = compared(setup, label(choice), whole, whole.vector(fit.values), fit, note)
         return FormFit(choice, run, fit, joint, unknown)
 
-    def _identified(
-        self, label: str, variant: str | None, note: str, first: Calibration | None = None
-    ) -> tuple[ModelRun, Calibration]:
-        setup = self._setup
-        stated, plan, options = setup.problem(variant), setup.sought, {}
+    def _identified(self, label: str, variant: str | None, note: str) -> tuple[ModelRun, Calibration]:
+        fit, whole = self._plain(variant), self._setup.whole(variant)
+        return compared(self._setup, label, whole, whole.vector(fit.values), fit, note), fit
+
+    def plain(self) -> Calibration:
+        """The calibration of the building as described, without errors of sensors and model."""
+        return self._plain(None)
+
+    def _plain(self, variant: str | None, first: Calibration | None = None) -> Calibration:
+        """A calibration, its search started at the estimates of another one if there is one."""
+        if variant in self._fits:
+            return self._fits[variant]
+        setup, label = self._setup, "as described" if variant is None else variant
+        stated, plan, tolerance = setup.problem(variant), setup.sought, None
         if first is not None:
-            stated, plan = _starting(stated, first), plan.model_copy(update={"starts": 1})
-            options["tolerance"] = _TOLERANCE
+            stated, plan, tolerance = (
+                _starting(stated, first),
+                plan.model_copy(update={"starts": 1}),
+                _TOLERANCE,
+            )
         with reporting(self._progress, f"calibration ({label})") as report:
-            fit = identify(
+            self._fits[variant] = identify(
                 setup.short(variant),
                 stated,
                 plan,
                 record=self._workspace.path(f"evaluations-{_safe(label)}.jsonl"),
                 progress=_searching(report),
-                **options,
+                tolerance=tolerance,
             )
-        whole = setup.whole(variant)
-        return compared(setup, label, whole, whole.vector(fit.values), fit, note), fit
+        return self._fits[variant]
 
     def _variant(self, name: str, variant: Variant) -> ModelRun:
         if variant.identify:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -28,10 +28,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
+    from mascarin.building.parameters import Parameter
     from mascarin.calibration import CalibrationProblem
     from mascarin.simulation.options import TimeLike
     from mascarin.simulation.results import Results
-    from mascarin.study.description import StudyPlan, Variant
+    from mascarin.study.description import Free, StudyPlan, Variant
     from mascarin.study.locations import Places
     from mascarin.study.opening import Inputs
     from mascarin.validation.criteria import Criterion
@@ -40,6 +41,9 @@ if TYPE_CHECKING:
     from mascarin.weather.quality import Stretch
 
     Flags = npt.NDArray[np.bool_]
+
+#: Standard deviation of the prior of a parameter of a law that replaces another one. [ranges]
+_PRIOR: Final = 0.25
 
 Scores = dict[str, dict[str, Metrics]]
 """Metrics by sensor and period."""
@@ -341,10 +345,10 @@ class Setup:
         plan = self.sought
         if variant is None:
             return plan
-        known = {parameter.path for parameter in self.building_of(variant).parameters()}
+        known = {parameter.path: parameter for parameter in self.building_of(variant).parameters()}
         own = self._further.get(variant) or self.plan.variants[variant]
         shared = {
-            path: free
+            path: _stated_for(known[self.building.parameter(path).path], free, own)
             for path, free in plan.parameters.items()
             if not own.alone and self.building.parameter(path).path in known
         }
@@ -388,3 +392,19 @@ class Setup:
             "measurements": found["measurements"],
             "climate": found["climate"],
         }
+
+
+def _stated_for(parameter: Parameter, free: Free | None, variant: Variant) -> Free | None:
+    """What a study states of a parameter, for a variant that may have replaced the part that it belongs to.
+
+    A number of the same name in another law has its own range; its prior is as wide, relative to the range,
+    as priors usually are.
+    """
+    replaced = any(
+        parameter.path.startswith(f"{path}.") and not isinstance(value, int | float)
+        for path, value in variant.changes.items()
+    )
+    if free is None or not replaced:
+        return free
+    prior = None if free.prior is None else _PRIOR * (parameter.high - parameter.low)
+    return free.model_copy(update={"low": None, "high": None, "start": None, "prior": prior})

@@ -42,20 +42,17 @@ def error_words(study: Setup, found: Combination | None) -> list[str]:
     if found is None:
         return []
     words = []
-    best, others = found.kept[0], found.kept[1:]
+    used, others = found.kept[0], found.kept[1:]
     if len(found.forms) > 1:
-        said = f"'{best[0].label}' predicts the days left out of the identification best"
         named = [f"'{form.label}' ({100 * weight:.0f} %)" for form, weight in others if weight >= _NAMED]
+        said = f"Form of the model: '{used[0].label}' is used (weight {100 * used[1]:.0f} %)"
         if named:
             words.append(
-                f"Form of the model: {said} (weight {100 * best[1]:.0f} %). The identification does not tell it "
-                f"from {', '.join(named)}; the intervals of parameters and predictions cover all of them."
+                f"{said}. The identification does not tell it from {', '.join(named)}; the intervals of "
+                "parameters and predictions cover all of them."
             )
         else:
-            words.append(
-                f"Form of the model: {said} (weight {100 * best[1]:.0f} %); no other of {len(found.forms)} "
-                "forms comes near."
-            )
+            words.append(f"{said}; none of the other {len(found.forms) - 1} forms comes near.")
     for name, entry in _of_model(study, found).items():
         full = [part for part in _PARTS if entry[part] >= _REACHED * entry["limit"]]
         words += [
