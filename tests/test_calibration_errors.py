@@ -100,8 +100,8 @@ def test_slots_are_averaged_over_what_is_there() -> None:
 
 def test_with_many_sensors_the_slots_are_longer() -> None:
     hours = np.arange(0.0, 120.0, 0.25)
-    assert DayGrid.of(hours, interval=0.25, sensors=6).slots == 12
-    assert DayGrid.of(hours, interval=0.25, sensors=20).slots == 4
+    assert DayGrid.of(hours, interval=0.25, sensors=6).slots == 24
+    assert DayGrid.of(hours, interval=0.25, sensors=20).slots == 6
 
 
 def data_of(error: Floats, slots: int, sensors: int = 1) -> DayData:
@@ -220,7 +220,7 @@ def test_an_offset_is_estimated_with_the_parameter_as_in_closed_form() -> None:
 
 
 def test_a_stated_offset_no_longer_moves_the_parameter() -> None:
-    """A response that never changes its sign takes an offset for a change of the parameter; stated, it does not."""
+    """A response that never changes its sign takes an offset for a change of the parameter."""
     hours = np.arange(120.0)
     slope = 1.0 + np.sin(2.0 * np.pi * hours / 24.0)
     measured = 20.0 + slope + 0.3 + 0.02 * np.random.default_rng(6).normal(size=120)

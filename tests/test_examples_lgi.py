@@ -184,6 +184,7 @@ def test_all_outdoor_surfaces_have_one_law_in_an_alternative() -> None:
         building = study.building_of(study.variant_of((("outside convection", name),)))
         for surface, entry in building.surfaces.items():
             if entry.outside.outdoors and not (kind == "doe2" and surface in ("door", "jalousie")):
+                assert entry.outside.convection is not None
                 assert entry.outside.convection.kind == kind, surface
 
 

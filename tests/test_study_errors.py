@@ -66,7 +66,7 @@ def test_the_offset_is_found_at_the_sensor_that_has_it(content: dict[str, Any]) 
     assert abs(core["estimate"] - OFFSET) < 2.0 * core["standard_uncertainty"]
     assert core["standard_uncertainty"] < 0.75 * core["stated"]
     assert abs(found["joint offset"]["estimate"]) < 0.1
-    # 0.1 K of a sensor that scatters by 0.03 K: what the rest of the stated uncertainty leaves for the offset.
+    # Stated are 0.1 K in all, of which 0.03 K are scatter: the offset has the rest.
     assert found["joint offset"]["stated"] == pytest.approx(np.sqrt(0.1**2 - 0.03**2))
 
 
@@ -101,11 +101,18 @@ def test_the_intervals_hold_the_blind_values_about_the_expected_reading(
 
 def test_tables_and_notes_are_in_the_report(content: dict[str, Any], folder: Path) -> None:
     titles = [table["title"] for table in content["tables"]]
-    assert titles == ["Prediction intervals", "Forms of the model", "Errors of the sensors", "Errors of the model"]
+    assert titles == [
+        "Prediction intervals",
+        "Forms of the model",
+        "Errors of the sensors",
+        "Errors of the model",
+    ]
     page = (folder / "out" / "report.html").read_text(encoding="utf-8")
     for title in titles:
         assert title in page
-    assert any(note["text"].startswith("Form of the model: 'as described' is used") for note in content["notes"])
+    assert any(
+        note["text"].startswith("Form of the model: 'as described' is used") for note in content["notes"]
+    )
 
 
 def test_a_list_of_values_leaves_out_the_one_of_the_building(folder: Path) -> None:

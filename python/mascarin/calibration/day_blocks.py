@@ -31,9 +31,12 @@ Flags = NDArray[np.bool_]
 
 #: Length of a slot that is tried, the shortest first. [h]
 _SLOTS: Final = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
-#: Largest size of a block. With larger matrices the linear algebra libraries would use several threads, which
-#: wait for each other on a busy machine; with more days blocks are smaller, so that the work stays the same.
-_LARGEST: Final = 96
+#: Largest size of a block, of one that is inverted at once, and number of products of one multiplication:
+#: with more the linear algebra libraries use several threads, which wait for each other on a busy machine.
+#: With more days blocks are smaller, so that the work stays the same.
+_LARGEST: Final = 144
+_AT_ONCE: Final = 60
+_TOGETHER: Final = 200_000
 _WORK: Final = 4e7
 
 
@@ -155,39 +158,41 @@ class DayGaussian:
     present: Flags
 
     @cached_property
-    def _inverse(self) -> tuple[Floats, float]:
-        """Inverses of the blocks with zeros where nothing is there, and the log determinant of all."""
-        # Most days have the same block and the same values, so that one inverse serves them all.
+    def _alike(self) -> tuple[Floats, Flags, NDArray[np.int64]]:
+        """Different blocks, with ones on the diagonal where nothing is there, and which of them each day has.
+
+        Most days have the same block and the same values, so that one inverse serves them all.
+        """
         patterns, which = np.unique(self.present, axis=0, return_inverse=True)
-        which = which.reshape(-1)
-        alike = self.blocks.strides[0] == 0
-        first = (
-            [int(np.flatnonzero(which == k)[0]) for k in range(len(patterns))] if alike else range(len(which))
-        )
-        chosen = np.array(first)
-        present, blocks = self.present[chosen], self.blocks[chosen]
-        both = present[:, :, None] & present[:, None, :]
-        eye = np.eye(blocks.shape[1])
-        blocks = np.where(both, blocks, np.where(present[:, :, None], 0.0, eye))
-        root = np.linalg.cholesky(blocks)
-        inverse = np.linalg.inv(blocks)
+        which = which.reshape(-1).astype(np.int64)
+        if self.blocks.strides[0] != 0:
+            patterns, which = self.present, np.arange(len(which))
+        first = [int(np.flatnonzero(which == k)[0]) for k in range(len(patterns))]
+        both = patterns[:, :, None] & patterns[:, None, :]
+        eye = np.eye(self.blocks.shape[1])
+        blocks = np.where(both, self.blocks[first], np.where(patterns[:, :, None], 0.0, eye))
+        return blocks, both, which
+
+    @cached_property
+    def _inverse(self) -> Floats:
+        """Inverses of the blocks, zero where nothing is there, shape (D, n, n)."""
+        blocks, both, which = self._alike
+        inverse = inverted(blocks)
         inverse = np.where(both, 0.5 * (inverse + np.swapaxes(inverse, 1, 2)), 0.0)
-        logdet = 2.0 * np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
-        each = which if alike else np.arange(len(which))
-        return inverse[each], float(logdet[each].sum())
+        return np.asarray(inverse[which])
 
     @cached_property
     def _shared(self) -> tuple[Floats, Floats]:
         """``B^-1 U``, and ``I + U' B^-1 U``: the precision of the coefficients after the data."""
         used = np.where(self.present[:, :, None], self.columns, 0.0)
-        weighted = self._inverse[0] @ used
-        precision = np.eye(used.shape[2]) + (np.swapaxes(used, 1, 2) @ weighted).sum(axis=0)
+        weighted = product(self._inverse, used)
+        precision = np.eye(used.shape[2]) + product(np.swapaxes(used, 1, 2), weighted).sum(axis=0)
         return weighted, 0.5 * (precision + precision.T)
 
     @cached_property
     def covariance(self) -> Floats:
         """Covariance of the coefficients after the data, shape (q, q). [-]"""
-        found = np.linalg.inv(self._shared[1])
+        found = inverted(self._shared[1][None])[0]
         return np.asarray(0.5 * (found + found.T))
 
     @property
@@ -203,19 +208,21 @@ class DayGaussian:
         """Multiply values (D, n) or (D, n, k) with the inverse of the covariance. [1/unit]"""
         wide = values if values.ndim == 3 else values[:, :, None]
         weighted = self._shared[0]
-        inner = (np.swapaxes(weighted, 1, 2) @ wide).sum(axis=0)
-        found = self._inverse[0] @ wide - weighted @ (self.covariance @ inner)
+        inner = product(np.swapaxes(weighted, 1, 2), wide).sum(axis=0)
+        found = product(self._inverse, wide) - product(weighted, (self.covariance @ inner)[None])
         return np.asarray(found if values.ndim == 3 else found[:, :, 0])
 
     @cached_property
     def inverse_blocks(self) -> Floats:
         """Blocks of the days of the inverse of the whole covariance, shape (D, n, n). [1/unit^2]"""
         weighted = self._shared[0]
-        return np.asarray(self._inverse[0] - (weighted @ self.covariance) @ np.swapaxes(weighted, 1, 2))
+        known = product(product(weighted, self.covariance[None]), np.swapaxes(weighted, 1, 2))
+        return np.asarray(self._inverse - known)
 
     def log_density(self, values: Floats) -> float:
         """Return the logarithm of the density of values (D, n)."""
-        logdet = self._inverse[1] + float(np.linalg.slogdet(self._shared[1])[1])
+        blocks, _, which = self._alike
+        logdet = float(np.linalg.slogdet(blocks)[1][which].sum() + np.linalg.slogdet(self._shared[1])[1])
         square = float(np.sum(values * self.solve(values)))
         return -0.5 * (square + logdet + int(self.present.sum()) * math.log(2.0 * math.pi))
 
@@ -229,3 +236,61 @@ class DayGaussian:
             logdet = 2.0 * float(np.log(np.diag(root)).sum())
             found[d] = -0.5 * (whitened @ whitened - logdet + kept.size * math.log(2.0 * math.pi))
         return found
+
+
+def product(first: Floats, second: Floats) -> Floats:
+    """Multiply matrices (d, m, k) and (d or 1, k, n), a few rows at a time.
+
+    Parameters
+    ----------
+    first, second : ndarray
+        The matrices.
+
+    Returns
+    -------
+    ndarray, shape (d, m, n)
+
+    Examples
+    --------
+    >>> product(np.ones((2, 3, 4)), np.ones((1, 4, 5))).shape
+    (2, 3, 5)
+    """
+    days, rows, inner = first.shape
+    most = max(1, _TOGETHER // max(inner * second.shape[2], 1))
+    together = max(n for n in range(1, rows + 1) if rows % n == 0 and n <= most) if rows else 1
+    parts = np.ascontiguousarray(first).reshape(days, -1, together, inner) @ second[:, None]
+    return np.asarray(parts.reshape(days, rows, second.shape[2]))
+
+
+def inverted(blocks: Floats) -> Floats:
+    """Invert symmetric matrices (k, n, n), in halves while they are large.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (k, n, n)
+        Positive definite.
+
+    Returns
+    -------
+    ndarray, shape (k, n, n)
+
+    Examples
+    --------
+    >>> inverted(np.diag([2.0, 4.0])[None])[0]
+    array([[0.5 , 0.  ],
+           [0.  , 0.25]])
+    """
+    size = blocks.shape[1]
+    if size <= _AT_ONCE:
+        return np.asarray(np.linalg.inv(blocks))
+    half = size // 2
+    first, beside, last = blocks[:, :half, :half], blocks[:, :half, half:], blocks[:, half:, half:]
+    inner = inverted(first)
+    across = product(inner, beside)
+    rest = inverted(last - product(np.swapaxes(beside, 1, 2), across))
+    found = np.empty_like(blocks)
+    found[:, half:, half:] = rest
+    found[:, :half, half:] = -product(across, rest)
+    found[:, half:, :half] = np.swapaxes(found[:, :half, half:], 1, 2)
+    found[:, :half, :half] = inner - product(found[:, :half, half:], np.swapaxes(across, 1, 2))
+    return found

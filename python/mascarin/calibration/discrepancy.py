@@ -18,19 +18,19 @@ References
 Kennedy M.C., O'Hagan A. (2001), J. R. Stat. Soc. B 63, 425. https://doi.org/10.1111/1467-9868.00294
 Brynjarsdottir J., O'Hagan A. (2014), Inverse Problems 30, 114007 (what a discrepancy may absorb).
 https://doi.org/10.1088/0266-5611/30/11/114007
-Zhou H., Hu L., Zhou J., Lange K. (2019), MM algorithms for variance components models, J. Comput. Graph. Stat.
-28, 350. https://doi.org/10.1080/10618600.2018.1529601
+Zhou H., Hu L., Zhou J., Lange K. (2019), MM algorithms for variance components models, J. Comput. Graph.
+Stat. 28, 350. https://doi.org/10.1080/10618600.2018.1529601
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mascarin.calibration.day_blocks import DayGaussian, DayGrid
+from mascarin.calibration.day_blocks import DayGaussian, DayGrid, product
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -134,7 +134,7 @@ class Discrepancy:
 def alike_days(days: int, persistence: float) -> float:
     """Compute how much of the error of a day consecutive days have in common.
 
-    Weather lasts for some days, and so do the errors that depend on it. Consecutive days therefore differ less
+    Weather lasts for some days, and so do errors that depend on it. Consecutive days therefore differ less
     than days of other weeks will. With correlations ``exp(-lag / persistence)``, whose mean over all pairs of
     days is c, the common part has the variance ``c / (1 - c)`` times that of a day about it.
 
@@ -208,7 +208,7 @@ class DayData:
         return np.asarray(wide.reshape(days, size, functions * self.sensors))
 
     def gaussian(self, sizes: Discrepancy) -> DayGaussian:
-        """Return the distribution of the errors; its shared effects: known ones, repeating ones, common level."""
+        """Return the distribution of the errors; shared effects: known, repeating, level of all days."""
         shared = [self.known, self.repeating(_root(sizes.hour))]
         if sizes.alike:
             rows = np.tile(_root(sizes.alike * sizes.day), (self.grid.slots, 1))
@@ -265,9 +265,9 @@ def _maximized(
         now = data.gaussian(sizes)
         weighted = now.solve(data.error).reshape(shape)
         inverse = now.inverse_blocks.reshape(grid.days, grid.slots, sensors, grid.slots, sensors)
-        found: dict[str, Floats] = {}
+        found: dict[str, Any] = {}
         of_hour = (functions * weighted.reshape(grid.days, -1, 1)).sum(axis=(0, 1)).reshape(-1, sensors)
-        spread = (np.swapaxes(functions, 1, 2) @ now.solve(functions)).sum(axis=0)
+        spread = product(np.swapaxes(functions, 1, 2), now.solve(functions)).sum(axis=0)
         for name, kernel in kernels.items():
             square = (np.swapaxes(weighted, 1, 2) @ (kernel @ weighted)).sum(axis=0)
             trace = np.einsum("dhsgt,hg->st", inverse, kernel, optimize=True)

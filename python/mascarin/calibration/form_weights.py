@@ -61,7 +61,7 @@ def form_weights(by_day: Floats) -> Floats:
 def simplest(by_day: Floats, changes: list[int]) -> int:
     """Choose the form to use: the simplest one that is not clearly worse than the best.
 
-    A form is clearly worse if the best one predicts the days left out better by more than two standard errors
+    A form is clearly worse if the best one predicts the days left out better by more than one standard error
     of the difference, and by more than `CLEARLY`.
 
     Parameters
@@ -92,7 +92,7 @@ def simplest(by_day: Floats, changes: list[int]) -> int:
     best = int(total.argmax())
     days = by_day.shape[1]
     less = by_day[best] - by_day
-    doubt = 2.0 * math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
+    doubt = math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
     near = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, CLEARLY))
     return int(min(near, key=lambda k: (changes[k], -total[k])))
 

@@ -5,9 +5,9 @@ About the estimates of a calibration the measured series are, to first order,
     measured = simulated + J (z - z0) + errors of the sensors + errors of the model
 
 with positions z of the parameters in their ranges. All terms are normal: parameters with their priors,
-`SensorError` with the stated uncertainties, `Discrepancy` with sizes estimated from the same data. Their joint
-distribution given the measurements follows in closed form; the parameters stay within their ranges. The model
-is then linearized about the new estimates, and the step is repeated.
+`SensorError` with the stated uncertainties, `Discrepancy` with sizes estimated from the same data. Their
+joint distribution given the measurements follows in closed form; the parameters stay within their ranges. The
+model is then linearized about the new estimates, and the step is repeated.
 
 References
 ----------
@@ -115,6 +115,8 @@ class Joint:
         Log density of each day given all others. [-]
     density : float
         Log density of all days. [-]
+    prior : ndarray, shape (P,)
+        Standard deviation of the prior of each position. [-]
     """
 
     z: Floats
@@ -125,9 +127,10 @@ class Joint:
     names: tuple[str, ...]
     by_day: Floats
     density: float
+    prior: Floats
 
     def quantile(self, confidence: float) -> float:
-        """Half-width of an interval in standard deviations: Student's with one degree of freedom for each day.
+        """Half-width of an interval in standard deviations: Student's, one degree of freedom for each day.
 
         The sizes of the errors are estimated from a few days, within which errors are correlated.
         """
@@ -136,12 +139,19 @@ class Joint:
         return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size, 2)))
 
     def widened(self, confidence: float = 0.95) -> Floats:
-        """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]"""
+        """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
+
+        Only what the data say is as doubtful as the sizes of the errors; the priors are as stated.
+        """
         from scipy import stats
 
-        middle = np.median(self.sample, axis=0)
         factor = self.quantile(confidence) / float(stats.norm.ppf(0.5 + 0.5 * confidence))
-        return np.asarray(np.clip(middle + factor * (self.sample - middle), 0.0, 1.0))
+        count = self.sample.shape[1]
+        own = 1.0 / np.diag(self.covariance)[:count]
+        prior = np.minimum(1.0 / self.prior**2, own)
+        wider = np.sqrt(own / (prior + (own - prior) / factor**2))
+        middle = np.median(self.sample, axis=0)
+        return np.asarray(np.clip(middle + wider * (self.sample - middle), 0.0, 1.0))
 
     def predicted(self, columns: Floats, z: Floats) -> tuple[Floats, Floats]:
         """Predict the difference between measured and simulated series.
@@ -227,13 +237,14 @@ def joint(
         names,
         gaussian.left_out(data.error),
         gaussian.log_density(data.error),
+        scale[:count],
     )
 
 
 def best_positions(
     problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None = None
 ) -> tuple[Floats, Discrepancy]:
-    """Find the most probable positions alone, with the sizes of the errors; the arguments are those of `joint`.
+    """Find the most probable positions alone, with the sizes of the errors; arguments as for `joint`.
 
     Returns
     -------

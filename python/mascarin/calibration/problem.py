@@ -88,8 +88,8 @@ class FitParameter:
             raise InputError(msg)
         if self.prior is not None and self.prior[1] > self.upper - self.lower:
             raise InputError(
-                f"{self._range} is narrower than the standard deviation of its prior, {self.prior[1]:g}: such a "
-                "prior says nothing; make it smaller, widen the range, or leave the prior out"
+                f"{self._range} is narrower than the standard deviation of its prior, {self.prior[1]:g}: "
+                "such a prior says nothing; make it smaller, widen the range, or leave the prior out"
             )
 
     @property

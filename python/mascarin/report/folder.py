@@ -37,8 +37,8 @@ def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
     ----------
     out : Path
         Folder with ``study.json`` and ``tables/series.csv``. The table's columns are ``time`` and
-        ``SENSOR.measured``, ``SENSOR.MODEL``, perhaps ``SENSOR.band`` (half-width) and ``SENSOR.expected`` (its middle),
-        ``weather.CHANNEL`` and ``state.OUTPUT``.
+        ``SENSOR.measured``, ``SENSOR.MODEL``, perhaps ``SENSOR.band`` (half-width) and
+        ``SENSOR.expected`` (its middle), ``weather.CHANNEL`` and ``state.OUTPUT``.
 
     Returns
     -------

@@ -102,16 +102,16 @@ def _errors(study: Setup) -> None:
     if hours < _FEWEST_HOURS:
         with study.places.blame("periods", "identification"):
             raise InputError(
-                f"found {hours:g} h, expected at least {_FEWEST_HOURS:g} h: errors that change from day to day "
-                "are estimated, and days are left out in turn; make it longer, or leave out discrepancy, "
+                f"found {hours:g} h, expected at least {_FEWEST_HOURS:g} h: errors that change from day to "
+                "day are estimated, and days are left out in turn; make it longer, or leave out discrepancy, "
                 "alternatives and the errors of the sensors"
             )
     for name, variant in study.plan.variants.items():
         if variant.candidate:
             with study.places.blame("variants", name, "candidate"):
                 raise InputError(
-                    "found true in a study that estimates errors of sensors and model, expected alternatives, "
-                    "which are weighed with these errors; move it there, or leave candidate out"
+                    "found true in a study that estimates errors of sensors and model, expected "
+                    "alternatives, which are weighed with these errors; move it there, or leave candidate out"
                 )
     _ = study.forms
 

@@ -1,7 +1,7 @@
-"""Forms of the model combined: their weights, estimates with the spread between them, and prediction intervals.
+"""Forms of the model combined: estimates with the spread between them, and prediction intervals.
 
-Each form is calibrated together with the errors of sensors and model. Its weight is that of its predictions of
-days left out of the identification. The prediction of all forms together is a mixture of normal
+Each form is calibrated together with the errors of sensors and model. Its weight is that of its predictions
+of days left out of the identification. The prediction of all forms together is a mixture of normal
 distributions; its mean and variance are given.
 """
 

@@ -193,7 +193,7 @@ class ModelRuns:
 
 
 def _starting(problem: CalibrationProblem, first: Calibration) -> CalibrationProblem:
-    """The same problem, its search started at the estimates of another one where it has the same parameter."""
+    """The same problem, its search started at the estimates of another one for the same parameters."""
     known = first.values
     parameters = tuple(
         replace(p, start=min(max(known[p.path], p.lower), p.upper)) if p.path in known else p

@@ -25,8 +25,8 @@ _BATCH: Final = 64
 #: A coverage below this is mentioned in the notes. [-]
 _LOW_COVERAGE: Final = 0.85
 _SHARED: Final = (
-    "; it includes errors of sensors and model, numbers that are not estimated, and the spread between the forms "
-    "of the model, and its middle is the expected reading"
+    "; it includes errors of sensors and model, numbers that are not estimated, and the spread between the "
+    "forms of the model, and its middle is the expected reading"
 )
 
 
@@ -118,7 +118,8 @@ def interval_table(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
         "caption": (
             f"{100.0 * found.confidence:g} % prediction interval of the fitted model. It combines the "
             "uncertainty of the estimated parameters, propagated to each instant, and the standard deviation "
-            f"of the model error in the identification period{_SHARED if found.center.any() else ''}. The columns of the periods show the coverage: "
+            f"of the model error in the identification period{_SHARED if found.center.any() else ''}. The "
+            "columns of the periods show the coverage: "
             "the part of the measured values inside the interval. [%]"
         ),
         "columns": ["sensor", "unit", "mean half-width", *study.during],

@@ -95,7 +95,7 @@ def _of_sensors(study: Setup, found: Combination) -> dict[str, dict[str, float]]
 def _stated(study: Setup) -> dict[str, float]:
     names = used_sensors(study)
     errors = dict(zip(names, sensor_errors(study, names), strict=True))
-    found = {}
+    found: dict[str, float] = {}
     for name, error in errors.items():
         found |= {
             f"{name} {what}": getattr(error, what)
@@ -139,8 +139,8 @@ def _table_of_forms(found: Combination) -> dict[str, Any]:
         "caption": (
             "Each form is calibrated; each day of the identification is predicted from the other days. The "
             "density is the logarithm of the probability density of the days left out, relative to the first "
-            "form. The weights (pseudo Bayesian model averaging with a bootstrap over the days) are those with "
-            "which parameters and prediction intervals combine the forms."
+            "form. The weights (pseudo Bayesian model averaging with a bootstrap over the days) are those "
+            "with which parameters and prediction intervals combine the forms."
         ),
         "columns": ["form", "weight [%]", "density of the days left out"],
         "rows": [
@@ -172,10 +172,10 @@ def _table_of_model(study: Setup, found: Combination) -> dict[str, Any]:
     return {
         "title": "Errors of the model",
         "caption": (
-            "Standard deviation of what no values of the parameters explain, estimated by marginal likelihood in "
-            f"the identification period, with a correlation time of "
-            f"{found.forms[0].joint.sizes.correlation_hours:g} h within a day. The limit is what each part may "
-            "absorb at most. In the unit of the sensor, K for temperatures."
+            "Standard deviation of what no values of the parameters explain, estimated by marginal "
+            "likelihood in the identification period, with a correlation time of "
+            f"{found.forms[0].joint.sizes.correlation_hours:g} h within a day. The limit is what each part "
+            "may absorb at most. In the unit of the sensor, K for temperatures."
         ),
         "columns": ["sensor", *(word for word in _PARTS.values()), "limit"],
         "rows": [
