@@ -152,7 +152,8 @@ def main() -> None:
         parts = [round(100 * part) for part in result["blind"].values()]
         half = [round(width, 2) for width in result["half"].values()]
         sys.stdout.write(
-            f"experiment {seed}: {chosen}, noise {noise:.2f} K; used {result['best'] or 'as described'}, "
+            f"experiment {seed}: {chosen}, noise {noise:.2f} K; "
+            f"used {result['best'] or 'as described'}, "
             f"weight of the true form {result['weight']:.2f}; {inside}, missed {missed}, distance over half-width "
             f"{result['rms']:.2f} (rms); blind {parts} %, half-width {half} K, scatter "
             f"{np.round(result['sd'], 2).tolist()} K; {time.monotonic() - began:.0f} s\n"
