@@ -154,7 +154,8 @@ def main() -> None:
         sys.stdout.write(
             f"experiment {seed}: {chosen}, noise {noise:.2f} K; "
             f"used {result['best'] or 'as described'}, "
-            f"weight of the true form {result['weight']:.2f}; {inside}, missed {missed}, distance over half-width "
+            f"weight of the true form {result['weight']:.2f}; {inside}, "
+            f"missed {missed}, distance over half-width "
             f"{result['rms']:.2f} (rms); blind {parts} %, half-width {half} K, scatter "
             f"{np.round(result['sd'], 2).tolist()} K; {time.monotonic() - began:.0f} s\n"
         )

@@ -61,7 +61,7 @@ def form_weights(by_day: Floats) -> Floats:
 def simplest(by_day: Floats, changes: list[int]) -> int:
     """Choose the form to use: the simplest one that is not clearly worse than the best.
 
-    A form is clearly worse if the best one predicts the days left out better by more than one standard error
+    A form is clearly worse if the best one predicts the days left out better by more than two standard errors
     of the difference, and by more than `CLEARLY`.
 
     Parameters
@@ -78,8 +78,8 @@ def simplest(by_day: Floats, changes: list[int]) -> int:
 
     References
     ----------
-    Hastie T., Tibshirani R., Friedman J. (2009), The Elements of Statistical Learning, 7.10 (rule of one
-    standard error). https://doi.org/10.1007/978-0-387-84858-7
+    Hastie T., Tibshirani R., Friedman J. (2009), The Elements of Statistical Learning, 7.10 (the simplest
+    model within the standard error of the best). https://doi.org/10.1007/978-0-387-84858-7
 
     Examples
     --------
@@ -92,7 +92,7 @@ def simplest(by_day: Floats, changes: list[int]) -> int:
     best = int(total.argmax())
     days = by_day.shape[1]
     less = by_day[best] - by_day
-    doubt = math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
+    doubt = 2.0 * math.sqrt(days) * less.std(axis=1, ddof=1) if days > 1 else np.full(len(by_day), np.inf)
     near = np.flatnonzero(less.sum(axis=1) <= np.maximum(doubt, CLEARLY))
     return int(min(near, key=lambda k: (changes[k], -total[k])))
 
