@@ -159,16 +159,33 @@ def test_the_calibrated_cell_is_accurate_on_days_not_used(tmp_path: Path) -> Non
     assert all(verdict.passed for verdict in judged(study, run)[run.label])
 
 
-def test_the_study_selects_the_outside_convection_in_the_identification_period() -> None:
+def test_the_study_leaves_the_form_of_the_model_open() -> None:
     study = Study.from_yaml(STUDIES["lgi"])
-    assert study.candidates == [None, "TARP outside", "linear in the wind"]
-    paths = set(study.plan_of("linear in the wind").parameters)
+    assert study.candidates == [None]
+    assert {part: list(forms) for part, forms in study.forms.parts.items()} == {
+        "outside convection": ["DOE-2", "TARP", "linear in the wind"],
+        "sky": ["Brunt", "Clark and Allen"],
+        "convection in the gap": ["Alamdari and Hammond"],
+        "diffuse radiation": ["Hay and Davies"],
+    }
+    linear = study.variant_of((("outside convection", "linear in the wind"),))
+    paths = set(study.plan_of(linear).parameters)
     shared = set(study.sought.parameters)
     assert shared - paths == {"surfaces.roof.outside.convection.factor"}
     assert paths - shared == {
         "surfaces.roof.outside.convection.constant",
         "surfaces.roof.outside.convection.wind",
     }
+
+
+def test_all_outdoor_surfaces_have_one_law_in_an_alternative() -> None:
+    study = Study.from_yaml(STUDIES["lgi"])
+    for name, kind in (("DOE-2", "doe2"), ("TARP", "tarp")):
+        building = study.building_of(study.variant_of((("outside convection", name),)))
+        for surface, entry in building.surfaces.items():
+            if entry.outside.outdoors and not (kind == "doe2" and surface in ("door", "jalousie")):
+                assert entry.outside.convection is not None
+                assert entry.outside.convection.kind == kind, surface
 
 
 def test_tables_5_and_6_of_the_paper_stand_beside_ours_as_a_scale() -> None:

@@ -42,6 +42,69 @@ CASES = {
             "range [0.4, 1] W/(m K) does not contain the start 1.4: move the start",
         ),
     ),
+    "a prior wider than its range": Refused(
+        "    materials.brick.conductivity:",
+        "    materials.brick.conductivity: {low: 0.4, high: 1.0, prior: 0.7}",
+        "prior: 0.7",
+        (
+            "identification.parameters.materials.brick.conductivity",
+            "range [0.4, 1] W/(m K) is narrower than the standard deviation of its prior, 0.7",
+        ),
+    ),
+    "alternatives that are the same": Refused(
+        "identification:\n  starts",
+        "alternatives:\n  outside:\n    first: {changes: {surfaces.wall.outside.convection: 20}}\n"
+        "    second: {changes: {surfaces.wall.outside.convection.coefficient: 20}}\n"
+        "identification:\n  starts",
+        "  outside:",
+        ("alternatives.outside", "found 'second', which is the same as 'first'", "remove one"),
+    ),
+    "an alternative that is the building": Refused(
+        "identification:\n  starts",
+        "alternatives: {outside: {first: {changes: {surfaces.wall.outside.absorptance: 0.5}}}}\n"
+        "identification:\n  starts",
+        "alternatives:",
+        ("alternatives.outside", "found 'first', which is the same as the building as described"),
+    ),
+    "one value of an alternative twice": Refused(
+        "identification:\n  starts",
+        "alternatives: {surfaces.wall.outside.convection: [20, 30, 20]}\nidentification:\n  starts",
+        "alternatives:",
+        ("alternatives.surfaces.wall.outside.convection", "found one value twice"),
+    ),
+    "an alternative of nothing": Refused(
+        "identification:\n  starts",
+        "alternatives: {outside: {first: {changes: {surfaces.roof*.outside.convection: 20}}}}\n"
+        "identification:\n  starts",
+        "alternatives:",
+        ("alternatives.outside", "surfaces.roof*.outside.convection", "nothing in the building that matches"),
+    ),
+    "errors that last longer than the identification": Refused(
+        "  starts: 2",
+        "  independent: 5d",
+        "independent: 5d",
+        ("identification.independent", "the identification lasts 96 h", "make the identification longer"),
+    ),
+    "errors of days from one day": Refused(
+        f"identification: {IDENTIFIED}",
+        'identification: ["2023-03-02 00:00", "2023-03-03 00:00"]',
+        'identification: ["2023-03-02 00:00", "2023-03-03 00:00"]',
+        ("periods.identification", "found 24 h, expected at least 48 h", "make it longer"),
+    ),
+    "a candidate beside alternatives": Refused(
+        "identification:\n  starts",
+        "alternatives: {surfaces.wall.outside.convection: [20]}\n"
+        "variants: {other: {candidate: true, changes: {surfaces.wall.outside.convection: 30}}}\n"
+        "identification:\n  starts",
+        "variants:",
+        ("variants.other.candidate", "expected alternatives", "leave candidate out"),
+    ),
+    "an offset without an uncertainty in another unit": Refused(
+        "{column: joint, output: wall.interface_1_temperature, uncertainty: 0.2}",
+        "{column: joint, output: wall.inside_flux, clock: 5min}",
+        "clock: 5min",
+        ("sensors.joint", "found no uncertainty, expected one, because the unit is W/m2"),
+    ),
     "unknown method of fitting": Refused(
         "  starts: 2",
         "  method: particle-swarn",
@@ -519,6 +582,8 @@ def test_a_study_is_refused_before_it_runs(
 ) -> None:
     case = CASES[name]
     bench.edit(case.before, case.after, case.file)
+    if name == "errors of days from one day":
+        bench.edit("  starts: 2", "  starts: 2\n  discrepancy: {}")
     if "zone: hall" in case.after:
         bench.edit("surfaces:\n", "zones: {hall: {volume: 10}}\nsurfaces:\n", case.file)
     text = (bench.folder / case.file).read_text(encoding="utf-8")

@@ -86,6 +86,11 @@ class FitParameter:
         if self.prior is not None and not (math.isfinite(self.prior[0]) and 0.0 < self.prior[1] < math.inf):
             msg = f"{self.path}: prior {self.prior} must be a mean and a positive standard deviation"
             raise InputError(msg)
+        if self.prior is not None and self.prior[1] > self.upper - self.lower:
+            raise InputError(
+                f"{self._range} is narrower than the standard deviation of its prior, {self.prior[1]:g}: "
+                "such a prior says nothing; make it smaller, widen the range, or leave the prior out"
+            )
 
     @property
     def first(self) -> float:

@@ -29,6 +29,7 @@ def series(
     *,
     uncertainty: float = 0.0,
     interval: Floats | None = None,
+    middle: Floats | None = None,
     label: str = "measured",
 ) -> None:
     """Draw a measured series and the series of models.
@@ -46,7 +47,9 @@ def series(
     uncertainty : float
         Expanded uncertainty of the sensor, drawn as a band around the measured values. [unit]
     interval : ndarray, shape (n,), optional
-        Half-width of the prediction interval around the last model. [unit]
+        Half-width of the prediction interval. [unit]
+    middle : ndarray, shape (n,), optional
+        Its middle; the last model when absent. [unit]
     label : str
         Name of the measured series.
 
@@ -63,7 +66,7 @@ def series(
             x, measured - uncertainty, measured + uncertainty, color=GRAY, alpha=0.18, lw=0, label="sensor"
         )
     if interval is not None and models:
-        last = list(models.values())[-1]
+        last = list(models.values())[-1] if middle is None else middle
         ax.fill_between(x, last - interval, last + interval, color=FITTED, alpha=0.14, lw=0)
     ax.plot(x, measured, linewidth=1.0, color=MEASURED, label=label)
     for name, values in models.items():

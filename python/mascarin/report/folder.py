@@ -37,8 +37,8 @@ def read_folder(out: Path) -> tuple[dict[str, Any], Series]:
     ----------
     out : Path
         Folder with ``study.json`` and ``tables/series.csv``. The table's columns are ``time`` and
-        ``SENSOR.measured``, ``SENSOR.MODEL``, and perhaps ``SENSOR.band`` (half-width),
-        ``weather.CHANNEL`` and ``state.OUTPUT``.
+        ``SENSOR.measured``, ``SENSOR.MODEL``, perhaps ``SENSOR.band`` (half-width) and
+        ``SENSOR.expected`` (its middle), ``weather.CHANNEL`` and ``state.OUTPUT``.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def _number(cell: str) -> float:
 
 
 def _columns(names: Sequence[str], values: Array, study: Mapping[str, Any]) -> dict[str, Column]:
-    sensors, models = study.get("sensor_info", {}), ("measured", "band", *study.get("models", {}))
+    sensors, models = study.get("sensor_info", {}), ("measured", "band", "expected", *study.get("models", {}))
     found = {}
     for name, column in zip(names, values.T, strict=True):
         owner, what = _parts(name, models)

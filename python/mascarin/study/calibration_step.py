@@ -118,6 +118,7 @@ def identify(
     *,
     record: Path | None,
     progress: Callable[[int, float], object] | None = None,
+    tolerance: float | None = None,
 ) -> Calibration:
     """Carry out the calibration of a plan.
 
@@ -133,6 +134,8 @@ def identify(
         File that stores every evaluation.
     progress : callable, optional
         Called with the number of evaluations and the lowest cost so far.
+    tolerance : float, optional
+        Replaces that of least squares. [-]
     """
     found = solve(
         stated,
@@ -141,6 +144,7 @@ def identify(
         seed=plan.seed,
         rules=Rules(
             starts=plan.starts,
+            tolerance=Rules().tolerance if tolerance is None else tolerance,
             slopes=plan.slopes,
             sequences=plan.sequences,
             agree=plan.agree,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from mascarin.calibration.building_calibration import CONSTANT, MOST_CONSTANT
 from mascarin.errors import InputError
 from mascarin.validation.observation import require_comparable
+from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Measured temperatures of a building lie between these. [degC]
 _TEMPERATURES: Final = (-100.0, 200.0)
+#: Shortest identification from which errors that change from day to day can be estimated. [h]
+_FEWEST_HOURS: Final = 48.0
 #: An irradiance that never exceeds this may be in kW/m2. [W/m2]
 _DARK: Final = 2.0
 
@@ -35,6 +38,7 @@ def check(study: Setup) -> None:
         File, line and entry of the study, what was found, what was expected, what to do.
     """
     _periods(study)
+    _errors(study)
     _working(study)
     _runs(study)
     _plausible(study)
@@ -78,6 +82,38 @@ def _periods(study: Setup) -> None:
                 f"found {_words(*known)}, expected a start not before the warm-up ends, "
                 f"{warm_up[1]:%Y-%m-%d %H:%M}: nothing is compared until then; move one of the two"
             )
+
+
+def _errors(study: Setup) -> None:
+    """Refuse an identification from which errors of sensors and model cannot be estimated."""
+    plan = study.plan.identification
+    if plan is None:
+        return
+    start, end = study.identification
+    hours = (end - start).total_seconds() / 3600.0
+    if plan.independent is not None and seconds_of(plan.independent) >= hours * 3600.0:
+        with study.places.blame("identification", "independent"):
+            raise InputError(
+                f"found {plan.independent}, but the identification lasts {hours:g} h; expected errors that "
+                "last shorter than it: make the identification longer, or independent shorter"
+            )
+    if not study.estimates_errors:
+        return
+    if hours < _FEWEST_HOURS:
+        with study.places.blame("periods", "identification"):
+            raise InputError(
+                f"found {hours:g} h, expected at least {_FEWEST_HOURS:g} h: errors that change from day to "
+                "day are estimated, and days are left out in turn; make it longer, or leave out discrepancy, "
+                "alternatives and the errors of the sensors"
+            )
+    for name, variant in study.plan.variants.items():
+        if variant.candidate:
+            with study.places.blame("variants", name, "candidate"):
+                raise InputError(
+                    "found true in a study that estimates errors of sensors and model, expected "
+                    "alternatives, which are weighed with these errors; move it there, or leave candidate out"
+                )
+    _ = study.forms
 
 
 def _words(first: pd.Timestamp, last: pd.Timestamp) -> str:

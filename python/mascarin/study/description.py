@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 TAKEN: Final = (
     "nominal", "fitted", "unit", "n", "bias", "sd", "rmse", "mean_error", "max_error", "mean_error_percent",
     "max_error_percent", "cv_rmse", "nmbe", "rmse_over_range", "bias_over_range", "measured_range",
-    "measured", "band", "as described", "observed", "weather", "state",
+    "measured", "band", "expected", "as described", "observed", "weather", "state",
 )  # fmt: skip
 
 
@@ -213,6 +213,23 @@ class Free(Part):
 Stated = Annotated[Free | None, BeforeValidator(require_bounds)]
 
 
+class DiscrepancyPlan(Part):
+    """Errors of the model that no values of the parameters explain."""
+
+    limit: float = Field(
+        0.1,
+        gt=0,
+        le=1,
+        description="Largest standard deviation of each part of the error, relative to the measured range "
+        "of the sensor in the identification period [-]",
+    )
+    persistence: Duration = Field(
+        "5d",
+        description="Correlation time of the errors of days: consecutive days differ less than days of other "
+        "weeks will",
+    )
+
+
 class IdentificationPlan(Part):
     """Parameters to identify, and the method."""
 
@@ -248,6 +265,12 @@ class IdentificationPlan(Part):
         "nll",
         description="Cost function; least-squares, emcee and priors need nll; cv_rmse is that of ASHRAE "
         "Guideline 14, read as rmse_over_range where a sensor is in degC",
+    )
+    discrepancy: DiscrepancyPlan | None = Field(
+        None,
+        description="Errors of the model, estimated together with the parameters: one that repeats at the "
+        "same hour of every day and one that changes from day to day; also on, with its defaults, where a "
+        "sensor states an `offset` or another error, or the study has `alternatives`",
     )
     independent: Duration | None = Field(
         None,
@@ -337,6 +360,24 @@ class Variant(Part):
         return self
 
 
+class Alternative(Part):
+    """Another form of a part of the model, which replaces the one in the building."""
+
+    changes: dict[str, Any] = Field(
+        min_length=1,
+        description="Path -> value or part of the building; * stands for any name between two dots, or for "
+        "a part of it",
+    )
+    parameters: dict[str, Stated] = Field(
+        default_factory=dict, description="Path -> bounds and prior of its additional parameters"
+    )
+    note: str | None = Field(None, description="Description for the report")
+
+
+#: What a part of the model may be: forms by name, or the values of one path.
+Alternatives = dict[str, Alternative] | tuple[Any, ...]
+
+
 class StudyPlan(Part):
     """What is done in a study; the building, the weather and the measurements come beside it."""
 
@@ -375,6 +416,12 @@ class StudyPlan(Part):
         None, description="Numbers of a publication, shown beside the results"
     )
     variants: dict[str, Variant] = Field(default_factory=dict, description="Other choices of model")
+    alternatives: dict[str, Alternatives] = Field(
+        default_factory=dict,
+        description="Parts of the model whose form is not known: name -> forms beside that of the building, "
+        "each with `changes`; or path -> list of values. All are calibrated, weighed by days left out of the "
+        "identification, and combined",
+    )
 
     @model_validator(mode="after")
     def _named(self) -> Self:

@@ -21,7 +21,7 @@ from mascarin.progress import reporting
 from mascarin.study import diagnosis_words as words
 from mascarin.study.corrections import Corrections
 from mascarin.study.diagnosis_model import PRIOR, Model, Store
-from mascarin.study.forms import changed, forms
+from mascarin.study.other_laws import changed, forms
 from mascarin.validation.causes import Cause, Diagnosis
 from mascarin.validation.evidence import Squares, chance
 from mascarin.validation.joint import Joint, Solution, Whitening

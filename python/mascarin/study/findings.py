@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mascarin.calibration.form_weights import form_weights, simplest
+from mascarin.study.forms import Choice, label
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
 
     from mascarin.calibration import Calibration, Profile
+    from mascarin.calibration.joint import Joint
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
+    from mascarin.study.error_model import Unknowns
     from mascarin.study.setup import Scores, Setup
     from mascarin.validation.causes import Diagnosis
     from mascarin.validation.comparison import Metrics
@@ -24,6 +30,9 @@ if TYPE_CHECKING:
     from mascarin.weather.quality import Stretch
 
     Array = npt.NDArray[np.float64]
+
+#: Forms with less weight are left out of the combination. [-]
+LEAST_WEIGHT: Final = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +64,69 @@ class ModelRun:
 
 
 @dataclass(frozen=True, eq=False)
+class FormFit:
+    """One form of the model with its calibration.
+
+    Attributes
+    ----------
+    choice : tuple
+        Parts and forms that differ from the building as described.
+    run : ModelRun
+        The calibrated model.
+    fit : Calibration
+        The calibration, with the errors.
+    joint : Joint
+        Parameters and errors together.
+    unknown : Unknowns
+        Numbers that are not estimated.
+    """
+
+    choice: Choice
+    run: ModelRun
+    fit: Calibration
+    joint: Joint
+    unknown: Unknowns
+
+    @property
+    def label(self) -> str:
+        """Name in tables."""
+        return label(self.choice)
+
+
+@dataclass(frozen=True, eq=False)
+class Combination:
+    """Calibrated forms of the model and their weights.
+
+    Attributes
+    ----------
+    forms : tuple of FormFit
+        The one that is used first, then those with the largest weights.
+    weights : ndarray
+        Of each; their sum is 1. [-]
+    """
+
+    forms: tuple[FormFit, ...]
+    weights: Array
+
+    @staticmethod
+    def of(forms: list[FormFit]) -> Combination:
+        """Weigh forms by the days left out of their calibration; the one to use comes first."""
+        by_day = np.array([form.joint.by_day for form in forms])
+        weights = form_weights(by_day)
+        used = simplest(by_day, [len(form.choice) for form in forms])
+        order = [used, *(int(k) for k in np.argsort(-weights, kind="stable") if k != used)]
+        return Combination(tuple(forms[k] for k in order), weights[order])
+
+    @property
+    def kept(self) -> list[tuple[FormFit, float]]:
+        """Forms with a noticeable weight, and their weights, whose sum is 1."""
+        pairs = list(zip(self.forms, self.weights.tolist(), strict=True))
+        found = [pairs[0], *(pair for pair in pairs[1:] if pair[1] >= LEAST_WEIGHT)]
+        total = sum(weight for _, weight in found)
+        return [(form, weight / total) for form, weight in found]
+
+
+@dataclass(frozen=True, eq=False)
 class PredictionIntervals:
     """95 % prediction intervals of the calibrated model.
 
@@ -69,6 +141,9 @@ class PredictionIntervals:
         and that of the model error in the identification period. [unit of each sensor]
     coverage : dict of str to ndarray, shape (S,)
         Part of the measured values inside the interval, by period; NaN where nothing was measured. [-]
+    center : ndarray, shape (n, S)
+        Middle of the interval minus the fitted series: estimated errors of sensor and model, and the distance
+        of other forms of the model; 0 where none are estimated. [unit of each sensor]
     """
 
     confidence: float
@@ -76,6 +151,7 @@ class PredictionIntervals:
     parameters: Array
     error: Array
     coverage: dict[str, Array]
+    center: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +192,8 @@ class Findings:
         Suspicious values of the measured columns.
     seconds : float
         Run time. [s]
+    combination : Combination or None
+        Forms of the model with their weights, where errors of sensors and model are estimated.
     """
 
     setup: Setup
@@ -135,6 +213,7 @@ class Findings:
     notes: list[str]
     quality: list[Stretch]
     seconds: float = field(default=0.0)
+    combination: Combination | None = None
 
     @property
     def passed(self) -> bool:
@@ -154,8 +233,8 @@ class Findings:
 def scores_of(runs: Mapping[str, ModelRun]) -> dict[str, dict[str, dict[str, Metrics]]]:
     """Metrics as sensor -> period -> model."""
     found: dict[str, dict[str, dict[str, Metrics]]] = {}
-    for label, run in runs.items():
+    for model, run in runs.items():
         for sensor, periods in run.scores.items():
             for period, metrics in periods.items():
-                found.setdefault(sensor, {}).setdefault(period, {})[label] = metrics
+                found.setdefault(sensor, {}).setdefault(period, {})[model] = metrics
     return found

@@ -5,24 +5,33 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from mascarin.calibration import profiles
 from mascarin.progress import Progress, reporting
 from mascarin.study.calibration_step import identify
-from mascarin.study.findings import ModelRun
+from mascarin.study.error_model import with_errors
+from mascarin.study.findings import Combination, FormFit, ModelRun
+from mascarin.study.forms import label
 from mascarin.study.sensitivity_step import analyze, factors
 from mascarin.validation.criteria import judge
 
 if TYPE_CHECKING:
-    from mascarin.calibration import Calibration, Profile
+    from mascarin.calibration import Calibration, CalibrationProblem, Profile
     from mascarin.progress import ProgressOption, Report
     from mascarin.sensitivity import Sensitivity
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.description import SensitivityPlan, Variant
+    from mascarin.study.forms import Choice
     from mascarin.study.setup import Setup
     from mascarin.study.storage import Workspace
     from mascarin.validation.criteria import Verdict
+
+
+#: Tolerance of the search of a form of the model, whose estimates are made better with its errors.
+_TOLERANCE: Final = 1e-3
 
 
 class ModelRuns:
@@ -42,6 +51,7 @@ class ModelRuns:
         self._setup = setup
         self._workspace = workspace
         self._progress = progress
+        self._fits: dict[str | None, Calibration] = {}
         self._calibrated: dict[str | None, tuple[ModelRun, Calibration]] = {}
 
     def sensitivity(self, plan: SensitivityPlan) -> Sensitivity:
@@ -110,24 +120,86 @@ class ModelRuns:
         variant = self._setup.plan.variants[name]
         return variant.note or ", ".join(f"{path}: {value}" for path, value in variant.changes.items())
 
+    def combination(self) -> Combination:
+        """All forms of the model, each calibrated together with the errors of sensors and model.
+
+        Of many alternatives those that differ in one part are calibrated first, then those that differ in
+        one part from the best form of every part.
+        """
+        forms = self._setup.forms
+        found = {choice: self._form(choice) for choice in forms.combinations()}
+        density = {choice: float(form.joint.by_day.sum()) for choice, form in found.items()}
+        best = {
+            part: max((None, *known), key=lambda form: density.get(forms.of({part: form}), -np.inf))
+            for part, known in forms.parts.items()
+        }
+        center = forms.of(best)
+        if center not in found:
+            found |= {
+                choice: self._form(choice)
+                for choice in (center, *forms.beside(center))
+                if choice not in found
+            }
+        return Combination.of(list(found.values()))
+
+    def _form(self, choice: Choice) -> FormFit:
+        """One form of the model, its search started at the estimates of the building as described."""
+        setup, name = self._setup, self._setup.variant_of(choice)
+        first = None if name is None else self._plain(None)
+        plain = self._plain(name, first)
+        with reporting(self._progress, f"errors of sensors and model ({label(choice)})"):
+            fit, joint, unknown = with_errors(setup, name, plain)
+        whole = setup.whole(name)
+        note = "the building as described" if name is None else label(choice)
+        run = compared(setup, label(choice), whole, whole.vector(fit.values), fit, note)
+        return FormFit(choice, run, fit, joint, unknown)
+
     def _identified(self, label: str, variant: str | None, note: str) -> tuple[ModelRun, Calibration]:
-        setup = self._setup
+        fit, whole = self._plain(variant), self._setup.whole(variant)
+        return compared(self._setup, label, whole, whole.vector(fit.values), fit, note), fit
+
+    def plain(self) -> Calibration:
+        """The calibration of the building as described, without errors of sensors and model."""
+        return self._plain(None)
+
+    def _plain(self, variant: str | None, first: Calibration | None = None) -> Calibration:
+        """A calibration, its search started at the estimates of another one if there is one."""
+        if variant in self._fits:
+            return self._fits[variant]
+        setup, label = self._setup, "as described" if variant is None else variant
+        stated, plan, tolerance = setup.problem(variant), setup.sought, None
+        if first is not None:
+            stated, plan, tolerance = (
+                _starting(stated, first),
+                plan.model_copy(update={"starts": 1}),
+                _TOLERANCE,
+            )
         with reporting(self._progress, f"calibration ({label})") as report:
-            fit = identify(
+            self._fits[variant] = identify(
                 setup.short(variant),
-                setup.problem(variant),
-                setup.sought,
+                stated,
+                plan,
                 record=self._workspace.path(f"evaluations-{_safe(label)}.jsonl"),
                 progress=_searching(report),
+                tolerance=tolerance,
             )
-        whole = setup.whole(variant)
-        return compared(setup, label, whole, whole.vector(fit.values), fit, note), fit
+        return self._fits[variant]
 
     def _variant(self, name: str, variant: Variant) -> ModelRun:
         if variant.identify:
             return self.candidate(name)[0]
         simulation = self._setup.whole(name)
         return compared(self._setup, name, simulation, simulation.values, None, self._note(name))
+
+
+def _starting(problem: CalibrationProblem, first: Calibration) -> CalibrationProblem:
+    """The same problem, its search started at the estimates of another one for the same parameters."""
+    known = first.values
+    parameters = tuple(
+        replace(p, start=min(max(known[p.path], p.lower), p.upper)) if p.path in known else p
+        for p in problem.parameters
+    )
+    return replace(problem, parameters=parameters)
 
 
 def nominal(setup: Setup) -> ModelRun:

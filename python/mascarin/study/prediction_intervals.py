@@ -24,6 +24,10 @@ _STEP: Final = 1e-3
 _BATCH: Final = 64
 #: A coverage below this is mentioned in the notes. [-]
 _LOW_COVERAGE: Final = 0.85
+_SHARED: Final = (
+    "; it includes errors of sensors and model, numbers that are not estimated, and the spread between the "
+    "forms of the model, and its middle is the expected reading"
+)
 
 
 def slopes(study: Setup, run: ModelRun, fit: Calibration) -> Array:
@@ -90,8 +94,8 @@ def prediction_intervals(study: Setup, run: ModelRun, fit: Calibration, slope: A
     count = np.maximum(count, 2.0)
     errors = stats.t.ppf(tail, count - 1.0) * error * np.sqrt(1.0 + 1.0 / count)
     half = np.hypot(estimates, errors)
-    coverage = {period: _coverage(misses, half, use) for period, use in study.during.items()}
-    return PredictionIntervals(fit.confidence, half, np.sqrt(variance), error, coverage)
+    coverage = {period: coverage_of(misses, half, use) for period, use in study.during.items()}
+    return PredictionIntervals(fit.confidence, half, np.sqrt(variance), error, coverage, np.zeros_like(half))
 
 
 def interval_table(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
@@ -114,7 +118,8 @@ def interval_table(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
         "caption": (
             f"{100.0 * found.confidence:g} % prediction interval of the fitted model. It combines the "
             "uncertainty of the estimated parameters, propagated to each instant, and the standard deviation "
-            "of the model error in the identification period. The columns of the periods show the coverage: "
+            f"of the model error in the identification period{_SHARED if found.center.any() else ''}. The "
+            "columns of the periods show the coverage: "
             "the part of the measured values inside the interval. [%]"
         ),
         "columns": ["sensor", "unit", "mean half-width", *study.during],
@@ -162,7 +167,7 @@ def _series(study: Setup, run: ModelRun, vectors: Array) -> Array:
     return np.concatenate(parts)
 
 
-def _coverage(misses: Array, half: Array, use: Flags) -> Array:
+def coverage_of(misses: Array, half: Array, use: Flags) -> Array:
     """Part of the measured values of a period inside the interval, by sensor."""
     there = np.isfinite(misses) & np.isfinite(half) & use[:, None]
     inside = there & (np.abs(np.where(there, misses, 0.0)) <= half)

@@ -56,6 +56,8 @@ class StudyResults(Findings):
         Suspicious values of the measured columns.
     seconds : float
         Run time. [s]
+    combination : Combination or None
+        Forms of the model with their weights, where errors of sensors and model are estimated.
     setup : Setup
         The study.
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from pydantic import AliasChoices, Field
 
 from mascarin.building.part import Part
+from mascarin.calibration.sensor_errors import SensorError
+from mascarin.study.field_types import Duration
 from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
+from mascarin.weather.times import seconds_of
 
 
 class Sensor(Part):
@@ -33,6 +38,40 @@ class Sensor(Part):
         lt=1,
         description="Further expanded uncertainty in proportion to the measured value, such as 0.05 [-]",
     )
+    offset: float | None = Field(
+        None,
+        ge=0,
+        description="Standard uncertainty of a constant added to all readings, such as that of the "
+        "calibration of the sensor (accuracy); estimated together with the parameters; by default the "
+        "stated standard uncertainty, where errors are estimated [unit of the output]",
+    )
+    common: float = Field(
+        0.0,
+        ge=0,
+        description="Standard uncertainty of a constant that all sensors with this key share, such as that "
+        "of a logger [unit of the output]",
+    )
+    gain: float = Field(
+        0.0,
+        ge=0,
+        lt=1,
+        description="Standard uncertainty of a part of the distance from `reference` that is added to it [-]",
+    )
+    reference: float = Field(0.0, description="Reading at which a gain has no effect [unit of the output]")
+    clock: Duration | None = Field(
+        None, description="Standard uncertainty of the time by which the clock of the logger is fast"
+    )
+    depth: float | None = Field(
+        None,
+        gt=0,
+        description="Standard uncertainty of the depth of a sensor in a wall (`sensors` of the building) [m]",
+    )
+    repeatability: float | None = Field(
+        None,
+        gt=0,
+        description="Standard deviation of repeated readings under the same conditions, without what they "
+        "share [unit of the output]",
+    )
     label: str | None = Field(None, description="Name in the report")
     use: bool = Field(True, description="Whether it is used in the identification")
 
@@ -51,7 +90,7 @@ class Sensor(Part):
         """
         return SensorUncertainty.stated(
             unit,
-            standard=self.standard_uncertainty,
+            standard=self._standard,
             expanded=self.expanded_uncertainty,
             relative_expanded=self.relative or None,
             where=f"sensors.{name}",
@@ -62,6 +101,37 @@ class Sensor(Part):
         """Expanded uncertainty (95 %), without the relative part. [unit of the output]"""
         if self.expanded_uncertainty is not None:
             return self.expanded_uncertainty
-        if self.standard_uncertainty is not None:
-            return COVERAGE_FACTOR * self.standard_uncertainty
+        if self._standard is not None:
+            return COVERAGE_FACTOR * self._standard
         return DEFAULT_EXPANDED["degC"]
+
+    @property
+    def _standard(self) -> float | None:
+        """Standard uncertainty of a reading: as stated, else from its parts. [unit of the output]"""
+        if self.standard_uncertainty is not None or self.expanded_uncertainty is not None:
+            return self.standard_uncertainty
+        parts = math.hypot(self.offset or 0.0, self.common, self.repeatability or 0.0)
+        return parts or None
+
+    @property
+    def states_errors(self) -> bool:
+        """Whether the study says which errors the readings share."""
+        shared = (self.offset, self.common, self.gain, self.clock, self.depth)
+        return any(part is not None and part != 0.0 for part in shared)
+
+    def shared_errors(self, stated: SensorUncertainty) -> SensorError:
+        """Errors that all readings share.
+
+        A stated uncertainty without an ``offset`` counts as one: datasheets state the accuracy, of which
+        the repeatability is the smaller part.
+        """
+        rest = stated.absolute if self.repeatability is None else 0.0
+        if self.repeatability is not None and stated.absolute > self.repeatability:
+            rest = math.sqrt(stated.absolute**2 - self.repeatability**2)
+        return SensorError(
+            offset=rest if self.offset is None else self.offset,
+            common=self.common,
+            gain=self.gain if self.gain else stated.relative,
+            reference=self.reference,
+            clock=0.0 if self.clock is None else seconds_of(self.clock),
+        )

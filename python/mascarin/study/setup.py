@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from mascarin.simulation.initial import Initial, MeasuredStart
 from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, problem
 from mascarin.study.description import IdentificationPlan, StudyFile
+from mascarin.study.forms import Choice, Forms, label
 from mascarin.study.phase_change import melting_layers
 from mascarin.validation.comparison import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
@@ -27,10 +28,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.building import Building
+    from mascarin.building.parameters import Parameter
     from mascarin.calibration import CalibrationProblem
     from mascarin.simulation.options import TimeLike
     from mascarin.simulation.results import Results
-    from mascarin.study.description import StudyPlan
+    from mascarin.study.description import Free, StudyPlan, Variant
     from mascarin.study.locations import Places
     from mascarin.study.opening import Inputs
     from mascarin.validation.criteria import Criterion
@@ -39,6 +41,9 @@ if TYPE_CHECKING:
     from mascarin.weather.quality import Stretch
 
     Flags = npt.NDArray[np.bool_]
+
+#: Standard deviation of the prior of a parameter of a law that replaces another one. [ranges]
+_PRIOR: Final = 0.25
 
 Scores = dict[str, dict[str, Metrics]]
 """Metrics by sensor and period."""
@@ -231,8 +236,36 @@ class Setup:
         """The building of a variant; the study's own for None."""
         if variant is None:
             return self.building
+        if variant in self._further:
+            return self.building.replace(self._further[variant].changes)
         with self.places.blame("variants", variant, "changes"):
             return self.building.replace(self.plan.variants[variant].changes)
+
+    @cached_property
+    def forms(self) -> Forms:
+        """Alternatives of the study."""
+        return Forms(self.plan, self.building, self.places)
+
+    @cached_property
+    def _further(self) -> dict[str, Variant]:
+        """Variants that are combinations of alternatives, by name."""
+        return {}
+
+    def variant_of(self, choice: Choice) -> str | None:
+        """Name of the variant for a choice of alternatives; None for the building as described."""
+        if not choice:
+            return None
+        name = f"alternative {label(choice)}"
+        if name not in self._further:
+            self._further[name] = self.forms.variant(choice)
+        return name
+
+    @property
+    def estimates_errors(self) -> bool:
+        """Whether errors of sensors and model are estimated together with the parameters."""
+        plan = self.plan.identification
+        stated = any(sensor.states_errors for sensor in self.plan.sensors.values())
+        return plan is not None and (plan.discrepancy is not None or stated or bool(self.plan.alternatives))
 
     def whole(self, variant: str | None = None) -> Simulation:
         """A model over the whole record, with the state of its phase-change layers."""
@@ -316,10 +349,10 @@ class Setup:
         plan = self.sought
         if variant is None:
             return plan
-        known = {parameter.path for parameter in self.building_of(variant).parameters()}
-        own = self.plan.variants[variant]
+        known = {parameter.path: parameter for parameter in self.building_of(variant).parameters()}
+        own = self._further.get(variant) or self.plan.variants[variant]
         shared = {
-            path: free
+            path: _stated_for(known[self.building.parameter(path).path], free, own)
             for path, free in plan.parameters.items()
             if not own.alone and self.building.parameter(path).path in known
         }
@@ -363,3 +396,19 @@ class Setup:
             "measurements": found["measurements"],
             "climate": found["climate"],
         }
+
+
+def _stated_for(parameter: Parameter, free: Free | None, variant: Variant) -> Free | None:
+    """What a study states of a parameter, for a variant that may have replaced the part that it belongs to.
+
+    A number of the same name in another law has its own range; its prior is as wide, relative to the range,
+    as priors usually are.
+    """
+    replaced = any(
+        parameter.path.startswith(f"{path}.") and not isinstance(value, int | float)
+        for path, value in variant.changes.items()
+    )
+    if free is None or not replaced:
+        return free
+    prior = None if free.prior is None else _PRIOR * (parameter.high - parameter.low)
+    return free.model_copy(update={"low": None, "high": None, "start": None, "prior": prior})

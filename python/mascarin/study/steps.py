@@ -12,15 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 from mascarin._io import atomic
 from mascarin.sensitivity.files import save_all
+from mascarin.study.calibrated import calibrated
 from mascarin.study.description import SensitivityPlan
 from mascarin.study.document.comparison import comparison
+from mascarin.study.document.errors import error_entries, error_tables, error_words
 from mascarin.study.document.estimates import estimates, prediction_entries, profile_entries
 from mascarin.study.document.header import header
 from mascarin.study.document.sensitivity import analyzed_hours, importance
 from mascarin.study.document.whole import ESTIMATES
 from mascarin.study.model_runs import ModelRuns, judged, nominal
 from mascarin.study.outputs import fit_figures
-from mascarin.study.prediction_intervals import interval_words, prediction_intervals, slopes
+from mascarin.study.prediction_intervals import interval_table, interval_words
 from mascarin.study.storage import Workspace
 from mascarin.study.tables import (
     criteria_table,
@@ -100,21 +102,23 @@ def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> 
     with Workspace(out, study.inputs()) as workspace:
         runs = ModelRuns(study, workspace, progress)
         before = nominal(study)
-        fitted, fit = runs.fitted()
+        found = calibrated(study, runs)
+        fitted, fit, intervals, profiles = found.run, found.fit, found.intervals, found.profiles
         models, verdicts = {"nominal": before, "fitted": fitted}, judged(study, before, fitted)
-        intervals = prediction_intervals(study, fitted, fit, slopes(study, fitted, fit))
-        profiles = runs.profiled(fit)
         content = {
             **header(study, "calibrate"),
             **comparison(models, verdicts),
             **estimates(study, fit),
             **profile_entries(profiles),
             **prediction_entries(study, intervals),
+            **error_entries(study, found.combination),
+            "tables": [interval_table(study, intervals), *error_tables(study, found.combination)],
             "notes": [
                 {"title": ESTIMATES, "text": text}
                 for text in (
                     *fit.warnings,
                     *(p.words for p in profiles if p.words),
+                    *error_words(study, found.combination),
                     *interval_words(study, intervals),
                 )
             ],

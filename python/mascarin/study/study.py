@@ -13,12 +13,14 @@ from mascarin._io import display
 from mascarin.errors import InputError
 from mascarin.report.folder import read_folder
 from mascarin.study import opening
+from mascarin.study.calibrated import calibrated
 from mascarin.study.checking import check
 from mascarin.study.days_step import days
 from mascarin.study.diagnosis_step import diagnosis
+from mascarin.study.document.errors import error_words
 from mascarin.study.model_runs import ModelRuns, judged, nominal
 from mascarin.study.outputs import write_all
-from mascarin.study.prediction_intervals import interval_words, prediction_intervals, slopes
+from mascarin.study.prediction_intervals import interval_words, slopes
 from mascarin.study.residuals_step import error_sources, examined, too_few
 from mascarin.study.results import StudyResults
 from mascarin.study.setup import Setup
@@ -68,6 +70,8 @@ class Study(Setup):
         Other options of the calibration, such as ``method``, ``starts`` and ``lead``.
     variants : mapping, optional
         Other choices of model: name -> ``changes`` and more.
+    alternatives : mapping, optional
+        Parts of the model whose form is not known: name -> forms with ``changes``, or path -> list of values.
     allow_outside : bool
         Whether the file may name files outside its folder and the data folder (MASCARIN_DATA).
     **options
@@ -118,6 +122,7 @@ class Study(Setup):
         sensitivity: SensitivityPlan | Mapping[str, Any] | bool | None = None,
         identification: Mapping[str, Any] | None = None,
         variants: Mapping[str, Variant | Mapping[str, Any]] | None = None,
+        alternatives: Mapping[str, Any] | None = None,
         allow_outside: bool = False,
         **options: Any,
     ) -> None:
@@ -138,6 +143,8 @@ class Study(Setup):
                 plan["sensitivity"] = {} if sensitivity is True else sensitivity
             if variants:
                 plan["variants"] = variants
+            if alternatives:
+                plan["alternatives"] = alternatives
             if building is None or climate is None or measurements is None:
                 missing = [key for key, value in given.items() if value is None]
                 raise InputError(
@@ -242,7 +249,8 @@ class Study(Setup):
         runs = ModelRuns(self, workspace, progress)
         before = nominal(self)
         sensitivity = None if self.plan.sensitivity is None else runs.sensitivity(self.plan.sensitivity)
-        fitted, fit = runs.fitted()
+        found = calibrated(self, runs)
+        fitted, fit, intervals = found.run, found.fit, found.intervals
         variants = runs.variants()
         residuals = examined(self, fitted)
         sources = error_sources(self, fitted, fit, progress)
@@ -251,7 +259,6 @@ class Study(Setup):
         missed = not all(verdict.passed for verdict in (*criteria["fitted"], *aims))
         causes = diagnosis(self, fitted, fit, workspace, missed=missed, progress=progress)
         slope = slopes(self, fitted, fit)
-        intervals = prediction_intervals(self, fitted, fit, slope)
         return StudyResults(
             setup=self,
             nominal=before,
@@ -266,10 +273,16 @@ class Study(Setup):
             diagnosis=causes,
             days=days(self, fitted, fit, slope, intervals),
             prediction_intervals=intervals,
-            profiles=runs.profiled(fit),
-            notes=[*too_few(self), *interval_words(self, intervals), *diagnose(residuals.values())],
+            profiles=found.profiles,
+            notes=[
+                *too_few(self),
+                *error_words(self, found.combination),
+                *interval_words(self, intervals),
+                *diagnose(residuals.values()),
+            ],
             quality=self.quality,
             seconds=time.monotonic() - began,
+            combination=found.combination,
         )
 
     def __repr__(self) -> str:

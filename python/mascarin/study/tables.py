@@ -155,9 +155,13 @@ def series_table(findings: Findings) -> pd.DataFrame:
         simulated = observation.simulated(run.results.index, run.results.records)
         for s, name in enumerate(observation.names):
             table[f"{name}.{run.label}"] = np.round(simulated[:, s], 6)
-    for s, name in enumerate(observation.names):
-        table[f"{name}.band"] = np.round(findings.prediction_intervals.half_width[:, s], 6)
     fitted = findings.fitted
+    about = observation.simulated(fitted.results.index, fitted.results.records)
+    for s, name in enumerate(observation.names):
+        if findings.combination is not None:
+            expected = about[:, s] + findings.prediction_intervals.center[:, s]
+            table[f"{name}.expected"] = np.round(expected, 6)
+        table[f"{name}.band"] = np.round(findings.prediction_intervals.half_width[:, s], 6)
     for channel in DRIVERS.values():
         values = observation.sampled(fitted.results.index, fitted.simulation.weather(channel))
         if np.ptp(values) > 0.0:

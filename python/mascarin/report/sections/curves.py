@@ -127,6 +127,7 @@ def _period_curves(
     if nominal is not None and main_model(study) != "nominal":
         models = {"nominal": nominal.values[pick], **models}
     interval = series.columns.get(f"band/{sensor}")
+    middle = series.columns.get(f"expected/{sensor}")
     uncertainty = float(study["sensor_info"][sensor].get("uncertainty", 0.0))
     upper, lower = embedding.axes(340.0, 170.0), embedding.axes(340.0, 104.0)
     comparison.series(
@@ -136,6 +137,7 @@ def _period_curves(
         models,
         uncertainty=uncertainty,
         interval=None if interval is None else interval.values[pick],
+        middle=None if middle is None else middle.values[pick],
     )
     comparison.errors(lower, times, {"fitted": simulated - measured}, uncertainty=uncertainty)
     for ax, name in ((upper, text.unit(unit)), (lower, f"error, {text.difference_unit(unit)}")):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from mascarin.study.document.numbers import plain
-from mascarin.study.prediction_intervals import interval_entry, interval_table
+from mascarin.study.prediction_intervals import interval_entry
 
 if TYPE_CHECKING:
     from mascarin.calibration import Calibration, Profile
@@ -51,8 +51,8 @@ def profile_entries(found: Sequence[Profile]) -> dict[str, Any]:
 
 
 def prediction_entries(study: Setup, found: PredictionIntervals) -> dict[str, Any]:
-    """The prediction intervals, in numbers and as a table of the report."""
-    return {"band": interval_entry(study, found), "tables": [interval_table(study, found)]}
+    """The prediction intervals in numbers."""
+    return {"band": interval_entry(study, found)}
 
 
 def parameters(study: Setup, fit: Calibration, plan: IdentificationPlan) -> dict[str, dict[str, Any]]:

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from mascarin.study.days_step import day_words, days_table
 from mascarin.study.document.comparison import comparison
+from mascarin.study.document.errors import error_entries, error_tables
 from mascarin.study.document.estimates import estimates, parameters, prediction_entries, profile_entries
 from mascarin.study.document.header import header
 from mascarin.study.document.phase_change import phase_change
 from mascarin.study.document.sensitivity import importance
+from mascarin.study.prediction_intervals import interval_table
 from mascarin.validation.causes import WORDS
 from mascarin.validation.error_sources import explain_missed_aims
 
@@ -46,6 +48,11 @@ def document(findings: Findings) -> dict[str, Any]:
         **estimates(study, fit),
         **profile_entries(findings.profiles),
         **prediction_entries(study, findings.prediction_intervals),
+        **error_entries(study, findings.combination),
+        "tables": [
+            interval_table(study, findings.prediction_intervals),
+            *error_tables(study, findings.combination),
+        ],
         "residuals": {
             name: {**found.to_dict(), "period": "blind"} for name, found in findings.residuals.items()
         },

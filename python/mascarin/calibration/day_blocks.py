@@ -1,0 +1,296 @@
+"""Gaussian errors that are independent from day to day, beside effects that all days share.
+
+A series is averaged over slots of the day (usually hours), which gives one block of ``H * S`` values for each
+day: H slots of S sensors. The covariance of all values is
+
+    Omega = blockdiag(B_1 .. B_D) + U U'
+
+with one block for each day, and columns U of effects with a standard normal coefficient each: parameters
+times the standard deviation of their prior, offsets of sensors, errors that repeat every day. Its inverse
+follows from that of the blocks (Woodbury), so that the work grows with the number of days, not with its cube.
+
+References
+----------
+Hager W.W. (1989), Updating the inverse of a matrix, SIAM Review 31, 221. https://doi.org/10.1137/1031049
+Sundararajan S., Keerthi S.S. (2001), Neural Computation 13, 1103 (density of what is left out, from the
+inverse of the covariance). https://doi.org/10.1162/08997660151134343
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+#: Length of a slot that is tried, the shortest first. [h]
+_SLOTS: Final = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
+#: Largest size of a block, of one that is inverted at once, and number of products of one multiplication:
+#: with more the linear algebra libraries use several threads, which wait for each other on a busy machine.
+#: With more days blocks are smaller, so that the work stays the same.
+_LARGEST: Final = 144
+_AT_ONCE: Final = 60
+_TOGETHER: Final = 200_000
+_WORK: Final = 4e7
+
+
+@dataclass(frozen=True, eq=False)
+class DayGrid:
+    """Days and slots of the day of regular samples.
+
+    Attributes
+    ----------
+    day, slot : ndarray of int, shape (T,)
+        Of each sample, from 0. [-]
+    days, slots : int
+        Number of days D and of slots of a day H. [-]
+    slot_hours : float
+        Length of a slot. [h]
+
+    Examples
+    --------
+    >>> grid = DayGrid.of(np.arange(0.0, 48.0, 0.5), interval=0.5, sensors=1)
+    >>> grid.days, grid.slots
+    (2, 24)
+    """
+
+    day: NDArray[np.int64]
+    slot: NDArray[np.int64]
+    days: int
+    slots: int
+    slot_hours: float
+
+    @staticmethod
+    def of(hours: Floats, *, interval: float, sensors: int) -> DayGrid:
+        """Divide samples into days and slots.
+
+        Parameters
+        ----------
+        hours : ndarray, shape (T,)
+            Local time from any midnight. [h]
+        interval : float
+            Time between samples. [h]
+        sensors : int
+            Number of sensors; with many, the slots are longer. [-]
+
+        Returns
+        -------
+        DayGrid
+        """
+        number = np.floor(hours / 24.0 + 1e-9).astype(np.int64)
+        names, day = np.unique(number, return_inverse=True)
+        long_enough = [length for length in _SLOTS if length >= interval - 1e-9] or [min(interval, 24.0)]
+        most = min(_LARGEST, (_WORK / names.size) ** (1.0 / 3.0))
+        small = [length for length in long_enough if 24.0 / length * sensors <= most]
+        length = (small or long_enough[-1:])[0]
+        slots = math.ceil(24.0 / length - 1e-9)
+        of_day = hours - 24.0 * number
+        slot = np.clip(np.floor(of_day / length + 1e-9), 0, slots - 1).astype(np.int64)
+        return DayGrid(day.astype(np.int64), slot, int(names.size), slots, length)
+
+    def means(self, values: Floats, mask: Flags) -> tuple[Floats, NDArray[np.int64]]:
+        """Average over the samples of each slot that are there.
+
+        Parameters
+        ----------
+        values : ndarray, shape (T, S) or (T, S, Q)
+            Any finite number where the mask is False. [unit]
+        mask : ndarray of bool, shape (T, S)
+            Samples that are there.
+
+        Returns
+        -------
+        ndarray, shape (D, H * S) or (D, H * S, Q)
+            Means, 0 in slots without a sample. [unit]
+        ndarray of int, shape (D, H * S)
+            Number of samples. [-]
+        """
+        sensors = mask.shape[1]
+        count = np.zeros((self.days, self.slots, sensors), dtype=np.int64)
+        np.add.at(count, (self.day, self.slot), mask)
+        wide = mask.reshape(*mask.shape, *(1,) * (values.ndim - 2))
+        total = np.zeros((self.days, self.slots, *values.shape[1:]))
+        np.add.at(total, (self.day, self.slot), np.where(wide, values, 0.0))
+        divisor = np.maximum(count, 1).reshape(*count.shape, *(1,) * (values.ndim - 2))
+        size = self.slots * sensors
+        mean = (total / divisor).reshape(self.days, size, *values.shape[2:])
+        return mean, count.reshape(self.days, size)
+
+    def within(self, values: Floats, mask: Flags) -> Floats:
+        """Return the mean square of the distances of samples (T, S) from the means of their slots, (S,)."""
+        mean, _ = self.means(values, mask)
+        sensors = mask.shape[1]
+        left = values - mean.reshape(self.days, self.slots, sensors)[self.day, self.slot]
+        square = np.where(mask, left**2, 0.0).sum(axis=0)
+        return np.asarray(square / np.maximum(mask.sum(axis=0), 1))
+
+
+@dataclass(frozen=True, eq=False)
+class DayGaussian:
+    """A normal distribution of values by day, with effects that the days share.
+
+    Attributes
+    ----------
+    blocks : ndarray, shape (D, n, n)
+        Covariance within each day, without the shared effects. [unit^2]
+    columns : ndarray, shape (D, n, q)
+        Shared effects for a coefficient of one standard deviation. [unit]
+    present : ndarray of bool, shape (D, n)
+        Values that are there; the others count as if they did not exist.
+
+    Examples
+    --------
+    A bias of 1 that all days share, and errors of 1 of each value:
+
+    >>> found = DayGaussian(np.ones((2, 1, 1)), np.ones((2, 1, 1)), np.ones((2, 1), dtype=bool))
+    >>> round(found.log_density(np.zeros((2, 1))), 3)  # -log(3) / 2 - log(2 pi)
+    -2.387
+    """
+
+    blocks: Floats
+    columns: Floats
+    present: Flags
+
+    @cached_property
+    def _alike(self) -> tuple[Floats, Flags, NDArray[np.int64]]:
+        """Different blocks, with ones on the diagonal where nothing is there, and which of them each day has.
+
+        Most days have the same block and the same values, so that one inverse serves them all.
+        """
+        patterns, which = np.unique(self.present, axis=0, return_inverse=True)
+        which = which.reshape(-1).astype(np.int64)
+        if self.blocks.strides[0] != 0:
+            patterns, which = self.present, np.arange(len(which))
+        first = [int(np.flatnonzero(which == k)[0]) for k in range(len(patterns))]
+        both = patterns[:, :, None] & patterns[:, None, :]
+        eye = np.eye(self.blocks.shape[1])
+        blocks = np.where(both, self.blocks[first], np.where(patterns[:, :, None], 0.0, eye))
+        return blocks, both, which
+
+    @cached_property
+    def _inverse(self) -> Floats:
+        """Inverses of the blocks, zero where nothing is there, shape (D, n, n)."""
+        blocks, both, which = self._alike
+        inverse = inverted(blocks)
+        inverse = np.where(both, 0.5 * (inverse + np.swapaxes(inverse, 1, 2)), 0.0)
+        return np.asarray(inverse[which])
+
+    @cached_property
+    def _shared(self) -> tuple[Floats, Floats]:
+        """``B^-1 U``, and ``I + U' B^-1 U``: the precision of the coefficients after the data."""
+        used = np.where(self.present[:, :, None], self.columns, 0.0)
+        weighted = product(self._inverse, used)
+        precision = np.eye(used.shape[2]) + product(np.swapaxes(used, 1, 2), weighted).sum(axis=0)
+        return weighted, 0.5 * (precision + precision.T)
+
+    @cached_property
+    def covariance(self) -> Floats:
+        """Covariance of the coefficients after the data, shape (q, q). [-]"""
+        found = inverted(self._shared[1][None])[0]
+        return np.asarray(0.5 * (found + found.T))
+
+    @property
+    def precision(self) -> Floats:
+        """Inverse of `covariance`, shape (q, q). [-]"""
+        return self._shared[1]
+
+    def coefficients(self, values: Floats) -> Floats:
+        """Return the mean of the coefficients given values (D, n), shape (q,). [-]"""
+        return np.asarray(self.covariance @ np.einsum("dnq,dn->q", self._shared[0], values))
+
+    def solve(self, values: Floats) -> Floats:
+        """Multiply values (D, n) or (D, n, k) with the inverse of the covariance. [1/unit]"""
+        wide = values if values.ndim == 3 else values[:, :, None]
+        weighted = self._shared[0]
+        inner = product(np.swapaxes(weighted, 1, 2), wide).sum(axis=0)
+        found = product(self._inverse, wide) - product(weighted, (self.covariance @ inner)[None])
+        return np.asarray(found if values.ndim == 3 else found[:, :, 0])
+
+    @cached_property
+    def inverse_blocks(self) -> Floats:
+        """Blocks of the days of the inverse of the whole covariance, shape (D, n, n). [1/unit^2]"""
+        weighted = self._shared[0]
+        known = product(product(weighted, self.covariance[None]), np.swapaxes(weighted, 1, 2))
+        return np.asarray(self._inverse - known)
+
+    def log_density(self, values: Floats) -> float:
+        """Return the logarithm of the density of values (D, n)."""
+        blocks, _, which = self._alike
+        logdet = float(np.linalg.slogdet(blocks)[1][which].sum() + np.linalg.slogdet(self._shared[1])[1])
+        square = float(np.sum(values * self.solve(values)))
+        return -0.5 * (square + logdet + int(self.present.sum()) * math.log(2.0 * math.pi))
+
+    def left_out(self, values: Floats) -> Floats:
+        """Return the log density of each day given all other days, shape (D,), from values (D, n)."""
+        weighted, found = self.solve(values), np.zeros(len(values))
+        for d, here in enumerate(self.present):
+            kept = np.flatnonzero(here)
+            root = np.linalg.cholesky(self.inverse_blocks[d][np.ix_(kept, kept)])
+            whitened = np.linalg.solve(root, weighted[d, kept])
+            logdet = 2.0 * float(np.log(np.diag(root)).sum())
+            found[d] = -0.5 * (whitened @ whitened - logdet + kept.size * math.log(2.0 * math.pi))
+        return found
+
+
+def product(first: Floats, second: Floats) -> Floats:
+    """Multiply matrices (d, m, k) and (d or 1, k, n), a few rows at a time.
+
+    Parameters
+    ----------
+    first, second : ndarray
+        The matrices.
+
+    Returns
+    -------
+    ndarray, shape (d, m, n)
+
+    Examples
+    --------
+    >>> product(np.ones((2, 3, 4)), np.ones((1, 4, 5))).shape
+    (2, 3, 5)
+    """
+    days, rows, inner = first.shape
+    most = max(1, _TOGETHER // max(inner * second.shape[2], 1))
+    together = max(n for n in range(1, rows + 1) if rows % n == 0 and n <= most) if rows else 1
+    parts = np.ascontiguousarray(first).reshape(days, -1, together, inner) @ second[:, None]
+    return np.asarray(parts.reshape(days, rows, second.shape[2]))
+
+
+def inverted(blocks: Floats) -> Floats:
+    """Invert symmetric matrices (k, n, n), in halves while they are large.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (k, n, n)
+        Positive definite.
+
+    Returns
+    -------
+    ndarray, shape (k, n, n)
+
+    Examples
+    --------
+    >>> inverted(np.diag([2.0, 4.0])[None])[0]
+    array([[0.5 , 0.  ],
+           [0.  , 0.25]])
+    """
+    size = blocks.shape[1]
+    if size <= _AT_ONCE:
+        return np.asarray(np.linalg.inv(blocks))
+    half = size // 2
+    first, beside, last = blocks[:, :half, :half], blocks[:, :half, half:], blocks[:, half:, half:]
+    inner = inverted(first)
+    across = product(inner, beside)
+    rest = inverted(last - product(np.swapaxes(beside, 1, 2), across))
+    found = np.empty_like(blocks)
+    found[:, half:, half:] = rest
+    found[:, :half, half:] = -product(across, rest)
+    found[:, half:, :half] = np.swapaxes(found[:, :half, half:], 1, 2)
+    found[:, :half, :half] = inner - product(found[:, :half, half:], np.swapaxes(across, 1, 2))
+    return found

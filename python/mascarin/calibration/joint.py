@@ -1,0 +1,363 @@
+"""Parameters, errors of sensors and errors of the model, estimated together.
+
+About the estimates of a calibration the measured series are, to first order,
+
+    measured = simulated + J (z - z0) + errors of the sensors + errors of the model
+
+with positions z of the parameters in their ranges. All terms are normal: parameters with their priors,
+`SensorError` with the stated uncertainties, `Discrepancy` with sizes estimated from the same data. Their
+joint distribution given the measurements follows in closed form; the parameters stay within their ranges. The
+model is then linearized about the new estimates, and the step is repeated.
+
+References
+----------
+Kennedy M.C., O'Hagan A. (2001), J. R. Stat. Soc. B 63, 425. https://doi.org/10.1111/1467-9868.00294
+Gelman A. et al. (2013), Bayesian Data Analysis, chapter 14 (linear models with known covariance).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration.day_blocks import DayGaussian, DayGrid
+from mascarin.calibration.discrepancy import (
+    DayData,
+    Discrepancy,
+    estimate_discrepancy,
+    hour_basis,
+)
+from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.sensor_errors import SensorError, sensor_columns
+from mascarin.calibration.truncated import within_bounds
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+#: Variance of a position that is equally likely anywhere in its range.
+_UNIFORM: Final = 1.0 / 12.0
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """A calibration problem linearized at positions z0.
+
+    Attributes
+    ----------
+    z : ndarray, shape (P,)
+        Positions of the parameters in their ranges. [-]
+    simulated : ndarray, shape (T, S)
+        Series of the model there. [unit]
+    jacobian : ndarray, shape (T, S, P)
+        Derivative by z. [unit]
+    further : ndarray, shape (T, S, K)
+        Derivative by other quantities of a sensor, such as its depth, for one standard uncertainty. [unit]
+    """
+
+    z: Floats
+    simulated: Floats
+    jacobian: Floats
+    further: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorStatement:
+    """What is known of the errors before the calibration.
+
+    Attributes
+    ----------
+    sensors : tuple of SensorError, length S
+        Stated uncertainties.
+    hours : ndarray, shape (T,)
+        Local time of each sample, from any midnight. [h]
+    step : float
+        Time between samples. [s]
+    limit : ndarray, shape (S,)
+        Largest standard deviation of each part of the error of the model. [unit]
+    persistence : float
+        Correlation time of the errors of days. [d]
+    further : tuple of str
+        Names of other unknown quantities of sensors, K of them; see `Linear`.
+    """
+
+    sensors: tuple[SensorError, ...]
+    hours: Floats
+    step: float
+    limit: Floats
+    persistence: float = 5.0
+    further: tuple[str, ...] = field(default=())
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """Parameters and errors given the measurements.
+
+    Attributes
+    ----------
+    z : ndarray, shape (P,)
+        Most probable positions within the ranges. [-]
+    mean : ndarray, shape (q,)
+        Mean of all coefficients: positions, then errors of sensors and repeating errors in standard
+        deviations of their priors. [-]
+    covariance : ndarray, shape (q, q)
+        Of the coefficients. [-]
+    sample : ndarray, shape (n, P)
+        Sample of the positions. [-]
+    sizes : Discrepancy
+        Sizes of the errors of the model.
+    names : tuple of str
+        Of the errors of sensors.
+    by_day : ndarray, shape (D,)
+        Log density of each day given all others. [-]
+    density : float
+        Log density of all days. [-]
+    prior : ndarray, shape (P,)
+        Standard deviation of the prior of each position. [-]
+    """
+
+    z: Floats
+    mean: Floats
+    covariance: Floats
+    sample: Floats
+    sizes: Discrepancy
+    names: tuple[str, ...]
+    by_day: Floats
+    density: float
+    prior: Floats
+
+    def quantile(self, confidence: float) -> float:
+        """Half-width of an interval in standard deviations: Student's, one degree of freedom for each day.
+
+        The sizes of the errors are estimated from a few days, within which errors are correlated.
+        """
+        from scipy import stats
+
+        return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size, 2)))
+
+    def widened(self, confidence: float = 0.95) -> Floats:
+        """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
+
+        Only what the data say is as doubtful as the sizes of the errors; the priors are as stated.
+        """
+        from scipy import stats
+
+        factor = self.quantile(confidence) / float(stats.norm.ppf(0.5 + 0.5 * confidence))
+        count = self.sample.shape[1]
+        own = 1.0 / np.diag(self.covariance)[:count]
+        prior = np.minimum(1.0 / self.prior**2, own)
+        wider = np.sqrt(own / (prior + (own - prior) / factor**2))
+        middle = np.median(self.sample, axis=0)
+        return np.asarray(np.clip(middle + wider * (self.sample - middle), 0.0, 1.0))
+
+    def predicted(self, columns: Floats, z: Floats) -> tuple[Floats, Floats]:
+        """Predict the difference between measured and simulated series.
+
+        Parameters
+        ----------
+        columns : ndarray, shape (n, S, q)
+            From `effects`. [unit]
+        z : ndarray, shape (P,)
+            Positions at which the series was simulated. [-]
+
+        Returns
+        -------
+        ndarray, shape (n, S)
+            Expected measured minus simulated value. [unit]
+        ndarray, shape (n, S)
+            Variance of the parameters, of the sensors and of the errors that repeat. [unit^2]
+        """
+        about = self.mean.copy()
+        about[: z.size] -= z
+        variance = np.einsum("tsq,qr,tsr->ts", columns, self.covariance, columns, optimize=True)
+        return columns @ about, np.maximum(variance, 0.0)
+
+    def effects(self, jacobian: Floats, known: Floats, hours: Floats) -> Floats:
+        """Columns of all coefficients at any instants.
+
+        Parameters
+        ----------
+        jacobian : ndarray, shape (n, S, P)
+            Derivative of the series by the positions. [unit]
+        known : ndarray, shape (n, S, k)
+            Effects of the sensors. [unit]
+        hours : ndarray, shape (n,)
+            Local time. [h]
+
+        Returns
+        -------
+        ndarray, shape (n, S, q)
+        """
+        root = np.linalg.cholesky(self.sizes.hour)
+        repeating = hour_basis(hours)[:, None, :, None] * root[None, :, None, :]
+        shape = (*jacobian.shape[:2], -1)
+        # The level that the days of the identification have in common says nothing of other days.
+        level = np.zeros((*jacobian.shape[:2], root.shape[0] if self.sizes.alike else 0))
+        return np.concatenate([jacobian, known, repeating.reshape(shape), level], axis=2)
+
+
+def joint(
+    problem: CalibrationProblem,
+    linear: Linear,
+    stated: ErrorStatement,
+    sizes: Discrepancy | None = None,
+) -> Joint:
+    """Estimate parameters and errors together from one linearization.
+
+    Parameters
+    ----------
+    problem : CalibrationProblem
+        Gives measurements, ranges and priors.
+    linear : Linear
+        The model.
+    stated : ErrorStatement
+        What is known of the errors.
+    sizes : Discrepancy, optional
+        Sizes of the errors of the model; estimated when absent.
+
+    Returns
+    -------
+    Joint
+    """
+    gaussian, data, mean, scale, sizes = _estimated(problem, linear, stated, sizes)
+    count = len(problem.parameters)
+    covariance = gaussian.covariance * np.outer(scale, scale)
+    sample = within_bounds(mean[:count], covariance[:count, :count], np.zeros(count), np.ones(count))
+    bounded_mean, bounded = _bounded(mean, covariance, sample)
+    names = (*sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1], *stated.further)
+    return Joint(
+        _most_probable(gaussian, mean, scale, count),
+        bounded_mean,
+        bounded,
+        sample,
+        sizes,
+        names,
+        gaussian.left_out(data.error),
+        gaussian.log_density(data.error),
+        scale[:count],
+    )
+
+
+def best_positions(
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None = None
+) -> tuple[Floats, Discrepancy]:
+    """Find the most probable positions alone, with the sizes of the errors; arguments as for `joint`.
+
+    Returns
+    -------
+    ndarray, shape (P,)
+        Within the ranges. [-]
+    Discrepancy
+        Sizes of the errors of the model.
+    """
+    gaussian, _, mean, scale, sizes = _estimated(problem, linear, stated, sizes)
+    return _most_probable(gaussian, mean, scale, len(problem.parameters)), sizes
+
+
+def _estimated(
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy | None
+) -> tuple[DayGaussian, DayData, Floats, Floats, Discrepancy]:
+    """Distribution and data, mean of all coefficients without bounds and their scale, sizes of the errors."""
+    center, spread = _priors(problem)
+    data = _data(problem, linear, stated, center, spread)
+    if sizes is None:
+        sizes = estimate_discrepancy(
+            data, scale=_scale(problem), limit=stated.limit, persistence=stated.persistence
+        )
+    gaussian = data.gaussian(sizes)
+    unit = gaussian.coefficients(data.error)
+    scale = np.ones(unit.size)
+    scale[: center.size] = spread
+    mean = unit * scale
+    mean[: center.size] += center
+    return gaussian, data, mean, scale, sizes
+
+
+def objective(
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, sizes: Discrepancy
+) -> float:
+    """Compute minus the log density of parameters and measurements at the positions of a linearization.
+
+    Parameters
+    ----------
+    problem, linear, stated, sizes
+        As for `joint`; only the series of the linearization is used.
+
+    Returns
+    -------
+    float
+        Up to a constant. [-]
+    """
+    center, spread = _priors(problem)
+    empty = replace(linear, jacobian=linear.jacobian[:, :, :0])
+    data = _data(problem, empty, stated, center[:0], spread[:0])
+    prior = 0.5 * float(np.sum(((linear.z - center) / spread) ** 2))
+    return prior - data.gaussian(sizes).log_density(data.error)
+
+
+def _data(
+    problem: CalibrationProblem, linear: Linear, stated: ErrorStatement, center: Floats, spread: Floats
+) -> DayData:
+    mask, count = problem.mask, center.size
+    error = np.where(mask, problem.measured, 0.0) - np.where(mask, linear.simulated, 0.0)
+    shift = linear.jacobian @ (linear.z[:count] - center) if count else 0.0
+    of_sensors, _ = sensor_columns(problem, stated.sensors, linear.simulated, stated.step)
+    known = np.concatenate([linear.jacobian * spread, of_sensors, linear.further], axis=2)
+    grid = DayGrid.of(stated.hours, interval=stated.step / 3600.0, sensors=mask.shape[1])
+    basis = np.repeat(hour_basis(stated.hours)[:, None, :], mask.shape[1], axis=1)
+    mean, found = grid.means(error + shift, mask)
+    return DayData(
+        grid,
+        mean,
+        grid.means(known, mask)[0],
+        grid.means(basis, mask)[0],
+        found > 0,
+        grid.within(error, mask),
+    )
+
+
+def _priors(problem: CalibrationProblem) -> tuple[Floats, Floats]:
+    """Mean and standard deviation of each position before the data, both (P,). [-]"""
+    center, spread = np.full(len(problem.parameters), 0.5), np.full(len(problem.parameters), _UNIFORM**0.5)
+    for i, p in enumerate(problem.parameters):
+        if p.prior is not None:
+            mean = min(max(p.prior[0], p.lower), p.upper)
+            center[i] = p.position(mean)
+            spread[i] = p.prior[1] / p.rate(center[i])
+    return center, spread
+
+
+def _scale(problem: CalibrationProblem) -> Floats:
+    """Size about which the weak prior of each part of the error of the model is: half that of the sensor."""
+    return np.array([0.25 * float(np.sqrt(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
+
+
+def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: int) -> Floats:
+    """Positions (P,) of the largest density within the ranges."""
+    from scipy import optimize
+
+    precision = gaussian.precision / np.outer(scale, scale)
+    root = np.linalg.cholesky(precision).T
+    low, high = np.full(mean.size, -math.inf), np.full(mean.size, math.inf)
+    low[:count], high[:count] = 0.0, 1.0
+    found = optimize.lsq_linear(root, root @ mean, bounds=(low, high), method="bvls")
+    return np.asarray(np.clip(found.x[:count], 0.0, 1.0))
+
+
+def _bounded(mean: Floats, covariance: Floats, sample: Floats) -> tuple[Floats, Floats]:
+    """Mean and covariance of all coefficients when the parameters have those of a sample within bounds."""
+    count = sample.shape[1]
+    middle, own = sample.mean(axis=0), np.atleast_2d(np.cov(sample, rowvar=False))
+    gain = np.linalg.solve(covariance[:count, :count], covariance[:count, count:]).T
+    found_mean, found = mean.copy(), covariance.copy()
+    found_mean[:count] = middle
+    found_mean[count:] += gain @ (middle - mean[:count])
+    change = own - covariance[:count, :count]
+    found[:count, :count] = own
+    found[count:, :count] = gain @ own
+    found[:count, count:] = found[count:, :count].T
+    found[count:, count:] += gain @ change @ gain.T
+    return found_mean, found

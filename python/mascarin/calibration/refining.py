@@ -1,0 +1,141 @@
+"""A calibration refined with the errors of the sensors and of the model; see `mascarin.calibration.joint`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mascarin.calibration.cost import Cost
+from mascarin.calibration.evaluations import Evaluator
+from mascarin.calibration.joint import ErrorStatement, Joint, Linear, best_positions, joint, objective
+from mascarin.calibration.least_squares import residuals_and_derivatives
+from mascarin.calibration.problem import CalibrationProblem
+from mascarin.calibration.result import Calibration
+from mascarin.calibration.rules import Rules
+from mascarin.calibration.sensor_errors import sensor_columns
+from mascarin.calibration.uncertainty import AT_BOUND
+from mascarin.calibration.warnings import on_bounds, warnings
+
+Floats = NDArray[np.float64]
+
+METHOD: Final = (
+    "joint normal distribution of the parameters, the errors of the sensors and the errors of the model, "
+    "linearized at the estimates, within the ranges; sizes of the errors of the model by marginal likelihood"
+)
+"""How the intervals are computed, for reports."""
+
+_STEPS: Final = 6
+#: Linearizations at which the sizes of the errors are estimated anew.
+_ESTIMATED: Final = 2
+_HALVINGS: Final = 3
+#: Decrease of minus the log density below which the estimates stay. [-]
+_ENOUGH: Final = 0.05
+
+
+def refined(
+    fit: Calibration, stated: ErrorStatement, rules: Rules, further: Floats | None = None
+) -> tuple[Calibration, Joint]:
+    """Estimate the parameters again, together with the errors of the sensors and of the model.
+
+    Parameters
+    ----------
+    fit : Calibration
+        From `solve`; where the first linearization is made.
+    stated : ErrorStatement
+        What is known of the errors.
+    rules : Rules
+        Kind of derivatives.
+    further : ndarray, shape (T, S, K), optional
+        Effects of numbers that are not estimated, for one standard uncertainty. [unit]
+
+    Returns
+    -------
+    Calibration
+        With the estimates and intervals of the joint distribution.
+    Joint
+        The joint distribution.
+
+    Raises
+    ------
+    SolverError
+        The model cannot be simulated near the estimates.
+    """
+    problem = fit.problem
+    evaluator = Evaluator(Cost(problem, fit.cost_name))
+
+    def linear(z: Floats) -> Linear:
+        residuals, jacobian = residuals_and_derivatives(problem, evaluator, z, rules)
+        simulated = np.where(problem.mask, residuals + np.where(problem.mask, problem.measured, 0.0), 0.0)
+        return Linear(z, simulated, jacobian, np.zeros((*simulated.shape, 0)))
+
+    # The estimates are those of the model as it will be used, with all other numbers as described.
+    here = _searched(problem, linear, replace(stated, further=()), problem.positions(fit.x))
+    effects = here.further if further is None else further
+    found = joint(problem, replace(here, further=effects), stated)
+    return _reported(fit, problem, replace(here, further=effects), found, stated), found
+
+
+def _searched(
+    problem: CalibrationProblem, linear: Callable[[Floats], Linear], stated: ErrorStatement, first: Floats
+) -> Linear:
+    """Linearize about better and better estimates, until the density no longer rises."""
+    here = linear(first)
+    sizes = None
+    for step in range(_STEPS):
+        goal, sizes = best_positions(problem, here, stated, sizes if step >= _ESTIMATED else None)
+        before = objective(problem, here, stated, sizes)
+        for _ in range(_HALVINGS):
+            there = linear(goal)
+            after = objective(problem, there, stated, sizes)
+            if after <= before:
+                break
+            goal = 0.5 * (goal + here.z)
+        if after <= before:
+            here = there
+        if before - after < _ENOUGH and step + 1 >= _ESTIMATED:
+            break
+    return here
+
+
+def _reported(
+    fit: Calibration, problem: CalibrationProblem, here: Linear, found: Joint, stated: ErrorStatement
+) -> Calibration:
+    """The calibration with the estimates of the joint distribution."""
+    z = np.where(here.z < AT_BOUND, 0.0, np.where(here.z > 1.0 - AT_BOUND, 1.0, here.z))
+    x = problem.values(z[None])[0]
+    tail = 0.5 * (1.0 - fit.confidence)
+    low, high = np.quantile(found.widened(), [tail, 1.0 - tail], axis=0)
+    covariance = found.covariance[: z.size, : z.size]
+    sd = np.sqrt(np.diag(covariance))
+    correlation = covariance / np.outer(sd, sd)
+    residuals = np.where(problem.mask, here.simulated - np.where(problem.mask, problem.measured, 0.0), 0.0)
+    uncertainty = replace(
+        fit.uncertainty, low=low, high=high, sd=sd, correlation=correlation, covariance=covariance,
+        error=tuple(found.sizes.spread.tolist()),
+    )  # fmt: skip
+    of_sensors = sensor_columns(problem, stated.sensors, here.simulated, stated.step)[0]
+    known = np.concatenate([of_sensors, here.further], axis=2)
+    columns = found.effects(here.jacobian, known, stated.hours)
+    expected, _ = found.predicted(columns, here.z)
+    left = np.where(problem.mask, residuals + expected, 0.0)
+    cost = Cost(problem, fit.cost_name)
+    each = cost.of_sensors(residuals[None])
+    return replace(
+        fit,
+        x=x,
+        low=problem.values(low[None])[0],
+        high=problem.values(high[None])[0],
+        correlation=correlation,
+        cost=float(cost.total(x[None], each)[0]),
+        of_sensors=each[0],
+        residuals=np.where(problem.mask, residuals, np.nan),
+        uncertainty=uncertainty,
+        on_bound=on_bounds(problem, z, np.zeros(z.size), uncertainty),
+        warnings=tuple(warnings(problem, z, uncertainty, left, here.jacobian)),
+        uncertainty_method=METHOD,
+        reason=f"{fit.reason}, then estimated together with the errors of sensors and model",
+    )

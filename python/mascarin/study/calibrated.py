@@ -1,0 +1,65 @@
+"""The calibrated model of a study with its prediction intervals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from mascarin.study.combined import combined_intervals, estimates_of
+from mascarin.study.prediction_intervals import prediction_intervals, slopes
+
+if TYPE_CHECKING:
+    from mascarin.calibration import Calibration, Profile
+    from mascarin.study.findings import Combination, ModelRun, PredictionIntervals
+    from mascarin.study.model_runs import ModelRuns
+    from mascarin.study.setup import Setup
+
+
+@dataclass(frozen=True, eq=False)
+class Calibrated:
+    """The calibrated model, how it was found, and what it predicts.
+
+    Attributes
+    ----------
+    run : ModelRun
+        The model over the whole record.
+    fit : Calibration
+        Estimates and their intervals.
+    intervals : PredictionIntervals
+        Where measured values are expected.
+    profiles : list of Profile
+        Profile likelihoods, if the study asks for them.
+    combination : Combination or None
+        Forms of the model, where errors of sensors and model are estimated.
+    """
+
+    run: ModelRun
+    fit: Calibration
+    intervals: PredictionIntervals
+    profiles: list[Profile]
+    combination: Combination | None
+
+
+def calibrated(study: Setup, runs: ModelRuns) -> Calibrated:
+    """Calibrate the model of a study: with the errors of sensors and model, if it states any.
+
+    Parameters
+    ----------
+    study : Setup
+        The study.
+    runs : ModelRuns
+        Its models.
+    """
+    if not study.estimates_errors:
+        run, fit = runs.fitted()
+        intervals = prediction_intervals(study, run, fit, slopes(study, run, fit))
+        return Calibrated(run, fit, intervals, runs.profiled(fit), None)
+    found = runs.combination()
+    best = found.forms[0]
+    fit, intervals = estimates_of(study, found), combined_intervals(study, found)
+    note = "after the calibration; its parameters are the same on all other days"
+    if len(found.forms) > 1:
+        note += f"; of {len(found.forms)} forms '{best.label}' is the simplest of those that "
+        note += "predict the days left out best"
+    run = replace(best.run, label="fitted", fit=fit, note=note)
+    return Calibrated(run, fit, intervals, runs.profiled(runs.plain()), found)

@@ -1,0 +1,186 @@
+"""Forms of the model and errors of sensors and model, as the report shows them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from mascarin.study.error_model import sensor_errors, statement, used_sensors
+
+if TYPE_CHECKING:
+    from mascarin.study.findings import Combination
+    from mascarin.study.setup import Setup
+
+#: Weight from which a form is named beside the best one. [-]
+_NAMED: Final = 0.05
+#: Part of its limit from which the size of an error is said to reach it. [-]
+_REACHED: Final = 0.98
+
+
+def error_entries(study: Setup, found: Combination | None) -> dict[str, Any]:
+    """Weights of the forms, estimated errors of the sensors, and sizes of the errors of the model."""
+    if found is None:
+        return {}
+    return {
+        "alternatives": _forms(found),
+        "sensor_errors": _of_sensors(study, found),
+        "model_errors": _of_model(study, found),
+    }
+
+
+def error_tables(study: Setup, found: Combination | None) -> list[dict[str, Any]]:
+    """The same as tables of the report."""
+    if found is None:
+        return []
+    tables = [_table_of_sensors(study, found), _table_of_model(study, found)]
+    return [_table_of_forms(found), *tables] if len(found.forms) > 1 else tables
+
+
+def error_words(study: Setup, found: Combination | None) -> list[str]:
+    """What the identification can tell of the form of the model, and errors that reach their limit."""
+    if found is None:
+        return []
+    words = []
+    used, others = found.kept[0], found.kept[1:]
+    if len(found.forms) > 1:
+        named = [f"'{form.label}' ({100 * weight:.0f} %)" for form, weight in others if weight >= _NAMED]
+        said = f"Form of the model: '{used[0].label}' is used (weight {100 * used[1]:.0f} %)"
+        if named:
+            words.append(
+                f"{said}. The identification does not tell it from {', '.join(named)}; the intervals of "
+                "parameters and predictions cover all of them."
+            )
+        else:
+            words.append(f"{said}; none of the other {len(found.forms) - 1} forms comes near.")
+    for name, entry in _of_model(study, found).items():
+        full = [part for part in _PARTS if entry[part] >= _REACHED * entry["limit"]]
+        words += [
+            f"{name}: the error of the model ({_PARTS[part]}) reaches the limit of {entry['limit']:.2g}; the "
+            "model misses more than an error of the model may absorb."
+            for part in full
+        ]
+    return words
+
+
+def _forms(found: Combination) -> list[dict[str, Any]]:
+    return [
+        {
+            "label": form.label,
+            "choice": dict(form.choice),
+            "weight": float(f"{weight:.6g}"),
+            "left_out": [float(f"{value:.6g}") for value in form.joint.by_day],
+        }
+        for form, weight in zip(found.forms, found.weights, strict=True)
+    ]
+
+
+def _of_sensors(study: Setup, found: Combination) -> dict[str, dict[str, float]]:
+    """Estimate and standard uncertainty of each error, with that stated."""
+    joint, count = found.forms[0].joint, found.forms[0].fit.x.size
+    stated = _stated(study)
+    sd = np.sqrt(np.diag(joint.covariance))
+    entries = {}
+    for k, name in enumerate(joint.names):
+        if name in stated:
+            size = stated[name]
+            entries[name] = {
+                "estimate": float(f"{size * joint.mean[count + k]:.6g}"),
+                "standard_uncertainty": float(f"{size * sd[count + k]:.6g}"),
+                "stated": size,
+            }
+    return entries
+
+
+def _stated(study: Setup) -> dict[str, float]:
+    names = used_sensors(study)
+    errors = dict(zip(names, sensor_errors(study, names), strict=True))
+    found: dict[str, float] = {}
+    for name, error in errors.items():
+        found |= {
+            f"{name} {what}": getattr(error, what)
+            for what in ("offset", "gain", "clock")
+            if getattr(error, what)
+        }
+    if any(error.common for error in errors.values()):
+        found["common offset"] = max(error.common for error in errors.values())
+    return found
+
+
+_PARTS: Final = {
+    "repeating": "repeats every day",
+    "day": "constant of a day",
+    "within_day": "correlated within a day",
+    "independent": "independent from value to value",
+}
+
+
+def _of_model(study: Setup, found: Combination) -> dict[str, dict[str, float]]:
+    best = found.forms[0]
+    sizes, limit = best.joint.sizes, statement(study, best.fit).limit
+    columns = {
+        "repeating": np.sqrt(np.diag(sizes.hour)),
+        "day": np.sqrt(np.diag(sizes.day)),
+        "within_day": np.sqrt(np.diag(sizes.drift)),
+        "independent": np.sqrt(sizes.white + sizes.within),
+        "limit": limit,
+    }
+    names = [sensor.name for sensor in best.fit.problem.sensors]
+    return {
+        name: {what: float(f"{values[s]:.6g}") for what, values in columns.items()}
+        for s, name in enumerate(names)
+    }
+
+
+def _table_of_forms(found: Combination) -> dict[str, Any]:
+    best = float(found.forms[0].joint.by_day.sum())
+    return {
+        "title": "Forms of the model",
+        "caption": (
+            "Each form is calibrated; each day of the identification is predicted from the other days. The "
+            "density is the logarithm of the probability density of the days left out, relative to the first "
+            "form. The weights (pseudo Bayesian model averaging with a bootstrap over the days) are those "
+            "with which parameters and prediction intervals combine the forms."
+        ),
+        "columns": ["form", "weight [%]", "density of the days left out"],
+        "rows": [
+            [form.label, 100.0 * float(weight), float(form.joint.by_day.sum()) - best]
+            for form, weight in zip(found.forms, found.weights, strict=True)
+        ],
+        "section": "parameters",
+    }
+
+
+def _table_of_sensors(study: Setup, found: Combination) -> dict[str, Any]:
+    return {
+        "title": "Errors of the sensors",
+        "caption": (
+            "Estimated together with the parameters: what the readings of a sensor have in common beside the "
+            "model, with its standard uncertainty, beside the standard uncertainty that the study states. "
+            "Offsets in the unit of the sensor, gains as a ratio, clocks in seconds."
+        ),
+        "columns": ["error", "estimate", "standard uncertainty", "stated standard uncertainty"],
+        "rows": [
+            [name, entry["estimate"], entry["standard_uncertainty"], entry["stated"]]
+            for name, entry in _of_sensors(study, found).items()
+        ],
+        "section": "parameters",
+    }
+
+
+def _table_of_model(study: Setup, found: Combination) -> dict[str, Any]:
+    return {
+        "title": "Errors of the model",
+        "caption": (
+            "Standard deviation of what no values of the parameters explain, estimated by marginal "
+            "likelihood in the identification period, with a correlation time of "
+            f"{found.forms[0].joint.sizes.correlation_hours:g} h within a day. The limit is what each part "
+            "may absorb at most. In the unit of the sensor, K for temperatures."
+        ),
+        "columns": ["sensor", *(word for word in _PARTS.values()), "limit"],
+        "rows": [
+            [name, *(entry[part] for part in _PARTS), entry["limit"]]
+            for name, entry in _of_model(study, found).items()
+        ],
+        "section": "comparison",
+    }

@@ -1,0 +1,83 @@
+"""Other forms of a model: each replaces one law of a building by another published one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Final
+
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+
+#: Models of the sky, of diffuse radiation, and surface heat transfer coefficients outdoors and indoors.
+_SKIES: Final = ("martin_berdahl", "clark_allen", "brunt")
+_DIFFUSE: Final = ("perez", "hay_davies", "isotropic")
+_OUTDOORS: Final[tuple[tuple[str, Any], ...]] = (
+    ("mowitt", "mowitt"),
+    ("tarp", "tarp"),
+    ("doe2", "doe2"),
+    # McAdams W.H. (1954), Heat Transmission, 3rd ed.: rough surfaces.
+    ("linear_wind", {"kind": "linear_wind", "constant": 5.7, "wind": 3.8}),
+)
+_INDOORS: Final = ("tarp", "alamdari_hammond")
+#: In a building with more surfaces only those of sensors are changed alone, and all others together.
+_MANY: Final = 14
+
+
+def forms(building: Building, seen: set[str]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Other choices of a law, one at a time.
+
+    Parameters
+    ----------
+    building : Building
+        As described.
+    seen : set of str
+        Surfaces with a sensor.
+
+    Yields
+    ------
+    tuple of str, str and dict
+        The part that is replaced, its new kind, and the changes as `Building.replace` takes them.
+    """
+    site = building.site
+    for kind in _SKIES:
+        if site.sky.kind not in (kind, "measured"):
+            yield "site.sky", kind, {"site.sky": kind}
+    for kind in _DIFFUSE:
+        if site.diffuse != kind:
+            yield "site.diffuse", kind, {"site.diffuse": kind}
+    sides = list(_sides(building))
+    alone = len(building.surfaces) <= _MANY
+    together: dict[tuple[str, str], dict[str, Any]] = {}
+    for name, side, now, kinds in sides:
+        part = f"surfaces.{name}.{side}.convection"
+        for kind, value in kinds:
+            if kind == now:
+                continue
+            if alone or name in seen:
+                yield part, kind, {part: value}
+            else:
+                together.setdefault((side, kind), {})[part] = value
+    for (side, kind), changes in together.items():
+        yield f"surfaces.*.{side}.convection", kind, changes
+
+
+def _sides(building: Building) -> Iterator[tuple[str, str, str, tuple[tuple[str, Any], ...]]]:
+    """Sides with a coefficient: surface, side, kind, and the kinds that are possible there."""
+    for name, surface in building.surfaces.items():
+        for word, side in (("outside", surface.outside), ("inside", surface.inside)):
+            if side.convection is None or side.convection.kind == "measured":
+                continue
+            if side.outdoors:
+                yield name, word, side.convection.kind, _OUTDOORS
+            elif side.zone is not None:
+                yield name, word, side.convection.kind, tuple((kind, kind) for kind in _INDOORS)
+
+
+def changed(building: Building, changes: dict[str, Any]) -> Building | None:
+    """The building with another form; None where the building does not allow it."""
+    try:
+        return building.replace(changes)
+    except InputError:
+        return None

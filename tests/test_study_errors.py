@@ -1,0 +1,132 @@
+"""Errors of sensors and model and alternatives in a study, from its keys to its results."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mascarin import cli
+from mascarin.study import Study
+from mascarin.study.forms import comparable
+from study_support import BUILDING, STUDY, TRUTH, logger_table
+
+OFFSET = 0.25  # K, added to one sensor
+ALTERNATIVES = """\
+alternatives:
+  outside convection:
+    windy: {changes: {surfaces.*.outside.convection: {kind: linear_wind, constant: 45, wind: 1}}}
+  site.ground_reflectance: [0.2, 0.5]
+"""
+STATED = (
+    ("uncertainty: 0.2}", "standard_uncertainty: 0.1, repeatability: 0.03}"),
+    ("uncertainty: 0.3}", "offset: 0.2, repeatability: 0.03, clock: 5min, depth: 0.001}"),
+    ("sensitivity: {replicates: 3, interval: 1h}\n", ""),
+    ("  starts: 2", "  starts: 1\n  discrepancy: {limit: 0.05}"),
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    found = tmp_path_factory.mktemp("errors")
+    (found / "building.yaml").write_text(BUILDING, encoding="utf-8")
+    text = STUDY
+    for before, after in STATED:
+        assert text.count(before) == 1
+        text = text.replace(before, after)
+    (found / "study.yaml").write_text(text + ALTERNATIVES, encoding="utf-8")
+    table = logger_table(found / "building.yaml")
+    table["core"] += OFFSET
+    table.to_csv(found / "logger.csv")
+    return found
+
+
+@pytest.fixture(scope="module")
+def content(folder: Path) -> dict[str, Any]:
+    assert cli.main(["study", str(folder / "study.yaml"), "-o", str(folder / "out")]) in (0, 1)
+    found: dict[str, Any] = json.loads((folder / "out" / "study.json").read_text(encoding="utf-8"))
+    return found
+
+
+def test_the_true_parameters_are_in_their_intervals_beside_a_wrong_sensor(content: dict[str, Any]) -> None:
+    for path, value in TRUTH.items():
+        entry = content["parameters"][path]
+        assert entry["low"] <= value <= entry["high"], path
+
+
+def test_the_offset_is_found_at_the_sensor_that_has_it(content: dict[str, Any]) -> None:
+    found = content["sensor_errors"]
+    assert set(found) == {"joint offset", "core offset", "core clock"}
+    core = found["core offset"]
+    assert core["stated"] == 0.2
+    assert abs(core["estimate"] - OFFSET) < 2.0 * core["standard_uncertainty"]
+    assert core["standard_uncertainty"] < 0.75 * core["stated"]
+    assert abs(found["joint offset"]["estimate"]) < 0.1
+    # Stated are 0.1 K in all, of which 0.03 K are scatter: the offset has the rest.
+    assert found["joint offset"]["stated"] == pytest.approx(np.sqrt(0.1**2 - 0.03**2))
+
+
+def test_the_wrong_law_has_no_weight_and_the_weights_sum_up_to_one(content: dict[str, Any]) -> None:
+    forms = {entry["label"]: entry for entry in content["alternatives"]}
+    assert len(forms) == 4
+    assert "windy" not in content["alternatives"][0]["label"]
+    assert sum(entry["weight"] for entry in forms.values()) == pytest.approx(1.0, abs=1e-4)
+    wrong = [entry["weight"] for label, entry in forms.items() if "windy" in label]
+    assert max(wrong) < 0.05
+    # The sun on the wall is measured, so that the ground changes nothing: both forms count the same.
+    assert forms["as described"]["weight"] == pytest.approx(0.5, abs=0.05)
+
+
+def test_sizes_of_the_errors_of_the_model_stay_below_their_limits(content: dict[str, Any]) -> None:
+    for entry in content["model_errors"].values():
+        assert max(entry["repeating"], entry["day"], entry["within_day"]) <= entry["limit"] + 1e-9
+        assert entry["independent"] == pytest.approx(0.03, rel=0.35)
+
+
+def test_the_intervals_hold_the_blind_values_about_the_expected_reading(
+    content: dict[str, Any], folder: Path
+) -> None:
+    series = pd.read_csv(folder / "out" / "tables" / "series.csv")
+    for name in ("joint", "core"):
+        assert content["band"][name]["held"]["blind"] > 0.9
+        assert content["band"][name]["half_width"] < 0.3
+    # The expected reading has the offset; the fitted series has not.
+    away = series["core.expected"] - series["core.fitted"]
+    assert away.mean() == pytest.approx(OFFSET, abs=0.12)
+
+
+def test_tables_and_notes_are_in_the_report(content: dict[str, Any], folder: Path) -> None:
+    titles = [table["title"] for table in content["tables"]]
+    assert titles == [
+        "Prediction intervals",
+        "Forms of the model",
+        "Errors of the sensors",
+        "Errors of the model",
+    ]
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    for title in titles:
+        assert title in page
+    assert any(
+        note["text"].startswith("Form of the model: 'as described' is used") for note in content["notes"]
+    )
+
+
+def test_a_list_of_values_leaves_out_the_one_of_the_building(folder: Path) -> None:
+    forms = Study.from_yaml(folder / "study.yaml").forms
+    assert {part: list(known) for part, known in forms.parts.items()} == {
+        "outside convection": ["windy"],
+        "site.ground_reflectance": ["0.5"],
+    }
+    assert list(forms.parts["outside convection"]["windy"].changes) == ["surfaces.wall.outside.convection"]
+
+
+def test_parameters_of_a_replaced_law_are_not_compared(folder: Path) -> None:
+    forms = Study.from_yaml(folder / "study.yaml").forms
+    windy = (("outside convection", "windy"),)
+    assert not comparable("surfaces.wall.outside.convection.coefficient", (), windy, forms)
+    assert comparable("surfaces.wall.outside.absorptance", (), windy, forms)
+    assert comparable("surfaces.wall.outside.convection.coefficient", windy, windy, forms)
