@@ -21,7 +21,7 @@ use crate::building::model::Model;
 use crate::linear::building_system::BuildingSystem;
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
-use crate::step::ideal_loads::loads::{CLOSE, Limits, TOLERANCE};
+use crate::step::ideal_loads::limits::{CLOSE, Limits, TOLERANCE};
 
 /// Conductance that holds an air, over the conductances that act on it [-].
 const STIFFNESS: f64 = 1e3;

@@ -1,4 +1,4 @@
-//! The ideal loads of a building during one step: limits, state of the search, responses.
+//! The ideal loads of a building during one step: state of the search, responses.
 
 use core::ops::Range;
 
@@ -9,45 +9,8 @@ use crate::linear::unknowns::Unknowns;
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
 use crate::step::ideal_loads::held_airs::HeldAirs;
+use crate::step::ideal_loads::limits::Limits;
 use crate::step::ideal_loads::responses::Response;
-
-/// Airs closer to their set points than this count as on them [K].
-pub(super) const TOLERANCE: f64 = 1e-8;
-/// A load is found when correcting it would change the air by less than this [K]: the last stage supplies so little.
-pub(super) const CLOSE: f64 = 1e-5;
-/// Magnitude of the set point without heating or cooling, which is never reached [degC].
-const NEVER: f64 = 1e6;
-
-/// Limits of one ideal load over a step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Limits<S> {
-    /// Set points of heating and cooling [degC].
-    pub(super) set_points: [S; 2],
-    /// Largest heating and cooling [W].
-    pub(super) most: [S; 2],
-}
-
-impl<S: Real> Limits<S> {
-    /// Reads the set points at the end of a step.
-    #[inline(always)]
-    fn at(zone: &ZoneCoefficients<S>, row: &[f64]) -> Self {
-        let nothing = [(S::constant(-NEVER), S::zero()), (S::constant(NEVER), S::zero())];
-        let (heating, most_heating) =
-            if let Some(ideal_load) = &zone.heating { ideal_load.at(row) } else { nothing[0] };
-        let (cooling, most_cooling) =
-            if let Some(ideal_load) = &zone.cooling { ideal_load.at(row) } else { nothing[1] };
-        Self { set_points: [heating, cooling], most: [most_heating, most_cooling] }
-    }
-
-    /// Where an air asks for heating, and where for cooling.
-    #[inline(always)]
-    pub(super) fn asks(&self, air: S) -> [S::Mask; 2] {
-        let slack = S::constant(TOLERANCE);
-        let cold = air.lt(self.set_points[0] - slack) & S::zero().lt(self.most[0]);
-        let hot = (self.set_points[1] + slack).lt(air) & S::zero().lt(self.most[1]);
-        [cold, hot]
-    }
-}
 
 /// What the guess of the next step is made from.
 #[derive(Debug, Clone)]

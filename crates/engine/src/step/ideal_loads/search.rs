@@ -2,7 +2,8 @@
 
 use crate::number::dense::solve_many;
 use crate::number::real::{Mask, Real};
-use crate::step::ideal_loads::loads::{CLOSE, IdealLoads, Limits};
+use crate::step::ideal_loads::limits::{CLOSE, Limits};
+use crate::step::ideal_loads::loads::IdealLoads;
 
 /// What an ideal load does: it holds the air on a set point, or gives a fixed load.
 #[derive(Debug, Clone, Copy)]
