@@ -1,7 +1,7 @@
 //! Limits of an ideal load over a step: set points and capacities.
 
 use crate::building::coefficients::ZoneCoefficients;
-use crate::number::real::{Mask, Real};
+use crate::number::real::Real;
 
 /// Airs closer to their set points than this count as on them [K].
 pub(super) const TOLERANCE: f64 = 1e-8;
