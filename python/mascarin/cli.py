@@ -171,7 +171,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Imported modules stay in memory: collecting garbage among them often would free nothing.
         gc.set_threshold(100_000)
         # A shell starts background jobs with the signal ignored; a command must still be possible to stop.
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, _interrupt)
         signal.signal(signal.SIGTERM, _terminate)
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = _take_debug(words)
@@ -191,13 +191,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except (SystemExit, GeneratorExit):
             raise
         except BaseException as error:  # a panic of compiled code is no Exception
+            # A compiled module that is interrupted while it is imported fails with an error of its own.
+            if _asked_to_stop:
+                _say("terminated" if _asked_to_stop[0] == EXIT_TERMINATED else "interrupted")
+                return _asked_to_stop[0]
             if debug:
                 traceback.print_exc()
             return _report(error)
     return code if isinstance(code, int) else EXIT_OK
 
 
+#: Exit code of the first signal that asked this process to stop.
+_asked_to_stop: Final[list[int]] = []
+
+
+def _interrupt(number: int, frame: object) -> NoReturn:
+    _asked_to_stop.append(EXIT_INTERRUPTED)
+    raise KeyboardInterrupt
+
+
 def _terminate(number: int, frame: object) -> NoReturn:
+    _asked_to_stop.append(EXIT_TERMINATED)
     raise Terminated
 
 

@@ -30,6 +30,8 @@ const SURFACE_CONDUCTANCE: f64 = 10.0;
 /// Part of the heat that loads lack which the iteration may leave to the next sweep [-], and its largest number of iterations.
 const LEFT: f64 = 1e-3;
 const MAX_ITERATIONS: usize = 8;
+/// Sweeps after which an air may pass its set point by [`CLOSE`] without a load.
+const PATIENCE: usize = 12;
 /// Sweeps after which `C` is taken as diagonal.
 const DIAGONAL_SWEEPS: usize = 2;
 /// Changes of a load from which the diagonal is learned: those that move the air by more [K].
@@ -329,7 +331,7 @@ impl<S: Real> HeldAir<S> {
     #[inline(always)]
     fn begin(&mut self, limits: &Limits<S>, load: S, expected: S) {
         let idle = !S::zero().lt(load.abs());
-        let [cold, hot] = limits.asks(expected);
+        let [cold, hot] = limits.asks(expected, TOLERANCE);
         let heats = (S::zero().lt(load) & load.lt(limits.most[0])) | (idle & cold);
         let cools = (load.lt(S::zero()) & (-limits.most[1]).lt(load)) | (idle & hot);
         self.mode = Mode { heats, cools: cools & !heats };
@@ -343,15 +345,18 @@ impl<S: Real> HeldAir<S> {
         // The load of an air that is held goes on, ends, or reaches its capacity. What it lacks changes it at least so far. Later, where
         // zones exchange much air, what a load lacks says little before the loads of all are found, unless it has just begun.
         let idle = !S::zero().lt(load.abs());
-        let counts = idle | S::Mask::splat(number < DIAGONAL_SWEEPS);
+        let begun = idle | !load.lt(most_heating) | !most_cooling.lt(load);
+        let counts = begun | S::Mask::splat(number < DIAGONAL_SWEEPS);
         let expected = load + S::select(counts, self.missing.scale(1.0 / self.most_slope), S::zero());
         let goes_on = (heats & S::zero().lt(expected) & expected.lt(most_heating))
             | (cools & expected.lt(S::zero()) & most_cooling.lt(expected));
         let full_heating = heats & !expected.lt(most_heating);
         let full_cooling = cools & !most_cooling.lt(expected);
         // An air that is not held is held from where it passes a set point: without load, or with more than it needs.
-        let [cold, hot] = limits.asks(air);
-        let slack = S::constant(TOLERANCE);
+        // After many sweeps it may pass it by as much as loads are found to, so that no load begins and ends again and again.
+        let slack = if number < PATIENCE { TOLERANCE } else { CLOSE };
+        let [cold, hot] = limits.asks(air, slack);
+        let slack = S::constant(slack);
         let enough = S::zero().lt(load) & (limits.set_points[0] + slack).lt(air);
         let enough_cooling = load.lt(S::zero()) & air.lt(limits.set_points[1] - slack);
         let begins: Mode<S> = Mode {
