@@ -151,6 +151,7 @@ def test_a_missing_program_is_an_error_before_any_run(tmp_path: Path) -> None:
     [
         ("echo %Simulation.Files.Inputs.File1%", "Did you mean 'Simulation.Files.Input.File1'"),
         ("echo .5", "write 0.5"),
+        ("a" * 300, "is not found"),
     ],
 )
 def test_errors_of_the_command(tmp_path: Path, command: str, message: str) -> None:

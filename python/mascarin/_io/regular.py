@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import stat
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
@@ -22,6 +23,16 @@ _SPECIAL = {
 
 #: What else is required of every file that is read, such as that it is inside a folder.
 _REQUIRED: Final[ContextVar[Callable[[Path], object] | None]] = ContextVar("required", default=None)
+
+
+def exists(path: str | Path) -> bool:
+    """Whether a file or folder exists: not if the system cannot use its name (too long, a null character)."""
+    return os.path.exists(path)  # noqa: PTH110 - the method of Path raises an error there
+
+
+def is_file(path: str | Path) -> bool:
+    """Whether a name is that of a regular file, as `exists`."""
+    return os.path.isfile(path)  # noqa: PTH113 - the method of Path raises an error there
 
 
 @contextlib.contextmanager

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Mapping
 
+from mascarin._io.regular import is_file
 from mascarin.errors import InputError, did_you_mean
 from mascarin.genopt import functions
 from mascarin.genopt.entries import any_order, boolean, bound, integer, no_loose_entries, real
@@ -28,7 +29,7 @@ def read_command_file(project: Project) -> None:
         Every error found, each with file and line.
     """
     report = project.report
-    if not project.command_file.is_file():
+    if not is_file(project.command_file):
         report.error(project.command_file_place, f"'{project.command_file}' does not exist")
         return
     root = read(project.command_file, report)

@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from mascarin._io.regular import exists
 from mascarin.errors import did_you_mean
 from mascarin.genopt import functions
 from mascarin.genopt.project import FileEntry, Project
@@ -126,6 +127,6 @@ def place_word(word: str, values: dict[str, str], folder: Path, own: set[str]) -
     # The name of a file of the run means that file, also when the directory from which the optimization was
     # started has a file of the same name.
     literal = text == word and text not in own
-    if literal and text and not Path(text).is_absolute() and Path(text).exists():
+    if literal and text and not Path(text).is_absolute() and exists(text):
         return str(Path(text).absolute())
     return text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mascarin._io.regular import is_file
 from mascarin.genopt.entries import boolean, no_loose_entries
 from mascarin.genopt.initialization import objectives
 from mascarin.genopt.project import Project
@@ -22,7 +23,7 @@ def read_configuration(project: Project) -> None:
         Every error found, each with file and line.
     """
     report = project.report
-    if not project.configuration.is_file():
+    if not is_file(project.configuration):
         report.error(project.configuration_place, f"'{project.configuration}' does not exist")
         return
     root = read(project.configuration, report)

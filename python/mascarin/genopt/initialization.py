@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
+from mascarin._io.regular import is_file
 from mascarin.errors import did_you_mean
 from mascarin.genopt.entries import integer, no_loose_entries
 from mascarin.genopt.project import FileEntry, Objective, Project
@@ -176,7 +177,7 @@ def _check_inside(project: Project) -> None:
                 f"directory below '{project.folder}': move the file there (templates may be anywhere)",
             )
     for entry in project.template:
-        if not entry.path.is_file():
+        if not is_file(entry.path):
             project.report.error(entry.place, f"template '{entry.path}' does not exist")
 
 
