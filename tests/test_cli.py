@@ -215,6 +215,7 @@ def test_a_command_in_the_background_can_be_interrupted() -> None:
         "import signal, sys; from mascarin import cli\n"
         "signal.signal(signal.SIGINT, signal.SIG_IGN)  # as a shell does for background jobs\n"
         "sys.argv = ['mascarin', '--version']; cli.main()\n"
-        "try:\n    signal.raise_signal(signal.SIGINT)\nexcept KeyboardInterrupt:\n    pass\nelse:\n    sys.exit(1)"
+        "try:\n    signal.raise_signal(signal.SIGINT)\n"
+        "except KeyboardInterrupt:\n    pass\nelse:\n    sys.exit(1)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
