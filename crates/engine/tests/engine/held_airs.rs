@@ -40,7 +40,7 @@ fn row(rooms: usize, flow: f64) -> Row {
         let inside = b.inside(zone, inner, 0.9);
         b.surface(&format!("wall{room}"), wall, [area, 90.0, 0.0], outside, inside);
         outwards.push(area / (1.0 / 20.0 + 0.02 / 0.2 + 1.0 / 5.0));
-        set_points.push((room % 3 != 2).then(|| 18.0 + 0.25 * (room % 5) as f64));
+        set_points.push((room % 3 != 2).then_some(18.0 + 0.25 * (room % 5) as f64));
     }
     set_points[rooms - 1] = Some(30.0);
     let mut loads = Vec::new();

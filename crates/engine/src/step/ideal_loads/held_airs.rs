@@ -30,8 +30,6 @@ const SURFACE_CONDUCTANCE: f64 = 10.0;
 /// Part of the heat that loads lack which the iteration may leave to the next sweep [-], and its largest number of iterations.
 const LEFT: f64 = 1e-3;
 const MAX_ITERATIONS: usize = 8;
-/// Sweeps after which an air may pass its set point by [`CLOSE`] without a load.
-const PATIENCE: usize = 12;
 /// Sweeps after which `C` is taken as diagonal.
 const DIAGONAL_SWEEPS: usize = 2;
 /// Changes of a load from which the diagonal is learned: those that move the air by more [K].
@@ -175,13 +173,13 @@ impl<S: Real> HeldAirs<S> {
         let mut found = S::Mask::splat(true);
         for ((held, limits), &zone) in self.airs.iter_mut().zip(limits).zip(zones) {
             held.learn(held.missing_at(air[zone]), active);
-            let (mode, _) = held.next(limits, loads[zone], air[zone], number);
+            let (mode, _) = held.next(limits, loads[zone], air[zone]);
             let small = (held.missing / held.slope).abs().lt(held.conductance.scale(CLOSE));
             found = found & small & held.mode.is(mode);
         }
         let moving = active & (!found | S::Mask::splat(all));
         for ((held, limits), &zone) in self.airs.iter_mut().zip(limits).zip(zones) {
-            let (mode, load) = held.next(limits, loads[zone], air[zone], number);
+            let (mode, load) = held.next(limits, loads[zone], air[zone]);
             let goes_on = moving & held.mode.is(mode);
             let lacks = S::select(goes_on, held.missing, S::zero());
             loads[zone] = S::select(moving, load, loads[zone]);
@@ -331,32 +329,27 @@ impl<S: Real> HeldAir<S> {
     #[inline(always)]
     fn begin(&mut self, limits: &Limits<S>, load: S, expected: S) {
         let idle = !S::zero().lt(load.abs());
-        let [cold, hot] = limits.asks(expected, TOLERANCE);
+        let [cold, hot] = limits.asks(expected);
         let heats = (S::zero().lt(load) & load.lt(limits.most[0])) | (idle & cold);
         let cools = (load.lt(S::zero()) & (-limits.most[1]).lt(load)) | (idle & hot);
         self.mode = Mode { heats, cools: cools & !heats };
     }
 
-    /// The mode and load after sweep `number`: an active set method, as in [`super::search`].
+    /// The next mode and load: an active set method, as in [`super::search`].
     #[inline(always)]
-    fn next(&self, limits: &Limits<S>, load: S, air: S, number: usize) -> (Mode<S>, S) {
+    fn next(&self, limits: &Limits<S>, load: S, air: S) -> (Mode<S>, S) {
         let Mode { heats, cools } = self.mode;
         let (held, most_heating, most_cooling) = (self.mode.holds(), limits.most[0], -limits.most[1]);
-        // The load of an air that is held goes on, ends, or reaches its capacity. What it lacks changes it at least so far. Later, where
-        // zones exchange much air, what a load lacks says little before the loads of all are found, unless it has just begun.
-        let idle = !S::zero().lt(load.abs());
-        let begun = idle | !load.lt(most_heating) | !most_cooling.lt(load);
-        let counts = begun | S::Mask::splat(number < DIAGONAL_SWEEPS);
-        let expected = load + S::select(counts, self.missing.scale(1.0 / self.most_slope), S::zero());
+        // The load of an air that is held goes on, ends, or reaches its capacity. What it lacks changes it at least so far.
+        let expected = load + self.missing.scale(1.0 / self.most_slope);
         let goes_on = (heats & S::zero().lt(expected) & expected.lt(most_heating))
             | (cools & expected.lt(S::zero()) & most_cooling.lt(expected));
         let full_heating = heats & !expected.lt(most_heating);
         let full_cooling = cools & !most_cooling.lt(expected);
         // An air that is not held is held from where it passes a set point: without load, or with more than it needs.
-        // After many sweeps it may pass it by as much as loads are found to, so that no load begins and ends again and again.
-        let slack = if number < PATIENCE { TOLERANCE } else { CLOSE };
-        let [cold, hot] = limits.asks(air, slack);
-        let slack = S::constant(slack);
+        let [cold, hot] = limits.asks(air);
+        let idle = !S::zero().lt(load.abs());
+        let slack = S::constant(TOLERANCE);
         let enough = S::zero().lt(load) & (limits.set_points[0] + slack).lt(air);
         let enough_cooling = load.lt(S::zero()) & air.lt(limits.set_points[1] - slack);
         let begins: Mode<S> = Mode {

@@ -31,10 +31,10 @@ impl<S: Real> Limits<S> {
         Self { set_points: [heating, cooling], most: [most_heating, most_cooling] }
     }
 
-    /// Where an air asks for heating, and where for cooling: beyond its set point by more than a slack [K].
+    /// Where an air asks for heating, and where for cooling.
     #[inline(always)]
-    pub(super) fn asks(&self, air: S, slack: f64) -> [S::Mask; 2] {
-        let slack = S::constant(slack);
+    pub(super) fn asks(&self, air: S) -> [S::Mask; 2] {
+        let slack = S::constant(TOLERANCE);
         let cold = air.lt(self.set_points[0] - slack) & S::zero().lt(self.most[0]);
         let hot = (self.set_points[1] + slack).lt(air) & S::zero().lt(self.most[1]);
         [cold, hot]

@@ -9,7 +9,7 @@ use crate::linear::unknowns::Unknowns;
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
 use crate::step::ideal_loads::held_airs::HeldAirs;
-use crate::step::ideal_loads::limits::{Limits, TOLERANCE};
+use crate::step::ideal_loads::limits::Limits;
 use crate::step::ideal_loads::responses::Response;
 
 /// What the guess of the next step is made from.
@@ -219,7 +219,7 @@ impl<S: Real> IdealLoads<S> {
     pub(super) fn within_set_points(&self, air: impl Fn(usize) -> S) -> S::Mask {
         let mut within = S::Mask::splat(true);
         for (limits, &zone) in self.limits.iter().zip(&self.zones) {
-            let [cold, hot] = limits.asks(air(zone), TOLERANCE);
+            let [cold, hot] = limits.asks(air(zone));
             within = within & !(cold | hot);
         }
         within
