@@ -9,8 +9,8 @@
 //! with one stage r is zero. The heat that a wall sends into a surface is the conductance of its last half cell times the
 //! temperature of that cell, and so another row of these maps. The cells themselves are needed only at the end of the step.
 //!
-//! Walls of the same cells and links have the same maps, which are formed and stored once: a building of many rooms has few kinds of walls,
-//! whose maps stay in the fast memory of the processor.
+//! Walls of the same cells and links have the same maps, which are formed and stored once: a building of many rooms has
+//! few kinds of walls, whose maps stay in the fast memory of the processor.
 //!
 //! `A` has as many rows as columns. Of a wall of more than [`LONGEST`] cells it is not formed: `A x` then takes two solves with the
 //! tridiagonal factors, so that memory and work grow with the number of cells and not with its square.
@@ -28,8 +28,9 @@ use crate::number::simd::widened;
 /// at once.
 const ROWS: usize = 4;
 
-/// Largest number of cells of a wall whose map is formed. Measured with five walls over 1344 steps, one member: both ways take the same
-/// time with some 55 cells; with 20 cells a map takes two thirds, with 100 cells the solves do, with 400 a fourteenth.
+/// Largest number of cells of a wall whose map is formed. Measured with five walls over 1344 steps, one member: both
+/// ways take the same time with some 55 cells; with 20 cells a map takes two thirds, with 100 cells the solves do, with
+/// 400 a fourteenth.
 const LONGEST: usize = 48;
 
 /// Some rows of a map, column by column.
@@ -164,8 +165,8 @@ impl<S: Real> StepMap<S> {
     }
 }
 
-/// Walls of one kind have the same maps: the bits of everything that these are computed from. Numbers with derivatives are a kind
-/// each, since their derivatives may differ.
+/// Walls of one kind have the same maps: the bits of everything that these are computed from. Numbers with derivatives
+/// are a kind each, since their derivatives may differ.
 fn kind<S: Real>(wall: &WallCoefficients<S>, chain: &WallSystem<S>, index: usize) -> Vec<u64> {
     if S::DERIVATIVES {
         return vec![index as u64];

@@ -5,17 +5,18 @@
 //! through this conductance is what the guess lacks in the last stage. (This is the method of multipliers; Hestenes 1969,
 //! J. Optim. Theory Appl. 4, doi:10.1007/BF00927673.)
 //!
-//! With a larger load in the first stage it would lack less: the air of the last stage starts from that of the first one. For
-//! changes `x` of all loads and heat `r` that they lack in the last stage this is `(1 + C) x = r`. After the first sweeps `C` is taken
-//! as diagonal. Its numbers are learned for each zone from one sweep to the next: what zones do to each other within a stage is
-//! small as long as the airs are held, unless they exchange much air. Where loads still lack heat after these sweeps, `C = s G` is
-//! taken, with the response `G` of the airs of the first stage, and `s`, which is `(1 - g)/g` times the storage of the air over the length of the
-//! stage, for the diagonal coefficient `g` of the scheme. (What walls store is left out: the next sweep shows it as lacking.) The eigenvalues of
+//! With a larger load in the first stage it would lack less: the air of the last stage starts from that of the first
+//! one. For changes `x` of all loads and heat `r` that they lack in the last stage this is `(1 + C) x = r`. After the
+//! first sweeps `C` is taken as diagonal. Its numbers are learned for each zone from one sweep to the next: what zones
+//! do to each other within a stage is small as long as the airs are held, unless they exchange much air. Where loads
+//! still lack heat after these sweeps, `C = s G` is taken, with the response `G` of the airs of the first stage, and
+//! `s`, which is `(1 - g)/g` times the storage of the air over the length of the stage, for the diagonal coefficient
+//! `g` of the scheme. (What walls store is left out: the next sweep shows it as lacking.) The eigenvalues of
 //! `1 + C` lie between 1 and `1/g`, however many zones there are and however much air they exchange, so that a few iterations
 //! solve it. They take place in the next sweep, in its first stage, whose factors give `G`.
 //!
-//! Each takes one solution with these factors, for all zones together. The responses to each load ([`super::responses`]) take two
-//! for each zone.
+//! Each takes one solution with these factors, for all zones together. The responses to each load
+//! ([`super::responses`]) take two for each zone.
 
 use crate::building::model::Model;
 use crate::linear::building_system::BuildingSystem;
@@ -27,7 +28,8 @@ use crate::step::ideal_loads::limits::{CLOSE, Limits, TOLERANCE};
 const STIFFNESS: f64 = 1e3;
 /// What acts on the air of a zone beside its storage, for each m2 of its surfaces [W/(m2 K)]: only its magnitude matters.
 const SURFACE_CONDUCTANCE: f64 = 10.0;
-/// Part of the heat that loads lack which the iteration may leave to the next sweep [-], and its largest number of iterations.
+/// Part of the heat that loads lack which the iteration may leave to the next sweep [-], and its largest number of
+/// iterations.
 const LEFT: f64 = 1e-3;
 const MAX_ITERATIONS: usize = 8;
 /// Sweeps after which `C` is taken as diagonal.
@@ -37,7 +39,8 @@ const TELLING: f64 = 1e-3;
 /// Allowance for what walls store in the largest number of the diagonal [-].
 const WALLS: f64 = 1.05;
 
-/// What a load does: its zone is held at the set point of heating or of cooling, or the load is fixed (zero, or its capacity).
+/// What a load does: its zone is held at the set point of heating or of cooling, or the load is fixed (zero, or its
+/// capacity).
 #[derive(Debug, Clone, Copy)]
 struct Mode<S: Real> {
     heats: S::Mask,
@@ -105,8 +108,8 @@ impl<S: Real> HeldAirs<S> {
         }
     }
 
-    /// Begins a step whose stages have a length [s], with `(1 - g)/g` of its scheme: which airs are held follows from the guessed
-    /// loads and from the airs expected without them.
+    /// Begins a step whose stages have a length [s], with `(1 - g)/g` of its scheme: which airs are held follows from
+    /// the guessed loads and from the airs expected without them.
     #[inline(always)]
     pub(super) fn begin(
         &mut self,
@@ -160,9 +163,9 @@ impl<S: Real> HeldAirs<S> {
         S::select(S::zero().lt(air.carried), air.change * (air.slope - S::one()) / air.carried, S::zero())
     }
 
-    /// Compares the airs at the end of a sweep with the set points. True in the lanes whose loads are right. In other active lanes
-    /// (with `all`, in every active one) loads end, begin, or reach their capacity, and after the first sweeps they get the heat
-    /// that they lack; later [`Self::supply`] gives it.
+    /// Compares the airs at the end of a sweep with the set points. True in the lanes whose loads are right. In other
+    /// active lanes (with `all`, in every active one) loads end, begin, or reach their capacity, and after the first
+    /// sweeps they get the heat that they lack; later [`Self::supply`] gives it.
     #[inline(always)]
     pub(super) fn correct(
         &mut self,
@@ -197,8 +200,9 @@ impl<S: Real> HeldAirs<S> {
         found
     }
 
-    /// Gives loads the heat that they lacked after sweep `number`, with the factors of the first stage in the sweep after it. True
-    /// where loads change: the stage is then solved again, so that a lane that is found repeats the bits of its solution.
+    /// Gives loads the heat that they lacked after sweep `number`, with the factors of the first stage in the sweep
+    /// after it. True where loads change: the stage is then solved again, so that a lane that is found repeats the bits
+    /// of its solution.
     #[inline(always)]
     pub(super) fn supply(
         &mut self,
@@ -306,16 +310,16 @@ impl<S: Real> HeldAir<S> {
         S::select(self.mode.holds(), heat, S::zero())
     }
 
-    /// Heat that the last stage lacks less when the load rises by what is left over the slope, and with it the air of the first
-    /// stage [W].
+    /// Heat that the last stage lacks less when the load rises by what is left over the slope, and with it the air of
+    /// the first stage [W].
     #[inline(always)]
     fn gain(&self, rise: S) -> S {
         let heat = self.left / self.air_slope + self.carried * rise;
         S::select(self.mode.holds(), heat, S::zero())
     }
 
-    /// Notes the heat that the load lacks at the end of a sweep, and learns the diagonal from what it lacked before its change, in active
-    /// lanes.
+    /// Notes the heat that the load lacks at the end of a sweep, and learns the diagonal from what it lacked before its
+    /// change, in active lanes.
     #[inline(always)]
     fn learn(&mut self, missing: S, active: S::Mask) {
         let tells = self.conductance.scale(TELLING).lt(self.change.abs()) & self.mode.holds() & active;

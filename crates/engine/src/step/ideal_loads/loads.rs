@@ -140,8 +140,8 @@ impl<S: Real> IdealLoads<S> {
         self.held.as_ref().map_or_else(|| (self.needed & active).any(), |held| held.any(active))
     }
 
-    /// Begins to hold airs, where loads are found so: in a step with stages of a length [s], guessed loads, and airs that are
-    /// expected without them.
+    /// Begins to hold airs, where loads are found so: in a step with stages of a length [s], guessed loads, and airs
+    /// that are expected without them.
     #[inline(always)]
     pub(super) fn begin_holding(
         &mut self,
@@ -291,8 +291,8 @@ impl<S: Real> IdealLoads<S> {
         self.held.iter().flat_map(of_load)
     }
 
-    /// Gives loads the heat that they lacked after sweep `number`, where airs are held, in the first stage just solved. True where loads
-    /// change.
+    /// Gives loads the heat that they lacked after sweep `number`, where airs are held, in the first stage just solved.
+    /// True where loads change.
     #[inline(always)]
     pub(super) fn supply(
         &mut self,
