@@ -167,7 +167,12 @@ def _law(path: str) -> str:
 
 def _evidence(p: float, share: float) -> str:
     shown = "below 0.001" if p < 0.001 else f"{p:.3f}"
-    return f" It takes away {max(0.0, 100.0 * share):.0f} % of the remaining sum of squares (p {shown})."
+    percent = 100.0 * share
+    if percent >= 0.5:
+        return f" It takes away {percent:.0f} % of the remaining sum of squares (p {shown})."
+    # Sensors are weighed by their own errors: one with a small error may improve while the sum does not fall.
+    change = "falls by less than 1 %" if percent > -0.5 else f"rises by {-percent:.0f} %"
+    return f" It improves single sensors; the remaining sum of squares over all {change} (p {shown})."
 
 
 def _size(value: float, error: float, unit: str) -> str:
