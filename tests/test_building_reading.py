@@ -9,6 +9,7 @@ import pytest
 from building_samples import EVERYTHING, ROOM
 from mascarin.building import load
 from mascarin.building.reading import parse
+from mascarin.building.yaml_document import plain
 from mascarin.errors import InputError
 
 # (what to replace, by what); the faulty line is the one that then holds the mark.
@@ -534,6 +535,11 @@ def test_the_expansion_of_aliases_is_limited() -> None:
     rows += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]" for i in range(1, 9)]
     with pytest.raises(InputError, match="more than 100000 values"):
         parse("\n".join(rows), "x.yaml")
+
+
+def test_a_long_text_has_as_many_values_as_it_says() -> None:
+    """A building of 600 rooms has more than a hundred thousand values; only aliases make more of a text."""
+    assert len(plain("values: [" + ", ".join(["1"] * 120_000) + "]", "x.yaml")["values"]) == 120_000
 
 
 def test_a_missing_file_is_an_error(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ IMPORT_NAMES = {
     "lazy-loader": "lazy_loader",
     "pillow": "PIL",
     "pydantic-core": "pydantic_core",
+    "PyYAML": "yaml",
     "ruamel.yaml": "ruamel",
 }
 # Not imported by us: the time zones of systems without their own, and the NetCDF engine behind xarray.

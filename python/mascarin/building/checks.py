@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 
 from mascarin.building.air import density, heat_capacity
-from mascarin.building.derived import sides_of_zone
 from mascarin.building.description import Description
 from mascarin.building.inactive import sides as every_side
 from mascarin.building.leaves import leaves
@@ -28,7 +27,7 @@ from mascarin.building.u_values import (
     window_u_value,
 )
 from mascarin.building.window import Window, WindowOutside
-from mascarin.building.zone_surfaces import closed, surfaces_of_zone
+from mascarin.building.zone_surfaces import closed
 from mascarin.errors import InputError
 
 
@@ -78,10 +77,10 @@ def _count(number: int, noun: str) -> str:
 
 def _zones(building: Description) -> Iterator[str]:
     for name, zone in building.zones.items():
-        surfaces = [building.surfaces[surface] for surface, _ in sides_of_zone(name, building.surfaces)]
+        surfaces = [building.surfaces[surface] for surface, _ in building.connections.sides(name)]
         area = sum(surface.area or 0.0 for surface in surfaces)
         shell = [surface for surface in surfaces if not surface.internal_mass]
-        names = {surface for surface, _ in sides_of_zone(name, building.surfaces)}
+        names = {surface for surface, _ in building.connections.sides(name)}
         total = sum(_own_area(building, surface) * u_value(building, surface) for surface in shell)
         glazed = [window for window in building.windows.values() if window.surface in names]
         total += sum(float(window.area or 0.0) * window_u_value(building, window) for window in glazed)
@@ -147,7 +146,7 @@ def _exchange(building: Description, zone: str) -> str:
         return "no long-wave exchange"
     if building.zones[zone].view_factors is not None:
         return f"long-wave {longwave} with the given view factors"
-    if closed(surfaces_of_zone(zone, building.surfaces, building.windows)):
+    if closed(building.connections.of(zone)):
         return f"long-wave {longwave} with exact view factors"
     return f"long-wave {longwave} with view factors approximated by areas"
 
@@ -256,7 +255,7 @@ def assumptions(building: Description) -> Iterator[str]:
     if any(not side.irradiance for side in outdoors) and "diffuse" not in building.site.model_fields_set:
         yield "site.diffuse: perez, because none is given"
     for name in building.zones:
-        seen = surfaces_of_zone(name, building.surfaces, building.windows)
+        seen = building.connections.of(name)
         if any(item.window is not None for item in seen) and building.zones[name].sun is None:
             yield f"zones.{name}.sun: area (solar radiation over all surfaces, part of it lost through glass)"
         if "approximated" in _exchange(building, name):

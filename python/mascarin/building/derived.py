@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
@@ -46,23 +46,22 @@ def _outlines(section: str, given: Mapping[str, Vertices | None]) -> dict[str, P
     return found
 
 
-def sides_of_zone(zone: str, surfaces: Mapping[str, Surface]) -> list[tuple[str, str]]:
-    """Surfaces of a zone as (surface, side), in the order of the description, outside before inside."""
-    return [
-        (name, side)
-        for name, surface in surfaces.items()
-        for side in ("outside", "inside")
-        if getattr(surface, side).zone == zone
-    ]
+def sides_by_zone(surfaces: Mapping[str, Surface]) -> dict[str, list[tuple[str, str]]]:
+    """Surfaces of each zone as (surface, side), in the order of the description, outside before inside."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for name, surface in surfaces.items():
+        for side, facing in (("outside", surface.outside), ("inside", surface.inside)):
+            if facing.zone is not None:
+                found.setdefault(facing.zone, []).append((name, side))
+    return found
 
 
-def enclosure(zone: str, surfaces: Mapping[str, Surface]) -> list[Polygon] | None:
+def enclosure(sides: Sequence[tuple[str, str]], surfaces: Mapping[str, Surface]) -> list[Polygon] | None:
     """Surfaces of a zone as polygons that point into it; None unless all have vertices."""
-    seen = sides_of_zone(zone, surfaces)
-    if not seen or any(surfaces[name].vertices is None for name, _ in seen):
+    if not sides or any(surfaces[name].vertices is None for name, _ in sides):
         return None
-    drawn = outlines({name: surfaces[name] for name, _ in seen})
-    return [drawn[name] if side == "outside" else drawn[name].reversed() for name, side in seen]
+    drawn = outlines({name: surfaces[name] for name, _ in sides})
+    return [drawn[name] if side == "outside" else drawn[name].reversed() for name, side in sides]
 
 
 def derive_surfaces(surfaces: Mapping[str, Surface], latitude: float) -> dict[str, Surface]:
@@ -229,15 +228,18 @@ def _derived_window(window: Window, wall: Surface, polygon: Polygon | None) -> W
 
 def derive_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> dict[str, Zone]:
     """Derive the volume of every zone."""
-    return {
-        name: zone if zone.volume is not None else zone.model_copy(update={"volume": _volume(name, surfaces)})
-        for name, zone in zones.items()
-    }
+    sides = sides_by_zone(surfaces)
+
+    def derived(name: str, zone: Zone) -> Zone:
+        if zone.volume is not None:
+            return zone
+        return zone.model_copy(update={"volume": _volume(name, enclosure(sides.get(name, ()), surfaces))})
+
+    return {name: derived(name, zone) for name, zone in zones.items()}
 
 
-def _volume(zone: str, surfaces: Mapping[str, Surface]) -> Number:
+def _volume(zone: str, seen: list[Polygon] | None) -> Number:
     at: Location = ("zones", zone, "volume")
-    seen = enclosure(zone, surfaces)
     if seen is None:
         refuse(
             fault(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 from pydantic import Field
 
 from mascarin.building.glazing import Glazing
@@ -13,6 +15,7 @@ from mascarin.building.site import Site
 from mascarin.building.surface import Construction, Sensor, Surface
 from mascarin.building.window import Shade, Window
 from mascarin.building.zone import AirPath, Opening, Zone
+from mascarin.building.zone_surfaces import Connections
 
 
 class Description(Part):
@@ -41,3 +44,8 @@ class Description(Part):
         default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
     )
     sensors: dict[Name, Sensor] = Field(default_factory=dict, description="Thermometers inside walls by name")
+
+    @cached_property
+    def connections(self) -> Connections:
+        """Which surfaces and windows belong to which zone and wall."""
+        return Connections(self.surfaces, self.windows)

@@ -19,13 +19,12 @@ from mascarin.building.convection import (
     Power,
     Tarp,
 )
-from mascarin.building.derived import sides_of_zone
 from mascarin.building.glazing import FilledGap, GivenGap, PaneEmissivities, PaneGlazing
 from mascarin.building.leaves import leaves
 from mascarin.building.surface import NoLongwave, Side, Surface
-from mascarin.building.window import WindowInside, WindowOutside, outer_side, windows_in
+from mascarin.building.window import WindowInside, WindowOutside, outer_side
 from mascarin.building.zone import GivenSun
-from mascarin.building.zone_surfaces import closed, surfaces_of_zone
+from mascarin.building.zone_surfaces import closed
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
@@ -102,7 +101,7 @@ def _window_sides(building: Description, name: str) -> Iterator[SurfaceSide]:
 def _behind_walls(building: Description) -> Reasons:
     """Absorptances that no sun reaches, and heights of gaps where no gap is filled."""
     for zone in building.zones:
-        seen = surfaces_of_zone(zone, building.surfaces, building.windows)
+        seen = building.connections.of(zone)
         lit = any(item.window is not None for item in seen)
         given = isinstance(building.zones[zone].sun, GivenSun)
         for item in seen:
@@ -234,7 +233,7 @@ def _in_power(item: SurfaceSide, film: Power) -> Reasons:
 def _in_direction(building: Description, name: str, surface: Surface) -> Reasons:
     """Tilt and azimuth act by sun, sky and wind; for buoyancy and view factors they only choose a case."""
     both = list(_sides(name, surface))
-    for window, _ in windows_in(name, building.windows):
+    for window in building.connections.windows_in(name):
         both += _window_sides(building, window)
     sunlit = any(item.sunlit for item in both)
     by_direction = any(side.zone is not None and _by_direction(building, side.zone) for side in surface.sides)
@@ -269,13 +268,13 @@ def _by_direction(building: Description, zone: str) -> bool:
     """Whether the view factors of a zone are approximated from areas, tilts and azimuths."""
     if isinstance(building.zones[zone].longwave, NoLongwave) or building.zones[zone].view_factors is not None:
         return False
-    return not closed(surfaces_of_zone(zone, building.surfaces, building.windows))
+    return not closed(building.connections.of(zone))
 
 
 def _between_faces(building: Description) -> Reasons:
     for name, zone in building.zones.items():
-        seen = sides_of_zone(name, building.surfaces)
-        lone = len(surfaces_of_zone(name, building.surfaces, building.windows)) == 1
+        seen = building.connections.sides(name)
+        lone = len(building.connections.of(name)) == 1
         reason = "the zone has no long-wave exchange" if isinstance(zone.longwave, NoLongwave) else ""
         reason = reason or ("no other surface exchanges with it" if lone else "")
         if reason:

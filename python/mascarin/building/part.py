@@ -207,6 +207,8 @@ class Part(BaseModel, metaclass=PartType):
 
     def _fill(self, **values: Any) -> None:
         """Set what the user did not give; only while the part is being made."""
+        for found in self.__dict__.keys() - type(self).model_fields.keys():
+            del self.__dict__[found]  # a cached property, worked out without these values
         self.__dict__.update(values)
 
 

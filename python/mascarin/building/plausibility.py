@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from mascarin.building.derived import drawn_areas, enclosure, sides_of_zone
+from mascarin.building.derived import drawn_areas, enclosure
 from mascarin.building.description import Description
 from mascarin.building.geometry import volume as enclosed_volume
 from mascarin.building.material import PhaseChangeMaterial, Resistance
@@ -93,7 +93,7 @@ def _implausible_enclosures(building: Description) -> Iterator[str]:
     for name in building.zones:
         areas = {
             surface: float(building.surfaces[surface].area or 0.0)
-            for surface, _ in sides_of_zone(name, building.surfaces)
+            for surface, _ in building.connections.sides(name)
             if not building.surfaces[surface].internal_mass
         }
         if not areas:
@@ -111,16 +111,14 @@ def _implausible_enclosures(building: Description) -> Iterator[str]:
 def _implausible_volumes(building: Description) -> Iterator[str]:
     for name, zone in building.zones.items():
         volume = float(zone.volume or 0.0)
-        area = sum(
-            building.surfaces[surface].area or 0.0 for surface, _ in sides_of_zone(name, building.surfaces)
-        )
+        area = sum(building.surfaces[surface].area or 0.0 for surface, _ in building.connections.sides(name))
         least = (36.0 * math.pi * volume**2) ** (1.0 / 3.0)
         if area < least:
             yield (
                 f"zones.{name}: {area:.2f} m2 of surfaces cannot enclose {volume:g} m3 "
                 f"(a sphere needs {least:.2f} m2): surfaces are missing, or the volume is too large"
             )
-        seen = enclosure(name, building.surfaces)
+        seen = enclosure(building.connections.sides(name), building.surfaces)
         if seen is not None:
             try:
                 drawn = enclosed_volume(seen)

@@ -17,7 +17,7 @@ from mascarin.building.phase_change import FractionsLaw, TableLaw
 from mascarin.building.self_shading import obstructions
 from mascarin.building.site import ASHRAE_WIND, CLARK, MARTIN
 from mascarin.building.zone import ASHRAE_OPENING, TracedSun
-from mascarin.building.zone_surfaces import closed, surfaces_of_zone
+from mascarin.building.zone_surfaces import closed
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
@@ -148,7 +148,7 @@ def _of_zones(building: Description) -> Iterator[str]:
     if building.zones and building.site.air_density is None:
         yield _ATMOSPHERE
     for name, zone in building.zones.items():
-        seen = surfaces_of_zone(name, building.surfaces, building.windows)
+        seen = building.connections.of(name)
         if zone.longwave.kind == "none" or len(seen) < 2:
             continue
         yield _ENCLOSURE

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
-from mascarin.building.derived import shade_outlines, sides_of_zone
+from mascarin.building.derived import shade_outlines
 from mascarin.building.material import Resistance
 from mascarin.building.part import Location, fault
 from mascarin.building.schedule import DAYS, Piece
 from mascarin.building.surface import NoLongwave, Side
 from mascarin.building.window_rules import windows_lie_in_walls
 from mascarin.building.zone import FloorSun, GivenSun, SunShares, TracedSun
-from mascarin.building.zone_surfaces import ZoneSurface, floors, surfaces_of_zone
+from mascarin.building.zone_surfaces import ZoneSurface, floors
 from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def _layers_have_what_they_need(building: Description) -> Faults:
 
 def _zones_have_surfaces(building: Description) -> Faults:
     for zone in building.zones:
-        if not sides_of_zone(zone, building.surfaces):
+        if not building.connections.sides(zone):
             yield fault(
                 ("zones", zone),
                 "a zone that no surface faces",
@@ -191,7 +191,7 @@ def _view_factors_sum_to_one(building: Description) -> Faults:
         given = building.zones[zone].view_factors
         if given is None:
             continue
-        names = surface_names(surfaces_of_zone(zone, building.surfaces, building.windows))
+        names = surface_names(building.connections.of(zone))
         for row, factors in given.items():
             at = ("zones", zone, "view_factors", row)
             if row not in names:
@@ -219,7 +219,7 @@ def _view_factors_sum_to_one(building: Description) -> Faults:
                 )
 
 
-def surface_names(seen: list[ZoneSurface]) -> list[str]:
+def surface_names(seen: Sequence[ZoneSurface]) -> list[str]:
     """Names of the surfaces of a zone; with the side, or ``frame``, where a part has two."""
     count: Mapping[str, int] = Counter(item.name for item in seen)
     names: list[str] = []
@@ -233,7 +233,7 @@ def surface_names(seen: list[ZoneSurface]) -> list[str]:
 
 def _sun_can_be_absorbed(building: Description) -> Faults:
     for zone, definition in building.zones.items():
-        seen = surfaces_of_zone(zone, building.surfaces, building.windows)
+        seen = building.connections.of(zone)
         lit = any(item.window is not None for item in seen)
         sun = definition.sun
         if isinstance(sun, GivenSun):
@@ -269,7 +269,7 @@ def _sun_can_be_absorbed(building: Description) -> Faults:
                 )
 
 
-def _rays_end_on_surfaces(zone: str, seen: list[ZoneSurface]) -> Faults:
+def _rays_end_on_surfaces(zone: str, seen: Sequence[ZoneSurface]) -> Faults:
     bare = ", ".join(f"'{item.name}'" for item in seen if item.polygon is None)
     if bare:
         yield fault(

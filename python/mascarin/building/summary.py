@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from mascarin.building.derived import sides_of_zone
 from mascarin.building.description import Description
 from mascarin.building.outputs import outputs
 from mascarin.building.parameters import Parameter
@@ -67,7 +66,7 @@ def tables(building: Description, parameters: Sequence[Parameter]) -> dict[str, 
         "Zones": pd.DataFrame(
             {
                 "volume [m3]": {name: zone.volume for name, zone in building.zones.items()},
-                "surfaces": {name: len(sides_of_zone(name, building.surfaces)) for name in building.zones},
+                "surfaces": {name: len(building.connections.sides(name)) for name in building.zones},
                 "heating [degC]": {name: _set_point(zone.heating) for name, zone in building.zones.items()},
                 "cooling [degC]": {name: _set_point(zone.cooling) for name, zone in building.zones.items()},
             }

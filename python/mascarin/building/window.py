@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field, model_validator
@@ -16,7 +15,7 @@ from mascarin.building.part import Part, fault, insist
 from mascarin.building.surface import Exposure, OutdoorLongwave, Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    pass
 
 Vertices = tuple[tuple[q.Coordinate, q.Coordinate, q.Coordinate], ...]
 
@@ -178,13 +177,3 @@ def outer_side(window: Window, wall: Surface) -> WindowOutside | WindowInside:
     if wall.outside.zone is None:
         return window.outside
     return WindowInside.model_construct(convection=window.outside.convection)
-
-
-def windows_in(surface: str, windows: Mapping[str, Window]) -> Iterator[tuple[str, Window]]:
-    """Windows in a wall."""
-    return ((name, window) for name, window in windows.items() if window.surface == surface)
-
-
-def opaque_area(surface: str, gross: float, windows: Mapping[str, Window]) -> float:
-    """Area of a wall without its windows [m2]."""
-    return gross - sum(float(window.area or 0.0) for _, window in windows_in(surface, windows))

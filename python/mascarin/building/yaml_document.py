@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 from pydantic import ValidationError
 
@@ -14,14 +14,12 @@ from mascarin._io.regular import require_regular
 from mascarin.building.explaining import Place, explained
 from mascarin.building.inheriting import EXTENDS, Inherited, inherited
 from mascarin.building.part import Part
+from mascarin.building.yaml_nodes import compose
 from mascarin.errors import InputError
-
-if TYPE_CHECKING:
-    from ruamel.yaml.nodes import Node
 
 AnyPart = TypeVar("AnyPart", bound=Part)
 
-#: Aliases can make a small file expand to any size; no building has more values than this.
+#: Aliases can make a small file expand to any size; no text of fewer letters has more values than this.
 MOST_VALUES = 100_000
 #: No description has values deeper than this.
 MOST_LEVELS = 50
@@ -149,6 +147,7 @@ class _Document:
     lines: dict[Place, int] = field(default_factory=dict)
     faults: list[tuple[int, str]] = field(default_factory=list)
     values: int = 0
+    most_values: int = MOST_VALUES
     scalars: Any = None
 
     def read(self, text: str) -> Any:
@@ -157,8 +156,9 @@ class _Document:
 
         yaml = YAML(typ="safe", pure=True)
         self.scalars = yaml.constructor
+        self.most_values = max(MOST_VALUES, len(text))
         try:
-            root = yaml.compose(text)
+            root = compose(yaml, text)
             # A key without a value removes that of the base.
             self.blanks = self.blanks or _extends(root)
             plain = self._value(root, (), frozenset()) if root is not None else None
@@ -198,12 +198,13 @@ class _Document:
             "a description, whose values are a few levels deep"
         )
 
-    def _value(self, node: Node, place: Place, above: frozenset[int]) -> Any:
-        from ruamel.yaml.nodes import MappingNode, SequenceNode
-
+    def _value(self, node: Any, place: Place, above: frozenset[int]) -> Any:
         self.values += 1
-        if self.values > MOST_VALUES:
-            raise InputError(f"{self.name}: found more than {MOST_VALUES} values; expected a building")
+        if self.values > self.most_values:
+            raise InputError(
+                f"{self.name}: found more than {self.most_values} values, as aliases make them of a short "
+                "text; expected a building"
+            )
         if id(node) in above:
             self._refuse(
                 node.start_mark.line,
@@ -217,9 +218,9 @@ class _Document:
             self._too_deep(node.start_mark.line)
         self.lines.setdefault(place, node.start_mark.line + 1)
         inside = above | {id(node)}
-        if isinstance(node, MappingNode) and node.tag == "tag:yaml.org,2002:map":
+        if node.id == "mapping" and node.tag == "tag:yaml.org,2002:map":
             return dict(self._items(node, place, inside))
-        if isinstance(node, SequenceNode) and node.tag == "tag:yaml.org,2002:seq":
+        if node.id == "sequence" and node.tag == "tag:yaml.org,2002:seq":
             return [self._value(item, (*place, index), inside) for index, item in enumerate(node.value)]
         return self._scalar(node, place)
 

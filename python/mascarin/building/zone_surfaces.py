@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mascarin.building.derived import outlines, sides_of_zone, window_outlines
-from mascarin.building.window import opaque_area
+from mascarin.building.derived import outlines, sides_by_zone, window_outlines
 
 if TYPE_CHECKING:
     from mascarin.building.geometry import Polygon
@@ -48,43 +47,62 @@ class ZoneSurface:
     window: Window | None
 
 
-def surfaces_of_zone(
-    zone: str, surfaces: Mapping[str, Surface], windows: Mapping[str, Window]
-) -> list[ZoneSurface]:
-    """Surfaces of a zone: opaque surfaces, then the glass of windows, then their frames."""
-    sides = sides_of_zone(zone, surfaces)
-    which = dict(sides)
-    seen = {name: window for name, window in windows.items() if window.surface in which}
-    drawn = outlines({name: surfaces[name] for name, _ in sides}) | window_outlines(seen)
+class Connections:
+    """Which surfaces and windows belong to which zone and wall: found once, not for each zone again.
 
-    def polygon(name: str, side: str) -> Polygon | None:
-        found = drawn.get(name)
-        return found if found is None or side == "outside" else found.reversed()
+    Parameters
+    ----------
+    surfaces, windows : mapping
+        All of a building.
+    """
 
-    found = [
-        ZoneSurface(
-            name,
-            side,
-            opaque_area(name, float(surfaces[name].area or 0.0), windows),
-            1.0,
-            polygon(name, side),
-            surfaces[name],
-            None,
-        )
-        for name, side in sides
-    ]
-    parts = [(name, window, 1.0 - frame_fraction(window)) for name, window in seen.items()]
-    parts += [
-        (name, window, frame_fraction(window)) for name, window in seen.items() if window.frame is not None
-    ]
-    for name, window, share in parts:
-        area = share * float(window.area or 0.0)
-        side = which[window.surface]
-        found.append(ZoneSurface(name, side, area, share, polygon(name, side), None, window))
-    return found
+    def __init__(self, surfaces: Mapping[str, Surface], windows: Mapping[str, Window]) -> None:
+        self._surfaces = surfaces
+        self._sides = sides_by_zone(surfaces)
+        self._windows: dict[str, dict[str, Window]] = {}
+        for name, window in windows.items():
+            self._windows.setdefault(window.surface, {})[name] = window
+        self._order = {name: index for index, name in enumerate(windows)}
+        self._seen: dict[str, tuple[ZoneSurface, ...]] = {}
+
+    def sides(self, zone: str) -> Sequence[tuple[str, str]]:
+        """Surfaces of a zone as (surface, side), in the order of the description, outside before inside."""
+        return self._sides.get(zone, ())
+
+    def windows_in(self, surface: str) -> Mapping[str, Window]:
+        """Windows in a wall, by name."""
+        return self._windows.get(surface, {})
+
+    def of(self, zone: str) -> tuple[ZoneSurface, ...]:
+        """Surfaces of a zone: opaque surfaces, then the glass of windows, then their frames."""
+        if zone not in self._seen:
+            self._seen[zone] = tuple(self._find(zone))
+        return self._seen[zone]
+
+    def _find(self, zone: str) -> Iterator[ZoneSurface]:
+        sides, surfaces = self.sides(zone), self._surfaces
+        which = dict(sides)
+        every = {name: window for wall in which for name, window in self.windows_in(wall).items()}
+        seen = {name: every[name] for name in sorted(every, key=self._order.__getitem__)}
+        drawn = outlines({name: surfaces[name] for name, _ in sides}) | window_outlines(seen)
+
+        def polygon(name: str, side: str) -> Polygon | None:
+            found = drawn.get(name)
+            return found if found is None or side == "outside" else found.reversed()
+
+        for name, side in sides:
+            area = float(surfaces[name].area or 0.0)
+            area -= sum(float(window.area or 0.0) for window in self.windows_in(name).values())
+            yield ZoneSurface(name, side, area, 1.0, polygon(name, side), surfaces[name], None)
+        parts = [(name, window, 1.0 - frame_fraction(window)) for name, window in seen.items()]
+        framed = [(name, window) for name, window in seen.items() if window.frame is not None]
+        parts += [(name, window, frame_fraction(window)) for name, window in framed]
+        for name, window, share in parts:
+            area, side = share * float(window.area or 0.0), which[window.surface]
+            yield ZoneSurface(name, side, area, share, polygon(name, side), None, window)
 
 
-def floors(seen: list[ZoneSurface]) -> list[bool]:
+def floors(seen: Sequence[ZoneSurface]) -> list[bool]:
     """Which surfaces of a zone are its floor: those that face up within 30 deg, without internal mass."""
 
     def floor(item: ZoneSurface) -> bool:
@@ -103,6 +121,6 @@ def frame_fraction(window: Window) -> float:
     return 0.0 if window.frame is None else float(window.frame.fraction)
 
 
-def closed(seen: list[ZoneSurface]) -> bool:
+def closed(seen: Sequence[ZoneSurface]) -> bool:
     """Whether all surfaces of a zone have an outline."""
     return bool(seen) and all(item.polygon is not None for item in seen)

@@ -9,7 +9,6 @@ from mascarin.building.convection import Convection, Measured, Power
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, corners, deeper, fields_of
 from mascarin.building.surface import Side, Surface
-from mascarin.building.window import windows_in
 
 
 def describe_surface(
@@ -21,7 +20,7 @@ def describe_surface(
         "name": name,
         "construction": list(building.constructions).index(surface.construction),
         "area": ids("area"),
-        "openings": [every[f"windows.{window}.area"] for window, _ in windows_in(name, building.windows)],
+        "openings": [every[f"windows.{window}.area"] for window in building.connections.windows_in(name)],
         "vertices": corners(surface.vertices),
         "tilt": ids("tilt"),
         "azimuth": ids("azimuth"),

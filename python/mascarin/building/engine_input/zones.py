@@ -7,11 +7,11 @@ from typing import Any
 
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, Places, fields_of
-from mascarin.building.geometry import net_areas, view_factors
+from mascarin.building.geometry import closed_exchange_areas
 from mascarin.building.part import Part
 from mascarin.building.rules import surface_names
 from mascarin.building.zone import AirPath, FloorSun, GivenSun, IdealLoads, Opening, SunShares, Zone
-from mascarin.building.zone_surfaces import closed, floors, surfaces_of_zone
+from mascarin.building.zone_surfaces import closed, floors
 from mascarin.errors import InputError
 
 
@@ -67,7 +67,7 @@ def describe_opening(building: Description, places: Places, name: str, opening: 
 
 
 def _sun(building: Description, name: str, zone: Any, ids: Ids) -> Json:
-    seen = surfaces_of_zone(name, building.surfaces, building.windows)
+    seen = building.connections.of(name)
     if isinstance(zone.sun, FloorSun):
         return {"kind": "floor", "floor": floors(seen)}
     if not isinstance(zone.sun, GivenSun):
@@ -96,7 +96,7 @@ def view_weights(building: Description, zone: str) -> list[list[float]]:
     InputError
         If the vertices do not enclose a convex zone.
     """
-    seen = surfaces_of_zone(zone, building.surfaces, building.windows)
+    seen = building.connections.of(zone)
     given = building.zones[zone].view_factors
     if given is not None:
         names = surface_names(seen)
@@ -114,7 +114,7 @@ def view_weights(building: Description, zone: str) -> list[list[float]]:
     polygons = list(outlines.values())
 
     try:
-        weights = net_areas(polygons)[:, None] * view_factors(polygons)
+        weights = closed_exchange_areas(polygons)
     except InputError as error:
         raise InputError(f"zones.{zone}: {error}") from None
     places = [list(outlines).index(item.name) for item in seen]

@@ -12,6 +12,7 @@ from mascarin.building.geometry.enclosure import (
 )
 from mascarin.building.geometry.exchange import (
     CLOSURE_LIMIT,
+    closed_exchange_areas,
     exchange_areas,
     log_integral,
     view_factors,
@@ -28,6 +29,7 @@ __all__ = [
     "OpenEdge",
     "Polygon",
     "check_convex",
+    "closed_exchange_areas",
     "exchange_areas",
     "in_front",
     "log_integral",

@@ -34,6 +34,7 @@ from mascarin.building.geometry.polygon import Polygon, coplanar
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]
+Point = tuple[float, float, float]
 
 #: Largest deviation of the row sums of exact view factors of a closed convex zone from one [-].
 CLOSURE_LIMIT = 1e-6
@@ -75,6 +76,37 @@ def exchange_areas(polygons: Sequence[Polygon]) -> Array:
     return symmetric
 
 
+def closed_exchange_areas(polygons: Sequence[Polygon]) -> Array:
+    """Exchange areas A_i F_ij between the polygons of a convex zone that is closed.
+
+    Parameters
+    ----------
+    polygons : sequence of Polygon
+        All surfaces of the zone, normals into the zone; also those within another one.
+
+    Returns
+    -------
+    array, shape (n, n)
+        Symmetric; rows sum to the net areas within :data:`CLOSURE_LIMIT`. [m2]
+
+    Raises
+    ------
+    InputError
+        The zone is not convex or not closed.
+    """
+    exchange, areas = exchange_areas(polygons), net_areas(polygons)
+    sums = exchange.sum(axis=1) / areas
+    worst = int(np.argmax(np.abs(sums - 1.0)))
+    if abs(sums[worst] - 1.0) > CLOSURE_LIMIT:
+        gaps = "; ".join(str(gap) for gap in open_edges(polygons)[:4])
+        reason = f"open edges: {gaps}" if gaps else "the coordinates are not exact"
+        raise InputError(
+            f"the view factors from '{polygons[worst].name}' sum to {sums[worst]:.7f}; expected 1 within "
+            f"{CLOSURE_LIMIT:g} in a closed zone ({reason}); correct the vertices or give its view_factors"
+        )
+    return exchange
+
+
 def view_factors(polygons: Sequence[Polygon]) -> Array:
     """View factors F_ij (from i to j) between the polygons of a closed convex zone.
 
@@ -93,16 +125,7 @@ def view_factors(polygons: Sequence[Polygon]) -> Array:
     InputError
         The zone is not convex or not closed.
     """
-    factors: Array = exchange_areas(polygons) / net_areas(polygons)[:, None]
-    sums = factors.sum(axis=1)
-    worst = int(np.argmax(np.abs(sums - 1.0)))
-    if abs(sums[worst] - 1.0) > CLOSURE_LIMIT:
-        gaps = "; ".join(str(gap) for gap in open_edges(polygons)[:4])
-        reason = f"open edges: {gaps}" if gaps else "the coordinates are not exact"
-        raise InputError(
-            f"the view factors from '{polygons[worst].name}' sum to {sums[worst]:.7f}; expected 1 within "
-            f"{CLOSURE_LIMIT:g} in a closed zone ({reason}); correct the vertices or give its view_factors"
-        )
+    factors: Array = closed_exchange_areas(polygons) / net_areas(polygons)[:, None]
     return factors
 
 
@@ -113,13 +136,28 @@ def _exchange_area(a: Polygon, b: Polygon) -> float:
     """A F between two polygons that see each other completely. [m2]"""
     if coplanar(a, b):
         return 0.0
-    total = 0.0
-    for p0, p1 in _edges(a):
-        for q0, q1 in _edges(b):
-            cosine = float((p1 - p0) @ (q1 - q0))
-            if abs(cosine) > 1e-14 * float(np.linalg.norm(p1 - p0) * np.linalg.norm(q1 - q0)):
-                total += cosine * log_integral(p0, p1, q0, q1)
-    return max(total / (2.0 * math.pi), 0.0)
+    origin = a.vertices[0]
+    return _relative_exchange_area(
+        *(tuple(_from(origin, corner) for corner in one.vertices) for one in (a, b))
+    )
+
+
+def _from(origin: Point, corner: Point) -> Point:
+    """A corner relative to another one [m]: rooms of one shape give the same numbers wherever they are."""
+    x, y, z = (round(to - at, 12) for at, to in zip(origin, corner, strict=True))
+    return x, y, z
+
+
+@lru_cache(maxsize=16384)
+def _relative_exchange_area(a: tuple[Point, ...], b: tuple[Point, ...]) -> float:
+    """A F between two polygons given by their corners: equal rooms of a building are worked out once. [m2]"""
+    (p0, p1), (q0, q1) = (_edges(np.array(corners)) for corners in (a, b))
+    first, second = (index.ravel() for index in np.indices((len(p0), len(q0))))
+    p0, p1, q0, q1 = p0[first], p1[first], q0[second], q1[second]
+    cosines = np.sum((p1 - p0) * (q1 - q0), axis=1)
+    acts = np.abs(cosines) > 1e-14 * _lengths(p1 - p0) * _lengths(q1 - q0)
+    integrals = _log_integrals(p0[acts], p1[acts], q0[acts], q1[acts])
+    return max(float(cosines[acts] @ integrals) / (2.0 * math.pi), 0.0)
 
 
 def log_integral(p0: Array, p1: Array, q0: Array, q1: Array) -> float:
@@ -135,30 +173,45 @@ def log_integral(p0: Array, p1: Array, q0: Array, q1: Array) -> float:
     float
         Mean logarithm of the distance in metres. [-]
     """
-    length_p, length_q = float(np.linalg.norm(p1 - p0)), float(np.linalg.norm(q1 - q0))
-    e, f = (p1 - p0) / length_p, (q1 - q0) / length_q
-    if float(np.linalg.norm(np.cross(e, f))) < 1e-10:
-        total = _parallel(q0 - p0, e, math.copysign(1.0, float(e @ f)), length_p, length_q)
-    else:
-        total = _skew(p0, p1, q0, length_q, e, f)
-    return total / (length_p * length_q)
+    return float(_log_integrals(p0[None], p1[None], q0[None], q1[None])[0])
 
 
-def _parallel(between: Array, e: Array, sign: float, length_p: float, length_q: float) -> float:
-    """Double integral of ln r over two parallel edges, from its second antiderivative in u = s - t."""
-    offset = float(between @ e)
-    d = float(np.linalg.norm(between - offset * e))
-    if d < 1e-9 * (length_p + length_q):
-        d = 0.0
+def _log_integrals(p0: Array, p1: Array, q0: Array, q1: Array) -> Array:
+    """The same for pairs of edges, whose ends are the rows."""
+    length_p, length_q = _lengths(p1 - p0), _lengths(q1 - q0)
+    e, f = (p1 - p0) / length_p[:, None], (q1 - q0) / length_q[:, None]
+    parallel = _lengths(np.cross(e, f)) < 1e-10
+    totals = np.empty(len(p0))
+    along = np.sum(e * f, axis=1)[parallel]
+    totals[parallel] = _parallel(
+        (q0 - p0)[parallel], e[parallel], along, length_p[parallel], length_q[parallel]
+    )
+    for k in np.flatnonzero(~parallel):
+        totals[k] = _skew(p0[k], p1[k], q0[k], length_q[k], e[k], f[k])
+    return totals / (length_p * length_q)
 
-    def second(u: float) -> float:
+
+def _parallel(between: Array, e: Array, along: Array, length_p: Array, length_q: Array) -> Array:
+    """Double integrals of ln r over parallel edges, from its second antiderivative in u = s - t."""
+    offset = np.sum(between * e, axis=1)
+    d = _lengths(between - offset[:, None] * e)
+    d = np.where(d < 1e-9 * (length_p + length_q), 0.0, d)
+
+    def second(u: Array) -> Array:
         r2 = u * u + d * d
-        log = math.log(r2) if r2 > 0.0 else 0.0
-        turn = 2.0 * d * u * math.atan2(u, d) if d > 0.0 else 0.0
-        return 0.5 * (0.5 * (u * u - d * d) * log - 1.5 * u * u + turn)
+        log = np.log(np.where(r2 > 0.0, r2, 1.0))
+        result: Array = 0.5 * (0.5 * (u * u - d * d) * log - 1.5 * u * u + 2.0 * d * u * np.arctan2(u, d))
+        return result
 
-    low, high = (offset, offset + length_q) if sign > 0 else (offset - length_q, offset)
+    low = np.where(along > 0.0, offset, offset - length_q)
+    high = low + length_q
     return second(length_p - low) + second(-high) - second(-low) - second(length_p - high)
+
+
+def _lengths(vectors: Array) -> Array:
+    """Lengths of the rows."""
+    found: Array = np.sqrt(np.sum(vectors * vectors, axis=1))
+    return found
 
 
 def _skew(p0: Array, p1: Array, q0: Array, length_q: float, e: Array, f: Array) -> float:
@@ -202,6 +255,6 @@ def _tanh_sinh() -> tuple[Array, Array]:
     return nodes, weights
 
 
-def _edges(polygon: Polygon) -> list[tuple[Array, Array]]:
-    p = polygon.points
-    return [(p[i], p[(i + 1) % len(p)]) for i in range(len(p))]
+def _edges(corners: Array) -> tuple[Array, Array]:
+    """Begins and ends of the edges of a polygon."""
+    return corners, np.roll(corners, -1, axis=0)
