@@ -32,7 +32,7 @@ pub(crate) fn number_unknowns(
     let (mut surfaces, mut zones) = find_unknowns(description);
     let groups = groups(walls, &surfaces, &zones);
     let neighbours = neighbours(description, &surfaces, &zones);
-    let (position, order) = order(&neighbours, groups);
+    let (position, order) = order(&neighbours, &groups);
     for surface in &mut surfaces {
         if let SurfaceRole::Zone { row, .. } = &mut surface.role {
             *row = position[*row];
@@ -49,28 +49,24 @@ pub(crate) fn number_unknowns(
 const SHARE_OF_CONSTANT: usize = 4;
 
 /// Positions of the unknowns in the order with less work, and that order.
-fn order(neighbours: &[BTreeSet<usize>], mut groups: Vec<(usize, usize)>) -> (Vec<usize>, Order) {
-    let apart = Order::new(neighbours, &groups);
-    let Order { constant_rows, pattern, .. } = &apart.1;
-    let constant = pattern.work(0..*constant_rows);
-    let changing = pattern.work(*constant_rows..pattern.size());
-    if constant == 0 {
-        return apart;
+fn order(neighbours: &[BTreeSet<usize>], groups: &[(usize, usize)]) -> (Vec<usize>, Order) {
+    let merged = |&group: &(usize, usize)| if group.0 == CONSTANT { (CHANGING, 0) } else { group };
+    let all_changing: Vec<_> = groups.iter().map(merged).collect();
+    let together = minimum_degree(neighbours.to_vec(), &all_changing, usize::MAX);
+    // In a large building the other order couples nearly everything: it is not followed further than this one's work.
+    let apart = minimum_degree(neighbours.to_vec(), groups, together.work());
+    if apart.later.len() < groups.len() {
+        return Order::new(together, &all_changing);
     }
-    for group in groups.iter_mut().filter(|group| group.0 == CONSTANT) {
-        *group = (CHANGING, 0);
-    }
-    let together = Order::new(neighbours, &groups);
-    let work = together.1.pattern.work(0..together.1.pattern.size());
-    if work < changing + constant / SHARE_OF_CONSTANT { together } else { apart }
+    Order::new(apart, groups)
 }
 
 impl Order {
-    /// Eliminates group by group; with the position of each unknown.
-    fn new(neighbours: &[BTreeSet<usize>], groups: &[(usize, usize)]) -> (Vec<usize>, Self) {
+    /// An order that was found for these groups, after the positions of the unknowns.
+    fn new(elimination: Elimination, groups: &[(usize, usize)]) -> (Vec<usize>, Self) {
         let in_group = |wanted: usize| groups.iter().filter(|(group, _)| *group == wanted).count();
         let (own_rows, constant_rows) = (in_group(OWN), in_group(CONSTANT));
-        let (position, later) = minimum_degree(neighbours.to_vec(), groups);
+        let Elimination { position, later, .. } = elimination;
         let of_row = |coupled: BTreeSet<usize>| {
             let mut rows: Vec<usize> = coupled.into_iter().map(|k| position[k] - own_rows).collect();
             rows.sort_unstable();
@@ -170,31 +166,58 @@ fn neighbours(
     neighbours
 }
 
+/// An order of elimination and what it does.
+struct Elimination {
+    /// Position of each unknown in the order.
+    position: Vec<usize>,
+    /// By position the unknowns eliminated later that the eliminated one is coupled with, those that elimination adds (the
+    /// fill) included.
+    later: Vec<BTreeSet<usize>>,
+    /// Multiplications for the surfaces of constant walls between zones, and for the rest.
+    constant: usize,
+    changing: usize,
+}
+
+impl Elimination {
+    /// Multiplications, those for constant walls by their share.
+    fn work(&self) -> usize {
+        self.changing + self.constant / SHARE_OF_CONSTANT
+    }
+}
+
 /// Eliminates group by group, always the unknown with the fewest neighbours next; those of the first group in their order.
-///
-/// Returns the position of each unknown in the order, and by position the unknowns eliminated later that the eliminated one
-/// is coupled with, those that elimination adds (the fill) included.
+/// Gives up where this takes more work than allowed.
 fn minimum_degree(
     mut neighbours: Vec<BTreeSet<usize>>,
     groups: &[(usize, usize)],
-) -> (Vec<usize>, Vec<BTreeSet<usize>>) {
+    most_work: usize,
+) -> Elimination {
     let n = neighbours.len();
-    let mut position = vec![usize::MAX; n];
-    let mut later = Vec::with_capacity(n);
-    for next in 0..n {
-        let waiting = (0..n).filter(|&k| position[k] == usize::MAX);
-        let degree = |k: usize| if groups[k].0 == OWN { 0 } else { neighbours[k].len() };
-        let Some(chosen) = waiting.min_by_key(|&k| (groups[k], degree(k))) else { break };
-        position[chosen] = next;
+    let key = |k: usize, degree: usize| (groups[k], if groups[k].0 == OWN { 0 } else { degree }, k);
+    let mut waiting: BTreeSet<_> = (0..n).map(|k| key(k, neighbours[k].len())).collect();
+    let mut found =
+        Elimination { position: vec![usize::MAX; n], later: Vec::with_capacity(n), constant: 0, changing: 0 };
+    while let Some((group, _, chosen)) = waiting.pop_first() {
+        found.position[chosen] = found.later.len();
         let coupled = core::mem::take(&mut neighbours[chosen]);
+        match group.0 {
+            OWN => {}
+            CONSTANT => found.constant += coupled.len() * coupled.len(),
+            _ => found.changing += coupled.len() * coupled.len(),
+        }
+        if found.work() > most_work {
+            break;
+        }
         // Elimination couples all neighbours of the unknown with each other.
         for &k in &coupled {
+            waiting.remove(&key(k, neighbours[k].len()));
             neighbours[k].extend(coupled.iter().filter(|&&other| other != k));
             neighbours[k].remove(&chosen);
+            waiting.insert(key(k, neighbours[k].len()));
         }
-        later.push(coupled);
+        found.later.push(coupled);
     }
-    (position, later)
+    found
 }
 
 #[cfg(test)]
@@ -212,7 +235,7 @@ mod tests {
 
     /// Couplings that elimination adds to those of a graph.
     fn fill(n: usize, couplings: &[[usize; 2]], groups: &[(usize, usize)]) -> usize {
-        let (_, later) = minimum_degree(graph(n, couplings), groups);
+        let Elimination { later, .. } = minimum_degree(graph(n, couplings), groups, usize::MAX);
         later.iter().map(BTreeSet::len).sum::<usize>() - couplings.len()
     }
 
@@ -225,8 +248,19 @@ mod tests {
         let chain: Vec<[usize; 2]> = (1..n).map(|k| [numbered(k - 1), numbered(k)]).collect();
         let groups = vec![(CHANGING, 0); n];
         assert_eq!(fill(n, &chain, &groups), 0);
-        let (_, later) = minimum_degree(graph(n, &chain), &groups);
+        let Elimination { later, .. } = minimum_degree(graph(n, &chain), &groups, usize::MAX);
         assert!(later[..n - 1].iter().all(|coupled| coupled.len() == 1) && later[n - 1].is_empty());
+    }
+
+    /// An order that takes more work than allowed is given up; one that takes as much is not.
+    #[test]
+    fn an_order_with_too_much_work_is_given_up() {
+        let star: Vec<[usize; 2]> = (1..6).map(|k| [0, k]).collect();
+        let groups = [(CHANGING, 0); 6];
+        let whole = minimum_degree(graph(6, &star), &groups, usize::MAX);
+        assert_eq!((whole.work(), whole.later.len()), (5, 6));
+        assert_eq!(minimum_degree(graph(6, &star), &groups, 5).later.len(), 6);
+        assert!(minimum_degree(graph(6, &star), &groups, 4).later.len() < 6);
     }
 
     /// A ring of n unknowns: each of the first n - 3 eliminations couples two neighbours anew.
@@ -246,6 +280,6 @@ mod tests {
         assert_eq!(fill(6, &star, &groups), 0);
         groups[0] = (CONSTANT, 0);
         assert_eq!(fill(6, &star, &groups), 5 * 4 / 2);
-        assert_eq!(minimum_degree(graph(6, &star), &groups).0[0], 0);
+        assert_eq!(minimum_degree(graph(6, &star), &groups, usize::MAX).position[0], 0);
     }
 }

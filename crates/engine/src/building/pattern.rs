@@ -127,11 +127,6 @@ impl Pattern {
         let found = self.columns[row.entries.clone()].binary_search(&column).ok()?;
         Some(row.entries.start + found)
     }
-
-    /// Multiplications that the elimination of some rows takes.
-    pub(crate) fn work(&self, rows: Range<usize>) -> usize {
-        self.rows[rows].iter().map(|row| row.later.len() * row.later.len()).sum()
-    }
 }
 
 /// Ascending numbers gathered into runs without gaps.
@@ -165,7 +160,6 @@ mod tests {
         assert_eq!((*row, *entry, &segments[..]), (1, 3, &expected[..]));
         // Row 2 has columns 2 and 3 side by side.
         assert_eq!(pattern.row(1).later[0].segments, [Segment { of_pivot: 0..2, place: 8 }]);
-        assert_eq!(pattern.work(0..4), 4 + 4 + 1);
     }
 
     #[test]

@@ -13,7 +13,8 @@
 //! `s`, which is `(1 - g)/g` times the storage of the air over the length of the stage, for the diagonal coefficient
 //! `g` of the scheme. (What walls store is left out: the next sweep shows it as lacking.) The eigenvalues of
 //! `1 + C` lie between 1 and `1/g`, however many zones there are and however much air they exchange, so that a few iterations
-//! solve it. They take place in the next sweep, in its first stage, whose factors give `G`.
+//! solve it. They take place in the next sweep, in its first stage, whose factors give `G`. Airs that are not held are not in
+//! `C`. Where much air connects them with those that are, each change is corrected by what the one before it did.
 //!
 //! Each takes one solution with these factors, for all zones together. The responses to each load
 //! ([`super::responses`]) take two for each zone.
@@ -24,7 +25,7 @@ use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
 use crate::step::ideal_loads::limits::{CLOSE, Limits, TOLERANCE};
 
-/// Conductance that holds an air, over the conductances that act on it [-].
+/// Conductance that holds an air, over the largest of those that act on it [-].
 const STIFFNESS: f64 = 1e3;
 /// What acts on the air of a zone beside its storage, for each m2 of its surfaces [W/(m2 K)]: only its magnitude matters.
 const SURFACE_CONDUCTANCE: f64 = 10.0;
@@ -32,6 +33,9 @@ const SURFACE_CONDUCTANCE: f64 = 10.0;
 /// iterations.
 const LEFT: f64 = 1e-3;
 const MAX_ITERATIONS: usize = 8;
+/// Least and largest share of the last change that is taken back [-]: a factor of convergence of 0.9, and of any negative one.
+const LEAST_SHARE: f64 = -10.0;
+const MOST_SHARE: f64 = 1.0;
 /// Sweeps after which `C` is taken as diagonal.
 const DIAGONAL_SWEEPS: usize = 2;
 /// Changes of a load from which the diagonal is learned: those that move the air by more [K].
@@ -53,8 +57,10 @@ struct HeldAir<S: Real> {
     mode: Mode<S>,
     /// Set points of heating and cooling [degC].
     set_points: [S; 2],
-    /// Conductances that act on the air, by their magnitude [W/K].
+    /// Conductances that act on the air, by their magnitude, without air from other zones and outdoors [W/K].
     conductance: S,
+    /// Conductance that holds the air [W/K].
+    holding: S,
     /// `s` of the air [W/K].
     carried: S,
     /// `1 + c` with the diagonal `c` of `C` [-], 0 where it is not known yet, and the most that it can be.
@@ -67,14 +73,30 @@ struct HeldAir<S: Real> {
     /// `1 + c` of the air alone, airs that are eliminated later held [-], and the heat that is left of what the load lacks [W].
     air_slope: S,
     left: S,
+    /// Change of the load by the last iteration [W].
+    supplied: S,
+    /// The same before it, with what the load lacked then, and the change that was made [W].
+    before: Supply<S>,
+}
+
+/// How a load was changed, and what it lacked before.
+#[derive(Debug, Clone, Copy)]
+struct Supply<S> {
+    missing: S,
+    supplied: S,
+    change: S,
 }
 
 /// Airs that the last stage of a step holds at their set points.
 #[derive(Debug, Clone)]
 pub(crate) struct HeldAirs<S: Real> {
     airs: Vec<HeldAir<S>>,
+    /// Heat that air carries into each zone, per degree [W/K].
+    flows: Vec<S>,
     /// Rises of all unknowns of the coupled system.
     rise: Vec<S>,
+    /// Lanes in which loads were changed after the last sweep but one, and no load has begun or ended since then.
+    comparable: S::Mask,
 }
 
 impl<S: Real> HeldAirs<S> {
@@ -85,6 +107,7 @@ impl<S: Real> HeldAirs<S> {
             mode: Mode { heats: S::Mask::splat(false), cools: S::Mask::splat(false) },
             set_points: [zero; 2],
             conductance: S::one(),
+            holding: S::one(),
             carried: zero,
             slope: zero,
             most_slope: 1.0,
@@ -92,8 +115,15 @@ impl<S: Real> HeldAirs<S> {
             change: zero,
             air_slope: S::one(),
             left: zero,
+            supplied: zero,
+            before: Supply { missing: zero, supplied: zero, change: zero },
         };
-        Self { airs: vec![nothing; loads], rise: vec![zero; rows] }
+        Self {
+            airs: vec![nothing; loads],
+            flows: Vec::new(),
+            rise: vec![zero; rows],
+            comparable: S::Mask::splat(false),
+        }
     }
 
     /// The diagonal, from which the next step goes on.
@@ -108,21 +138,25 @@ impl<S: Real> HeldAirs<S> {
         }
     }
 
-    /// Begins a step whose stages have a length [s], with `(1 - g)/g` of its scheme: which airs are held follows from
-    /// the guessed loads and from the airs expected without them.
+    /// Begins a step that ends with a forcing row and whose stages have a length [s], with `(1 - g)/g` of its scheme: which
+    /// airs are held follows from the guessed loads and from the airs expected without them.
     #[inline(always)]
     pub(super) fn begin(
         &mut self,
         model: &Model<'_, S>,
+        row: &[f64],
         (length, ratio): (f64, f64),
         (limits, zones): (&[Limits<S>], &[usize]),
         (loads, expected): (&[S], impl Fn(usize) -> S),
     ) {
+        self.find_flows(model, row);
+        self.comparable = S::Mask::splat(false);
         for ((air, limits), &zone) in self.airs.iter_mut().zip(limits).zip(zones) {
             let numbers = &model.coefficients.zones[zone];
             let area = numbers.areas.iter().fold(S::zero(), |sum, &area| sum + area);
             let storage = numbers.capacity.scale(1.0 / length);
             air.conductance = storage + area.scale(SURFACE_CONDUCTANCE);
+            air.holding = air.conductance.max(self.flows[zone]).scale(STIFFNESS);
             air.carried = storage.scale(ratio);
             air.most_slope = 1.0 + WALLS * ratio;
             let first = S::one() + air.carried / air.conductance;
@@ -134,11 +168,31 @@ impl<S: Real> HeldAirs<S> {
         }
     }
 
+    /// Finds the heat that air from other zones and ventilation carry into each zone in a forcing row. An air that is not
+    /// held much more strongly than this would follow the other airs, and the loads would be found slowly.
+    #[inline(always)]
+    fn find_flows(&mut self, model: &Model<'_, S>, row: &[f64]) {
+        let coefficients = &model.coefficients;
+        self.flows.clear();
+        self.flows.extend(
+            coefficients
+                .zones
+                .iter()
+                .map(|zone| zone.ventilation.iter().fold(S::zero(), |sum, flow| sum + flow.at(row))),
+        );
+        for path in &coefficients.paths {
+            let conductance = path.conductance(row);
+            for zone in path.between {
+                self.flows[zone] += conductance;
+            }
+        }
+    }
+
     /// What holds the airs in the last stage: heat `offset - slope T` into the air of each zone [W].
     #[inline(always)]
     pub(super) fn write(&self, zones: &[usize], holding: &mut [Line<S>]) {
         for (air, &zone) in self.airs.iter().zip(zones) {
-            let slope = S::select(air.mode.holds(), air.conductance.scale(STIFFNESS), S::zero());
+            let slope = S::select(air.mode.holds(), air.holding, S::zero());
             holding[zone] = Line { offset: slope * air.set_point(), slope };
         }
     }
@@ -179,6 +233,7 @@ impl<S: Real> HeldAirs<S> {
             let (mode, _) = held.next(limits, loads[zone], air[zone]);
             let small = (held.missing / held.slope).abs().lt(held.conductance.scale(CLOSE));
             found = found & small & held.mode.is(mode);
+            self.comparable = self.comparable & held.mode.is(mode);
         }
         let moving = active & (!found | S::Mask::splat(all));
         for ((held, limits), &zone) in self.airs.iter_mut().zip(limits).zip(zones) {
@@ -217,12 +272,12 @@ impl<S: Real> HeldAirs<S> {
         let row = |zone: usize| model.plan.zones[zone].air_row;
         for (air, &zone) in self.airs.iter_mut().zip(zones) {
             air.air_slope = S::one() + air.carried * system.coupled.inverse_pivot(row(zone));
-            air.left = air.missing;
+            (air.left, air.supplied) = (air.missing, S::zero());
         }
         let begin = self.largest_left();
         let enough = begin.scale(LEFT).max(S::constant(0.1 * CLOSE));
-        let mut open = enough.lt(begin);
-        let lacks = open.any();
+        let lacking = enough.lt(begin);
+        let mut open = lacking;
         for _ in 0..MAX_ITERATIONS {
             if !open.any() {
                 break;
@@ -241,12 +296,35 @@ impl<S: Real> HeldAirs<S> {
             }
             let factor = S::select(open, along / square, S::zero());
             for (air, &zone) in self.airs.iter_mut().zip(zones) {
-                loads[zone] += factor * (air.left / air.air_slope);
+                air.supplied += factor * (air.left / air.air_slope);
                 air.left = air.left - factor * air.gain(self.rise[row(zone)]);
             }
             open = open & enough.lt(self.largest_left());
         }
-        lacks
+        self.change_loads(lacking, zones, loads);
+        lacking.any()
+    }
+
+    /// Changes loads in some lanes by what the iteration found, and by what the change before it shows: airs that are not held
+    /// store heat, too, and give it to those that are. (Anderson's acceleration with one step of history: Walker & Ni 2011, SIAM J.
+    /// Numer. Anal. 49(4), doi:10.1137/10078356X.)
+    #[inline(always)]
+    fn change_loads(&mut self, lacking: S::Mask, zones: &[usize], loads: &mut [S]) {
+        let (mut along, mut square) = (S::zero(), S::constant(f64::MIN_POSITIVE));
+        for air in &self.airs {
+            let fell = (air.missing - air.before.missing) / air.conductance;
+            along += fell * (air.missing / air.conductance);
+            square += fell * fell;
+        }
+        let share = (along / square).max(S::constant(LEAST_SHARE)).min(S::constant(MOST_SHARE));
+        let share = S::select(lacking & self.comparable, share, S::zero());
+        for (air, &zone) in self.airs.iter_mut().zip(zones) {
+            let moved = air.before.change + air.supplied - air.before.supplied;
+            let change = S::select(lacking, air.supplied - share * moved, S::zero());
+            loads[zone] += change;
+            air.before = Supply { missing: air.missing, supplied: air.supplied, change };
+        }
+        self.comparable = lacking;
     }
 
     /// Heat that is left, over the conductances of its air: the largest [K].
@@ -306,7 +384,7 @@ impl<S: Real> HeldAir<S> {
     /// Heat that the load lacks in the last stage, whose air is known [W].
     #[inline(always)]
     fn missing_at(&self, air: S) -> S {
-        let heat = self.conductance.scale(STIFFNESS) * (self.set_point() - air);
+        let heat = self.holding * (self.set_point() - air);
         S::select(self.mode.holds(), heat, S::zero())
     }
 

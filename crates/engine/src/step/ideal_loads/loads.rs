@@ -140,19 +140,20 @@ impl<S: Real> IdealLoads<S> {
         self.held.as_ref().map_or_else(|| (self.needed & active).any(), |held| held.any(active))
     }
 
-    /// Begins to hold airs, where loads are found so: in a step with stages of a length [s], guessed loads, and airs
-    /// that are expected without them.
+    /// Begins to hold airs, where loads are found so: in a step that ends with a forcing row, with stages of a length [s],
+    /// guessed loads, and airs that are expected without them.
     #[inline(always)]
     pub(super) fn begin_holding(
         &mut self,
         model: &Model<'_, S>,
+        row: &[f64],
         length_and_ratio: (f64, f64),
         loads: &[S],
         expected: impl Fn(usize) -> S,
     ) {
         if let Some(held) = &mut self.held {
             let of_zones = (&self.limits[..], &self.zones[..]);
-            held.begin(model, length_and_ratio, of_zones, (loads, expected));
+            held.begin(model, row, length_and_ratio, of_zones, (loads, expected));
         }
     }
 

@@ -50,7 +50,7 @@ impl<S: Real> Stepper<'_, S> {
         let tableau = self.scheme.tableau();
         let expected = |zone: usize| line(state.air[zone], iterate.air[zone], 1.0 / tableau.diagonal);
         ideal_loads.mark_needed(load, expected);
-        ideal_loads.begin_holding(model, (tableau.diagonal * length, tableau.ratio), load, expected);
+        ideal_loads.begin_holding(model, row, (tableau.diagonal * length, tableau.ratio), load, expected);
         if let Some(previous) = previous {
             let known = [previous, ideal_loads.first.view()];
             iterate.shift(&model.parts.zone_surfaces, &state.view(), &known);
