@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -67,6 +67,19 @@ class Members:
             structure = {path: values[member] for path, values in self.structures.items()}
             found.setdefault(json.dumps(structure, sort_keys=True), (structure, []))[1].append(member)
         return list(found.values())
+
+    def taken(self, order: Sequence[int]) -> Members:
+        """Some members, in another order."""
+        return Members(
+            {path: values[order] for path, values in self.numbers.items()},
+            {path: [values[member] for member in order] for path, values in self.structures.items()},
+        )
+
+    def by_structure(self) -> list[int]:
+        """Members in the order in which those of one structure stand side by side."""
+        if not self.structures:
+            return list(range(self.count))
+        return [member for _, rows in self.groups() for member in rows]
 
     def digest(self) -> str:
         """Hash of all samples."""

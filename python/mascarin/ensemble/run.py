@@ -111,9 +111,18 @@ def sweep(
     )  # fmt: skip
     inputs, found = _prepared(building, climate, samples, options, objectives)
     _require_room(inputs, found)
+    order = found.by_structure()
     with reporting(progress, "members") as report:
-        chunks = _chunks(inputs, found, [(0, found.count)], workers, lambda done: report(done, found.count))
-        whole, closure, failures = _gathered(found, chunks)
+        whole, closure, failures = _gathered(
+            order,
+            _chunks(
+                inputs,
+                found.taken(order),
+                [(0, found.count)],
+                workers,
+                lambda done: report(done, found.count),
+            ),
+        )
     if len(failures) == found.count:
         raise SolverError(f"all {found.count} members failed; the first: {failures[0]}")
     return (
@@ -285,19 +294,19 @@ def _chunks(
     return elsewhere(inputs, members, gaps, workers, report)
 
 
-def _gathered(members: Members, chunks: Iterator[Chunk]) -> tuple[Any, Any, dict[int, str]]:
-    """Results of all members in one array."""
+def _gathered(order: Sequence[int], chunks: Iterator[Chunk]) -> tuple[Any, Any, dict[int, str]]:
+    """Results of all members in one array; chunks have them in another order."""
     whole: Any = None
-    closure = np.full(members.count, np.nan)
+    closure = np.full(len(order), np.nan)
     failures: dict[int, str] = {}
     for chunk in chunks:
-        place = slice(chunk.first, chunk.first + len(chunk.closure))
+        members = order[chunk.first : chunk.first + len(chunk.closure)]
         if whole is None and chunk.kept.size:
-            whole = np.full((members.count, *chunk.kept.shape[1:]), np.nan)
+            whole = np.full((len(order), *chunk.kept.shape[1:]), np.nan)
         if whole is not None and chunk.kept.size:
-            whole[place] = chunk.kept
-        closure[place] = chunk.closure
-        failures |= chunk.failures
+            whole[members] = chunk.kept
+        closure[members] = chunk.closure
+        failures |= {order[member]: reason for member, reason in chunk.failures.items()}
     return whole, closure, failures
 
 

@@ -33,8 +33,8 @@ CLOSURE: Final = {"units": "1", "long_name": "relative energy-balance residual"}
 
 #: Series that are kept in memory at once before they are reduced to objectives. [bytes]
 _IN_MEMORY: Final = 64 * 2**20
-#: Compiled buildings that a worker keeps for the next chunks.
-_MOST_COMPILED: Final = 4
+#: Weather of the compiled buildings that a worker keeps for the next chunks. [bytes]
+_MOST_COMPILED: Final = 256 * 2**20
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,9 @@ class EnsembleInputs:
         key = (self.identity, repr(sorted(structure.items())))
         if key not in _COMPILED:
             _COMPILED[key] = self.compiled(structure)
-            while len(_COMPILED) > _MOST_COMPILED:
-                _COMPILED.popitem(last=False)
+            held = sum(simulation.compiled.forcing.nbytes for simulation in _COMPILED.values())
+            while held > _MOST_COMPILED and len(_COMPILED) > 1:
+                held -= _COMPILED.popitem(last=False)[1].compiled.forcing.nbytes
         _COMPILED.move_to_end(key)
         return _COMPILED[key]
 

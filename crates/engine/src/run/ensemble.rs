@@ -1,6 +1,7 @@
 //! Ensembles: members in lanes, packs of members on threads.
 //!
-//! A member's bits do not depend on its neighbours, the lane width or the number of threads.
+//! A member's bits do not depend on its neighbours, the lane width or the number of threads. A pack takes as long as some four
+//! members one after the other (`docs/speed.md`): fewer members than that run by themselves.
 
 use rayon::prelude::*;
 
@@ -13,6 +14,9 @@ use crate::run::march::march_in;
 use crate::run::options::Options;
 use crate::step::control::RunControl;
 use crate::weather::conditions::Weather;
+
+/// Members behind the last full pack that run by themselves.
+const FEW: usize = 3;
 
 /// Results of an ensemble, by member.
 #[derive(Debug)]
@@ -49,18 +53,19 @@ pub fn ensemble(
         closure: vec![f64::NAN; members],
         failures: Vec::new(),
     };
-    let mut rest = &mut result.records[..];
-    let packs = result.closure.chunks_mut(WIDTH).map(|closure| {
+    let few = if members % WIDTH <= FEW { members % WIDTH } else { 0 };
+    let (in_packs, alone) = result.closure.split_at_mut(members - few);
+    let (mut first, mut rest) = (0, &mut result.records[..]);
+    let packs = in_packs.chunks_mut(WIDTH).chain(alone.chunks_mut(1)).map(|closure| {
         let records;
         (records, rest) = core::mem::take(&mut rest).split_at_mut(row * closure.len());
-        Target { records, closure, row }
+        first += closure.len();
+        (first - closure.len(), Target { records, closure, row })
     });
     let packs: Vec<_> = packs.collect();
     let failures: Result<Vec<_>, EngineError> = packs
         .into_par_iter()
-        .enumerate()
-        .map(|(pack, mut target)| {
-            let first = pack * WIDTH;
+        .map(|(first, mut target)| {
             let members = &numbers[first * width..(first + target.closure.len()) * width];
             let failed = run_pack(level, plan, members, &weather, options, control, &mut target)?;
             Ok(failed.into_iter().map(|(member, error)| (first + member, error)).collect::<Vec<_>>())
@@ -104,7 +109,7 @@ impl LaneTask for Pack<'_, '_> {
     }
 }
 
-/// Runs a pack in lanes; members whose iteration fails there are run again alone.
+/// Runs a pack in lanes, or its only member alone; members whose iteration fails in lanes are run again alone.
 fn run_pack(
     level: Level,
     plan: &Plan,
@@ -117,9 +122,14 @@ fn run_pack(
     let width = plan.description.parameters.len();
     let members = target.closure.len();
     let mut failures = Vec::new();
-    let results = match run(level, Pack { plan, numbers, members, weather, options, control }) {
-        Err(EngineError::NotConverged { .. } | EngineError::WarmUpNotConverged { .. }) => vec![None; members],
-        other => other?,
+    let none = vec![None; members];
+    let results = if members == 1 {
+        none
+    } else {
+        match run(level, Pack { plan, numbers, members, weather, options, control }) {
+            Err(EngineError::NotConverged { .. } | EngineError::WarmUpNotConverged { .. }) => none,
+            other => other?,
+        }
     };
     for (member, result) in results.into_iter().enumerate() {
         let alone = || {

@@ -60,7 +60,7 @@ fn lanes_and_slopes_are_those_of_a_run() {
     let (options, watch) = (options(Scheme::Sdirk2, DT, vec![AIR]), Watch::default());
     let drive = Forcing::new(&rows, 2, plan.n_channels()).unwrap();
     let alone = run(&plan, &rows, &options);
-    let together = ensemble(&plan, &values(&plan).repeat(3), &drive, &options, &watch).unwrap();
+    let together = ensemble(&plan, &values(&plan).repeat(4), &drive, &options, &watch).unwrap();
     for member in together.records.chunks(alone.records.len()) {
         assert!(member.iter().zip(&alone.records).all(|(a, b)| a.to_bits() == b.to_bits()));
     }

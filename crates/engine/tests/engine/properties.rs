@@ -108,7 +108,7 @@ fn members_of_an_ensemble_have_the_bits_of_single_runs() {
         case.steps = 16;
         let (plan, mut random) = (case.plan(), Random::new(seed ^ 0xbeef));
         let width = plan.description.parameters.len();
-        let members = 1 + random.below(9);
+        let members = 1 + random.below(12);
         let mut numbers = Vec::new();
         for _ in 0..members {
             let some = random.between(0.0, 0.02);
