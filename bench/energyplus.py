@@ -27,7 +27,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from mascarin.building import Building
-from mascarin.building.derived import enclosure, outlines, sides_of_zone
+from mascarin.building.derived import enclosure, outlines
 from mascarin.building.geometry import Polygon, parents, view_factors
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.phases import phase
@@ -273,9 +273,10 @@ def _add_zones(model: Objects, building: Building) -> None:
             "air_changes_per_hour": float(zone.infiltration.constant),
             "constant_term_coefficient": 1.0,
         }
-        polygons = enclosure(name, building.surfaces)
+        sides = building.connections.sides(name)
+        polygons = enclosure(sides, building.surfaces)
         assert polygons is not None
-        names = [face_name(surface, side) for surface, side in sides_of_zone(name, building.surfaces)]
+        names = [face_name(surface, side) for surface, side in sides]
         factors = view_factors(polygons)
         model.setdefault("ZoneProperty:UserViewFactors:BySurfaceName", {})[f"{name} view"] = {
             "zone_or_zonelist_or_space_or_spacelist_name": name,

@@ -18,7 +18,6 @@ from mascarin.calibration import (
     CalibrationProblem,
     FitParameter,
     Rules,
-    Sensor,
     calibrate,
     fit_parameter,
     solve,
@@ -30,6 +29,7 @@ from mascarin.examples import FOLDER
 from mascarin.simulation.simulation import Simulation
 from mascarin.study import Study
 from mascarin.validation.observation import observe
+from mascarin.validation.sensors import Sensor
 from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, FINE, NOISE, TRUTH, logger_table, open_climate
 

@@ -3,27 +3,12 @@
 `sensitivity_analysis` does it for a building, `plan` and `run` for any model. The methods are the spectral
 one (first-order indices over time) and, by SALib, RBD-FAST, Sobol' and Morris. Every analysis is a
 `Sensitivity`.
+
+The public names are listed in ``__init__.pyi`` and imported when they are first used.
 """
 
 from __future__ import annotations
 
-from mascarin.sensitivity.building_analysis import factors_of, sensitivity_analysis
-from mascarin.sensitivity.factors import Factor
-from mascarin.sensitivity.methods import METHODS, MethodName, collector, plan, run
-from mascarin.sensitivity.result import Sensitivity
+import lazy_loader
 
-__all__ = [
-    "METHODS",
-    "Factor",
-    "MethodName",
-    "Sensitivity",
-    "collector",
-    "factors_of",
-    "plan",
-    "run",
-    "sensitivity_analysis",
-]
-
-
-def __dir__() -> list[str]:
-    return __all__
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

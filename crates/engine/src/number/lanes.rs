@@ -96,6 +96,11 @@ impl<const N: usize> Real for Lanes<N> {
         self.0[lane]
     }
     #[inline(always)]
+    fn look_up<const K: usize>(self, find: impl Fn(f64) -> [f64; K]) -> [Self; K] {
+        let found = self.0.map(find);
+        core::array::from_fn(|k| Self(core::array::from_fn(|lane| found[lane][k])))
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }

@@ -95,6 +95,11 @@ pub trait Real:
     fn constant(value: f64) -> Self;
     /// Value of one lane, without derivatives.
     fn lane(self, lane: usize) -> f64;
+    /// Constants that belong to the value of each lane, from a table. (This is for numbers of one lane.)
+    #[inline(always)]
+    fn look_up<const K: usize>(self, find: impl Fn(f64) -> [f64; K]) -> [Self; K] {
+        find(self.lane(0)).map(Self::constant)
+    }
     /// The value alone, without derivatives.
     #[inline(always)]
     #[must_use]

@@ -132,6 +132,11 @@ macro_rules! eight {
                 self.numbers()[lane]
             }
             #[inline(always)]
+            fn look_up<const K: usize>(self, find: impl Fn(f64) -> [f64; K]) -> [Self; K] {
+                let found = self.numbers().map(find);
+                core::array::from_fn(|k| Self::of(core::array::from_fn(|lane| found[lane][k])))
+            }
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 // SAFETY: see the top of this file.
                 Self(unsafe { sqrt(self.0) })

@@ -1,7 +1,7 @@
 //! The liquid fraction over temperature, in closed form or measured.
 
 use super::normal::normal;
-use super::segments::Segments;
+use super::segments::{Reading, Segments};
 use crate::input::description::{MeltingCurve, Tail};
 use crate::input::values::Values;
 use crate::number::real::{Logistic, Real};
@@ -312,15 +312,10 @@ fn triangle<S: Real>(u: S, [below, above]: [S; 2]) -> (S, S, S) {
 
 #[inline(always)]
 fn measured<S: Real>(segments: &Segments, read: S) -> CurvePoint<S> {
-    let (fraction, slope) = segments.at(read);
-    let (first, last) = (segments.first(), segments.last());
-    let beyond = (read - S::constant(last)).max(S::zero());
-    CurvePoint {
-        // The sum of the segments ends within round-off of one.
-        fraction: fraction.min(S::one()),
-        slope,
-        molten: segments.area(read, 0.0, [first, last]) + beyond,
-    }
+    let Reading { height, slope, area } = segments.at(read);
+    let beyond = (read - S::constant(segments.last())).max(S::zero());
+    // The sum of the segments ends within round-off of one.
+    CurvePoint { fraction: height.min(S::one()), slope, molten: area + beyond }
 }
 
 /// Limits a step that crosses a temperature and is longer than a width to that temperature.

@@ -18,7 +18,7 @@ use crate::input::values::Values;
 use crate::number::real::{Mask, Real};
 use curve::{Curve, CurvePoint, limit_at};
 use hysteresis::Hysteresis;
-use table::Table;
+use table::{Table, TablePoint};
 
 pub use curve::CUT;
 pub(crate) use hysteresis::REMEMBERED;
@@ -186,8 +186,9 @@ impl<S: Real> PcmCoefficients<S> {
 
     #[inline(always)]
     fn tabulated(&self, table: &Table<S>, temperature: S) -> PcmPoint<S> {
-        let (enthalpy, capacity, fraction, slope) = table.at(temperature, self.volumetric_heat);
-        self.point(temperature, [enthalpy, capacity], [fraction, slope], table.molten(temperature))
+        let TablePoint { enthalpy, capacity, fraction, fraction_slope, molten } =
+            table.at(temperature, self.volumetric_heat);
+        self.point(temperature, [enthalpy, capacity], [fraction, fraction_slope], molten)
     }
 
     #[inline(always)]

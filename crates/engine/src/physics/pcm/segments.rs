@@ -1,10 +1,13 @@
-//! Piecewise cubic curves that lanes can read without a lookup: sums over clamped segments.
+//! Piecewise cubic curves, read through a table of places: the time does not depend on the number of their points.
 
 use crate::number::real::Real;
 
-/// `h = linear u + square u^2 + cube u^3` above its start, u in \[0, 1\].
+/// Cells of the table of places for each segment.
+const CELLS: usize = 4;
+
+/// `h = below + linear u + square u^2 + cube u^3`, u in \[0, 1\].
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Segment {
+struct Segment {
     start: f64,
     length: f64,
     linear: f64,
@@ -12,12 +15,34 @@ pub(super) struct Segment {
     cube: f64,
     /// Height of the curve at the start.
     below: f64,
+    /// Integral of the height above the floor, from the start of its range to that of the segment.
+    area: f64,
 }
 
 /// A monotone C1 curve from its first point to its last; constant before and after.
 #[derive(Debug, Clone)]
 pub(super) struct Segments {
     all: Vec<Segment>,
+    /// The segment that the start of each cell is in, and cells per kelvin: cells of equal length cover the curve.
+    places: Vec<usize>,
+    density: f64,
+    /// The integral counts from this height, within this range of temperatures; its value at the end of the range.
+    floor: f64,
+    range: [f64; 2],
+    whole: f64,
+    /// Where the curve is steepest [degC].
+    steepest: f64,
+}
+
+/// A curve at one temperature.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reading<S> {
+    /// Height above the first point.
+    pub(super) height: S,
+    /// Its slope; zero before and after the curve.
+    pub(super) slope: S,
+    /// Integral of the height above the floor, over the part of the range below the temperature.
+    pub(super) area: S,
 }
 
 impl Segments {
@@ -45,7 +70,7 @@ impl Segments {
             let length = x[i + 1] - x[i];
             let (s0, s1, m) = (slope(i), slope(i + 1), secants[i]);
             let (linear, square) = (length * s0, length * (3.0 * m - 2.0 * s0 - s1));
-            Segment { start: x[i], length, linear, square, cube: length * (s0 + s1 - 2.0 * m), below: 0.0 }
+            Segment::of(x[i], length, [linear, square, length * (s0 + s1 - 2.0 * m)])
         });
         Self::piled(pieces.collect())
     }
@@ -54,8 +79,7 @@ impl Segments {
     pub(super) fn integral(x: &[f64], y: &[f64]) -> Self {
         let pieces = x.windows(2).zip(y.windows(2)).map(|(x, y)| {
             let length = x[1] - x[0];
-            let (linear, square) = (length * y[0], 0.5 * length * (y[1] - y[0]));
-            Segment { start: x[0], length, linear, square, cube: 0.0, below: 0.0 }
+            Segment::of(x[0], length, [length * y[0], 0.5 * length * (y[1] - y[0]), 0.0])
         });
         Self::piled(pieces.collect())
     }
@@ -66,7 +90,34 @@ impl Segments {
             segment.below = height;
             height += segment.linear + segment.square + segment.cube;
         }
-        Self { all }
+        let (first, last) = (all[0].start, all[all.len() - 1].end());
+        let cells = CELLS * all.len();
+        let density = cells as f64 / (last - first);
+        let place = |cell: usize| {
+            let from = first + cell as f64 / density;
+            all.iter().rposition(|segment| segment.start <= from).unwrap_or(0)
+        };
+        let places = (0..cells).map(place).collect();
+        let range = [first, last];
+        let found = Self { all, places, density, floor: 0.0, range, whole: 0.0, steepest: first };
+        let steepest = found.find_steepest();
+        Self { steepest, ..found }.above(0.0, range)
+    }
+
+    /// The same curve, with an integral above a height and within a range of temperatures.
+    pub(super) fn above(mut self, floor: f64, range: [f64; 2]) -> Self {
+        let [low, high] = range;
+        let mut area = 0.0;
+        for segment in &mut self.all {
+            let begin = ((low - segment.start) / segment.length).clamp(0.0, 1.0);
+            let offset = segment.below - floor;
+            // At the start of the range the integral is zero: in the segment around it, it counts from there.
+            segment.area = area - segment.antiderivative(begin, offset);
+            area = segment.area + segment.antiderivative(1.0, offset);
+        }
+        (self.floor, self.range, self.whole) = (floor, range, 0.0);
+        self.whole = self.inside(high);
+        self
     }
 
     pub(super) fn first(&self) -> f64 {
@@ -74,68 +125,141 @@ impl Segments {
     }
 
     pub(super) fn last(&self) -> f64 {
-        let segment = self.all[self.all.len() - 1];
-        segment.start + segment.length
+        self.all[self.all.len() - 1].end()
     }
 
-    /// Height above the first point, and slope (zero before and after).
-    #[inline(always)]
-    pub(super) fn at<S: Real>(&self, x: S) -> (S, S) {
-        let (mut height, mut slope) = (S::zero(), S::zero());
-        for segment in &self.all {
-            let (rise, gradient) = segment.at(x);
-            height += rise;
-            slope += gradient;
-        }
-        (height, slope)
-    }
-
-    /// Integral of `height - floor` from the start of a range up to a point, over the part within the range.
-    #[inline(always)]
-    pub(super) fn area<S: Real>(&self, x: S, floor: f64, range: [f64; 2]) -> S {
-        let parts = self.all.iter().map(
-            #[inline(always)]
-            |segment| segment.area(x, segment.below - floor, range),
-        );
-        parts.fold(S::zero(), |sum, part| sum + part)
-    }
-
-    /// Where the curve is steepest: the middle of the segment half that rises most.
+    /// Where the curve is steepest: the middle of the eighth of a segment that rises most.
     pub(super) fn steepest(&self) -> f64 {
+        self.steepest
+    }
+
+    fn find_steepest(&self) -> f64 {
         const PARTS: u32 = 8;
         let middles = self.all.iter().flat_map(|segment| {
             (0..PARTS).map(move |i| segment.start + segment.length * (f64::from(i) + 0.5) / f64::from(PARTS))
         });
-        let steeper = |a: f64, b: f64| if self.at(b).1 > self.at(a).1 { b } else { a };
+        let slope = |x: f64| self.at(x).slope;
+        let steeper = |a: f64, b: f64| if slope(b) > slope(a) { b } else { a };
         middles.fold(self.first(), steeper)
+    }
+
+    /// The segment that a temperature is in; the first before, and the last after the curve.
+    #[inline(always)]
+    fn segment(&self, x: f64) -> &Segment {
+        // Casts of what is no number or below zero give zero.
+        let cell = ((x - self.first()) * self.density) as usize;
+        let mut place = self.places[cell.min(self.places.len() - 1)];
+        while place + 1 < self.all.len() && self.all[place + 1].start <= x {
+            place += 1;
+        }
+        // A cell may begin behind the temperature by round-off.
+        while place > 0 && x < self.all[place].start {
+            place -= 1;
+        }
+        &self.all[place]
+    }
+
+    /// The curve at a temperature.
+    #[inline(always)]
+    pub(super) fn at<S: Real>(&self, x: S) -> Reading<S> {
+        let found = x.look_up(
+            #[inline(always)]
+            |x| {
+                let &Segment { start, length, linear, square, cube, below, area } = self.segment(x);
+                [start, length, linear, square, cube, below, area]
+            },
+        );
+        let [start, length, linear, square, cube, below, area] = found;
+        let raw = (x - start) / length;
+        let u = raw.max(S::zero()).min(S::one());
+        let inside = !raw.lt(S::zero()) & raw.lt(S::one());
+        let rise = u * (linear + u * (square + u * cube));
+        let slope = (linear + u * (square.scale(2.0) + u * cube.scale(3.0))) / length;
+        let cubic = square.scale(1.0 / 3.0) + u * cube.scale(0.25);
+        let parts = u * (below - S::constant(self.floor) + u * (linear.scale(0.5) + u * cubic)) * length;
+        let [low, high] = self.range.map(S::constant);
+        let within = S::select(high.lt(x), S::constant(self.whole), area + parts);
+        Reading {
+            height: below + rise,
+            slope: S::select(inside, slope, S::zero()),
+            area: S::select(x.lt(low), S::zero(), within),
+        }
+    }
+
+    /// The integral at a temperature of the range.
+    fn inside(&self, x: f64) -> f64 {
+        let segment = self.segment(x);
+        let u = ((x - segment.start) / segment.length).clamp(0.0, 1.0);
+        segment.area + segment.antiderivative(u, segment.below - self.floor)
     }
 }
 
 impl Segment {
-    /// Rise of the segment up to a point and its slope there (zero outside).
-    #[inline(always)]
-    fn at<S: Real>(&self, x: S) -> (S, S) {
-        let raw = (x - S::constant(self.start)).scale(1.0 / self.length);
-        let u = raw.max(S::zero()).min(S::one());
-        let inside = !raw.lt(S::zero()) & raw.lt(S::one());
-        let rise = u * (S::constant(self.linear) + u * (S::constant(self.square) + u.scale(self.cube)));
-        let slope =
-            S::constant(self.linear) + u * (S::constant(2.0 * self.square) + u.scale(3.0 * self.cube));
-        (rise, S::select(inside, slope.scale(1.0 / self.length), S::zero()))
+    /// With coefficients of u, its square and its cube.
+    fn of(start: f64, length: f64, [linear, square, cube]: [f64; 3]) -> Self {
+        Self { start, length, linear, square, cube, below: 0.0, area: 0.0 }
     }
 
-    /// Integral of `offset + rise` up to a point, over the part of the segment within a range.
-    #[inline(always)]
-    fn area<S: Real>(&self, x: S, offset: f64, range: [f64; 2]) -> S {
-        let [low, high] = range.map(|end| ((end - self.start) / self.length).clamp(0.0, 1.0));
-        let raw = (x - S::constant(self.start)).scale(1.0 / self.length);
-        let u = raw.max(S::constant(low)).min(S::constant(high));
-        self.antiderivative(u, offset) - self.antiderivative(S::constant(low), offset)
+    fn end(&self) -> f64 {
+        self.start + self.length
     }
 
-    #[inline(always)]
-    fn antiderivative<S: Real>(&self, u: S, offset: f64) -> S {
-        let cubic = S::constant(self.square / 3.0) + u.scale(self.cube / 4.0);
-        (u * (S::constant(offset) + u * (S::constant(self.linear / 2.0) + u * cubic))).scale(self.length)
+    /// Integral of `offset + rise` from the start.
+    fn antiderivative(&self, u: f64, offset: f64) -> f64 {
+        let cubic = self.square / 3.0 + u * (self.cube / 4.0);
+        u * (offset + u * (self.linear / 2.0 + u * cubic)) * self.length
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::dual::Dual;
+
+    fn curve() -> Segments {
+        let temperatures = [18.0, 19.5, 20.0, 20.1, 20.2, 21.0, 26.0];
+        Segments::monotone(&temperatures, &[0.0, 5.0, 20.0, 60.0, 90.0, 97.0, 100.0])
+    }
+
+    /// The curve passes through its points, whatever the places that they are found by.
+    #[test]
+    fn every_point_is_found() {
+        let curve = curve();
+        let points =
+            [(17.0, 0.0), (18.0, 0.0), (19.5, 5.0), (20.1, 60.0), (21.0, 97.0), (26.0, 100.0), (40.0, 100.0)];
+        for (x, height) in points {
+            assert!((curve.at(x).height - height).abs() < 1e-12, "{x}");
+        }
+        assert_eq!((curve.at(17.9).slope, curve.at(26.0).slope), (0.0, 0.0));
+        assert!((curve.steepest() - 20.05).abs() < 0.05);
+    }
+
+    /// The slope is the derivative of the height, and the height above the floor that of the area, within the range.
+    #[test]
+    fn heights_are_derivatives_of_areas() {
+        let curve = curve().above(5.0, [19.5, 21.0]);
+        for k in 0..400 {
+            let x = 17.003 + 0.025 * f64::from(k);
+            let seeded: Reading<Dual<1>> = curve.at(Dual { value: x, slope: [1.0] });
+            assert!((seeded.height.slope[0] - curve.at(x).slope).abs() < 1e-9, "{x}");
+            let inside = (19.5..21.0).contains(&x);
+            let expected = if inside { curve.at(x).height - 5.0 } else { 0.0 };
+            assert!((seeded.area.slope[0] - expected).abs() < 1e-9, "{x}");
+        }
+        // Fine trapezia.
+        let parts = 100_000;
+        let at = |k: i32| curve.at(19.5 + 1.5 * f64::from(k) / f64::from(parts)).height - 5.0;
+        let sum: f64 = (0..parts).map(|k| 0.5 * (at(k) + at(k + 1))).sum();
+        assert!((curve.at(30.0).area - sum * 1.5 / f64::from(parts)).abs() < 1e-6);
+        assert_eq!(curve.at(19.4).area, 0.0);
+    }
+
+    /// Numbers that are no temperatures end in the first or the last segment.
+    #[test]
+    fn a_lookup_never_leaves_the_table() {
+        let curve = curve();
+        for x in [f64::NAN, f64::NEG_INFINITY, -1e300, 1e300, f64::INFINITY] {
+            let _ = curve.at(x);
+        }
     }
 }
