@@ -141,7 +141,7 @@ pub fn reverse(data: &[u8]) -> bool {
 pub fn state_space(data: &[u8]) -> bool {
     let Some(ready) = Ready::read(data) else { return false };
     if ready.values.len() == ready.plan.description.parameters.len() {
-        return linear::state_space(&ready.plan, &ready.values).is_ok();
+        return linear::state_space(&ready.plan, &ready.values, &Watch::default()).is_ok();
     }
     false
 }
