@@ -422,7 +422,7 @@ def test_the_weather_that_all_members_share_counts_as_memory(
     monkeypatch.setattr(
         "mascarin.simulation.compiled.memory.require", lambda size, *words: asked.append(size)
     )
-    simulation.ensemble(simulation.values[None, :])
+    simulation.ensemble(simulation.vector({})[None, :])
     steps, stages, _ = simulation.compiled.forcing.shape
     rows = steps + 1
     kept = asked[-1] - 2.0 * 8.0 * rows

@@ -100,12 +100,12 @@ pub fn abandonable<T: Send + 'static>(
 pub type Report<'a, 'py> = (&'a Bound<'py, PyAny>, fn(&Watch) -> usize);
 
 /// Members done.
-pub fn members(watch: &Watch) -> usize {
+pub fn done_members(watch: &Watch) -> usize {
     watch.done.load(Ordering::Relaxed)
 }
 
 /// Steps done, without those of the warm-up.
-pub fn steps(watch: &Watch) -> usize {
+pub fn done_steps(watch: &Watch) -> usize {
     watch.steps.load(Ordering::Relaxed)
 }
 

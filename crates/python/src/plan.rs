@@ -14,7 +14,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::errors::{EngineInputError, abandonable, attended, caught, members, steps, to_python};
+use crate::errors::{EngineInputError, abandonable, attended, caught, done_members, done_steps, to_python};
 use crate::options::RunOptions;
 
 /// A building compiled for the engine.
@@ -100,7 +100,7 @@ impl Plan {
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
-            let report = report.map(|report| (report, steps as fn(&Watch) -> usize));
+            let report = report.map(|report| (report, done_steps as fn(&Watch) -> usize));
             let run = attended(py, report, |watch| march(plan, values, &drive, &options, watch))?;
             describe_run(py, &run, [options.rows(drive.steps()), options.probes.len()])
         })
@@ -123,7 +123,7 @@ impl Plan {
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
-            let report = report.map(|report| (report, members as fn(&Watch) -> usize));
+            let report = report.map(|report| (report, done_members as fn(&Watch) -> usize));
             let result =
                 attended(py, report, |watch| batch::ensemble(plan, numbers, &drive, &options, watch))?;
             let rows = options.rows(drive.steps());
@@ -151,7 +151,7 @@ impl Plan {
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
-            let report = report.map(|report| (report, members as fn(&Watch) -> usize));
+            let report = report.map(|report| (report, done_members as fn(&Watch) -> usize));
             let result =
                 attended(py, report, |watch| jacobian(plan, numbers, &which, &drive, &options, watch))?;
             let (rows, probes) = (options.rows(drive.steps()), options.probes.len());

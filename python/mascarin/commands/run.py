@@ -174,14 +174,16 @@ def _print_warnings(building: Building, simulation: Simulation) -> None:
 
 def _print_cost(building: Building, simulation: Simulation) -> None:
     """Say how long shadows take, where it is long."""
-    from mascarin.building.self_shading import expected_seconds, obstructions
+    from mascarin.building.self_shading import expected_seconds, obstructions, pairs_with_shades
 
     steps, stages, _ = simulation.compiled.forcing.shape
-    expected = expected_seconds(obstructions(building), steps * stages)
+    shades = pairs_with_shades(building)
+    expected = expected_seconds(obstructions(building), steps * stages, shades=shades)
     if expected > LONG:
+        advice = "describe fewer 'shades', such as one for many slats, or " if any(shades) else ""
         print(
-            f"shading: about {expected:.0f} s for the shadows; 'site: {{self_shading: false}}' turns "
-            "them off",
+            f"shading: about {expected:.0f} s for the shadows; {advice}turn off those of surfaces with "
+            "'site: {self_shading: false}'",
             file=sys.stderr,
         )
 

@@ -288,9 +288,7 @@ class Simulation(VectorRuns):
         vector = np.array(vector, dtype=np.float64)
         self._require_possible(vector[None, :])
         watched = unmelted.watched(self.building)
-        records, raw = self.compiled.run(
-            vector, Readings.of([*self.outputs, *watched]), progress=progress
-        )
+        records, raw = self.compiled.run(vector, Readings.of([*self.outputs, *watched]), progress=progress)
         records, seen = np.split(records, [len(self.outputs)], axis=1)
         energy = EnergyLedger.read(raw)
         warnings = [*energy.warnings(), *unmelted.warnings(self.building, seen)]
