@@ -100,7 +100,7 @@ def pairs_with_shades(building: Description) -> ShadePairs:
 def _apart(polygon: Polygon, other: Polygon) -> float:
     """Least distance of two corners. [m]"""
     ways = polygon.points[:, None] - other.points
-    return float((ways * ways).sum(axis=2).min()) ** 0.5
+    return math.sqrt(float((ways * ways).sum(axis=2).min()))
 
 
 def expected_seconds(
