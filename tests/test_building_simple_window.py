@@ -206,7 +206,7 @@ def test_the_estimated_transmittance_is_as_good_as_documented(
 ) -> None:
     """The table of docs/windows.md: right without a coating, up to 10 % too high with one."""
     exact, estimated = rating(UNITS[name]), rating(simple(UNITS[name], transmittance=False))
-    assert estimated.solar_heat_gain == pytest.approx(exact.solar_heat_gain, rel=1e-5)
+    assert estimated.solar_heat_gain == pytest.approx(exact.solar_heat_gain, abs=1e-4)
     assert abs(estimated.transmittance / exact.transmittance - 1.0) <= normal
     assert abs(estimated.diffuse_transmittance / exact.diffuse_transmittance - 1.0) <= diffuse
 
