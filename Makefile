@@ -4,7 +4,7 @@
 #   make test   build, run formatting, lints, types and every test
 #   make coverage     build, run the Python tests, print the lines that no test reaches
 #   make test-lowest  run the Python tests with the lowest versions that pyproject.toml declares
-#   make fuzz   build, run the long campaign of random and mutated inputs; FUZZ="--inputs 5000" for more of them
+#   make fuzz   build, run the long campaign of random and mutated inputs; FUZZ="--inputs 100000" for more of them
 #   make bench  build, measure, and write the tables of docs/speed.md; make bench ENERGYPLUS=path with its peer
 #
 # They need Python 3.11 or later, cargo and make, and nothing else.

@@ -68,8 +68,8 @@ def description(draw: random.Random, ways: Ways) -> dict[str, Any]:
     tree: dict[str, Any] = {
         "site": {"latitude": 48, "longitude": 2, "altitude": 100, "timezone": "UTC"},
         "materials": {
-            "heavy": _solid(draw),
-            "light": _solid(draw),
+            "heavy": solid(draw),
+            "light": solid(draw),
             "gap": {"kind": "resistance", "resistance": 0.15},
         },
         "constructions": {},
@@ -78,32 +78,32 @@ def description(draw: random.Random, ways: Ways) -> dict[str, Any]:
     }
     names = ["heavy", "light"]
     if ways.melting and draw.random() < 0.6:
-        tree["materials"]["wax"] = _melting(draw)
+        tree["materials"]["wax"] = melting(draw)
         names.append("wax")
     for k in range(draw.choice((1, 2, 3))):
-        layers = [_layer(draw, draw.choice(names), f"l{n}") for n in range(draw.choice((1, 1, 2, 3)))]
+        layers = [layer(draw, draw.choice(names), f"l{n}") for n in range(draw.choice((1, 1, 2, 3)))]
         if len(layers) > 1 and draw.random() < 0.3:
             layers.insert(1, {"material": "gap", "name": "air"})
         tree["constructions"][f"c{k}"] = {"layers": layers}
     for at, zone in enumerate(zones):
-        outside = _passive_outside if ways.passive else _outside
+        outside = passive_outside if ways.passive else outdoors
         surfaces, walls = tree["surfaces"], list(tree["constructions"])
         surfaces[f"{zone}_floor"] = {
             "construction": draw.choice(walls), "area": 12.0, "tilt": 180, "outside": draw.choice((
-                {"adiabatic": True}, {"ground": {"temperature": 9}})), "inside": _inside(draw, zone),
+                {"adiabatic": True}, {"ground": {"temperature": 9}})), "inside": inside(draw, zone),
         }  # fmt: skip
         surfaces[f"{zone}_roof"] = {
             "construction": draw.choice(walls), "area": 12.0, "tilt": draw.choice((0, 30)), "azimuth": 180,
-            "outside": outside(draw), "inside": _inside(draw, zone),
+            "outside": outside(draw), "inside": inside(draw, zone),
         }  # fmt: skip
         surfaces[f"{zone}_wall"] = {
             "construction": draw.choice(walls), "area": round(draw.uniform(3.0, 40.0), 3), "tilt": 90,
-            "azimuth": draw.choice((0, 90, 142.7)), "outside": outside(draw), "inside": _inside(draw, zone),
+            "azimuth": draw.choice((0, 90, 142.7)), "outside": outside(draw), "inside": inside(draw, zone),
         }  # fmt: skip
         if at:
             surfaces[f"{zone}_between"] = {
                 "construction": draw.choice(walls), "area": 9.0, "tilt": 90, "azimuth": 90,
-                "outside": _inside(draw, zones[at - 1]), "inside": _inside(draw, zone),
+                "outside": inside(draw, zones[at - 1]), "inside": inside(draw, zone),
             }  # fmt: skip
         if draw.random() < 0.6:
             tree["zones"][zone]["infiltration"] = round(draw.uniform(0.0, 3.0), 3)
@@ -121,7 +121,7 @@ def description(draw: random.Random, ways: Ways) -> dict[str, Any]:
     return tree
 
 
-def _solid(draw: random.Random) -> dict[str, Any]:
+def solid(draw: random.Random) -> dict[str, Any]:
     return {
         "conductivity": round(10.0 ** draw.uniform(-1.7, 2.0), 5),
         "density": round(10.0 ** draw.uniform(1.3, 3.9), 2),
@@ -129,7 +129,7 @@ def _solid(draw: random.Random) -> dict[str, Any]:
     }
 
 
-def _melting(draw: random.Random) -> dict[str, Any]:
+def melting(draw: random.Random) -> dict[str, Any]:
     law = draw.choice(
         (
             {"kind": "tanh", "width": round(10.0 ** draw.uniform(-1.0, 0.5), 3)},
@@ -144,27 +144,27 @@ def _melting(draw: random.Random) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _layer(draw: random.Random, material: str, name: str) -> dict[str, Any]:
+def layer(draw: random.Random, material: str, name: str) -> dict[str, Any]:
     layer = {"name": name, "material": material, "thickness": round(10.0 ** draw.uniform(-2.5, -0.5), 5)}
     if draw.random() < 0.3:
         layer["nodes"] = draw.choice((1, 2, 5, 30))
     return layer
 
 
-def _inside(draw: random.Random, zone: str) -> dict[str, Any]:
+def inside(draw: random.Random, zone: str) -> dict[str, Any]:
     convection = draw.choice((3.0, 0.5, "tarp", "alamdari_hammond", "iso15099"))
     emissivity = round(draw.uniform(0.05, 0.95), 3)
     return {"zone": zone, "convection": convection, "emissivity": emissivity, "absorptance": 0.6}
 
 
-def _outside(draw: random.Random) -> dict[str, Any]:
+def outdoors(draw: random.Random) -> dict[str, Any]:
     return {
         "outdoors": True, "convection": draw.choice((15.0, "doe2", "mowitt", "tarp")),
         "emissivity": round(draw.uniform(0.05, 0.95), 3), "absorptance": round(draw.uniform(0.1, 0.9), 3),
     }  # fmt: skip
 
 
-def _passive_outside(draw: random.Random) -> dict[str, Any]:
+def passive_outside(draw: random.Random) -> dict[str, Any]:
     return {
         "outdoors": True,
         "convection": draw.choice((5.0, 15.0)),
@@ -196,6 +196,16 @@ class Found:
     slow: int = 0
     largest_closure: float = 0.0
     faults: list[str] = field(default_factory=list)
+
+    def add(self, other: Found) -> None:
+        """Count the buildings of another one, too."""
+        self.buildings += other.buildings
+        self.runs += other.runs
+        self.refused += other.refused
+        self.unsolved += other.unsolved
+        self.slow += other.slow
+        self.largest_closure = max(self.largest_closure, other.largest_closure)
+        self.faults += other.faults
 
 
 def check(
@@ -245,7 +255,7 @@ def _check(
     found.runs += members
     if failures or not all((one == alone.records).all() for one in records):
         problems.append(f"members of an ensemble of {members} that differ from a run alone")
-    other = Simulation(Building.from_dict(_shuffled(tree, draw)), weather, **options).run()
+    other = Simulation(Building.from_dict(shuffled(tree, draw)), weather, **options).run()
     found.runs += 1
     names = [output.name for output in alone.outputs]
     place = [[output.name for output in other.outputs].index(name) for name in names]
@@ -270,7 +280,7 @@ ORDER = 1e-3
 MAXIMUM = 1e-6
 
 
-def _shuffled(tree: dict[str, Any], draw: random.Random) -> dict[str, Any]:
+def shuffled(tree: dict[str, Any], draw: random.Random) -> dict[str, Any]:
     """The same building with its objects in another order; layers keep theirs."""
     whole = {}
     for part in draw.sample(list(tree), len(tree)):
@@ -281,12 +291,18 @@ def _shuffled(tree: dict[str, Any], draw: random.Random) -> dict[str, Any]:
     return whole
 
 
+def one(n: int, seed: int, weather: Climate) -> Found:
+    """Check one random building; it depends on the seed and n only."""
+    draw, found = random.Random(f"building {seed} {n}"), Found()
+    passive = draw.random() < 0.3
+    ways = Ways(melting=not passive, passive=passive)
+    check(description(draw, ways), weather, draw, found, passive=passive)
+    return found
+
+
 def run(count: int, seed: int) -> Found:
-    """Check random buildings; the n-th depends on the seed and n only."""
+    """Check random buildings."""
     found, weather = Found(), climate()
     for n in range(count):
-        draw = random.Random(f"building {seed} {n}")
-        passive = draw.random() < 0.3
-        ways = Ways(melting=not passive, passive=passive)
-        check(description(draw, ways), weather, draw, found, passive=passive)
+        found.add(one(n, seed, weather))
     return found

@@ -45,8 +45,10 @@ def mutated_yaml(text: str, draw: random.Random) -> bytes:
     if draw.random() < 0.4:
         return mutated(text.encode(), draw)
     tree = YAML(typ="safe", pure=True).load(text)
+    # Numbers of another size often make a description that can be run; other values are mostly refused.
+    way = draw.choice((_mutate, _scale))
     for _ in range(draw.choice((1, 1, 2, 3))):
-        _mutate(tree, draw)
+        way(tree, draw)
     written = json.dumps(tree)  # JSON is YAML
     return mutated(written.encode(), draw) if draw.random() < 0.1 else written.encode()
 
@@ -80,6 +82,18 @@ def _mutate(tree: Any, draw: random.Random) -> None:
             holder[key] = holder[key] * draw.choice((-1, 0, 1e-12, 1e12, 10, 0.1))
         case _:
             holder[key] = draw.choice(VALUES)
+
+
+def _scale(tree: Any, draw: random.Random) -> None:
+    numbers = [
+        (holder, key)
+        for holder, key in _places(tree)
+        if isinstance(holder[key], int | float) and not isinstance(holder[key], bool)
+    ]
+    if numbers:
+        holder, key = draw.choice(numbers)
+        factor = 10.0 ** draw.choice((draw.uniform(-0.3, 0.3), draw.uniform(-3.0, 3.0)))
+        holder[key] = round(holder[key] * factor) if isinstance(holder[key], int) else holder[key] * factor
 
 
 def _has(holder: Any, key: Any) -> bool:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import random
 import shutil
-import signal
 import subprocess
 import sys
 import time
@@ -47,40 +45,6 @@ def content(folder: Path) -> dict[str, bytes]:
         for file in sorted(folder.rglob("*"))
         if file.is_file() and file.name != ".lock"
     }
-
-
-def killed_sweeps(folder: Path, count: int, seed: int) -> list[str]:
-    """Kill a sweep at random times until `count` kills have hit; then it is finished and compared.
-
-    Returns
-    -------
-    list of str
-        What was wrong.
-    """
-    draw, faults = random.Random(seed), []
-    whole = folder / "whole"
-    subprocess.run(sweep(folder, whole), check=True, capture_output=True)
-    expected, kills, out = content(whole), 0, folder / "killed"
-    while kills < count:
-        with subprocess.Popen(
-            sweep(folder, out), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
-        ) as process:
-            try:
-                process.wait(draw.uniform(0.3, 4.0))
-            except subprocess.TimeoutExpired:
-                process.send_signal(draw.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGINT)))
-                kills += 1
-            code = process.wait()
-        if code not in (0, -9, 130, 143, -15, -2):
-            faults.append(f"a killed sweep ended with {code}")
-        if code == 0:
-            if content(out) != expected:
-                faults.append(f"after {kills} kills the results are not those of a sweep that ran through")
-            shutil.rmtree(out)
-    subprocess.run(sweep(folder, out), check=True, capture_output=True)
-    if content(out) != expected:
-        faults.append(f"after {kills} kills the results are not those of a sweep that ran through")
-    return faults
 
 
 def two_writers(folder: Path, count: int) -> list[str]:

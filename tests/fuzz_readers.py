@@ -13,16 +13,15 @@ from pathlib import Path
 import numpy as np
 
 import dsc_samples
+import fuzz_runs
 from building_samples import EVERYTHING, ROOM
 from fuzz_mutation import mutated, mutated_yaml
 from genopt_support import SWARM, write_project
-from mascarin import _engine
 from mascarin.building import check, load
-from mascarin.errors import MascarinError
+from mascarin.errors import MascarinError, SolverError
 from mascarin.genopt import Options
 from mascarin.genopt.run import check as check_project
 from mascarin.materials.dsc import from_dsc
-from mascarin.simulation.engine_errors import translated
 from mascarin.study import Study
 from mascarin.weather import Climate, Measurements
 from study_support import BUILDING, STUDY, drivers
@@ -48,40 +47,65 @@ class Counts:
     inputs: int = 0
     read: int = 0
     refused: int = 0
-    slow: int = 0
+    unsolved: int = 0
+    slow: list[int] = field(default_factory=list)
     defects: list[tuple[int, str]] = field(default_factory=list)
+
+    def add(self, n: int, outcome: str, text: str, seconds: float) -> None:
+        """Count an input."""
+        self.inputs += 1
+        self.read += outcome == "read"
+        self.refused += outcome == "refused"
+        self.unsolved += outcome == "unsolved"
+        if outcome == "defect":
+            self.defects.append((n, text))
+        if seconds > LONGEST:
+            self.slow.append(n)
 
     def row(self, name: str) -> str:
         """One line of a table."""
-        found = (self.inputs, self.read, self.refused, len(self.defects), self.slow)
+        found = (self.inputs, self.read, self.refused, self.unsolved, len(self.defects), len(self.slow))
         return f"| {name} | " + " | ".join(map(str, found)) + " |"
+
+
+def attempt(reader: Reader, folder: Path, n: int, seed: int) -> tuple[str, str]:
+    """Read one mutated file; it depends on the seed and n only.
+
+    Returns
+    -------
+    str
+        ``read``, ``refused``, ``unsolved`` (it was read; its run did not converge) or ``defect``.
+    str
+        The traceback of a defect.
+    """
+    draw = random.Random(f"{reader.name} {seed} {n}")
+    for name, content in reader.files.items():
+        _put(folder / name, content)
+    name = draw.choice(reader.mutated)
+    content = reader.files[name]
+    _put(
+        folder / name,
+        mutated_yaml(content.decode(), draw) if name.endswith(".yaml") else mutated(content, draw),
+    )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            reader.read(folder)
+    except SolverError:
+        return "unsolved", ""
+    except MascarinError:
+        return "refused", ""
+    except Exception:
+        return "defect", traceback.format_exc()
+    return "read", ""
 
 
 def run(reader: Reader, folder: Path, count: int, seed: int) -> Counts:
     """Read mutated files; the n-th input depends on the seed and n only."""
     counts = Counts()
     for n in range(count):
-        draw = random.Random(f"{reader.name} {seed} {n}")
-        counts.inputs += 1
-        for name, content in reader.files.items():
-            _put(folder / name, content)
-        name = draw.choice(reader.mutated)
-        content = reader.files[name]
-        _put(
-            folder / name,
-            mutated_yaml(content.decode(), draw) if name.endswith(".yaml") else mutated(content, draw),
-        )
         began = time.process_time()
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                reader.read(folder)
-            counts.read += 1
-        except MascarinError:
-            counts.refused += 1
-        except Exception:
-            counts.defects.append((n, traceback.format_exc()))
-        counts.slow += time.process_time() - began > LONGEST
+        counts.add(n, *attempt(reader, folder, n, seed), time.process_time() - began)
     return counts
 
 
@@ -93,8 +117,7 @@ def _put(path: Path, content: bytes) -> None:
 def _building(folder: Path) -> None:
     building = load(folder / "building.yaml")
     check(building)
-    with translated():
-        _engine.Plan(building.to_engine(900.0).json)
+    fuzz_runs.day(building)
 
 
 def _genopt(folder: Path) -> None:

@@ -14,6 +14,14 @@ from mascarin.building.number import Fixed, Limits, Number, Percent, Quantity, S
 LENGTH = Quantity("m", "A length", Percent(10, "a ruler"), Limits(above=0, at_most=5))
 
 
+def test_a_number_next_to_its_limit_counts_as_on_it() -> None:
+    limits = Limits(above=0, at_most=20)
+    assert limits.hold(1e-9)
+    assert not limits.hold(5e-324)
+    assert not limits.hold(0.0)
+    assert not limits.hold(20.1)
+
+
 def test_a_number_is_a_float() -> None:
     number = LENGTH.read({"value": 2, "range": [1, 4], "source": "a book", "assumed": True})
     assert number * 2 == 4.0

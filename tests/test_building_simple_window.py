@@ -195,3 +195,26 @@ def test_derivatives_by_the_rating(
         difference = (mean({path + key: value + h}) - mean({path + key: value - h})) / (2 * h)
         exact = float(np.mean(found["d room.air_temperature"].sel(parameter=path + key)))
         assert exact == pytest.approx(difference, rel=2e-4), key
+
+
+@pytest.mark.parametrize(
+    ("name", "normal", "diffuse"),
+    [("double", 0.0005, 0.0005), ("triple", 0.004, 0.004), ("low_e", 0.034, 0.077), ("hard", 0.092, 0.093)],
+)
+def test_the_estimated_transmittance_is_as_good_as_documented(
+    name: str, normal: float, diffuse: float
+) -> None:
+    """The table of docs/windows.md: right without a coating, up to 10 % too high with one."""
+    exact, estimated = rating(UNITS[name]), rating(simple(UNITS[name], transmittance=False))
+    assert estimated.solar_heat_gain == pytest.approx(exact.solar_heat_gain, abs=1e-4)
+    assert abs(estimated.transmittance / exact.transmittance - 1.0) <= normal
+    assert abs(estimated.diffuse_transmittance / exact.diffuse_transmittance - 1.0) <= diffuse
+
+
+def test_check_says_where_the_transmittance_is_an_estimate() -> None:
+    estimated = with_glass("600", SimpleGlazing(u_value=1.1, solar_heat_gain=0.6))
+    given = with_glass("600", SimpleGlazing(u_value=1.1, solar_heat_gain=0.6, transmittance=0.52))
+    for building, said in ((estimated, True), (given, False)):
+        lines = [line for line in mc.building.check(building) if "glass of U 1.10" in line]
+        assert lines
+        assert all(("coated products of one rating differ by 10 %" in line) is said for line in lines)

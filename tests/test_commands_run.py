@@ -43,6 +43,21 @@ def test_summary(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert float(out.split("energy-balance residual")[1]) < 1e-10
 
 
+def test_a_long_run_shows_its_steps_and_the_time_left(
+    call: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # As if every run were long and every line due.
+    monkeypatch.setattr("mascarin.progress.SILENT_FOR", 0.0)
+    monkeypatch.setattr("mascarin.progress._LINE_EVERY", 0.0)
+    assert cli.main([*call[:-4], "--step", "5min"]) == 0
+    lines = [line for line in capsys.readouterr().err.splitlines() if line.startswith("run  ")]
+    shares = [int(line.split()[1]) for line in lines if "%" in line]
+    assert shares == sorted(shares)
+    assert 0 <= shares[0] < 100
+    assert shares[-1] == 100
+    assert any(line.endswith(" left") for line in lines[:-1])
+
+
 def test_json(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main([*call, "--json", "--output", "facade.*_flux", "--output", "room.air_temperature"]) == 0
     result = json.loads(capsys.readouterr().out)

@@ -37,6 +37,20 @@ def test_drawn_members_and_their_objectives(call: list[str], capsys: pytest.Capt
     assert "12 members" in capsys.readouterr().out
 
 
+def test_members_whose_balance_does_not_close_give_exit_code_1(
+    call: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # No building is known that this scheme does not close for: the limit is lowered below rounding.
+    monkeypatch.setattr("mascarin.simulation.energy.CLOSED", 0.0)
+    words = ["--draw", "3", "--vary", FILM, "--objective", "max:room.air_temperature"]
+    assert cli.main([*call, *words, "--json"]) == 1
+    printed = capsys.readouterr()
+    found = json.loads(printed.out)
+    assert "warning: the energy balance of 3 of 3 members does not close" in printed.err
+    assert found["warnings"][0] in printed.err
+    assert cli.main([*call, *words]) == 1
+
+
 def test_members_from_a_table(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     Path("members.csv").write_text(f"{FILM}\n2.0\n3.0\n", encoding="utf-8")
     words = ["--samples", "members.csv", "--output", "room.air_temperature", "--step", "1h"]

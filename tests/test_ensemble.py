@@ -19,6 +19,7 @@ from mascarin.building import Building, load
 from mascarin.ensemble import Statistic, Store, latin_hypercube, sweep, sweep_into
 from mascarin.ensemble import workers as sweep_workers
 from mascarin.errors import InputError, SolverError
+from mascarin.examples import box, box_climate
 from mascarin.examples.small import BOX
 from mascarin.simulation.compiled import Failure
 from mascarin.simulation.run import simulate
@@ -389,3 +390,52 @@ def test_members_are_drawn_evenly_and_reproducibly(building: Building) -> None:
     assert "site.latitude" not in latin_hypercube(building, 2, seed=3)
     with pytest.raises(InputError, match="structural"):
         latin_hypercube(building, 2, seed=3, vary=["site.latitude"])
+
+
+def test_members_whose_balance_does_not_close_are_named(tmp_path: Path) -> None:
+    # Apparent capacities lose heat where a material melts.
+    wax = {
+        "kind": "pcm", "density": 900, "conductivity": 0.2, "specific_heat": 2000, "latent_heat": 100000,
+        "melting_temperature": 22, "law": {"kind": "tanh", "width": 0.5},
+    }  # fmt: skip
+    building = box()
+    name = next(iter(building.materials))
+    melting = building.replace({f"materials.{name}": wax})
+    samples = {"surfaces.facade.outside.absorptance": [0.3, 0.6, 0.9]}
+    whole = sweep(melting, box_climate(), samples, step="1h", scheme="apparent-capacity", initial=22.0)
+    residuals = whole["closure"].to_numpy()
+    worst = int(residuals.argmax())
+    count = int((residuals > 1e-10).sum())
+    assert count > 0
+    (line,) = whole.attrs["warnings"]
+    assert line.startswith(f"the energy balance of {count} of 3 members does not close")
+    assert f"most in member {worst} ({residuals[worst]:.1e})" in line
+    store = sweep_into(
+        tmp_path / "store",
+        melting,
+        box_climate(),
+        samples,
+        step="1h",
+        scheme="apparent-capacity",
+        initial=22.0,
+    )
+    assert store.to_xarray().attrs["warnings"] == [line]
+    assert store.warnings() == [line]
+    closed = sweep(building, box_climate(), samples, step="1h")
+    assert closed.attrs["warnings"] == []
+
+
+def test_the_weather_that_all_members_share_counts_as_memory(
+    building: Building, climate: Climate, measured: Measurements, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simulation = Simulation(building, climate, step="1h", outputs=[JOINT], measurements=measured)
+    asked: list[float] = []
+    monkeypatch.setattr(
+        "mascarin.simulation.compiled.memory.require", lambda size, *words: asked.append(size)
+    )
+    simulation.ensemble(simulation.vector({})[None, :])
+    steps, stages, _ = simulation.compiled.forcing.shape
+    rows = steps + 1
+    kept = asked[-1] - 2.0 * 8.0 * rows
+    # Sun, sky and wind of each stage: at least some twenty numbers.
+    assert kept / (steps * stages) == simulation.compiled.plan.stage_bytes > 160

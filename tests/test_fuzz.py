@@ -10,8 +10,10 @@ from pathlib import Path
 import pytest
 
 import fuzz_buildings
+import fuzz_kills
 import fuzz_processes
 import fuzz_readers
+import fuzz_states
 from conftest import SEED
 
 #: Inputs of each reader: files of a year take longer to read.
@@ -41,6 +43,11 @@ def test_random_buildings_keep_the_laws() -> None:
     assert found.refused + found.unsolved < 13
 
 
+@pytest.mark.parametrize("machine", [fuzz_states.Buildings, fuzz_states.PassiveBuildings])
+def test_buildings_made_step_by_step_keep_the_laws(machine: type[fuzz_states.Buildings]) -> None:
+    fuzz_states.explore(machine, seed(), histories=5)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_workers_end_with_their_parent(how: signal.Signals, tmp_path: Path) -> None:
@@ -48,8 +55,9 @@ def test_workers_end_with_their_parent(how: signal.Signals, tmp_path: Path) -> N
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
-def test_killed_sweeps_end_with_the_same_bytes(tmp_path: Path) -> None:
-    assert fuzz_processes.killed_sweeps(fuzz_processes.inputs(tmp_path), 2, seed()) == []
+@pytest.mark.parametrize("name", ["sweep", "optimize"])
+def test_killed_commands_end_with_the_same_bytes(name: str, tmp_path: Path) -> None:
+    assert fuzz_kills.killed(name, tmp_path, 2, seed()) == []
 
 
 def test_two_writers_leave_one_result(tmp_path: Path) -> None:

@@ -139,7 +139,7 @@ def test_progress_is_called_with_done_and_total() -> None:
         calls.append((done, total))
 
     mc.simulate(box(), box_climate(), progress=progress, **SHORT)
-    assert calls == [(0, 1), (1, 1)]
+    assert (calls[0], calls[-1]) == ((0, 72), (72, 72))
     calls.clear()
     mc.sweep(box(), box_climate(), {PATH: np.linspace(0.2, 0.9, 20)}, progress=progress, **SHORT)
     assert calls[-1] == (20, 20)

@@ -156,6 +156,12 @@ CASES = {
         "jiont",
         ("sensors.joint.column", "no column 'jiont'", "'joint'"),
     ),
+    "no column of a sensor": Refused(
+        "column: joint",
+        "column: []",
+        "column: []",
+        ("sensors.joint.column", "found: []"),
+    ),
     "weather column missing": Refused(
         "air_temperature: air}",
         "air_temperature: airr}",

@@ -8,6 +8,7 @@ use mascarin_engine::forcing::Forcing;
 use mascarin_engine::march::{Options, Scheme, Warmup, Watch};
 use mascarin_engine::plan::Plan;
 use mascarin_engine::probe::Probe;
+use mascarin_engine::ratings::window_ratings;
 use mascarin_engine::state::Initial;
 use mascarin_engine::{batch, march, state_space as linear};
 use serde::Deserialize;
@@ -141,17 +142,28 @@ pub fn reverse(data: &[u8]) -> bool {
 pub fn state_space(data: &[u8]) -> bool {
     let Some(ready) = Ready::read(data) else { return false };
     if ready.values.len() == ready.plan.description.parameters.len() {
-        return linear::state_space(&ready.plan, &ready.values).is_ok();
+        return linear::state_space(&ready.plan, &ready.values, &Watch::default()).is_ok();
     }
     false
 }
 
+/// `Plan.window_ratings` and `Plan.stage_bytes`.
+pub fn ratings(data: &[u8]) -> bool {
+    let Some(ready) = Ready::read(data) else { return false };
+    if ready.values.len() != ready.plan.description.parameters.len() {
+        return false;
+    }
+    window_ratings(&ready.plan, &ready.values);
+    batch::stage_bytes(&ready.plan) > 0
+}
+
 /// Every function by its name.
-pub const TARGETS: [(&str, fn(&[u8]) -> bool); 6] = [
+pub const TARGETS: [(&str, fn(&[u8]) -> bool); 7] = [
     ("plan", plan),
     ("march", march),
     ("ensemble", ensemble),
     ("jacobian", jacobian),
     ("reverse", reverse),
     ("state_space", state_space),
+    ("ratings", ratings),
 ];

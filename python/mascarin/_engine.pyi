@@ -56,11 +56,21 @@ class Plan:
     def n_cells(self) -> int:
         """Finite volumes in all walls."""
 
+    @property
+    def stage_bytes(self) -> int:
+        """Memory of the weather of one stage, which an ensemble keeps for all members [B]."""
+
     def window_ratings(self, values: _Array) -> _Array:
         """Windows x (U value [W/(m2 K)], solar heat gain, normal and hemispherical transmittance [-])."""
 
-    def simulate(self, values: _Array, forcing: _Array, options: dict[str, Any]) -> dict[str, Any]:
-        """One run: records (rows x probes), ledger [J], counters.
+    def simulate(
+        self,
+        values: _Array,
+        forcing: _Array,
+        options: dict[str, Any],
+        report: Callable[[int], object] | None = None,
+    ) -> dict[str, Any]:
+        """One run: records (rows x probes), ledger [J], counters. `report` gets the number of steps done.
 
         `largest_change` is the largest change of a temperature in the last iteration of an accepted stage.
         [K] `largest_residual` is the largest residual of a heat balance in an accepted stage, all laws

@@ -96,10 +96,23 @@ pub fn abandonable<T: Send + 'static>(
     }
 }
 
+/// What is called with the number of units done, and which number of a run that is.
+pub type Report<'a, 'py> = (&'a Bound<'py, PyAny>, fn(&Watch) -> usize);
+
+/// Members done.
+pub fn done_members(watch: &Watch) -> usize {
+    watch.done.load(Ordering::Relaxed)
+}
+
+/// Steps done, without those of the warm-up.
+pub fn done_steps(watch: &Watch) -> usize {
+    watch.steps.load(Ordering::Relaxed)
+}
+
 /// Runs `work` on another thread with the GIL released, passing Ctrl-C on to it and progress to `report`.
 pub fn attended<T: Send>(
     py: Python<'_>,
-    report: Option<&Bound<'_, PyAny>>,
+    report: Option<Report<'_, '_>>,
     work: impl FnOnce(&Watch) -> Result<T, EngineError> + Send,
 ) -> PyResult<T> {
     let watch = Watch::default();
@@ -118,14 +131,17 @@ pub fn attended<T: Send>(
         })?; // the system gives no more threads: an OSError
         let mut reported = 0;
         while let Err(RecvTimeoutError::Timeout) = py.detach(wait) {
-            let done = watch.done.load(Ordering::Relaxed);
             let mut attend = py.check_signals();
             if attend.is_ok() && INTERRUPTIONS.load(Ordering::Relaxed) != before {
                 attend = Err(PyKeyboardInterrupt::new_err("interrupted"));
             }
-            if let (Ok(()), Some(report), true) = (&attend, report, done != reported) {
-                reported = done;
-                attend = report.call1((done,)).map(drop);
+            if let (Ok(()), Some((report, done))) = (&attend, report) {
+                // Again and again before the first unit is done, which may take long.
+                let done = done(watch);
+                if done == 0 || done != reported {
+                    reported = done;
+                    attend = report.call1((done,)).map(drop);
+                }
             }
             if let Err(error) = attend {
                 watch.stop.store(true, Ordering::Relaxed);

@@ -4,7 +4,7 @@ use mascarin_engine::derivatives::jacobian;
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
-use mascarin_engine::march::{Run, march};
+use mascarin_engine::march::{Run, Watch, march};
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::ratings::window_ratings;
 use mascarin_engine::{batch, state_space};
@@ -14,7 +14,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::errors::{EngineInputError, abandonable, attended, caught, to_python};
+use crate::errors::{EngineInputError, abandonable, attended, caught, done_members, done_steps, to_python};
 use crate::options::RunOptions;
 
 /// A building compiled for the engine.
@@ -56,6 +56,12 @@ impl Plan {
         self.plan.n_cells
     }
 
+    /// Memory of the weather of one stage that an ensemble keeps [B].
+    #[getter]
+    fn stage_bytes(&self) -> usize {
+        batch::stage_bytes(&self.plan)
+    }
+
     /// Ratings of the windows (windows x 4): U value, solar heat gain, normal and hemispherical solar transmittance.
     fn window_ratings<'py>(
         &self,
@@ -78,13 +84,15 @@ impl Plan {
         })
     }
 
-    /// One run: a dictionary of records, ledger and counters.
+    /// One run: a dictionary of records, ledger and counters. `report` is called with the number of steps done.
+    #[pyo3(signature = (values, forcing, options, report=None))]
     fn simulate<'py>(
         &self,
         py: Python<'py>,
         values: PyReadonlyArray1<'py, f64>,
         forcing: PyReadonlyArray3<'py, f64>,
         options: RunOptions,
+        report: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         caught(|| {
             let options = options.read()?;
@@ -92,7 +100,8 @@ impl Plan {
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
-            let run = attended(py, None, |watch| march(plan, values, &drive, &options, watch))?;
+            let report = report.map(|report| (report, done_steps as fn(&Watch) -> usize));
+            let run = attended(py, report, |watch| march(plan, values, &drive, &options, watch))?;
             describe_run(py, &run, [options.rows(drive.steps()), options.probes.len()])
         })
     }
@@ -114,6 +123,7 @@ impl Plan {
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
+            let report = report.map(|report| (report, done_members as fn(&Watch) -> usize));
             let result =
                 attended(py, report, |watch| batch::ensemble(plan, numbers, &drive, &options, watch))?;
             let rows = options.rows(drive.steps());
@@ -141,6 +151,7 @@ impl Plan {
             let drive =
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
+            let report = report.map(|report| (report, done_members as fn(&Watch) -> usize));
             let result =
                 attended(py, report, |watch| jacobian(plan, numbers, &which, &drive, &options, watch))?;
             let (rows, probes) = (options.rows(drive.steps()), options.probes.len());
@@ -157,16 +168,17 @@ impl Plan {
     ) -> PyResult<Bound<'py, PyDict>> {
         caught(|| {
             let values = contiguous(values.as_slice())?;
-            let system = state_space::state_space(&self.plan, values).map_err(|error| to_python(&error))?;
+            let plan = &self.plan;
+            let system = attended(py, None, |watch| state_space::state_space(plan, values, watch))?;
             let (n, m, p) = (system.states.len(), system.inputs.len(), system.outputs.len());
             let result = PyDict::new(py);
-            let matrix = |values: &[f64], shape: [usize; 2]| -> PyResult<Bound<'py, PyArray2<f64>>> {
-                PyArray1::from_slice(py, values).reshape(shape)
+            let matrix = |values: Vec<f64>, shape: [usize; 2]| -> PyResult<Bound<'py, PyArray2<f64>>> {
+                PyArray1::from_vec(py, values).reshape(shape)
             };
-            result.set_item("a", matrix(&system.a, [n, n])?)?;
-            result.set_item("b", matrix(&system.b, [n, m])?)?;
-            result.set_item("c", matrix(&system.c, [p, n])?)?;
-            result.set_item("d", matrix(&system.d, [p, m])?)?;
+            result.set_item("a", matrix(system.a, [n, n])?)?;
+            result.set_item("b", matrix(system.b, [n, m])?)?;
+            result.set_item("c", matrix(system.c, [p, n])?)?;
+            result.set_item("d", matrix(system.d, [p, m])?)?;
             result.set_item("states", system.states)?;
             result.set_item("inputs", system.inputs)?;
             result.set_item("outputs", system.outputs)?;

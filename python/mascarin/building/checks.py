@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from mascarin.building.air import density, heat_capacity
 from mascarin.building.description import Description
+from mascarin.building.glazing import Glazing, SimpleGlazing
 from mascarin.building.inactive import sides as every_side
 from mascarin.building.leaves import leaves
 from mascarin.building.material import PhaseChangeMaterial
@@ -175,7 +176,19 @@ def _windows(building: Description) -> Iterator[str]:
             f"window {name}: glass of U {rating.u_value:.2f} W/(m2 K) and solar heat gain "
             f"{rating.solar_heat_gain:.3f} by EN 673 and EN 410, solar transmittance "
             f"{rating.transmittance:.3f}, {rating.diffuse_transmittance:.3f} of diffuse radiation"
+            f"{_how_known(building.glazings[building.windows[name].glazing])}"
         )
+
+
+def _how_known(glazing: Glazing) -> str:
+    """How well the solar transmittance is known, where it follows from U value and solar heat gain."""
+    if not isinstance(glazing, SimpleGlazing) or glazing.transmittance is not None:
+        return ""
+    return (
+        "; the transmittances are estimated from U value and solar heat gain: within 1 % for glass without a "
+        "coating, but coated products of one rating differ by 10 %, so give the 'transmittance' of the data "
+        "sheet (direct solar transmittance of EN 410)"
+    )
 
 
 def _as_described(by_iso: float, described: float, what: str = "") -> str:

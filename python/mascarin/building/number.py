@@ -207,6 +207,11 @@ class Fixed:
 Spread = Percent | Within | Span | Fixed
 
 
+SMALLEST: Final = 1e-12
+"""Least distance from a limit that a value must be above. What is closer, such as 5e-324, counts as on it:
+products and quotients of such numbers are zero or infinite."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Limits:
     """Limits outside of which a value has no meaning."""
@@ -227,7 +232,7 @@ class Limits:
 
     def hold(self, value: float) -> bool:
         """Whether a value is inside."""
-        return self.lower <= value <= self.upper and (self.above is None or value > self.above)
+        return self.lower <= value <= self.upper and (self.above is None or value - self.above >= SMALLEST)
 
     def clip(self, interval: Interval) -> Interval:
         """Cut an interval to the limits; an open end is approached to a thousandth of the interval."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -19,6 +20,7 @@ from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building import Building
+    from mascarin.progress import Report
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate
@@ -115,7 +117,7 @@ def run(
 def _simulated(
     building: Building, climate: Climate, *, step: str, outputs: Sequence[str] | None, **options: Any
 ) -> Results:
-    """Run once, with the warnings about building and results on standard error."""
+    """Run once, with warnings about building and results, and progress of a long run, on standard error."""
     from mascarin.simulation.simulation import Simulation
 
     simulation = Simulation(
@@ -127,10 +129,34 @@ def _simulated(
     )
     _print_warnings(building, simulation)
     _print_cost(building, simulation)
-    results = simulation.run()
+    with _progress() as progress:
+        results = simulation.run(progress=progress)
     for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
     return results
+
+
+@contextlib.contextmanager
+def _progress() -> Iterator[Report]:
+    """Progress of the steps, with the time that remains; before them, that the first period is repeated."""
+    from mascarin.progress import Progress
+
+    with contextlib.ExitStack() as shown:
+        before = shown.enter_context(Progress("run"))
+        during: Progress | None = None
+
+        def report(done: int, total: int) -> None:
+            nonlocal during
+            if done == 0:
+                before.update(0, 0, "the first period is repeated until it is periodic")
+                return
+            if during is None:
+                before.close()
+                # Of its own, so that the time of the repetitions does not count for the steps.
+                during = shown.enter_context(Progress("run"))
+            during.update(done, total)
+
+        yield report
 
 
 def _print_warnings(building: Building, simulation: Simulation) -> None:
@@ -148,14 +174,16 @@ def _print_warnings(building: Building, simulation: Simulation) -> None:
 
 def _print_cost(building: Building, simulation: Simulation) -> None:
     """Say how long shadows take, where it is long."""
-    from mascarin.building.self_shading import expected_seconds, obstructions
+    from mascarin.building.self_shading import expected_seconds, obstructions, pairs_with_shades
 
     steps, stages, _ = simulation.compiled.forcing.shape
-    expected = expected_seconds(obstructions(building), steps * stages)
+    shades = pairs_with_shades(building)
+    expected = expected_seconds(obstructions(building), steps * stages, shades=shades)
     if expected > LONG:
+        advice = "describe fewer 'shades', such as one for many slats, or " if any(shades) else ""
         print(
-            f"shading: about {expected:.0f} s for the shadows; 'site: {{self_shading: false}}' turns "
-            "them off",
+            f"shading: about {expected:.0f} s for the shadows; {advice}turn off those of surfaces with "
+            "'site: {self_shading: false}'",
             file=sys.stderr,
         )
 

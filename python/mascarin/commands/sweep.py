@@ -39,10 +39,11 @@ def sweep(
     workers: int | None = None,
     settings: Settings = None,
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Simulate a building with many parameter values.
 
     Each row of the samples is one member of the ensemble. After an interruption the same command continues.
+    Ends with exit code 1 where the energy balance of a member does not close.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def sweep(
             seed=None if samples is not None else seed,
             progress=progress,
         )
-    _print(store, as_json)
+    return _print(store, as_json)
 
 
 def _samples(
@@ -129,8 +130,9 @@ def _read(file: Path) -> pd.DataFrame:
     raise InputError(f"--samples: found '{file}'; expected a file ending in .csv or .parquet")
 
 
-def _print(store: Store, as_json: bool) -> None:
-    table = store.table()
+def _print(store: Store, as_json: bool) -> int:
+    """Print the results; the exit code."""
+    table = store.to_dataframe()
     failed = table["failure"].dropna()
     if len(failed) == len(table):
         raise SolverError(f"all {len(table)} members failed; the first: {failed.iloc[0]}")
@@ -142,13 +144,17 @@ def _print(store: Store, as_json: bool) -> None:
         "members": len(table),
         "failed": {str(member): str(reason) for member, reason in failed.items()},
         "closure": float(table["closure"].max()),
+        "warnings": store.warnings(),
         "objectives": {name: {"min": low, "mean": mean, "max": high} for name, low, mean, high in rows},
         "store": str(store.path),
         **{key: store.manifest[key] for key in ("mascarin_version", "identity", "samples", "seed")},
     }
+    for line in result["warnings"]:
+        print(f"warning: {line}", file=sys.stderr)
+    code = 1 if result["warnings"] else 0
     if as_json:
         print_json(result)
-        return
+        return code
     if rows:
         print_table(("objective", "min", "mean", "max"), rows)
     residual = result["closure"]
@@ -158,3 +164,4 @@ def _print(store: Store, as_json: bool) -> None:
         print(
             f"{len(failed)} members failed; the first, {failed.index[0]}: {failed.iloc[0]}", file=sys.stderr
         )
+    return code

@@ -23,6 +23,7 @@ from mascarin.ensemble.workers import elsewhere, here
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.simulation.compiling import in_climate
+from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.options import RunOptions, described
 from mascarin.weather import summary
 
@@ -85,7 +86,8 @@ def sweep(
         Each output over (member, time), or each objective over (member); the samples as ``samples`` over
         (member, parameter), or as ``sample: <path>`` over (member) where they are not all plain numbers;
         ``closure``, the relative energy-balance residual [-]. NaN for a member that failed, with its reason
-        in the attribute ``failures``. Coordinates ``time`` (UTC) and ``local_time``.
+        in the attribute ``failures``; the attribute ``warnings`` says whether the energy balance of a member
+        does not close. Coordinates ``time`` (UTC) and ``local_time``.
 
     Raises
     ------
@@ -128,7 +130,10 @@ def sweep(
     return (
         _dataset(inputs, found, whole)
         .assign(closure=xr.DataArray(closure, dims="member", attrs=CLOSURE))
-        .assign_attrs(failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())])
+        .assign_attrs(
+            failures=[f"member {member}: {reason}" for member, reason in sorted(failures.items())],
+            warnings=ensemble_warnings(closure),
+        )
     )
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from mascarin._io import atomic, display, locks
 from mascarin.ensemble.work import CLOSURE, attributes
 from mascarin.errors import InputError
+from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.labels import time_coordinates
 from mascarin.weather.timezones import parse_timezone
 
@@ -251,6 +252,10 @@ class Store:
         whole: pd.DataFrame = pd.concat(found).drop_duplicates("member")
         return whole.sort_values("member").set_index("member")
 
+    def warnings(self) -> list[str]:
+        """One line where the energy balance of a member does not close, else nothing."""
+        return ensemble_warnings(self.to_dataframe()["closure"].to_numpy())
+
     def to_xarray(self, first: int = 0, last: int | None = None) -> xr.Dataset:
         """Members from `first` to before `last`, as `sweep` returns them.
 
@@ -303,6 +308,7 @@ class Store:
             coords |= time_coordinates(times.tz_convert(parse_timezone(self.manifest["timezone"])))
         facts = {
             "failures": [f"member {member}: {reason}" for member, reason in reasons if reason is not None],
+            "warnings": ensemble_warnings(data["closure"][1], first),
             "timezone": self.manifest["timezone"],
             "mascarin_version": self.manifest["mascarin_version"],
         }

@@ -18,6 +18,7 @@ from mascarin.sensitivity.methods import MethodName, collector, plan
 from mascarin.sensitivity.result import Sensitivity
 from mascarin.sensitivity.runs import batches
 from mascarin.simulation.compiling import in_climate
+from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.options import described
 from mascarin.simulation.simulation import Simulation
 from mascarin.weather.times import seconds_of
@@ -303,7 +304,9 @@ def run_samples(
         A run failed; the text names its parameters.
     """
     vectors = simulation.varied(paths, samples)
-    records, _, failures = simulation.ensemble(vectors, record_from=start, record_every=every)
+    records, residuals, failures = simulation.ensemble(vectors, record_from=start, record_every=every)
+    for line in ensemble_warnings(residuals, first):
+        warnings.warn(f"sensitivity analysis: {line}", stacklevel=2)
     if failures:
         failed = failures[0]
         raise SolverError(

@@ -129,7 +129,9 @@ class CompiledRun:
             "record_every": record_every,
         }
 
-    def run(self, vector: Array, readings: Readings | None = None) -> tuple[Array, dict[str, Any]]:
+    def run(
+        self, vector: Array, readings: Readings | None = None, *, progress: Report | None = None
+    ) -> tuple[Array, dict[str, Any]]:
         """Run once.
 
         Parameters
@@ -138,6 +140,8 @@ class CompiledRun:
             Parameter vector. [unit of each]
         readings : Readings, optional
             Outputs other than those of the compiled run.
+        progress : callable, optional
+            Called with the number of steps done and their total; with 0 while a first period is repeated.
 
         Returns
         -------
@@ -153,7 +157,8 @@ class CompiledRun:
         """
         recorded = readings or self.readings
         with translated(self.dated):
-            raw = self.plan.simulate(vector, self.forcing, self.options(recorded))
+            report = _of_total(progress, len(self.forcing))
+            raw = self.plan.simulate(vector, self.forcing, self.options(recorded), report)
         return recorded.values(raw["records"]), raw
 
     def ensemble(
@@ -181,7 +186,9 @@ class CompiledRun:
         """
         options = self.options(None, record_from, record_every)
         rows = self._rows(record_from, record_every)
-        self._require_room(len(vectors), rows, f"{len(vectors)} members", "run fewer at a time")
+        # Weather, sun and shadows of each stage are kept for all members.
+        stages = float(np.prod(self.forcing.shape[:2])) * self.plan.stage_bytes
+        self._require_room(len(vectors), rows, f"{len(vectors)} members", "run fewer at a time", stages)
         with translated(self.dated):
             raw, residuals, failed = self.plan.ensemble(
                 vectors, self.forcing, options, _of_total(progress, len(vectors))
@@ -263,12 +270,12 @@ class CompiledRun:
     def _rows(self, record_from: int, record_every: int) -> int:
         return max(len(self.forcing) - record_from, 0) // max(record_every, 1) + 1
 
-    def _require_room(self, times: int, rows: int, what: str, advice: str) -> None:
-        """Refuse results that memory does not hold; the engine would end the process."""
+    def _require_room(self, times: int, rows: int, what: str, advice: str, more: float = 0.0) -> None:
+        """Refuse results that memory does not hold, with `more` bytes; the engine would end the process."""
         columns = len(self.readings.recipes)
         # As the engine records them, and as outputs.
         memory.require(
-            2.0 * 8.0 * times * rows * columns,
+            2.0 * 8.0 * times * rows * columns + more,
             f"{what}, {rows} records and {columns} outputs",
             f"{advice}, record fewer outputs, or take a longer step or a shorter period",
         )

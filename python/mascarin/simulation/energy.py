@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Array = npt.NDArray[np.float64]
 
 FLOWS: Final = (
     "solar",
@@ -24,6 +31,39 @@ FLOWS: Final = (
 
 CLOSED: Final = 1e-10
 """Relative energy-balance residual up to which an energy balance closes: rounding stays below it. [-]"""
+
+
+def ensemble_warnings(residuals: Array, first: int = 0) -> list[str]:
+    """One line where the energy balance of a member of an ensemble does not close, else nothing.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (members,)
+        Relative energy-balance residual of each member; NaN for one that failed. [-]
+    first : int
+        Number of the first member.
+
+    Returns
+    -------
+    list of str
+        How many members do not close, and the worst of them.
+
+    Examples
+    --------
+    >>> ensemble_warnings(np.array([1e-12, np.nan, 2e-9]))[0][:56]
+    'the energy balance of 1 of 3 members does not close: the'
+    """
+    open_ones = np.flatnonzero(residuals > CLOSED)
+    if not open_ones.size:
+        return []
+    worst = int(np.nanargmax(residuals))
+    return [
+        f"the energy balance of {len(open_ones)} of {len(residuals)} members does not close: the heat stored "
+        "and the heat that flowed in differ by more than "
+        f"{CLOSED:g} of all heat exchanged, most in member {first + worst} ({residuals[worst]:.1e}). Their "
+        "temperatures may be wrong by as much or more: use another time-stepping scheme "
+        "('apparent-capacity' never closes) or a shorter step"
+    ]
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mascarin import _engine
+from mascarin._io import memory
 from mascarin.simulation.engine_errors import translated
 from mascarin.weather.times import seconds_of
 
@@ -55,6 +56,18 @@ class StateSpace:
         return np.sort(-1.0 / np.linalg.eigvals(self.a).real)[::-1]
 
 
+def _require_room(building: Building, cells: int) -> None:
+    """Refuse matrices that memory does not hold: they grow with the square of the cells."""
+    states = cells + len(building.zones)
+    surfaces = 2 * (len(building.surfaces) + len(building.windows))
+    nodes = states + surfaces
+    # Conductances of all nodes; rows of the states, before and after they are split; responses of surfaces.
+    size = 8.0 * (nodes * nodes + 2.0 * states * (states + surfaces) + 3.0 * surfaces * (states + surfaces))
+    memory.require(
+        size, f"state_space: matrices of {states} states", "describe layers with fewer nodes (`nodes:`)"
+    )
+
+
 def state_space(building: Building, *, step: str | float = "15min") -> StateSpace:
     """Write a linear building as the matrices of a model in state space.
 
@@ -74,7 +87,8 @@ def state_space(building: Building, *, step: str | float = "15min") -> StateSpac
     Raises
     ------
     InputError
-        A law is not linear and constant; the text names the first one and what to use instead.
+        A law is not linear and constant; the text names the first one and what to use instead. Matrices that
+        memory does not hold.
 
     References
     ----------
@@ -92,5 +106,7 @@ def state_space(building: Building, *, step: str | float = "15min") -> StateSpac
     """
     description = building.to_engine(seconds_of(step), {})
     with translated():
-        raw = _engine.Plan(description.json).state_space(description.values)
+        plan = _engine.Plan(description.json)
+        _require_room(building, plan.n_cells)
+        raw = plan.state_space(description.values)
     return StateSpace(**raw)

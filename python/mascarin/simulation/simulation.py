@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from mascarin.building import Building
-    from mascarin.progress import ProgressOption
+    from mascarin.progress import ProgressOption, Report
     from mascarin.simulation.initial import Initial
     from mascarin.simulation.objectives import Gradient, Objective
     from mascarin.simulation.options import Scheme, TimeLike
@@ -163,8 +163,8 @@ class Simulation(VectorRuns):
         parameters : mapping of str to float, optional
             Values by path that replace those of the building. [unit of each]
         progress : bool or callable, optional
-            As in `Simulation`; the engine does not report progress within a run, so that a function is
-            called at the start with (0, 1) and at the end with (1, 1).
+            As in `Simulation`; units are steps. A function is called with 0 steps while a first period is
+            repeated.
 
         Returns
         -------
@@ -186,9 +186,10 @@ class Simulation(VectorRuns):
         {'zones.room.volume': 30.0}
         """
         with reporting(progress, "run") as report:
-            report(0, 1)
-            results = self.run_vector(self.vector(parameters or {}))
-            report(1, 1)
+            steps = len(self.compiled.forcing)
+            report(0, steps)
+            results = self.run_vector(self.vector(parameters or {}), progress=report)
+            report(steps, steps)
         return results
 
     def jacobian(
@@ -272,20 +273,22 @@ class Simulation(VectorRuns):
             report(2, 2)
         return found
 
-    def run_vector(self, vector: Array) -> Results:
+    def run_vector(self, vector: Array, *, progress: Report | None = None) -> Results:
         """Run once with a parameter vector; as `run`.
 
         Parameters
         ----------
         vector : ndarray, shape (P,)
             Parameter vector. [unit of each]
+        progress : callable, optional
+            Called with the number of steps done and their total.
         """
         from mascarin.building import unmelted  # pydantic, as above
 
         vector = np.array(vector, dtype=np.float64)
         self._require_possible(vector[None, :])
         watched = unmelted.watched(self.building)
-        records, raw = self.compiled.run(vector, Readings.of([*self.outputs, *watched]))
+        records, raw = self.compiled.run(vector, Readings.of([*self.outputs, *watched]), progress=progress)
         records, seen = np.split(records, [len(self.outputs)], axis=1)
         energy = EnergyLedger.read(raw)
         warnings = [*energy.warnings(), *unmelted.warnings(self.building, seen)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 from pydantic import AliasChoices, Field
 
@@ -16,7 +17,9 @@ from mascarin.weather.times import seconds_of
 class Sensor(Part):
     """A measured series and the model output that it is compared with."""
 
-    column: str | tuple[str, ...] = Field(description="Column, or several columns, of which the mean is used")
+    column: str | Annotated[tuple[str, ...], Field(min_length=1)] = Field(
+        description="Column, or several columns, of which the mean is used"
+    )
     output: str = Field(description="Output of the model")
     expanded_uncertainty: float | None = Field(
         None,

@@ -115,6 +115,12 @@ impl SolarGeometry {
         fractions.into_boxed_slice()
     }
 
+    /// Memory of the fractions at an instant [B].
+    #[must_use]
+    pub fn bytes_of_instant(&self) -> usize {
+        size_of::<f64>() * self.size
+    }
+
     /// Whether nothing depends on the direction of the sun.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -38,34 +38,81 @@ fn clip_left_of(polygon: &[Point], from: Point, to: Point, kept: &mut Vec<Point>
     }
 }
 
-/// Whether the boxes round two polygons have no area in common.
-fn boxes_apart(a: &[Point], b: &[Point]) -> bool {
-    (0..2).any(|k| {
-        let range = |polygon: &[Point]| {
-            polygon
-                .iter()
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[k]), high.max(p[k])])
-        };
-        let ([a0, a1], [b0, b1]) = (range(a), range(b));
-        a1 <= b0 || b1 <= a0
+/// The box round a polygon: least and largest of each coordinate [m].
+type Bounds = [[f64; 2]; 2];
+
+fn bounds(polygon: &[Point]) -> Bounds {
+    core::array::from_fn(|k| {
+        polygon
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[k]), high.max(p[k])])
     })
 }
 
-/// Convex pieces without the part inside a convex polygon that turns counter-clockwise.
-pub(crate) fn subtract(pieces: Vec<Vec<Point>>, hole: &[Point]) -> Vec<Vec<Point>> {
-    let mut left = Vec::with_capacity(pieces.len() + 2);
-    for piece in pieces {
-        if boxes_apart(&piece, hole) {
-            left.push(piece);
-            continue;
+/// Whether two boxes have no area in common.
+fn apart(a: &Bounds, b: &Bounds) -> bool {
+    a.iter().zip(b).any(|([a0, a1], [b0, b1])| a1 <= b0 || b1 <= a0)
+}
+
+/// Convex pieces, from which others are subtracted.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Pieces {
+    polygons: Vec<Vec<Point>>,
+    /// Of each polygon: most of a subtracted polygon's time would go into finding them again.
+    bounds: Vec<Bounds>,
+}
+
+impl Pieces {
+    /// Pieces that do not overlap.
+    pub(crate) fn new(polygons: Vec<Vec<Point>>) -> Self {
+        Self { bounds: polygons.iter().map(|piece| bounds(piece)).collect(), polygons }
+    }
+
+    fn add(&mut self, polygon: Vec<Point>) {
+        self.bounds.push(bounds(&polygon));
+        self.polygons.push(polygon);
+    }
+
+    /// The pieces.
+    pub(crate) fn into_polygons(self) -> Vec<Vec<Point>> {
+        self.polygons
+    }
+
+    /// Whether nothing is left.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.polygons.is_empty()
+    }
+
+    /// Removes the part inside a convex polygon that turns counter-clockwise.
+    pub(crate) fn subtract(&mut self, hole: &[Point]) {
+        let around = bounds(hole);
+        if self.bounds.iter().all(|piece| apart(piece, &around)) {
+            return;
         }
+        let mut left = Self {
+            polygons: Vec::with_capacity(self.polygons.len() + 3),
+            bounds: Vec::with_capacity(self.bounds.len() + 3),
+        };
+        for (piece, box_of_piece) in self.polygons.drain(..).zip(self.bounds.drain(..)) {
+            if apart(&box_of_piece, &around) {
+                left.polygons.push(piece);
+                left.bounds.push(box_of_piece);
+            } else {
+                left.add_without(piece, hole);
+            }
+        }
+        *self = left;
+    }
+
+    /// Adds what a convex polygon leaves of a piece.
+    fn add_without(&mut self, piece: Vec<Point>, hole: &[Point]) {
         let mut rest = piece;
         for (k, &from) in hole.iter().enumerate() {
             let to = hole[(k + 1) % hole.len()];
             let (mut outside, mut inside) = (Vec::new(), Vec::new());
             clip_left_of(&rest, to, from, &mut outside);
             if area(&outside) > LEAST_LENGTH * LEAST_LENGTH {
-                left.push(outside);
+                self.add(outside);
             }
             clip_left_of(&rest, from, to, &mut inside);
             rest = inside;
@@ -74,7 +121,13 @@ pub(crate) fn subtract(pieces: Vec<Vec<Point>>, hole: &[Point]) -> Vec<Vec<Point
             }
         }
     }
-    left
+}
+
+/// Convex pieces without the part inside a convex polygon that turns counter-clockwise.
+pub(crate) fn subtract(pieces: Vec<Vec<Point>>, hole: &[Point]) -> Vec<Vec<Point>> {
+    let mut left = Pieces::new(pieces);
+    left.subtract(hole);
+    left.into_polygons()
 }
 
 /// Area common to two convex polygons [m2], the second turning counter-clockwise; `scratch` is overwritten.

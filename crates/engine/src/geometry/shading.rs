@@ -11,7 +11,7 @@
 use std::borrow::Cow;
 
 use super::plane::{Point, Vertex, dot};
-use super::polygon::{area, project, subtract};
+use super::polygon::{Pieces, area, project};
 use super::surface::PlaneSurface;
 use super::{GRAZING, LEAST_LENGTH, SAME_PLANE};
 use crate::number::real::Real;
@@ -153,22 +153,23 @@ impl Receiver {
 
     /// Convex pieces of the surface that the sun reaches; all of them where it is behind the surface.
     pub(crate) fn sunlit_pieces(&self, sun: Vertex) -> Cow<'_, [Vec<Point>]> {
-        let mut pieces = Cow::Borrowed(self.surface.pieces.as_slice());
         let direction = self.surface.plane.direction(sun);
         if direction[2] < GRAZING {
-            return pieces;
+            return Cow::Borrowed(&self.surface.pieces);
         }
+        let mut left = None;
         let mut shadow = Vec::new();
         for obstacle in self.obstacles.iter().filter(|obstacle| obstacle.may_shade(direction)) {
             project(&obstacle.corners, direction, &mut shadow);
             if area(&shadow) > LEAST_LENGTH * LEAST_LENGTH {
-                pieces = Cow::Owned(subtract(pieces.into_owned(), &shadow));
-            }
-            if pieces.is_empty() {
-                break;
+                let left = left.get_or_insert_with(|| Pieces::new(self.surface.pieces.clone()));
+                left.subtract(&shadow);
+                if left.is_empty() {
+                    break;
+                }
             }
         }
-        pieces
+        left.map_or(Cow::Borrowed(&self.surface.pieces), |left| Cow::Owned(left.into_polygons()))
     }
 
     /// Fraction of the surface that the sun reaches from a direction [-]; 1 where it is behind the surface.

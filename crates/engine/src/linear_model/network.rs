@@ -5,10 +5,12 @@ use crate::balance::terms::{End, Held, Node, Origin, OutdoorRadiation, Sink};
 use crate::building::coefficients::{Boundary, Coefficients, Imposed};
 use crate::building::ids::SurfaceId;
 use crate::building::plan::Plan;
+use crate::error::EngineError;
 use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::linear::wall::{Link, Storage};
-use crate::number::dense::solve_many;
+use crate::number::dense::solve_many_while;
 use crate::number::line::Line;
+use crate::step::control::RunControl;
 
 use super::matrices::{StateSpace, output_names, state_names};
 
@@ -152,7 +154,10 @@ impl<'a> Network<'a> {
     }
 
     /// Solves the massless surfaces out and divides by the capacities.
-    pub(super) fn eliminate_surfaces(mut self) -> StateSpace {
+    ///
+    /// # Errors
+    /// [`EngineError::Interrupted`].
+    pub(super) fn eliminate_surfaces(mut self, control: &RunControl) -> Result<StateSpace, EngineError> {
         self.hold_surfaces();
         self.sort_inputs();
         let (n, f, m) = (self.n_states, self.plan.surfaces.len(), self.inputs.len());
@@ -168,9 +173,10 @@ impl<'a> Network<'a> {
                 if column < n { at(row, column) } else { gain(row, column - n) }
             })
             .collect();
-        solve_many(&mut matrix, &mut response, width);
+        solve_many_while(|| control.check(), &mut matrix, &mut response, width)?;
         let mut rows = vec![0.0; n * width];
         for i in 0..n {
+            control.check()?;
             for j in 0..width {
                 let direct = if j < n { at(i, j) } else { gain(i, j - n) };
                 let through: f64 = (0..f).map(|k| at(i, n + k) * response[k * width + j]).sum();
@@ -186,7 +192,7 @@ impl<'a> Network<'a> {
         let split = |all: &[f64], first: bool| -> Vec<f64> {
             all.chunks(width).flat_map(|row| if first { &row[..n] } else { &row[n..] }.to_vec()).collect()
         };
-        StateSpace {
+        Ok(StateSpace {
             a: split(&rows, true),
             b: split(&rows, false),
             c: split(&outputs, true),
@@ -194,7 +200,7 @@ impl<'a> Network<'a> {
             states: state_names(self.plan),
             outputs: output_names(self.plan),
             inputs: self.inputs.into_iter().map(|(_, name)| name).collect(),
-        }
+        })
     }
 }
 

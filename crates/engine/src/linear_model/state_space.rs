@@ -7,13 +7,14 @@ use crate::balance::terms::{Contents, Stage};
 use crate::building::coefficients::Coefficients;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
+use crate::step::control::RunControl;
 use crate::step::{Scheme, Stepper};
 
 /// Writes a plan at a parameter vector as matrices.
 ///
 /// # Errors
-/// [`EngineError::Input`] naming the first law that is not linear and constant.
-pub fn state_space(plan: &Plan, numbers: &[f64]) -> Result<StateSpace, EngineError> {
+/// [`EngineError::Input`] naming the first law that is not linear and constant, [`EngineError::Interrupted`].
+pub fn state_space(plan: &Plan, numbers: &[f64], control: &RunControl) -> Result<StateSpace, EngineError> {
     let coefficients = Coefficients::new(plan, numbers);
     require_linear(plan, numbers, &coefficients)?;
     // Laws are linear: their tangents at 0 degC and in calm air are the laws themselves.
@@ -24,5 +25,5 @@ pub fn state_space(plan: &Plan, numbers: &[f64]) -> Result<StateSpace, EngineErr
     let contents = Contents { cells: &nothing, enthalpy: &nothing, air: &nothing };
     let stage = Stage { length: f64::INFINITY, ratio: 0.0, start: contents, first: contents };
     stepper.balances().visit(&stage, &mut network);
-    Ok(network.eliminate_surfaces())
+    network.eliminate_surfaces(control)
 }

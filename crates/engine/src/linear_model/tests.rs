@@ -4,6 +4,7 @@ use crate::building::plan::Plan;
 use crate::common::{Builder, values};
 use crate::input::description::{Gain, OutdoorLongwave, ParamId, Parameter, ZoneLongwave};
 use crate::physics::constants::{KELVIN, SIGMA};
+use crate::step::control::RunControl;
 
 /// One cell and one air: the matrices are those of the network of two capacities written by hand.
 #[test]
@@ -41,7 +42,7 @@ fn two_capacities() {
     let plan = Plan::new(description).unwrap();
     let numbers = values(&plan);
     let air_capacity = Coefficients::new(&plan, &numbers).zones[0].capacity;
-    let system = state_space(&plan, &numbers).unwrap();
+    let system = state_space(&plan, &numbers, &RunControl::default()).unwrap();
 
     let half = CONDUCTIVITY / (0.5 * THICKNESS);
     let kelvin = REFERENCE + KELVIN;

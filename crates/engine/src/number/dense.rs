@@ -6,6 +6,8 @@
 //! diagonally dominant matrices (exchange of radiation, surfaces of a linear model), for M-matrices and for the inverses of
 //! M-matrices (responses of airs to loads).
 
+use core::convert::Infallible;
+
 use super::real::Real;
 
 /// Solves `matrix X = right` in place for `width` right-hand sides.
@@ -14,8 +16,23 @@ use super::real::Real;
 /// (with what the elimination leaves below the diagonal).
 #[inline(always)]
 pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], width: usize) {
+    let Ok(()) = solve_many_while(|| Ok::<(), Infallible>(()), matrix, right, width);
+}
+
+/// The same for as long as `proceed`, asked before each row, allows it.
+///
+/// # Errors
+/// That of `proceed`: both arguments then have no meaning any more.
+#[inline(always)]
+pub(crate) fn solve_many_while<S: Real, E>(
+    proceed: impl Fn() -> Result<(), E>,
+    matrix: &mut [S],
+    right: &mut [S],
+    width: usize,
+) -> Result<(), E> {
     let n = right.len() / width;
     for k in 0..n {
+        proceed()?;
         let inverse = S::one() / matrix[k * n + k];
         for i in k + 1..n {
             let factor = matrix[i * n + k] * inverse;
@@ -28,6 +45,7 @@ pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], width: usiz
         }
     }
     for k in (0..n).rev() {
+        proceed()?;
         for j in 0..width {
             let mut sum = right[k * width + j];
             for i in k + 1..n {
@@ -36,6 +54,7 @@ pub(crate) fn solve_many<S: Real>(matrix: &mut [S], right: &mut [S], width: usiz
             right[k * width + j] = sum / matrix[k * n + k];
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]

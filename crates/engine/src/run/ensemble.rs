@@ -29,6 +29,12 @@ pub struct Ensemble {
     pub failures: Vec<(usize, EngineError)>,
 }
 
+/// Memory of the weather of one stage, which all members share [B].
+#[must_use]
+pub fn stage_bytes(plan: &Plan) -> usize {
+    Weather::bytes_of_stage(plan)
+}
+
 /// Runs members given as rows of `numbers` (members x parameters).
 ///
 /// # Errors

@@ -91,6 +91,7 @@ pub(crate) fn march_observed<'a, S: Real>(
     for action in Action::all(weather.steps(), options) {
         control.check()?;
         action.take(&mut stepper, &mut state, weather, options.dt, &mut ledger)?;
+        control.count_step();
         if action.row(options).is_some() {
             records.extend(options.probes.iter().map(|output| output.read(plan, &stepper, &state)));
         }

@@ -11,6 +11,8 @@ pub struct RunControl {
     pub stop: AtomicBool,
     /// Members finished so far.
     pub done: AtomicUsize,
+    /// Steps made so far, without those of the warm-up.
+    pub steps: AtomicUsize,
 }
 
 impl RunControl {
@@ -21,6 +23,12 @@ impl RunControl {
     #[inline(always)]
     pub(crate) fn check(&self) -> Result<(), EngineError> {
         if self.stop.load(Ordering::Relaxed) { Err(EngineError::Interrupted) } else { Ok(()) }
+    }
+
+    /// Counts a step.
+    #[inline(always)]
+    pub(crate) fn count_step(&self) {
+        self.steps.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Counts finished members.

@@ -94,6 +94,12 @@ impl<'a> Weather<'a> {
         Self { plan, forcing: *forcing, terms, ground, stages }
     }
 
+    /// Memory of a stage that is kept [B].
+    #[must_use]
+    pub fn bytes_of_stage(plan: &Plan) -> usize {
+        size_of::<OnceLock<Instant<'a>>>() + plan.solar_geometry.bytes_of_instant()
+    }
+
     fn evaluate(&self, step: usize, stage: usize) -> Instant<'a> {
         Instant::new(self.plan, self.forcing.at(step, stage), self.terms, self.ground)
     }

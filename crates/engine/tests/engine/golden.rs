@@ -653,7 +653,7 @@ fn slopes() -> Vec<Row> {
     let mut rows: Vec<Row> =
         all.par_iter().flat_map_iter(|(sample, scheme)| slopes_of(sample, *scheme)).collect();
     let linear = Sample::linear();
-    let matrices = state_space(&linear.plan, &values(&linear.plan)).unwrap();
+    let matrices = state_space(&linear.plan, &values(&linear.plan), &Watch::default()).unwrap();
     let (mut answers, mut rest) = (Hash::new(), Hash::new());
     for matrix in [&matrices.a, &matrices.b, &matrices.c, &matrices.d] {
         answers.numbers(matrix);

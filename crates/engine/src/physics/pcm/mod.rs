@@ -277,8 +277,8 @@ impl<S: Real> PcmCoefficients<S> {
     /// Limits a Newton step along a curve with several bends, such as a measured one, after the first steps. Where the curve rises by much
     /// more than its tangent, the iterate would take up heat that it was not given, and Newton's method goes to and fro between two
     /// temperatures for ever. There the step ends at the temperature that has the heat of the tangent: the unknown is then the
-    /// enthalpy instead of the temperature (Swaminathan & Voller 1993, Int. J. Numer. Methods Heat Fluid Flow 3(3), 233-244,
-    /// doi:10.1108/eb017528). The smaller of both moves converged from all of 400 random states of a wall; each alone did not from 100.
+    /// enthalpy instead of the temperature (Swaminathan & Voller 1993, Int. J. Numer. Methods Heat Fluid Flow 3(3), 233-244).
+    /// The smaller of both moves converged from all of 400 random states of a wall; each alone did not from 100.
     #[inline(always)]
     pub fn limit_heat(&self, from: S, to: S, memory: &PcmMemory<S>) -> S {
         match &self.law {

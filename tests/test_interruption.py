@@ -1,0 +1,158 @@
+"""An interruption acts within half a second of processor time in every phase of the work.
+
+A timer counts the processor time of this process, not the time of the clock: a busy machine changes nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fuzz_buildings import climate
+from mascarin.building import Building, check
+from mascarin.building.reading import parse
+from mascarin.ensemble import sweep
+from mascarin.simulation.linear_model import state_space
+from mascarin.simulation.objectives import Mean
+from mascarin.simulation.simulation import Simulation
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no timer of processor time")
+
+#: Processor time from the signal to the end of the call. [s]
+WITHIN = 0.5
+AIR = "z0.air_temperature"
+
+
+def blocks(count: int, *, linear: bool = False, nodes: int | None = None) -> dict[str, Any]:
+    """Boxes of different heights beside each other, each a zone of six surfaces, which shade each other."""
+    layer = {"material": "m", "thickness": 0.2, **({} if nodes is None else {"nodes": nodes})}
+    long_wave = {"longwave": "none"} if linear else {}
+    zones: dict[str, dict[str, Any]] = {}
+    surfaces: dict[str, dict[str, Any]] = {}
+    row = math.ceil(math.sqrt(count))
+    for k in range(count):
+        x, y, high, zone = 6.0 * (k % row), 6.0 * (k // row), 3.0 + 0.3 * (k % 5), f"z{k}"
+        ring = [(x, y), (x + 4.0, y), (x + 4.0, y + 4.0), (x, y + 4.0)]
+        zones[zone] = {"infiltration": 0.5}
+        if linear:
+            zones[zone]["longwave"] = {"kind": "linearised", "reference": 20}
+        walls = [
+            [(*ring[i], 0.0), (*ring[i - 3], 0.0), (*ring[i - 3], high), (*ring[i], high)] for i in range(4)
+        ]
+        roof, floor = [(*at, high) for at in ring], [(*at, 0.0) for at in reversed(ring)]
+        for i, corners in enumerate((*walls, roof, floor)):
+            outside: dict[str, Any] = {
+                "outdoors": True, "convection": 10 if linear else "doe2", "emissivity": 0.9,
+                "absorptance": 0.6, **long_wave,
+            }  # fmt: skip
+            surfaces[f"s{k}_{i}"] = {
+                "construction": "c", "vertices": [list(corner) for corner in corners],
+                "outside": {"adiabatic": True} if corners is floor else outside,
+                "inside": {"zone": zone, "convection": 3 if linear else "tarp", "emissivity": 0.9},
+            }  # fmt: skip
+    return {
+        "site": {"latitude": 48, "longitude": 2, "altitude": 100, "timezone": "UTC"},
+        "materials": {"m": {"conductivity": 0.5, "density": 1500, "specific_heat": 900}},
+        "constructions": {"c": {"layers": [layer]}},
+        "zones": zones,
+        "surfaces": surfaces,
+    }  # fmt: skip
+
+
+@cache
+def text() -> str:
+    """A large description as YAML."""
+    return json.dumps(blocks(100), indent=1)  # JSON is YAML
+
+
+@cache
+def large() -> Building:
+    return Building.from_dict(blocks(100))
+
+
+@cache
+def simulation() -> Simulation:
+    """Two days in steps of five seconds."""
+    return Simulation(Building.from_dict(blocks(9)), climate(), step=5.0, initial=15.0, outputs=[AIR])
+
+
+def repeated() -> Simulation:
+    """A heavy building: its first day is repeated for long."""
+    tree = blocks(9)
+    tree["constructions"]["c"]["layers"] = [{"material": "m", "thickness": 3.0}]
+    return Simulation(Building.from_dict(tree), climate(), step=60.0, first_period="1d", outputs=[AIR])
+
+
+def run_members() -> object:
+    samples = {"zones.z0.infiltration.constant": np.linspace(0.1, 1.0, 64)}
+    return sweep(Building.from_dict(blocks(9)), climate(), samples, step=10.0, initial=15.0, outputs=[AIR])
+
+
+def matrices() -> Callable[[], object]:
+    building = Building.from_dict(blocks(6, linear=True, nodes=120))
+    return lambda: state_space(building)
+
+
+#: What prepares a phase and gives the call that is interrupted.
+PHASES: dict[str, Callable[[], Callable[[], object]]] = {
+    "load": lambda: partial(parse, text(), "large.yaml"),
+    "check": lambda: partial(check, large()),
+    "compile": lambda: partial(Simulation, large(), climate(), step="1h", initial=15.0),
+    "warm-up": lambda: repeated().run,
+    "run": lambda: simulation().run,
+    "ensemble": lambda: run_members,
+    "derivatives": lambda: lambda: simulation().jacobian(["zones.z0.infiltration.constant"]),
+    "gradient": lambda: lambda: simulation().gradient(Mean(AIR)),
+    "state space": matrices,
+}
+
+
+@pytest.fixture
+def interrupt() -> Iterator[Callable[[Callable[[], object], float], float]]:
+    """Interrupt a call after some processor time; what it takes from then on."""
+    signalled: list[float] = []
+
+    def handler(number: int, frame: object) -> None:
+        signalled.append(time.process_time())
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGPROF, handler)
+
+    def stopped(call: Callable[[], object], after: float) -> float:
+        signal.setitimer(signal.ITIMER_PROF, after)
+        with pytest.raises(KeyboardInterrupt):
+            call()
+        return time.process_time() - signalled[-1]
+
+    yield stopped
+    signal.setitimer(signal.ITIMER_PROF, 0.0)
+    signal.signal(signal.SIGPROF, before)
+
+
+@pytest.mark.parametrize("phase", PHASES)
+@pytest.mark.parametrize("after", [0.02, 0.3])
+def test_an_interruption_acts_at_once(
+    phase: str, after: float, interrupt: Callable[[Callable[[], object], float], float]
+) -> None:
+    call = PHASES[phase]()
+    assert interrupt(call, after) < WITHIN
+
+
+def test_matrices_beyond_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    from mascarin._io import memory
+    from mascarin.errors import InputError
+
+    building = Building.from_dict(blocks(6, linear=True, nodes=120))
+    monkeypatch.setattr(memory, "available", lambda: 2**28)
+    with pytest.raises(InputError, match=r"state_space: matrices of \d+ states would take .* are free"):
+        state_space(building)
