@@ -112,8 +112,8 @@ def test_a_measured_column() -> None:
     ("text", "message"),
     [
         ("{kind: fraction, value: 1.5}", "expected: a number at least 0 and at most 1"),
-        ("{kind: fraction}", "exactly one of value, days, column"),
-        ("{kind: fraction, value: 1, column: x}", "exactly one of value, days, column"),
+        ("{kind: fraction}", "exactly one of value, days, seasons, column"),
+        ("{kind: fraction, value: 1, column: x}", "exactly one of value, days, seasons, column"),
         ('{kind: fraction, days: {all: [{at: "07:00", value: 1}]}}', 'the first point of a day at "00:00"'),
         (
             '{kind: fraction, days: {all: [{at: "00:00", value: 1}, {at: "09:00", value: 0}, '
