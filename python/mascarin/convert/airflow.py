@@ -22,6 +22,9 @@ SIMPLE: Final = (
 )  # fmt: skip
 #: Wind speed about which a quadratic effect of the wind is made linear [m/s].
 _WIND: Final = 4.0
+#: Density of outdoor air over that of the site (15 degC), for a zone at 21 degC: a line in the difference of
+#: temperatures from 0 to 30 K through 288.15/(294.15 - dT); its value where it stands for other terms [-, 1/K].
+_DENSE, _DENSER, _USUAL_DENSITY = 288.15 / 294.15, (288.15 / 264.15 - 288.15 / 294.15) / 30.0, 1.035
 #: Effectiveness of an opening for the wind where EnergyPlus finds it by direction: the middle of 0.3 and
 #: 0.55 (ASHRAE Handbook of Fundamentals 2017, ch. 16) [-].
 _EFFECTIVENESS: Final = 0.425
@@ -133,7 +136,11 @@ def _flow(work: Work, item: Item, zone: Zone, zones: dict[str, Zone], method: st
 
 
 def _add(work: Work, zone: Zone, air: Flow) -> None:
-    """Enter a flow: its constant part as ventilation, what depends on temperature and wind as infiltration."""
+    """Enter a flow: as infiltration, its constant part as ventilation where it has a schedule.
+
+    EnergyPlus takes flows as volumes of outdoor air, Mascarin as volumes at the density of the site. Cold air
+    is denser: the part of infiltration by the difference of temperatures holds that.
+    """
     constant, stack, wind, squared = air.terms
     if squared:
         work.findings.approximated(
@@ -143,7 +150,12 @@ def _add(work: Work, zone: Zone, air: Flow) -> None:
     held, given = work.section("zones")[zone.name], air.values.constant
     changes = air.flow * 3600.0 / zone.volume
     if given is not None:
-        parts = {"constant": constant, "temperature": stack, "wind": wind * zone.wind}
+        dense, denser, usual = _densities(air.item)
+        parts = {
+            "constant": constant * dense,
+            "temperature": stack * usual + constant * denser,
+            "wind": wind * zone.wind * usual,
+        }
         _infiltrate(held, {key: changes * given * value for key, value in parts.items()})
         return
     if constant:
@@ -158,6 +170,13 @@ def _add(work: Work, zone: Zone, air: Flow) -> None:
         )
         parts = {"temperature": stack, "wind": wind * zone.wind}
         _infiltrate(held, {key: changes * mean * value for key, value in parts.items()})
+
+
+def _densities(item: Item) -> tuple[float, float, float]:
+    """Density of the air of a flow over that of the site: at equal temperatures, its rise, a usual one."""
+    if item.word("density_basis") in ("standard", "indoor"):
+        return 1.0, 0.0, 1.0
+    return _DENSE, _DENSER, _USUAL_DENSITY
 
 
 def _infiltrate(zone: dict[str, Any], parts: dict[str, float]) -> None:

@@ -32,7 +32,9 @@ _TEMPLATE: Final = "HVACTemplate:Zone:IdealLoadsAirSystem"
 #: Specific heat of dry air, for limits of flow [J/(kg K)].
 _AIR_HEAT: Final = 1006.0
 _AIR_DENSITY: Final = 1.2
-#: Set points assumed where a limit of flow needs a temperature of the zone [degC].
+#: Temperatures of the zone at which a limit of flow is a limit of power [degC].
+#: Air temperature of a zone that its set points allow [degC].
+_USUAL: Final = 23.0
 _ROOM: Final = {"heating": 20.0, "cooling": 24.0}
 
 
@@ -71,6 +73,28 @@ def describe_conditioning(work: Work, zones: dict[str, Zone]) -> None:
             work.findings.no_effect([zone.item], "a thermostat without a system", "it conditions nothing")
             continue
         _condition(work, zone, points, system, zones)
+
+
+def usual_temperatures(work: Work, zones: dict[str, Zone]) -> dict[str, float]:
+    """Temperature of each zone between its set points; a usual one without any. [degC]
+
+    Parameters
+    ----------
+    work : Work
+        The conversion.
+    zones : dict of str to Zone
+        Zones by the name in the file, in small letters.
+    """
+    found = dict.fromkeys(zones, _USUAL)
+    for key, points in _thermostats(work, zones):
+        limits = (
+            (points.heating, _USUAL, max),
+            (points.cooling, _USUAL, min),
+        )
+        means = [combined(lambda set_point, rule=rule: rule(set_point, _USUAL), one).mean() for one, _, rule in limits]
+        if key in found:
+            found[key] = sum(means) - _USUAL
+    return found
 
 
 def _thermostats(work: Work, zones: dict[str, Zone]) -> Iterator[tuple[str, SetPoints]]:
@@ -164,7 +188,9 @@ def _condition(work: Work, zone: Zone, points: SetPoints, system: Item, zones: d
     for which, never in (("heating", NEVER_HEATS), ("cooling", NEVER_COOLS)):
         allowed = year(work, system, f"{which}_availability_schedule_name") if ideal else constant(1.0)
         values[which] = combined(
-            lambda set_point, first, second, never=never: set_point if first > 0.0 and second > 0.0 else never,
+            lambda set_point, first, second, never=never: (
+                min(max(set_point, NEVER_HEATS), NEVER_COOLS) if first > 0.0 and second > 0.0 else never
+            ),
             values[which], on, allowed,
         )  # fmt: skip
     crossing = combined(lambda heat, cool: float(heat > cool), values["heating"], values["cooling"])
@@ -175,7 +201,7 @@ def _condition(work: Work, zone: Zone, points: SetPoints, system: Item, zones: d
         values["cooling"] = combined(max, values["heating"], values["cooling"])
     held = work.section("zones")[zone.name]
     for which, never in (("heating", NEVER_HEATS), ("cooling", NEVER_COOLS)):
-        if values[which].values == {never}:
+        if values[which].constant == never:
             continue
         given = temperature(work, f"{zone.item.name} {which} set point", values[which])
         held[which] = {"setpoint": {"schedule": given} if isinstance(given, str) else given}

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from mascarin.building import Building
 from mascarin.convert.airflow import describe_air
-from mascarin.convert.conditioning import describe_conditioning
+from mascarin.convert.conditioning import describe_conditioning, usual_temperatures
 from mascarin.convert.enclosures import describe_enclosures
 from mascarin.convert.faces import faces, openings
 from mascarin.convert.films import Films
@@ -109,7 +109,7 @@ def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversio
     surfaces = describe_surfaces(work, every, films)
     describe_openings(work, inside, films, surfaces)
     describe_shades(work, every, inside)
-    describe_gains(work, zones)
+    describe_gains(work, zones, usual_temperatures(work, zones))
     describe_air(work, zones)
     describe_conditioning(work, zones)
     describe_enclosures(work, _built(work), zones)

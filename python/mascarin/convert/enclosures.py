@@ -18,6 +18,7 @@ from mascarin.errors import InputError
 
 #: Surfaces whose directions differ by less do not see each other [deg].
 _SAME_DIRECTION: Final = 10.0
+_BARE: Final = "surfaces without corners"
 
 
 def describe_enclosures(work: Work, building: Building, zones: dict[str, Zone]) -> None:
@@ -38,7 +39,7 @@ def describe_enclosures(work: Work, building: Building, zones: dict[str, Zone]) 
         seen = surfaces_of_zone(zone.name, building.surfaces, building.windows)
         held = work.section("zones")[zone.name]
         reason = _not_exact(seen)
-        if reason.startswith("not convex"):
+        if reason not in ("", _BARE):
             held["view_factors"] = by_areas(seen)
             work.findings.approximated(
                 zone.item, reason, "view factors by areas, as those of EnergyPlus: some tenths of a kelvin"
@@ -62,12 +63,12 @@ def _sun(work: Work, item: Item, seen: list[ZoneSurface], traced: bool) -> str:
 def _not_exact(seen: list[ZoneSurface]) -> str:
     """Why exact view factors and traced beams do not exist in a zone; empty where they do."""
     if not closed(seen):
-        return "surfaces that do not enclose it, or without corners"
+        return _BARE
     outlines = {item.name: item.polygon for item in seen if item.polygon is not None}
     try:
         view_factors(list(outlines.values()))
     except InputError as error:
-        return f"not convex ({str(error).split('; expected')[0]})"
+        return f"a shape that is not convex or not closed ({str(error).split('; expected')[0]})"
     return ""
 
 

@@ -24,8 +24,6 @@ _ZONE_KEYS: Final = (
     "zone_or_zonelist_name",
     "zone_name",
 )
-#: Air temperature at which the sensible heat of people is taken [degC].
-_AIR: Final = 22.0
 
 
 @dataclass(frozen=True)
@@ -50,8 +48,17 @@ class Heat:
     radiative: float
 
 
-def describe_gains(work: Work, zones: dict[str, Zone]) -> None:
+def describe_gains(work: Work, zones: dict[str, Zone], air: dict[str, float]) -> None:
     """Enter all internal gains.
+
+    Parameters
+    ----------
+    work : Work
+        The conversion.
+    zones : dict of str to Zone
+        Zones by the name in the file, in small letters.
+    air : dict of str to float
+        Temperature of each at which the sensible heat of people is taken. [degC]
 
     Raises
     ------
@@ -61,7 +68,7 @@ def describe_gains(work: Work, zones: dict[str, Zone]) -> None:
     by_zone: dict[str, list[Heat]] = {key: [] for key in zones}
     for item in work.model.of("People"):
         for zone in _zones(work, item, zones):
-            by_zone[zone.item.name.casefold()].append(_people(work, item, zone))
+            by_zone[zone.item.name.casefold()].append(_people(work, item, zone, air[zone.item.name.casefold()]))
     for item in work.model.of("Lights"):
         for zone in _zones(work, item, zones):
             by_zone[zone.item.name.casefold()].append(_lights(work, item, zone, zones))
@@ -98,7 +105,7 @@ def _number_of_people(item: Item, zone: Zone) -> float:
     return item.needed("number_of_people")
 
 
-def sensible(activity: float, air: float = _AIR) -> float:
+def sensible(activity: float, air: float) -> float:
     """Sensible heat of a person by the heat of its activity and the air temperature. [W]
 
     A fit of the tables of the ASHRAE Handbook of Fundamentals, as in the EnergyPlus Engineering Reference
@@ -112,17 +119,17 @@ def sensible(activity: float, air: float = _AIR) -> float:
     return min(max(heat, 0.0), activity)
 
 
-def _people(work: Work, item: Item, zone: Zone) -> Heat:
+def _people(work: Work, item: Item, zone: Zone, air: float) -> Heat:
     count = _number_of_people(item, zone)
     present = year(work, item, "number_of_people_schedule_name")
     activity = year(work, item, "activity_level_schedule_name", default=120.0)
     share = item.number("sensible_heat_fraction")
     if share is None:
-        power = combined(lambda here, heat: count * here * sensible(heat), present, activity)
+        power = combined(lambda here, heat: count * here * sensible(heat, air), present, activity)
         work.findings.approximated(
             item,
             "sensible heat that EnergyPlus changes with the air temperature",
-            f"that at {_AIR:g} degC is used (about -4 % of it for each kelvin above); moisture is left out",
+            f"that at {air:.1f} degC is used, about 4 % less for each kelvin above it; moisture is left out",
         )
     else:
         given = share

@@ -224,5 +224,5 @@ def signed_volume(polygons: Sequence[Array]) -> float:
 
 
 def rounded(points: Array) -> list[list[float]]:
-    """Corners as plain numbers, to a tenth of a millimetre. [m]"""
-    return [[round(float(c), 4) + 0.0 for c in point] for point in points]
+    """Corners as plain numbers, to a micrometre. [m]"""
+    return [[round(float(c), 6) + 0.0 for c in point] for point in points]

@@ -22,8 +22,6 @@ CONCRETE: Final = (0.15, 1.95, 2240.0, 900.0)
 _FILMS: Final = (0.125, 0.03)
 #: Distance from a jump of the heat capacity over which it is smoothed [K].
 _JUMP: Final = 0.01
-#: Points of an exponential melting curve on each side of its peak, and how far it reaches in half-widths.
-_POINTS, _REACH = 14, 3.5
 
 
 def layers_of(work: Work, construction: Item) -> list[Item]:
@@ -178,10 +176,10 @@ def _stepped(temperatures: list[float], slopes: list[float]) -> tuple[list[float
 
 
 def _two_curves(work: Work, item: Item) -> Section:
-    """Melting and freezing curves with exponential flanks about their peaks, as EnergyPlus has them."""
+    """Melting and freezing curves about their peaks."""
     melting, freezing = item.needed("peak_melting_temperature"), item.needed("peak_freezing_temperature")
     curves = [
-        _flanks(
+        _curve(
             peak,
             item.needed(f"low_temperature_difference_of_{way}_curve"),
             item.needed(f"high_temperature_difference_of_{way}_curve"),
@@ -200,7 +198,8 @@ def _two_curves(work: Work, item: Item) -> Section:
         pair = [item.needed(f"{phase}_state_{ending}") for phase in ("solid", "liquid")]
         found[key] = pair[0] if pair[0] == pair[1] else pair
     found["latent_heat"] = item.needed("latent_heat_during_the_entire_phase_change_process")
-    found["law"] = curves[0]
+    (middle, width), (back, narrow) = curves
+    found |= {"melting_temperature": middle, "law": {"kind": "tanh", "width": width}}
     if freezing > melting:
         raise item.error(
             f"a freezing peak of {freezing:g} degC above the melting peak of {melting:g} degC",
@@ -208,26 +207,23 @@ def _two_curves(work: Work, item: Item) -> Section:
             "Exchange the two",
         )
     if curves[1] != curves[0]:
-        found["hysteresis"] = {"model": "curve_switch", "law": curves[1]}
+        cooling = {"model": "curve_switch", "freezing_temperature": back}
+        shape = {} if narrow == width else {"law": {"kind": "tanh", "width": narrow}}
+        found["hysteresis"] = cooling | shape
     return found
 
 
-def _flanks(peak: float, low: float, high: float) -> Section:
-    """Liquid fraction ``exp(-2 (Tp - T)/low)/2`` below the peak, one minus the same above it."""
-    reach = [k / _POINTS * _REACH for k in range(_POINTS + 1)]
-    end = math.exp(-2.0 * _REACH)
+def _curve(peak: float, low: float, high: float) -> tuple[float, float]:
+    """Middle and half-width of a tanh law for exponential flanks about a peak. [degC, K]
 
-    def part(x: float) -> float:
-        # From 1/2 at the peak to 0 at the end of the table, which cuts off the tail.
-        return 0.5 * (math.exp(-2.0 * x) - end) / (1.0 - end)
-
-    below = [(peak - low * x, part(x)) for x in reversed(reach)]
-    above = [(peak + high * x, 1.0 - part(x)) for x in reach[1:]]
-    return {
-        "kind": "fractions",
-        "temperatures": [round(t, 5) for t, _ in below + above],
-        "fractions": [round(f, 7) for _, f in below + above],
-    }
+    The latent capacity of EnergyPlus is ``exp(-2 |T - Tp|/tau)/tau``, with one ``tau`` below the peak and one
+    above it: half of the heat on each side. The law has the same mean and standard deviation; that of
+    ``tanh((T - Tm)/w)`` is ``pi w/sqrt(12)``.
+    """
+    below, above = 0.5 * low, 0.5 * high
+    shift = 0.5 * (above - below)
+    deviation = math.sqrt(below**2 + above**2 - shift**2)
+    return round(peak + shift, 6), round(math.sqrt(12.0) / math.pi * deviation, 6)
 
 
 def _f_factor(item: Item) -> tuple[float, float]:
