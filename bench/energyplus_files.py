@@ -112,7 +112,7 @@ def compared(name: str) -> tuple[Conversion, list[Row]]:
 def table(chosen: list[str]) -> str:
     """Rows of all zones as a table."""
     text = [
-        "| file | zone | air temperature, rms | mean | largest | heating, Mascarin and EnergyPlus | cooling |",
+        "| file | zone | air temperature, rms | mean | largest | heating here and there | cooling |",
         "| --- | --- | --- | --- | --- | --- | --- |",
     ]
     for name in chosen:

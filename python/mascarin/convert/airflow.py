@@ -14,7 +14,8 @@ from mascarin.convert.year import Year, combined
 from mascarin.convert.zones import Zone
 
 _ZONE_KEYS: Final = (
-    "zone_or_zonelist_or_space_or_spacelist_name", "zone_or_zonelist_name", "zone_or_space_name", "zone_name",
+    "zone_or_zonelist_or_space_or_spacelist_name", "zone_or_zonelist_name", "zone_or_space_name",
+    "zone_name",
 )  # fmt: skip
 SIMPLE: Final = (
     "ZoneInfiltration:DesignFlowRate", "ZoneInfiltration:EffectiveLeakageArea",
@@ -119,8 +120,8 @@ def _network(work: Work) -> bool:
 def _flow(work: Work, item: Item, zone: Zone, zones: dict[str, Zone], method: str) -> Flow:
     word = item.word(method)
     if word in ("flow/area", "flow/floorarea"):
-        keys = ("flow_rate_per_floor_area", "flow_rate_per_zone_floor_area", "flow_per_zone_floor_area")
-        flow = item.needed(*keys) * zone.floor
+        areas = ("flow_rate_per_floor_area", "flow_rate_per_zone_floor_area", "flow_per_zone_floor_area")
+        flow = item.needed(*areas) * zone.floor
     elif word in ("flow/exteriorarea", "flow/exteriorwallarea"):
         area = zone.walls if word == "flow/exteriorwallarea" else zone.outdoors
         flow = item.needed("flow_rate_per_exterior_surface_area", "flow_per_exterior_surface_area") * area
@@ -314,17 +315,19 @@ def _mixing(work: Work, zones: dict[str, Zone]) -> None:
                 pair = (min(pair), max(pair))
             one_way.setdefault(pair, []).append((item, air.flow, air.values))
     done: set[tuple[str, str]] = set()
-    for (to, source), flows in one_way.items():
-        if (source, to) in done:
+    for (to, origin), flows in one_way.items():
+        if (origin, to) in done:
             continue
-        done.add((to, source))
-        back = one_way.get((source, to), [])
+        done.add((to, origin))
+        back = one_way.get((origin, to), [])
         crossed = flows[0][0].kind == "ZoneCrossMixing"
         if not crossed and not _equal(flows, back):
             work.findings.approximated(
                 flows[0][0], "air in one direction", "the same flow returns: the source zone feels it, too"
             )
-        _path(work, to, source, max((flows, back), key=lambda some: sum(flow for _, flow, _ in some)), crossed)
+        _path(
+            work, to, origin, max((flows, back), key=lambda some: sum(flow for _, flow, _ in some)), crossed
+        )
 
 
 def _equal(flows: list[tuple[Item, float, Year]], back: list[tuple[Item, float, Year]]) -> bool:

@@ -91,7 +91,10 @@ def usual_temperatures(work: Work, zones: dict[str, Zone]) -> dict[str, float]:
             (points.heating, _USUAL, max),
             (points.cooling, _USUAL, min),
         )
-        means = [combined(lambda set_point, rule=rule: rule(set_point, _USUAL), one).mean() for one, _, rule in limits]
+        means = [
+            combined(lambda set_point, rule=rule: rule(set_point, _USUAL), one).mean()
+            for one, _, rule in limits
+        ]
         if key in found:
             found[key] = sum(means) - _USUAL
     return found
@@ -111,8 +114,18 @@ def _thermostats(work: Work, zones: dict[str, Zone]) -> Iterator[tuple[str, SetP
         heat = thermostat.number("constant_heating_setpoint")
         cool = thermostat.number("constant_cooling_setpoint")
         found = SetPoints(
-            year(work, thermostat, "heating_setpoint_schedule_name", default=NEVER_HEATS if heat is None else heat),
-            year(work, thermostat, "cooling_setpoint_schedule_name", default=NEVER_COOLS if cool is None else cool),
+            year(
+                work,
+                thermostat,
+                "heating_setpoint_schedule_name",
+                default=NEVER_HEATS if heat is None else heat,
+            ),
+            year(
+                work,
+                thermostat,
+                "cooling_setpoint_schedule_name",
+                default=NEVER_COOLS if cool is None else cool,
+            ),
         )
         for zone in work.zones_of(item, "zone_name"):
             yield zone.name.casefold(), found
@@ -126,18 +139,20 @@ def _set_points(work: Work, item: Item) -> SetPoints:
         if kind and kind in _TYPES:
             kinds[_TYPES[kind]] = work.model.require(item, f"control_{k}_name", *_SETPOINTS)
         elif kind:
-            raise item.error(f"control_{k}_object_type: '{kind}'", f"one of {', '.join(_SETPOINTS)}", "Correct it")
+            raise item.error(
+                f"control_{k}_object_type: '{kind}'", f"one of {', '.join(_SETPOINTS)}", "Correct it"
+            )
     control = year(work, item, "control_type_schedule_name", default=float(max(kinds, default=0)))
     never = {"heating": constant(NEVER_HEATS), "cooling": constant(NEVER_COOLS)}
     found = {}
     for which, keys, types in (("heating", _HEAT, (1, 3, 4)), ("cooling", _COOL, (2, 3, 4))):
         total = never[which]
-        for kind in types:
-            if kind not in kinds:
+        for number in types:
+            if number not in kinds:
                 continue
-            values = year(work, kinds[kind], *keys)
+            values = year(work, kinds[number], *keys)
             total = combined(
-                lambda one, active, other, kind=kind: one if round(active) == kind else other,
+                lambda one, active, other, number=number: one if round(active) == number else other,
                 values, control, total,
             )  # fmt: skip
         found[which] = total
@@ -153,7 +168,9 @@ def _systems(work: Work) -> dict[str, Item]:
     """System of each zone: its ideal loads, or else the first of what it has."""
     found: dict[str, Item] = {}
     for item in work.model.of("ZoneHVAC:EquipmentConnections"):
-        equipment = work.model.named(item.text("zone_conditioning_equipment_list_name"), "ZoneHVAC:EquipmentList")
+        equipment = work.model.named(
+            item.text("zone_conditioning_equipment_list_name"), "ZoneHVAC:EquipmentList"
+        )
         rows = [] if equipment is None else equipment.rows("equipment") or _flat_equipment(equipment)
         systems = []
         for row in rows:
@@ -173,7 +190,13 @@ def _systems(work: Work) -> dict[str, Item]:
 def _flat_equipment(item: Item) -> list[dict[str, Any]]:
     keys = ("zone_equipment_object_type", "zone_equipment_name")
     count = [k for k in range(1, 20) if f"zone_equipment_{k}_object_type" in item.fields]
-    return [{keys[0]: item.text(f"zone_equipment_{k}_object_type"), keys[1]: item.text(f"zone_equipment_{k}_name")} for k in count]
+    return [
+        {
+            keys[0]: item.text(f"zone_equipment_{k}_object_type"),
+            keys[1]: item.text(f"zone_equipment_{k}_name"),
+        }
+        for k in count
+    ]
 
 
 def _condition(work: Work, zone: Zone, points: SetPoints, system: Item, zones: dict[str, Zone]) -> None:
@@ -181,9 +204,15 @@ def _condition(work: Work, zone: Zone, points: SetPoints, system: Item, zones: d
     ideal = system.kind in (IDEAL, _TEMPLATE)
     if not ideal:
         work.findings.left_out(
-            system, f"the system of zone '{zone.item.name}'", "ideal heating and cooling without limits replace it"
+            system,
+            f"the system of zone '{zone.item.name}'",
+            "ideal heating and cooling without limits replace it",
         )
-    on = year(work, system, "availability_schedule_name", "system_availability_schedule_name") if ideal else constant(1.0)
+    on = (
+        year(work, system, "availability_schedule_name", "system_availability_schedule_name")
+        if ideal
+        else constant(1.0)
+    )
     values = {"heating": points.heating, "cooling": points.cooling}
     for which, never in (("heating", NEVER_HEATS), ("cooling", NEVER_COOLS)):
         allowed = year(work, system, f"{which}_availability_schedule_name") if ideal else constant(1.0)
@@ -196,7 +225,9 @@ def _condition(work: Work, zone: Zone, points: SetPoints, system: Item, zones: d
     crossing = combined(lambda heat, cool: float(heat > cool), values["heating"], values["cooling"])
     if 1.0 in crossing.values:
         work.findings.left_out(
-            zone.item, "a heating set point above the cooling set point", "cooling has the heating set point then"
+            zone.item,
+            "a heating set point above the cooling set point",
+            "cooling has the heating set point then",
         )
         values["cooling"] = combined(max, values["heating"], values["cooling"])
     held = work.section("zones")[zone.name]
@@ -223,7 +254,9 @@ def _limit(work: Work, system: Item, which: str) -> float | None:
         given = system.number(f"maximum_{kind}_{which}_capacity")
         limits += [] if given is None else [given]
         if given is not None and which == "cooling":
-            work.findings.approximated(system, "a limit of total cooling", "the same limit of sensible cooling")
+            work.findings.approximated(
+                system, "a limit of total cooling", "the same limit of sensible cooling"
+            )
     if "flowrate" in word:
         flow = system.number(f"maximum_{which}_air_flow_rate")
         extreme = "maximum_heating" if which == "heating" else "minimum_cooling"
@@ -264,12 +297,16 @@ def _outdoor_air(work: Work, zone: Zone, system: Item, on: Year, zones: dict[str
         ("outdoor_air_economizer_type", "an economizer"),
     ):
         if system.word(key) not in ("", "none", "noeconomizer"):
-            work.findings.left_out(system, word, "the flow of outdoor air stays as designed: other cooling loads")
+            work.findings.left_out(
+                system, word, "the flow of outdoor air stays as designed: other cooling loads"
+            )
     if system.word("heat_recovery_type") not in ("", "none"):
         share = system.number("sensible_heat_recovery_effectiveness") or 0.0
         flow *= 1.0 - share
         work.findings.approximated(
-            system, "heat recovery", "less outdoor air by its effectiveness, at all times: other cooling loads"
+            system,
+            "heat recovery",
+            "less outdoor air by its effectiveness, at all times: other cooling loads",
         )
     work.findings.approximated(
         system,
@@ -284,7 +321,10 @@ def _outdoor_air(work: Work, zone: Zone, system: Item, on: Year, zones: dict[str
 def _outdoor_flow(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> float:
     """Design flow of outdoor air. [m3/s]"""
     person = item.number("outdoor_air_flow_per_person", "outdoor_air_flow_rate_per_person") or 0.0
-    area = item.number("outdoor_air_flow_per_zone_floor_area", "outdoor_air_flow_rate_per_zone_floor_area") or 0.0
+    area = (
+        item.number("outdoor_air_flow_per_zone_floor_area", "outdoor_air_flow_rate_per_zone_floor_area")
+        or 0.0
+    )
     whole = item.number("outdoor_air_flow_per_zone", "outdoor_air_flow_rate_per_zone") or 0.0
     changes = item.number("outdoor_air_flow_air_changes_per_hour") or 0.0
     parts = {

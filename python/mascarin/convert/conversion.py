@@ -171,6 +171,8 @@ def _period(work: Work) -> tuple[str, str]:
     for key, default in (("begin", (1, 1)), ("end", (12, 31))):
         month = item.number(f"{key}_month") if item is not None else None
         day = item.number(f"{key}_day_of_month") if item is not None else None
-        values[key] = date(year, int(month or default[0]), min(int(day or default[1]), 28 if month == 2 else 31))
+        values[key] = date(
+            year, int(month or default[0]), min(int(day or default[1]), 28 if month == 2 else 31)
+        )
     last = values["end"] + timedelta(days=1)
     return values["begin"].isoformat(), last.isoformat()

@@ -1,4 +1,4 @@
-"""What depends on the whole enclosure of a zone: where the sun falls, and view factors of zones not convex."""
+"""What depends on the whole enclosure of a zone: where the sun falls, view factors of zones not convex."""
 
 from __future__ import annotations
 
@@ -100,11 +100,7 @@ def by_areas(seen: list[ZoneSurface]) -> dict[str, dict[str, float]]:
     shares /= shares.sum(axis=1)[:, None]
     names = surface_names(seen)
     return {
-        row: {
-            column: round(float(shares[i, j]), 9)
-            for j, column in enumerate(names)
-            if shares[i, j] > 0.0
-        }
+        row: {column: round(float(shares[i, j]), 9) for j, column in enumerate(names) if shares[i, j] > 0.0}
         for i, row in enumerate(names)
     }
 

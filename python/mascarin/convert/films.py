@@ -24,7 +24,7 @@ _COMBINED: Final = {
 #: surfaces [W/(m2 K)] (Walton 1983, as in the EnergyPlus Engineering Reference).
 _SIMPLE: Final = (3.076, 4.040, 0.948, 3.870, 2.281)
 #: Wind speeds between which the quadratic is replaced by a power [m/s].
-_WINDS: Final = (0.5, 12.0)
+_WINDS: Final = (1.0, 8.0)
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ def _simple(tilt: float) -> Any:
 
 
 def combined(roughness: str) -> dict[str, Any]:
-    """A coefficient ``D + E V + F V^2`` as ``a + c V^m``, fitted from 0.5 to 12 m/s."""
+    """A coefficient ``D + E V + F V^2`` as ``a + c V^m``, fitted from 1 to 8 m/s."""
     d, e, f = _COMBINED[roughness]
     wind = np.linspace(*_WINDS, 47)
     slope, offset = np.polyfit(np.log(wind), np.log(e * wind + f * wind**2), 1)

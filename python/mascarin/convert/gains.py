@@ -68,7 +68,9 @@ def describe_gains(work: Work, zones: dict[str, Zone], air: dict[str, float]) ->
     by_zone: dict[str, list[Heat]] = {key: [] for key in zones}
     for item in work.model.of("People"):
         for zone in _zones(work, item, zones):
-            by_zone[zone.item.name.casefold()].append(_people(work, item, zone, air[zone.item.name.casefold()]))
+            by_zone[zone.item.name.casefold()].append(
+                _people(work, item, zone, air[zone.item.name.casefold()])
+            )
     for item in work.model.of("Lights"):
         for zone in _zones(work, item, zones):
             by_zone[zone.item.name.casefold()].append(_lights(work, item, zone, zones))
@@ -90,9 +92,7 @@ def _zones(work: Work, item: Item, zones: dict[str, Zone]) -> list[Zone]:
 def people_in(work: Work, zone: Zone, zones: dict[str, Zone]) -> float:
     """Number of people in a zone at a schedule of 1."""
     return sum(
-        _number_of_people(item, zone)
-        for item in work.model.of("People")
-        if zone in _zones(work, item, zones)
+        _number_of_people(item, zone) for item in work.model.of("People") if zone in _zones(work, item, zones)
     )
 
 
@@ -168,7 +168,9 @@ def _equipment(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> He
     level, on = _design_level(work, item, zone, zones), year(work, item, "schedule_name")
     latent, radiant, lost = (item.number(f"fraction_{one}") or 0.0 for one in ("latent", "radiant", "lost"))
     if latent > 0.0:
-        work.findings.approximated(item, f"{latent:.0%} latent heat", "moisture is left out: it heats nothing")
+        work.findings.approximated(
+            item, f"{latent:.0%} latent heat", "moisture is left out: it heats nothing"
+        )
     left = max(1.0 - latent - lost, 0.0)
     power = combined(lambda share: level * share * left, on)
     return Heat(item, item.name, power, min(radiant / left, 1.0) if left > 0.0 else 0.0)

@@ -40,7 +40,10 @@ class Rules:
 def rules_of(model: Model) -> Rules:
     """Read ``GlobalGeometryRules`` and ``Building``."""
     given, building = model.one("GlobalGeometryRules"), model.one("Building")
-    word = (lambda key: given.word(key)) if given is not None else (lambda key: "")
+
+    def word(key: str) -> str:
+        return "" if given is None else given.word(key)
+
     return Rules(
         clockwise=word("vertex_entry_direction") == "clockwise",
         relative=word("coordinate_system") in ("relative", ""),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Final
 
 from mascarin.convert.materials import layers_of
@@ -106,7 +107,9 @@ def _glazing(work: Work, construction: Item, layers: list[Item]) -> Section | No
             gaps.append(_gap(work, item))
             continue
         else:
-            work.findings.left_out(item, "a layer that has no counterpart here", "see the windows that use it")
+            work.findings.left_out(
+                item, "a layer that has no counterpart here", "see the windows that use it"
+            )
             return None
         if pane is None:
             return None
@@ -152,7 +155,9 @@ def _pane(work: Work, item: Item) -> Section | None:
 
 
 def _body(work: Work, item: Item) -> Section:
-    emissivity = [item.number(f"{s}_side_infrared_hemispherical_emissivity") or 0.84 for s in ("front", "back")]
+    emissivity = [
+        item.number(f"{s}_side_infrared_hemispherical_emissivity") or 0.84 for s in ("front", "back")
+    ]
     if item.number("infrared_transmittance_at_normal_incidence"):
         work.findings.approximated(
             item, "transmittance of infrared", "long-wave radiation does not pass the pane"
@@ -186,7 +191,7 @@ def _spectral(work: Work, item: Item) -> Section | None:
 
     def mean(key: str) -> float:
         total = weight = 0.0
-        for (a, first), (b, second) in zip(solar, solar[1:], strict=False):
+        for (a, first), (b, second) in pairwise(solar):
             share = (b - a) * _sunlight(0.5 * (a + b))
             total += 0.5 * (float(first.get(key, 0.0)) + float(second.get(key, 0.0))) * share
             weight += share
@@ -229,7 +234,9 @@ def _gap(work: Work, item: Item) -> Section:
         work.findings.approximated(item, f"a gas '{gas}'", "air is used: the gap conducts more or less")
         return {"thickness": thickness, "gas": "air"}
     count = round(item.number("number_of_gases_in_mixture") or 2)
-    parts = [(item.number(f"gas_{k}_fraction") or 0.0, item.word(f"gas_{k}_type")) for k in range(1, count + 1)]
+    parts = [
+        (item.number(f"gas_{k}_fraction") or 0.0, item.word(f"gas_{k}_type")) for k in range(1, count + 1)
+    ]
     share, gas = max(parts)
     gas = gas if gas in _GASES else "air"
     work.findings.approximated(
@@ -245,9 +252,7 @@ def _rated(work: Work, item: Item) -> Section:
     its own ones. Those are given here (LBNL-2804E, steps 1 and 2).
     """
     u, gain = item.needed("u_factor"), item.needed("solar_heat_gain_coefficient")
-    inside = (
-        1.0 / (0.359073 * math.log(u) + 6.949915) if u < _SINGLE else 1.0 / (1.788041 * u - 2.886625)
-    )
+    inside = 1.0 / (0.359073 * math.log(u) + 6.949915) if u < _SINGLE else 1.0 / (1.788041 * u - 2.886625)
     outside = 1.0 / (0.025342 * u + 29.163853)
     if u * (inside + outside) >= 0.995:
         work.findings.approximated(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any, Final
 
 from mascarin.convert.source import Item
@@ -100,7 +101,7 @@ def _material(work: Work, item: Item, melts: bool) -> Section:
             item, "transparent to infrared", "a layer of small resistance; radiation does not pass it"
         )
         return {"kind": "resistance", "resistance": 0.01}
-    keys = ("conductivity", "density", "specific_heat")
+    keys: tuple[str, ...] = ("conductivity", "density", "specific_heat")
     if item.kind == "Material:RoofVegetation":
         work.findings.left_out(
             item, "plants and moist soil", "only the dry soil is carried over: roofs are warmer in summer"
@@ -138,7 +139,7 @@ def _enthalpy_table(work: Work, item: Item, solid: Section) -> Section:
         keys = range(1, 17)
         pairs = [(item.number(f"temperature_{k}"), item.number(f"enthalpy_{k}")) for k in keys]
     points = [(float(t), float(h)) for t, h in pairs if t is not None and h is not None]
-    if len(points) < 2 or any(b[0] <= a[0] for a, b in zip(points, points[1:], strict=False)):
+    if len(points) < 2 or any(b[0] <= a[0] for a, b in pairwise(points)):
         raise item.error(
             f"{len(points)} temperatures", "at least 2, rising, each with its enthalpy", "Correct the table"
         )
@@ -147,7 +148,7 @@ def _enthalpy_table(work: Work, item: Item, solid: Section) -> Section:
             item, "temperature coefficient of the conductivity", "the conductivity does not change with it"
         )
     least = float(solid["specific_heat"])
-    slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(points, points[1:], strict=False)]
+    slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(points)]
     if min(slopes) < least:
         work.findings.approximated(
             item,

@@ -112,7 +112,7 @@ def _entered(work: Work, name: str, values: Year, kind: str) -> str:
     return free
 
 
-# --- the year that is simulated ------------------------------------------------------------------------------
+# --- the year that is simulated -----------------------------------------------------------------------------
 
 
 def calendar_year(work: Work) -> int:
@@ -172,7 +172,7 @@ def _end(item: Item, text: str) -> str:
     return f"{_date(item, cleaned, 2017):%m-%d}"
 
 
-# --- classes of schedules ------------------------------------------------------------------------------------
+# --- classes of schedules -----------------------------------------------------------------------------------
 
 
 def _compact(work: Work, item: Item) -> Year:
@@ -190,7 +190,8 @@ def _compact(work: Work, item: Item) -> Year:
 
 def _throughs(item: Item, words: Sequence[str]) -> Iterator[tuple[str, list[tuple[str, Day]]]]:
     """Seasons of a compact schedule: last day, and days with the words that say which they are."""
-    end, days, who = "", [], ""
+    end, who = "", ""
+    days: list[tuple[str, Day]] = []
     points: list[tuple[int, float]] = []
     last: int | None = None
     for word in words:
@@ -326,7 +327,9 @@ def _column(work: Work, item: Item) -> list[float]:
     path = next((one for one in (folder / named, folder / named.name) if one.is_file()), None)
     if path is None:
         raise item.error(f"file_name: found no file '{named}'", f"a table in {folder}", "Put it there")
-    mark = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}[item.word("column_separator") or "comma"]
+    mark = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}[
+        item.word("column_separator") or "comma"
+    ]
     with path.open(encoding="utf-8-sig", errors="replace", newline="") as lines:
         rows = list(csv.reader(lines, delimiter=mark, skipinitialspace=True))
     place = int(item.needed("column_number")) - 1
@@ -334,4 +337,6 @@ def _column(work: Work, item: Item) -> list[float]:
     try:
         return [float(row[place]) for row in rows]
     except (IndexError, ValueError) as error:
-        raise item.error(f"{path.name}: {error}", f"numbers in column {place + 1}", "Correct the file") from None
+        raise item.error(
+            f"{path.name}: {error}", f"numbers in column {place + 1}", "Correct the file"
+        ) from None

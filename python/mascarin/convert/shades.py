@@ -73,7 +73,9 @@ def _simple(rules: g.Rules, item: Item) -> g.Array:
     moved = item.kind == "Shading:Building" and rules.rectangles_relative
     frame = g.frame_of(None, rules, moved)
     start = np.array([[item.number(f"starting_{axis}_coordinate") or 0.0 for axis in "xyz"]])
-    plane = g.plane_of((item.number("azimuth_angle") or 0.0) + frame.rotation, item.number("tilt_angle") or 0.0)
+    plane = g.plane_of(
+        (item.number("azimuth_angle") or 0.0) + frame.rotation, item.number("tilt_angle") or 0.0
+    )
     return g.rectangle(frame.place(start)[0], plane, item.needed("length"), item.needed("height"))
 
 
@@ -89,7 +91,9 @@ def _opaque(work: Work, item: Item) -> bool:
         return True
     mean = values.mean()
     if mean > _HALF:
-        work.findings.left_out(item, f"a transmittance of {mean:.2f}", "it shades nothing: more sun on what it shades")
+        work.findings.left_out(
+            item, f"a transmittance of {mean:.2f}", "it shades nothing: more sun on what it shades"
+        )
         return False
     work.findings.left_out(item, f"a transmittance of {mean:.2f}", "it is opaque: less sun on what it shades")
     return True

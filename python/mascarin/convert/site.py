@@ -17,7 +17,12 @@ _TERRAINS: Final = {
     "city": "city",
     "ocean": "sea",
 }
-_SKIES: Final = {"clarkallen": "clark_allen", "brunt": "brunt", "idso": "brunt", "berdahlmartin": "martin_berdahl"}
+_SKIES: Final = {
+    "clarkallen": "clark_allen",
+    "brunt": "brunt",
+    "idso": "brunt",
+    "berdahlmartin": "martin_berdahl",
+}
 _MONTHS: Final = (
     "january", "february", "march", "april", "may", "june", "july", "august", "september", "october",
     "november", "december",
@@ -71,7 +76,9 @@ def _of_weather(path: Path) -> list[float]:
     try:
         latitude, longitude, zone, altitude = (float(cell) for cell in cells[6:10])
     except ValueError:
-        raise InputError(f"{path}:1: found no LOCATION; expected a weather file of EnergyPlus (.epw)") from None
+        raise InputError(
+            f"{path}:1: found no LOCATION; expected a weather file of EnergyPlus (.epw)"
+        ) from None
     return [latitude, longitude, altitude, zone]
 
 

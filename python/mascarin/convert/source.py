@@ -12,13 +12,10 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from mascarin._io.regular import require_regular
 from mascarin.errors import InputError, did_you_mean
-
-if TYPE_CHECKING:
-    from idfkit import EpJSONSchema, IDFDocument
 
 #: Words that let EnergyPlus find a number itself.
 AUTO: Final = ("autosize", "autocalculate", "useweatherfile")
@@ -216,9 +213,7 @@ def read(path: Path) -> Model:
     require_regular(path)
     kit = _idfkit()
     try:
-        document: IDFDocument = (
-            kit.load_idf(path, preserve_formatting=True) if form == "idf" else _epjson(kit, path)
-        )
+        document: Any = kit.load_idf(path, preserve_formatting=True) if form == "idf" else _epjson(kit, path)
     except kit.VersionNotFoundError:
         raise InputError(
             f"{path}: found no Version object; expected one such as 'Version, 25.2;'. Is this a model of "
@@ -247,9 +242,9 @@ def _idfkit() -> Any:
     return idfkit
 
 
-def _epjson(kit: Any, path: Path) -> IDFDocument:
+def _epjson(kit: Any, path: Path) -> Any:
     try:
-        document: IDFDocument = kit.load_epjson(path)
+        document: Any = kit.load_epjson(path)
     except json.JSONDecodeError as error:
         raise InputError(f"{path}:{error.lineno}: found no JSON: {error.msg}; expected epJSON") from None
     except (UnicodeDecodeError, AttributeError, TypeError) as error:
@@ -280,7 +275,7 @@ def _unreadable(path: Path, error: Any) -> InputError:
     )
 
 
-def _items(document: IDFDocument, path: Path, form: str) -> list[Item]:
+def _items(document: Any, path: Path, form: str) -> list[Item]:
     schema = document.schema
     lines = _idf_lines(document) if form == "idf" else _epjson_lines(path)
     defaults: dict[str, dict[str, Any]] = {}
@@ -301,13 +296,13 @@ def _items(document: IDFDocument, path: Path, form: str) -> list[Item]:
     return found
 
 
-def _defaults(schema: EpJSONSchema, kind: str) -> dict[str, Any]:
+def _defaults(schema: Any, kind: str) -> dict[str, Any]:
     names = schema.get_all_field_names(kind)
     known = ((name, schema.get_field_default(kind, name)) for name in names)
     return {name: value for name, value in known if value is not None and value != ""}
 
 
-def _idf_lines(document: IDFDocument) -> dict[Any, int]:
+def _idf_lines(document: Any) -> dict[Any, int]:
     """Line of each object by its place."""
     text = document.raw_text or ""
     starts = [0, *(match.end() for match in re.finditer("\n", text))]

@@ -135,7 +135,9 @@ def _outside(
         return _other_side(work, face)
     if boundary in _OTHER_GROUND:
         work.findings.left_out(
-            item, f"ground by {boundary}", "the temperatures of Site:GroundTemperature:BuildingSurface, or 18 degC"
+            item,
+            f"ground by {boundary}",
+            "the temperatures of Site:GroundTemperature:BuildingSurface, or 18 degC",
         )
         return held_at(work, "ground", ground(work)), False
     if boundary == "othersideconditionsmodel":
@@ -197,7 +199,10 @@ def _between_zones(
 def _other_side(work: Work, face: Face) -> Outside:
     """A side of a given temperature, as far as it depends on no weather."""
     item = work.model.require(
-        face.item, "outside_boundary_condition_object", "SurfaceProperty:OtherSideCoefficients", name=face.beyond
+        face.item,
+        "outside_boundary_condition_object",
+        "SurfaceProperty:OtherSideCoefficients",
+        name=face.beyond,
     )
     weight = item.number("constant_temperature_coefficient") or 0.0
     air = item.number("external_dry_bulb_temperature_coefficient") or 0.0
@@ -214,9 +219,7 @@ def _other_side(work: Work, face: Face) -> Outside:
     film = item.number("combined_convective_radiative_film_coefficient") or 0.0
     if others or (air and (abs(air - 1.0) > 1e-9 or weight or soil)):
         what = ", ".join(others) or "outdoor air mixed with other temperatures"
-        work.findings.left_out(
-            face.item, f"{item.label} with {what}", "no heat flows through this surface"
-        )
+        work.findings.left_out(face.item, f"{item.label} with {what}", "no heat flows through this surface")
         return {"adiabatic": True}, False
     if air:
         exposure = {"sun": False, "wind": False, "sky": False}
@@ -248,7 +251,7 @@ def _air_boundary(work: Work, face: Face, item: Item) -> str:
     work.findings.approximated(
         face.item,
         f"the boundary of air '{item.name}'",
-        "a black sheet without resistance: sun does not pass it, long-wave radiation does through its temperature",
+        "a black sheet without resistance: sun does not pass it, heat does",
     )
     materials, name = work.section("materials"), work.names.of("materials", "air boundary")
     materials[name] = {"kind": "resistance", "resistance": 0.001}
@@ -258,7 +261,7 @@ def _air_boundary(work: Work, face: Face, item: Item) -> str:
 
 
 def _masses(work: Work, films: Films, finite: bool) -> None:
-    """Internal masses: their area, and the part of their construction on one side of its plane without flow."""
+    """Internal masses: their area, and the part of their construction inside of its plane without flow."""
     for item in work.model.of("InternalMass"):
         zones = work.zones_of(item, "zone_or_zonelist_name", "zone_name", "space_or_spacelist_name")
         made = construction_of(work, item)

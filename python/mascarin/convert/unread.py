@@ -56,7 +56,7 @@ _MISSING: Final = {
     "roomair": "the air of a zone is well mixed: no stratification",
     "runperiodcontrol:daylightsavingtime": "schedules do not move in summer: an hour later than there",
     "runperiodcontrol:specialdays": "read",
-    "site:groundreflectance:snowmodifier": "the ground reflects the same with snow: less sun in winter, if snow is used",
+    "site:groundreflectance:snowmodifier": "the ground reflects the same with snow: less sun in winter",
     "site:precipitation": "rain has no effect: surfaces stay dry",
     "roofirrigation": "no water on roofs",
     "zonethermalchimney": "no flow through chimneys",
@@ -65,8 +65,8 @@ _MISSING: Final = {
     "zonebaseboard": "no heat from baseboards",
     "zonerefrigerationdoormixing": "no mixing through refrigeration doors",
     "indoorlivingwall": "no plants indoors",
-    "materialproperty:heatandmoisturetransfer": "moisture in the material is left out: heat alone is conducted",
-    "materialproperty:moisturepenetrationdepth": "moisture in the material is left out: heat alone is conducted",
+    "materialproperty:heatandmoisturetransfer": "moisture is left out: heat alone is conducted",
+    "materialproperty:moisturepenetrationdepth": "moisture is left out: heat alone is conducted",
     "materialproperty:": "this property of the material is left out",
     "surfacecontamination": "no contaminants are simulated",
     "surfaceproperty:localenvironment": "the surroundings of a surface are those of the site",
@@ -89,8 +89,8 @@ _MISSING: Final = {
 }
 #: Objects that others name: without effect where nothing that is carried over does.
 _NAMED: Final = (
-    "material", "construction", "windowmaterial", "schedule", "thermostat", "designspecification", "spacelist",
-    "space", "zonelist", "matrix", "table", "curve", "windowproperty:frameanddivider", "ground",
+    "material", "construction", "windowmaterial", "schedule", "thermostat", "designspecification",
+    "spacelist", "space", "zonelist", "matrix", "table", "curve", "windowproperty:frameanddivider", "ground",
 )  # fmt: skip
 _SYSTEM_GROUPS: Final = (
     "hvac", "air", "plant", "coil", "fan", "heat", "pump", "boiler", "chiller", "refrigeration", "zonehvac",

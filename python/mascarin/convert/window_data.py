@@ -66,7 +66,9 @@ def read_data_file(item: Item, folder: Path) -> DataFile:
     path = Path(named.replace("\\", "/"))
     found = next((one for one in (folder / path, folder / path.name) if one.is_file()), None)
     if found is None:
-        raise item.error(f"file_name: found no file '{named}'", f"a report of WINDOW in {folder}", "Put it there")
+        raise item.error(
+            f"file_name: found no file '{named}'", f"a report of WINDOW in {folder}", "Put it there"
+        )
     require_regular(found)
     lines = found.read_text(encoding="latin-1").splitlines()
     windows = [k for k, line in enumerate(lines) if line.startswith("Window name")]
@@ -79,7 +81,9 @@ def read_data_file(item: Item, folder: Path) -> DataFile:
     try:
         return _window(found.name, lines[start:end])
     except (StopIteration, IndexError, ValueError):
-        raise item.error(f"{found.name}: a window that cannot be read", "a report of WINDOW 5", "Export it again") from None
+        raise item.error(
+            f"{found.name}: a window that cannot be read", "a report of WINDOW 5", "Export it again"
+        ) from None
 
 
 def _window(file: str, lines: list[str]) -> DataFile:
@@ -90,7 +94,13 @@ def _window(file: str, lines: list[str]) -> DataFile:
     frame = next((line for line in lines if line.strip().startswith("Average frame")), None)
     divider = _row(lines, "DIVIDER DATA") if any(one.startswith("DIVIDER DATA") for one in lines) else []
     return DataFile(
-        file, systems, panes, gaps, _angular(lines, count), _frame(frame), bool(divider) and float(divider[0]) > 0.0
+        file,
+        systems,
+        panes,
+        gaps,
+        _angular(lines, count),
+        _frame(frame),
+        bool(divider) and float(divider[0]) > 0.0,
     )
 
 
@@ -155,4 +165,3 @@ def _frame(line: str | None) -> tuple[float, float, float, float] | None:
     if width <= 0.0:
         return None
     return width, 1.0 / (1.0 / conductance + _FILMS), absorptance, emissivity
-

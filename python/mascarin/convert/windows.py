@@ -73,7 +73,8 @@ def _window(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> N
     tilt = g.tilt_of(base.points)
     made: Section = {"surface": wall, "glazing": found.name, **shape}
     if outdoors:
-        made["outside"] = {"convection": film.convection} | ({"longwave": "none"} if film.combined else {})
+        # EnergyPlus adds long-wave radiation to a combined coefficient on windows, not on walls.
+        made["outside"] = {"convection": film.convection}
     else:
         made["outside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
     made["inside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
@@ -90,26 +91,29 @@ def _glazed_shape(
     if frame is not None:
         outline = _framed(points, frame[0])
         whole = g.area_of(outline)
-        width, u_value, absorptance, emissivity = frame
+        _, u_value, absorptance, emissivity = frame
         made["frame"] = {
-            "fraction": round(1.0 - glass / whole, 6),
+            "fraction": round(1.0 - glass / whole, 9),
             "u_value": min(round(u_value, 5), _MOST),
             "absorptance": absorptance,
             "emissivity": emissivity,
         }
         glass = whole
+    total = round(glass * opening.copies, 6)
     if not drawn or not _accepted(opening, outline):
         if drawn:
             work.findings.approximated(
                 opening.item, "corners outside of its wall", "its area alone: nothing shades it"
             )
-        return {"area": round(glass * opening.copies, 6)} | made
-    made = {"vertices": g.rounded(outline)} | made
+        return {"area": total} | made
+    made = {"vertices": g.rounded(outline), **made}
     if opening.copies > 1:
         work.findings.approximated(
-            opening.item, f"{opening.copies} windows", "one window of their area, with the shadows of the first"
+            opening.item,
+            f"{opening.copies} windows",
+            "one window of their area, with the shadows of the first",
         )
-        made["area"] = round(glass * opening.copies, 6)
+        made["area"] = total
     return made
 
 
@@ -199,4 +203,3 @@ def _shading_controls(work: Work) -> None:
             f"{device}, {control}",
             "the windows stay unshaded: more sun enters, and at night the glass alone insulates",
         )
-

@@ -25,7 +25,9 @@ def terminal_lines(conversion: Conversion) -> Iterator[str]:
         From `convert`.
     """
     for level in LEVELS:
-        found = sorted((one for one in conversion.findings if one.level == level), key=lambda one: one.line or 0)
+        found = sorted(
+            (one for one in conversion.findings if one.level == level), key=lambda one: one.line or 0
+        )
         if found:
             yield _HEADINGS[level]
             yield from (f"  {one.text()}" for one in found)
