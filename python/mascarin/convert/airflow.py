@@ -24,7 +24,7 @@ SIMPLE: Final = (
 #: Wind speed about which a quadratic effect of the wind is made linear [m/s].
 _WIND: Final = 4.0
 #: Density of outdoor air over that of the site (15 degC), for a zone at 21 degC: a line in the difference of
-#: temperatures from 0 to 30 K through 288.15/(294.15 - dT); its value where it stands for other terms [-, 1/K].
+#: temperatures from 0 to 30 K through 288.15/(294.15 - dT); a usual value for other terms [-, 1/K].
 _DENSE, _DENSER, _USUAL_DENSITY = 288.15 / 294.15, (288.15 / 264.15 - 288.15 / 294.15) / 30.0, 1.035
 #: Effectiveness of an opening for the wind where EnergyPlus finds it by direction: the middle of 0.3 and
 #: 0.55 (ASHRAE Handbook of Fundamentals 2017, ch. 16) [-].
