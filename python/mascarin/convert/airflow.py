@@ -81,13 +81,13 @@ def describe_air(work: Work, zones: dict[str, Zone]) -> None:
         for zone in zones_of(work, item, zones):
             _leakage(work, item, zone)
     for item in work.model.of("ZoneVentilation:DesignFlowRate"):
-        _conditions(work, item)
+        _conditions(work, item, "schedule_name")
         for zone in zones_of(work, item, zones):
             flow = _flow(work, item, zone, zones, "design_flow_rate_calculation_method")
             _add(work, zone, flow)
             _fan(work, item, zone, flow)
     for item in work.model.of("ZoneVentilation:WindandStackOpenArea"):
-        _conditions(work, item)
+        _conditions(work, item, "opening_area_fraction_schedule_name")
         for zone in zones_of(work, item, zones):
             _opening(work, item, zone)
     _mixing(work, zones)
@@ -217,8 +217,10 @@ def ventilate(work: Work, zone: Zone, name: str, flow: float, values: Year) -> N
     _ventilate(work, zone, name, flow * most, schedule)
 
 
-def _conditions(work: Work, item: Item) -> None:
+def _conditions(work: Work, item: Item, schedule: str) -> None:
     """Conditions under which EnergyPlus ventilates; there are none here."""
+    if year(work, item, schedule).constant == 0.0:
+        return
     active = []
     for key, idle in _IDLE.items():
         given = item.number(key)

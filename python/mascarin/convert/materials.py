@@ -21,8 +21,8 @@ MATERIALS: Final = (
 #: (EnergyPlus Engineering Reference, ground heat transfer calculations using C and F factor constructions).
 CONCRETE: Final = (0.15, 1.95, 2240.0, 900.0)
 _FILMS: Final = (0.125, 0.03)
-#: Distance from a jump of the heat capacity over which it is smoothed [K].
-_JUMP: Final = 0.01
+#: Distance from a jump of the heat capacity over which it is smoothed, of the shorter interval [-].
+_JUMP: Final = 0.25
 
 
 def layers_of(work: Work, construction: Item) -> list[Item]:
