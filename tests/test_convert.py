@@ -374,3 +374,9 @@ def test_the_exit_code_says_that_something_was_left_out(tmp_path: Path) -> None:
     assert "ZoneEarthtube" in (tmp_path / "box.yaml").read_text(encoding="utf-8")
     (tmp_path / "bad.idf").write_text("Zone,Room;", encoding="utf-8")
     assert run(tmp_path, "convert", "bad.idf").returncode == 2
+
+
+def test_minimal_shadowing_has_no_shadows_between_surfaces(tmp_path: Path) -> None:
+    assert converted(tmp_path, box()).building.site.self_shading
+    minimal = box().replace("FullExterior", "MinimalShadowing")
+    assert not converted(tmp_path, minimal).building.site.self_shading

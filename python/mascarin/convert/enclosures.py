@@ -34,7 +34,10 @@ def describe_enclosures(work: Work, building: Building, zones: dict[str, Zone]) 
         Its zones.
     """
     main = work.model.one("Building")
-    traced = (main.word("solar_distribution") if main is not None else "").startswith("fullinterior")
+    word = main.word("solar_distribution") if main is not None else ""
+    traced = word.startswith("fullinterior")
+    if word.startswith("minimal"):
+        work.section("site")["self_shading"] = False
     for zone in zones.values():
         seen = surfaces_of_zone(zone.name, building.surfaces, building.windows)
         held = work.section("zones")[zone.name]
