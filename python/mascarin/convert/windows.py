@@ -94,7 +94,7 @@ def _glazed_shape(
         _, u_value, absorptance, emissivity = frame
         made["frame"] = {
             "fraction": round(1.0 - glass / whole, 9),
-            "u_value": min(round(u_value, 5), _MOST),
+            "u_value": min(round(u_value, 9), _MOST),
             "absorptance": absorptance,
             "emissivity": emissivity,
         }
