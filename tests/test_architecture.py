@@ -18,7 +18,7 @@ ORDER = [
     {"materials"},
     {"building"},
     {"weather"},
-    {"simulation"},
+    {"simulation", "convert"},
     {"ensemble"},
     {"sensitivity", "optimization", "validation"},
     {"calibration"},

@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
 from building_samples import ROOM
+from mascarin.building import Building
 from mascarin.building.reading import parse
 from mascarin.building.schedule import Schedule
 from mascarin.errors import InputError
+from mascarin.examples import box
+from mascarin.simulation import simulate
 from mascarin.weather import Climate, parse_timezone, scheduled
 
 GAMMA = 1.0 - np.sqrt(0.5)
@@ -112,8 +115,8 @@ def test_a_measured_column() -> None:
     ("text", "message"),
     [
         ("{kind: fraction, value: 1.5}", "expected: a number at least 0 and at most 1"),
-        ("{kind: fraction}", "exactly one of value, days, column"),
-        ("{kind: fraction, value: 1, column: x}", "exactly one of value, days, column"),
+        ("{kind: fraction}", "exactly one of value, days, seasons, column"),
+        ("{kind: fraction, value: 1, column: x}", "exactly one of value, days, seasons, column"),
         ('{kind: fraction, days: {all: [{at: "07:00", value: 1}]}}', 'the first point of a day at "00:00"'),
         (
             '{kind: fraction, days: {all: [{at: "00:00", value: 1}, {at: "09:00", value: 0}, '
@@ -147,3 +150,61 @@ def test_what_is_no_schedule_is_refused(text: str, message: str) -> None:
         parse(ROOM + f"schedules:\n  s: {text}\n", "room.yaml")
     assert message in str(refusal.value)
     assert "schedules.s" in str(refusal.value)
+
+
+def test_seasons_of_a_year() -> None:
+    """The last day of a season belongs to it, in every year."""
+    plain = {
+        "kind": "fraction",
+        "seasons": [
+            {"until": "02-28", "days": {"all": points(("00:00", 0.2))}},
+            {
+                "until": "12-31",
+                "days": {"weekdays": points(("00:00", 1)), "weekends": points(("00:00", 0.5))},
+            },
+        ],
+    }
+    found = values(plain, "2001-02-27", "2001-03-04", 86400.0)
+    assert found[:, 1] == pytest.approx([0.2, 0.2, 1.0, 1.0, 0.5])
+
+
+@pytest.mark.parametrize("ends", [["12-30"], ["06-30", "03-31", "12-31"], []])
+def test_seasons_that_are_not_a_year_are_refused(ends: list[str]) -> None:
+    seasons = [{"until": end, "days": {"all": points(("00:00", 0.2))}} for end in ends]
+    with pytest.raises(ValueError, match='the last one "12-31"'):
+        TypeAdapter(Schedule).validate_python({"kind": "fraction", "seasons": seasons})
+
+
+def test_a_side_of_a_scheduled_temperature_is_ground_of_that_temperature() -> None:
+    """A floor over soil of 12 degC, by its schedule and as ground: equal within round-off."""
+    plain: dict[str, Any] = box().to_dict()
+    plain["schedules"] = {"soil": {"kind": "temperature", "value": 12}}
+    floor = {"construction": "wall", "area": 9, "tilt": 180}
+    inside = {"zone": "room", "convection": 3, "emissivity": 0.9}
+    runs = []
+    for outside in ({"ground": {"temperature": 12}}, {"scheduled": "soil"}, {"adiabatic": True}):
+        plain["surfaces"]["floor"] = floor | {"outside": outside, "inside": inside}
+        run = simulate(
+            Building.from_dict(plain),
+            climate("2001-01-01", 3),
+            start="2001-01-01",
+            end="2001-01-03",
+            outputs=["room.air_temperature"],
+        )
+        runs.append(run["room.air_temperature"].to_numpy())
+    assert np.abs(runs[0] - runs[1]).max() < 1e-9
+    assert np.abs(runs[0] - runs[2]).min() > 0.1
+
+
+def test_set_points_that_cross_in_one_season_are_refused() -> None:
+    plain: dict[str, Any] = box().to_dict()
+    seasons = [
+        {"until": end, "days": {"all": points(("00:00", value))}}
+        for end, value in (("06-30", 20), ("12-31", 27))
+    ]
+    plain["schedules"] = {"heat": {"kind": "temperature", "seasons": seasons}}
+    plain["zones"]["room"] |= {"heating": {"setpoint": {"schedule": "heat"}}, "cooling": {"setpoint": 26}}
+    with pytest.raises(
+        InputError, match="heating to 27 degC, above cooling to 26 degC, on monday before 12-31"
+    ):
+        Building.from_dict(plain)

@@ -58,6 +58,11 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
         Command(
             "check", "mascarin.commands.building:check", "Check a building description and print a summary."
         ),
+        Command(
+            "convert",
+            "mascarin.commands.convert:convert",
+            "Convert a model of EnergyPlus to a building.",
+        ),
         Command("parameters", "mascarin.commands.building:parameters", "List every parameter of a building."),
         Command("outputs", "mascarin.commands.building:outputs", "List every output of a building."),
         Command(

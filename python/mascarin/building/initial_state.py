@@ -19,6 +19,7 @@ from mascarin.building.glazing import GivenGap, Glazing, SimpleGlazing
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.part import Part, fault, refuse
 from mascarin.building.phases import phase
+from mascarin.building.schedule import schedule_channel
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -405,6 +406,8 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
         ground = side.ground
         angle = 2.0 * math.pi * (ambient.day - float(ground.coldest_day or 0.0)) / 365.0
         return film, float(ground.mean - ground.amplitude * math.cos(angle))
+    if side.scheduled is not None:
+        return film, ambient.columns[schedule_channel(side.scheduled)]
     return film, ambient.columns[str(side.measured)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from datetime import date
 from typing import TYPE_CHECKING
 
 from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
@@ -128,7 +129,7 @@ def _emissivities_where_exchange_is(building: Description) -> Faults:
 
 def _convection_suits_its_side(building: Description) -> Faults:
     for at, side in _sides(building):
-        if isinstance(side.convection, Tarp | Mowitt) and (side.measured or side.ground):
+        if isinstance(side.convection, Tarp | Mowitt) and (side.measured or side.ground or side.scheduled):
             yield fault(
                 (*at, "convection"),
                 f"'{side.convection.kind}' on a side facing {side.faces}",
@@ -331,6 +332,9 @@ def references(building: Description) -> Iterator[tuple[str, tuple[str, ...], st
                 yield loads.setpoint.schedule, (*at, which, "setpoint", "schedule"), "temperature"
             if loads.schedule is not None:
                 yield loads.schedule, (*at, which, "schedule"), "fraction"
+    for (section, name, which), side in _sides(building):
+        if side.scheduled is not None:
+            yield side.scheduled, (section, name, which, "scheduled"), "temperature"
     for section, parts in (("air_paths", building.air_paths), ("openings", building.openings)):
         for name, part in parts.items():
             if part.schedule is not None:
@@ -354,12 +358,10 @@ def _set_points_apart(building: Description) -> Faults:
     for name, zone in building.zones.items():
         if len(zone.loads) < 2:
             continue
-        heating, cooling = (_week(building, zone.loads[which]) for which in ("heating", "cooling"))
-        for (day, heats), (_, cools) in zip(heating, cooling, strict=True):
-            crossing = next(_crossings(heats, cools), None)
-            if crossing is None:
-                continue
-            minute, warm, cold = crossing
+        both = [zone.loads[which] for which in ("heating", "cooling")]
+        last = next(_crossing_days(building, both), None)
+        if last is not None:
+            day, minute, warm, cold = last
             yield fault(
                 ("zones", name, "heating", "setpoint"),
                 f"heating to {warm:g} degC, above cooling to {cold:g} degC, on {day} at "
@@ -367,17 +369,31 @@ def _set_points_apart(building: Description) -> Faults:
                 "a heating set point at or below the cooling set point at all times",
                 "Lower the one or raise the other.",
             )
-            break
 
 
-def _week(building: Description, loads: IdealLoads) -> list[tuple[str, list[Piece]]]:
-    """Pieces of the set point on each day of the week, and on holidays; empty for a measured column."""
+def _crossing_days(
+    building: Description, both: list[IdealLoads]
+) -> Iterator[tuple[str, float, float, float]]:
+    """Days with a crossing of heating and cooling: name of the day, minute, both set points."""
+    used = [building.schedules[one.setpoint.schedule] for one in both if one.setpoint.schedule is not None]
+    ends = sorted({season.until for one in used for season in one.seasons or ()}) or ["12-31"]
+    for end in ends:
+        heating, cooling = (_week(building, one, date.fromisoformat(f"2000-{end}")) for one in both)
+        season = "" if len(ends) == 1 else f" before {end}"
+        for (day, heats), (_, cools) in zip(heating, cooling, strict=True):
+            for minute, warm, cold in _crossings(heats, cools):
+                yield f"{day}{season}", minute, warm, cold
+
+
+def _week(building: Description, loads: IdealLoads, day: date) -> list[tuple[str, list[Piece]]]:
+    """Pieces of the set point on each day of the week of a season, and on holidays; empty for a column."""
     if loads.setpoint.schedule is None:
         value = float(loads.setpoint.temperature or 0.0)
-        return [(day, [(0.0, 1440.0, value, value)]) for day in (*DAYS, "holidays")]
+        return [(name, [(0.0, 1440.0, value, value)]) for name in (*DAYS, "holidays")]
     schedule = building.schedules[loads.setpoint.schedule]
-    days = [(day, schedule.pieces(weekday)) for weekday, day in enumerate(DAYS)]
-    return [*days, ("holidays", schedule.pieces(0, holiday=True))]
+    season = schedule.season(day)
+    days = [(name, schedule.pieces(weekday, season=season)) for weekday, name in enumerate(DAYS)]
+    return [*days, ("holidays", schedule.pieces(0, holiday=True, season=season))]
 
 
 def _crossings(heating: list[Piece], cooling: list[Piece]) -> Iterator[tuple[float, float, float]]:

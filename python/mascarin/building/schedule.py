@@ -155,10 +155,50 @@ class TemperatureDays(_Days):
     holidays: tuple[TemperaturePoint, ...] | None = Field(None, description="Profile of holidays")
 
 
+def _last_day(text: str) -> str:
+    if not re.fullmatch(r"\d\d-\d\d", text):
+        raise problem(shown(text), 'a day of the year, "03-31"', "Write month and day with two digits.")
+    return _holiday(text)
+
+
+LastDay = Annotated[str, AfterValidator(_last_day)]
+
+
+class FractionSeason(Part):
+    """Profiles of a fraction for a part of the year.
+
+    Examples
+    --------
+    >>> FractionSeason(until="12-31", days={"all": [{"at": "00:00", "value": 1}]}).until
+    '12-31'
+    """
+
+    until: LastDay = Field(description='Last day, "03-31"; it begins after that of the season before')
+    days: FractionDays = Field(description="Profiles by kind of day")
+
+
+class TemperatureSeason(Part):
+    """Profiles of a temperature for a part of the year.
+
+    Examples
+    --------
+    >>> TemperatureSeason(until="12-31", days={"all": [{"at": "00:00", "value": 20}]}).until
+    '12-31'
+    """
+
+    until: LastDay = Field(description='Last day, "03-31"; it begins after that of the season before')
+    days: TemperatureDays = Field(description="Profiles by kind of day")
+
+
+def schedule_channel(name: str) -> str:
+    """Name of the channel of the forcing that holds a schedule."""
+    return f"schedule {name}"
+
+
 class _Schedule(Part):
     """What all schedules have in common."""
 
-    WAYS: ClassVar = ("value", "days", "column")
+    WAYS: ClassVar = ("value", "days", "seasons", "column")
 
     column: str | None = Field(None, description="Measured column with the values")
     holidays: tuple[Holiday, ...] = Field(
@@ -172,14 +212,26 @@ class _Schedule(Part):
             raise problem(
                 " and ".join(given) or "a schedule without values",
                 f"exactly one of {', '.join(self.WAYS)}",
-                "A schedule is one value, profiles of days, or a measured column.",
+                "A schedule is one value, profiles of days, those of seasons, or a measured column.",
             )
-        insist(*self._inactive_holidays())
+        insist(*self._seasons_in_order(), *self._inactive_holidays())
         return self
 
+    def _seasons_in_order(self) -> Iterator[InitErrorDetails]:
+        given = getattr(self, "seasons", None)
+        if given is None:
+            return
+        ends = [season.until for season in given]
+        if not ends or ends[-1] != "12-31" or sorted(set(ends)) != ends:
+            yield fault(
+                ("seasons",),
+                f"seasons until {', '.join(ends) or 'no day'}",
+                'last days in the order of the year, the last one "12-31"',
+                "Sort them, each day once.",
+            )
+
     def _inactive_holidays(self) -> Iterator[InitErrorDetails]:
-        profiles = self.profiles
-        own = profiles is not None and profiles.profile(0, holiday=True) is not profiles.profile(0)
+        own = any(one.profile(0, holiday=True) is not one.profile(0) for one in self.profiles)
         if self.holidays and not own:
             yield fault(
                 ("holidays",),
@@ -193,12 +245,17 @@ class _Schedule(Part):
             )
 
     @property
-    def profiles(self) -> FractionDays | TemperatureDays | None:
-        """Profiles by kind of day; None for one value or a column."""
-        days: FractionDays | TemperatureDays | None = getattr(self, "days", None)
-        return days
+    def profiles(self) -> tuple[FractionDays | TemperatureDays, ...]:
+        """Profiles by kind of day, of each season; none for one value or a column."""
+        days, seasons = getattr(self, "days", None), getattr(self, "seasons", None)
+        return tuple(season.days for season in seasons or ()) or ((days,) if days is not None else ())
 
-    def pieces(self, weekday: int, *, holiday: bool = False) -> list[Piece]:
+    def season(self, day: date) -> int:
+        """Index of the season of a date; 0 without seasons."""
+        seasons = getattr(self, "seasons", None) or ()
+        return next((k for k, one in enumerate(seasons) if f"{day:%m-%d}" <= one.until), 0)
+
+    def pieces(self, weekday: int, *, holiday: bool = False, season: int = 0) -> list[Piece]:
         """One day as linear pieces; none for a measured column.
 
         Parameters
@@ -207,6 +264,8 @@ class _Schedule(Part):
             Day of the week, 0 for Monday.
         holiday : bool
             Whether it is a holiday.
+        season : int
+            Index of the season; see `season`.
 
         Returns
         -------
@@ -216,7 +275,7 @@ class _Schedule(Part):
         value = getattr(self, "value", None)
         if value is not None:
             return [(0.0, _DAY_MINUTES, float(value), float(value))]
-        points = self.profiles.profile(weekday, holiday=holiday) if self.profiles is not None else None
+        points = self.profiles[season].profile(weekday, holiday=holiday) if self.profiles else None
         if points is None:
             return []
         starts = [_minutes(point.at) for point in points]
@@ -246,6 +305,9 @@ class FractionSchedule(_Schedule):
     kind: Literal["fraction"] = "fraction"
     value: q.ScheduledFraction | None = None
     days: FractionDays | None = Field(None, description="Profiles by kind of day")
+    seasons: tuple[FractionSeason, ...] | None = Field(
+        None, description="Profiles that change in the course of the year, in order"
+    )
 
 
 class TemperatureSchedule(_Schedule):
@@ -260,6 +322,9 @@ class TemperatureSchedule(_Schedule):
     kind: Literal["temperature"] = "temperature"
     value: q.ScheduledTemperature | None = None
     days: TemperatureDays | None = Field(None, description="Profiles by kind of day")
+    seasons: tuple[TemperatureSeason, ...] | None = Field(
+        None, description="Profiles that change in the course of the year, in order"
+    )
 
 
 Schedule = Annotated[FractionSchedule | TemperatureSchedule, Field(discriminator="kind")]

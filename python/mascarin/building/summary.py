@@ -119,4 +119,5 @@ def _set_point(loads: IdealLoads | None) -> str:
 
 
 def _facing(side: Side) -> str:
-    return side.zone or (f"measured {side.measured}" if side.measured else side.faces)
+    given = {"measured": side.measured, "schedule": side.scheduled}
+    return side.zone or next((f"{kind} {name}" for kind, name in given.items() if name), side.faces)

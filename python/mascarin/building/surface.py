@@ -11,11 +11,11 @@ from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
 from mascarin.building.convection import CONVECTION, Convection, Doe2, Mowitt, Tarp
-from mascarin.building.names import ConstructionName, MaterialName, Name, SurfaceName, ZoneName
+from mascarin.building.names import ConstructionName, MaterialName, Name, ScheduleName, SurfaceName, ZoneName
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, Shorthand, fault, insist, refuse
 
-FACINGS = ("outdoors", "zone", "ground", "measured", "adiabatic")
+FACINGS = ("outdoors", "zone", "ground", "measured", "scheduled", "adiabatic")
 
 
 class Layer(Part):
@@ -195,6 +195,10 @@ class Side(Part):
     measured: str | None = Field(
         None, description="Faces air of this measured column; without convection, has its temperature"
     )
+    scheduled: ScheduleName | None = Field(
+        None,
+        description="Faces air of the temperature of this schedule; without convection, has its temperature",
+    )
     adiabatic: Literal[True] | None = Field(None, description="No heat flow: write true")
 
     convection: Convection | None = Field(None, description=CONVECTION)
@@ -213,7 +217,7 @@ class Side(Part):
 
     @property
     def faces(self) -> str:
-        """Which of the five kinds of surroundings the side faces."""
+        """Which of the six kinds of surroundings the side faces."""
         return next(name for name in FACINGS if getattr(self, name) is not None)
 
     def in_short(self) -> str:

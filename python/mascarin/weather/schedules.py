@@ -159,7 +159,7 @@ def pieces_of(schedule: Schedule, timezone: tzinfo, first: float, last: float) -
     values: list[tuple[float, float]] = []
     for day in days:
         for minute, _, begin, finish in schedule.pieces(
-            day.weekday(), holiday=schedule.is_holiday(day.date())
+            day.weekday(), holiday=schedule.is_holiday(day.date()), season=schedule.season(day.date())
         ):
             starts.append(day + pd.Timedelta(minutes=minute))
             values.append((begin, finish))

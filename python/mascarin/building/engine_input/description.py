@@ -26,6 +26,7 @@ from mascarin.building.engine_input.zones import describe_air_path, describe_ope
 from mascarin.building.mesh import choose
 from mascarin.building.number import Interval
 from mascarin.building.parameters import Parameter
+from mascarin.building.schedule import schedule_channel
 from mascarin.building.self_shading import obstructions
 from mascarin.building.site import CloudFactor, CloudLayer, Site
 
@@ -81,7 +82,7 @@ def describe(
     columns = channels(building)
     schedules = used_schedules(building)
     places = {name: len(columns) + k for k, name in enumerate(schedules)}
-    columns = [*columns, *(f"schedule {name}" for name in schedules)]
+    columns = [*columns, *(schedule_channel(name) for name in schedules)]
     description = {
         "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
         "site": _site(building.site, below(ids, "site")),

@@ -8,6 +8,7 @@ from typing import Any
 from mascarin.building.convection import Convection, Measured, Power
 from mascarin.building.description import Description
 from mascarin.building.engine_input.ids import Ids, Json, corners, deeper, fields_of
+from mascarin.building.schedule import schedule_channel
 from mascarin.building.surface import Side, Surface
 
 
@@ -47,6 +48,8 @@ def _facing(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
         return {"kind": "zone", "zone": zones.index(side.zone)}
     if side.measured is not None:
         return {"kind": "measured", "channel": columns.index(side.measured)}
+    if side.scheduled is not None:
+        return {"kind": "measured", "channel": columns.index(schedule_channel(side.scheduled))}
     if side.ground is not None:
         return {"kind": "ground"} | fields_of(side.ground, ids, "ground.")
     return {"kind": side.faces}

@@ -1,0 +1,55 @@
+"""The command that converts a model of EnergyPlus."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from mascarin._io import atomic
+from mascarin._io.locks import writing
+from mascarin.commands.inputs import AsJson
+from mascarin.commands.output import print_json
+from mascarin.errors import InputError
+
+
+def convert(
+    model: Path,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    weather: Path | None = None,
+    as_json: AsJson = False,
+) -> int:
+    """Convert a model of EnergyPlus to a building.
+
+    Reads IDF and epJSON files of EnergyPlus 8.9 and later; EnergyPlus itself is not needed. Lists object by
+    object what is not carried over, and what this does to the results; the same list is in the comments of
+    the file. Ends with exit code 1 where something that changes the results was left out.
+
+    Parameters
+    ----------
+    model : Path
+        Model of EnergyPlus: .idf or .epJSON.
+    out : Path
+        File for the building. Default: the name of the model with .yaml, in the current folder.
+    weather : Path
+        Weather file (EPW) that gives the site, for a model without Site:Location.
+    """
+    from mascarin.convert import convert as converted
+    from mascarin.convert import report, run_options, terminal_lines, yaml_text
+
+    target = Path(f"{model.stem}.yaml") if out is None else out
+    if target.suffix.lower() not in (".yaml", ".yml"):
+        raise InputError(f"--out: found '{target}'; expected a file that ends with .yaml")
+    with writing(target):
+        found = converted(model, weather=weather)
+        atomic.write(target, yaml_text(found))
+    if as_json:
+        print_json(report(found) | {"building": str(target)})
+    else:
+        print("\n".join(terminal_lines(found)))
+    print(f"wrote {target}; mascarin run {target} --weather EPW {run_options(found)}", file=sys.stderr)
+    return 0 if found.complete else 1

@@ -1,0 +1,344 @@
+"""Thermostats and ideal loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+from mascarin.convert.airflow import ventilate
+from mascarin.convert.gains import people_in
+from mascarin.convert.schedules import NEVER_COOLS, NEVER_HEATS, temperature, year
+from mascarin.convert.source import Item
+from mascarin.convert.work import Work
+from mascarin.convert.year import Year, combined, constant
+from mascarin.convert.zones import Zone
+
+#: Control types: 1 heating, 2 cooling, 3 one set point for both, 4 two set points.
+_TYPES: Final = {
+    "thermostatsetpoint:singleheating": 1,
+    "thermostatsetpoint:singlecooling": 2,
+    "thermostatsetpoint:singleheatingorcooling": 3,
+    "thermostatsetpoint:dualsetpoint": 4,
+}
+_SETPOINTS: Final = (
+    "ThermostatSetpoint:SingleHeating", "ThermostatSetpoint:SingleCooling",
+    "ThermostatSetpoint:SingleHeatingOrCooling", "ThermostatSetpoint:DualSetpoint",
+)  # fmt: skip
+_HEAT: Final = ("heating_setpoint_temperature_schedule_name", "setpoint_temperature_schedule_name")
+_COOL: Final = ("cooling_setpoint_temperature_schedule_name", "setpoint_temperature_schedule_name")
+IDEAL: Final = "ZoneHVAC:IdealLoadsAirSystem"
+_TEMPLATE: Final = "HVACTemplate:Zone:IdealLoadsAirSystem"
+#: Specific heat of dry air, for limits of flow [J/(kg K)].
+_AIR_HEAT: Final = 1006.0
+_AIR_DENSITY: Final = 1.2
+#: Temperatures of the zone at which a limit of flow is a limit of power [degC].
+#: Air temperature of a zone that its set points allow [degC].
+_USUAL: Final = 23.0
+_ROOM: Final = {"heating": 20.0, "cooling": 24.0}
+
+
+@dataclass(frozen=True)
+class SetPoints:
+    """Set points of a zone over the year; those that never act where it is not conditioned. [degC]
+
+    Attributes
+    ----------
+    heating, cooling : Year
+        The set points.
+    """
+
+    heating: Year
+    cooling: Year
+
+
+def describe_conditioning(work: Work, zones: dict[str, Zone]) -> None:
+    """Enter ideal heating and cooling.
+
+    Raises
+    ------
+    InputError
+        A thermostat, schedule or system that does not exist.
+    """
+    given = dict(_thermostats(work, zones))
+    systems = _systems(work)
+    for key, zone in zones.items():
+        points, system = given.get(key), systems.get(key)
+        if points is None and system is not None:
+            work.findings.no_effect([system], "a system without a thermostat", "it conditions nothing")
+            continue
+        if points is None:
+            continue
+        if system is None:
+            work.findings.no_effect([zone.item], "a thermostat without a system", "it conditions nothing")
+            continue
+        _condition(work, zone, points, system, zones)
+
+
+def usual_temperatures(work: Work, zones: dict[str, Zone]) -> dict[str, float]:
+    """Temperature of each zone between its set points; a usual one without any. [degC]
+
+    Parameters
+    ----------
+    work : Work
+        The conversion.
+    zones : dict of str to Zone
+        Zones by the name in the file, in small letters.
+    """
+    found = dict.fromkeys(zones, _USUAL)
+    for key, points in _thermostats(work, zones):
+        limits = (
+            (points.heating, _USUAL, max),
+            (points.cooling, _USUAL, min),
+        )
+        means = [
+            combined(lambda set_point, rule=rule: rule(set_point, _USUAL), one).mean()
+            for one, _, rule in limits
+        ]
+        if key in found:
+            found[key] = sum(means) - _USUAL
+    return found
+
+
+def _thermostats(work: Work, zones: dict[str, Zone]) -> Iterator[tuple[str, SetPoints]]:
+    for item in work.model.of("ZoneControl:Thermostat"):
+        points = _set_points(work, item)
+        if item.number("temperature_difference_between_cutout_and_setpoint"):
+            work.findings.approximated(item, "a cut-out difference", "the set point is held exactly")
+        for zone in work.zones_of(item, "zone_or_zonelist_name", "zone_name"):
+            yield zone.name.casefold(), points
+    for item in work.model.of(_TEMPLATE):
+        thermostat = work.model.named(item.text("template_thermostat_name"), "HVACTemplate:Thermostat")
+        if thermostat is None:
+            continue
+        heat = thermostat.number("constant_heating_setpoint")
+        cool = thermostat.number("constant_cooling_setpoint")
+        found = SetPoints(
+            year(
+                work,
+                thermostat,
+                "heating_setpoint_schedule_name",
+                default=NEVER_HEATS if heat is None else heat,
+            ),
+            year(
+                work,
+                thermostat,
+                "cooling_setpoint_schedule_name",
+                default=NEVER_COOLS if cool is None else cool,
+            ),
+        )
+        for zone in work.zones_of(item, "zone_name"):
+            yield zone.name.casefold(), found
+
+
+def _set_points(work: Work, item: Item) -> SetPoints:
+    """Set points of the control that is active at each time."""
+    kinds: dict[int, Item] = {}
+    for k in range(1, 5):
+        kind = item.word(f"control_{k}_object_type")
+        if kind and kind in _TYPES:
+            kinds[_TYPES[kind]] = work.model.require(item, f"control_{k}_name", *_SETPOINTS)
+        elif kind:
+            raise item.error(
+                f"control_{k}_object_type: '{kind}'", f"one of {', '.join(_SETPOINTS)}", "Correct it"
+            )
+    control = year(work, item, "control_type_schedule_name", default=float(max(kinds, default=0)))
+    never = {"heating": constant(NEVER_HEATS), "cooling": constant(NEVER_COOLS)}
+    found = {}
+    for which, keys, types in (("heating", _HEAT, (1, 3, 4)), ("cooling", _COOL, (2, 3, 4))):
+        total = never[which]
+        for number in types:
+            if number not in kinds:
+                continue
+            values = year(work, kinds[number], *keys)
+            total = combined(
+                lambda one, active, other, number=number: one if round(active) == number else other,
+                values, control, total,
+            )  # fmt: skip
+        found[which] = total
+    missing = {round(value) for value in control.values} - {0, *kinds}
+    if missing:
+        work.findings.left_out(
+            item, f"control type {min(missing)} without its set point", "the zone is not conditioned then"
+        )
+    return SetPoints(found["heating"], found["cooling"])
+
+
+def _systems(work: Work) -> dict[str, Item]:
+    """System of each zone: its ideal loads, or else the first of what it has."""
+    found: dict[str, Item] = {}
+    for item in work.model.of("ZoneHVAC:EquipmentConnections"):
+        equipment = work.model.named(
+            item.text("zone_conditioning_equipment_list_name"), "ZoneHVAC:EquipmentList"
+        )
+        rows = [] if equipment is None else equipment.rows("equipment") or _flat_equipment(equipment)
+        systems = []
+        for row in rows:
+            kind = str(row.get("zone_equipment_object_type", ""))
+            one = work.model.named(str(row.get("zone_equipment_name", "")), kind)
+            systems += [] if one is None else [one]
+        ideal = [one for one in systems if one.kind == IDEAL]
+        for one in ideal[:1] or systems[:1]:
+            for zone in work.zones_of(item, "zone_name"):
+                found[zone.name.casefold()] = one
+    for item in work.model.of(_TEMPLATE):
+        for zone in work.zones_of(item, "zone_name"):
+            found[zone.name.casefold()] = item
+    return found
+
+
+def _flat_equipment(item: Item) -> list[dict[str, Any]]:
+    keys = ("zone_equipment_object_type", "zone_equipment_name")
+    count = [k for k in range(1, 20) if f"zone_equipment_{k}_object_type" in item.fields]
+    return [
+        {
+            keys[0]: item.text(f"zone_equipment_{k}_object_type"),
+            keys[1]: item.text(f"zone_equipment_{k}_name"),
+        }
+        for k in count
+    ]
+
+
+def _condition(work: Work, zone: Zone, points: SetPoints, system: Item, zones: dict[str, Zone]) -> None:
+    """Heating and cooling of one zone by its system."""
+    ideal = system.kind in (IDEAL, _TEMPLATE)
+    if not ideal:
+        work.findings.left_out(
+            system,
+            f"the system of zone '{zone.item.name}'",
+            "ideal heating and cooling without limits replace it",
+        )
+    on = (
+        year(work, system, "availability_schedule_name", "system_availability_schedule_name")
+        if ideal
+        else constant(1.0)
+    )
+    values = {"heating": points.heating, "cooling": points.cooling}
+    for which, never in (("heating", NEVER_HEATS), ("cooling", NEVER_COOLS)):
+        allowed = year(work, system, f"{which}_availability_schedule_name") if ideal else constant(1.0)
+        values[which] = combined(
+            lambda set_point, first, second, never=never: (
+                min(max(set_point, NEVER_HEATS), NEVER_COOLS) if first > 0.0 and second > 0.0 else never
+            ),
+            values[which], on, allowed,
+        )  # fmt: skip
+    crossing = combined(lambda heat, cool: float(heat > cool), values["heating"], values["cooling"])
+    if 1.0 in crossing.values:
+        work.findings.left_out(
+            zone.item,
+            "a heating set point above the cooling set point",
+            "cooling has the heating set point then",
+        )
+        values["cooling"] = combined(max, values["heating"], values["cooling"])
+    held = work.section("zones")[zone.name]
+    for which, never in (("heating", NEVER_HEATS), ("cooling", NEVER_COOLS)):
+        if values[which].constant == never:
+            continue
+        given = temperature(work, f"{zone.item.name} {which} set point", values[which])
+        held[which] = {"setpoint": {"schedule": given} if isinstance(given, str) else given}
+        limit = _limit(work, system, which) if ideal else None
+        if limit is not None:
+            held[which]["capacity"] = round(limit, 3)
+    if ideal:
+        _outdoor_air(work, zone, system, on, zones)
+
+
+def _limit(work: Work, system: Item, which: str) -> float | None:
+    """Largest power; None without a limit. [W]"""
+    word = system.word(f"{which}_limit")
+    if word in ("", "nolimit"):
+        return None
+    kind = "sensible" if which == "heating" else "total"
+    limits = []
+    if "capacity" in word:
+        given = system.number(f"maximum_{kind}_{which}_capacity")
+        limits += [] if given is None else [given]
+        if given is not None and which == "cooling":
+            work.findings.approximated(
+                system, "a limit of total cooling", "the same limit of sensible cooling"
+            )
+    if "flowrate" in word:
+        flow = system.number(f"maximum_{which}_air_flow_rate")
+        extreme = "maximum_heating" if which == "heating" else "minimum_cooling"
+        supply = system.needed(f"{extreme}_supply_air_temperature")
+        if flow is not None:
+            limits.append(flow * _AIR_DENSITY * _AIR_HEAT * abs(supply - _ROOM[which]))
+            work.findings.approximated(
+                system,
+                f"a limit of the flow for {which}",
+                f"a limit of the power, that of this flow into air of {_ROOM[which]:g} degC",
+            )
+    if not limits:
+        work.findings.approximated(
+            system,
+            f"a limit of {which} that EnergyPlus sizes from design days",
+            "no limit: the set point is held where the sized system would not hold it",
+        )
+        return None
+    return min(limits)
+
+
+def _outdoor_air(work: Work, zone: Zone, system: Item, on: Year, zones: dict[str, Zone]) -> None:
+    """Outdoor air of the ideal loads as ventilation, whenever the system is available."""
+    flow, values = 0.0, constant(1.0)
+    named = system.text("design_specification_outdoor_air_object_name")
+    if named:
+        item = work.model.require(
+            system, "design_specification_outdoor_air_object_name", "DesignSpecification:OutdoorAir"
+        )
+        flow = _outdoor_flow(work, item, zone, zones)
+        values = year(work, item, "outdoor_air_schedule_name")
+    elif system.kind == _TEMPLATE and system.word("outdoor_air_method") not in ("", "none"):
+        flow = _outdoor_flow(work, system, zone, zones)
+    if flow <= 0.0:
+        return
+    for key, word in (
+        ("demand_controlled_ventilation_type", "control by demand"),
+        ("outdoor_air_economizer_type", "an economizer"),
+    ):
+        if system.word(key) not in ("", "none", "noeconomizer"):
+            work.findings.left_out(
+                system, word, "the flow of outdoor air stays as designed: other cooling loads"
+            )
+    if system.word("heat_recovery_type") not in ("", "none"):
+        share = system.number("sensible_heat_recovery_effectiveness") or 0.0
+        flow *= 1.0 - share
+        work.findings.approximated(
+            system,
+            "heat recovery",
+            "less outdoor air by its effectiveness, at all times: other cooling loads",
+        )
+    work.findings.approximated(
+        system,
+        "outdoor air",
+        "ventilation of the zone: its heat is in the loads here, and so is not in 'Zone Air System Sensible' "
+        "of EnergyPlus but in 'Zone Ideal Loads Supply Air'; loads are sensible",
+    )
+    active = combined(lambda first, second: second if first > 0.0 else 0.0, on, values)
+    ventilate(work, zone, f"{system.name or zone.item.name} outdoor air", flow, active)
+
+
+def _outdoor_flow(work: Work, item: Item, zone: Zone, zones: dict[str, Zone]) -> float:
+    """Design flow of outdoor air. [m3/s]"""
+    person = item.number("outdoor_air_flow_per_person", "outdoor_air_flow_rate_per_person") or 0.0
+    area = (
+        item.number("outdoor_air_flow_per_zone_floor_area", "outdoor_air_flow_rate_per_zone_floor_area")
+        or 0.0
+    )
+    whole = item.number("outdoor_air_flow_per_zone", "outdoor_air_flow_rate_per_zone") or 0.0
+    changes = item.number("outdoor_air_flow_air_changes_per_hour") or 0.0
+    parts = {
+        "flow/person": person * people_in(work, zone, zones),
+        "flow/area": area * zone.floor,
+        "flow/zone": whole,
+        "airchanges/hour": changes * zone.volume / 3600.0,
+    }
+    method = item.word("outdoor_air_method") or "flow/person"
+    if method in parts:
+        return parts[method]
+    if method == "sum":
+        return sum(parts.values())
+    if method == "maximum":
+        return max(parts.values())
+    work.findings.left_out(item, f"outdoor air by {method}", "no outdoor air enters by this system")
+    return 0.0

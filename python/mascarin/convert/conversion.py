@@ -1,0 +1,178 @@
+"""A model of EnergyPlus as a building of Mascarin."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from datetime import date, timedelta
+from pathlib import Path
+from typing import Any, Final
+
+from mascarin.building import Building
+from mascarin.convert.airflow import describe_air
+from mascarin.convert.conditioning import describe_conditioning, usual_temperatures
+from mascarin.convert.enclosures import describe_enclosures
+from mascarin.convert.faces import faces, openings
+from mascarin.convert.films import Films
+from mascarin.convert.findings import Finding
+from mascarin.convert.gains import describe_gains
+from mascarin.convert.schedules import calendar_year
+from mascarin.convert.shades import describe_shades
+from mascarin.convert.site import describe_site
+from mascarin.convert.source import read
+from mascarin.convert.surfaces import describe_surfaces
+from mascarin.convert.unread import note_unread
+from mascarin.convert.windows import describe_openings
+from mascarin.convert.work import Section, Work
+from mascarin.convert.zones import describe_zones
+from mascarin.errors import InputError
+
+_ORDER: Final = (
+    "site", "materials", "constructions", "glazings", "schedules", "zones", "air_paths", "openings",
+    "surfaces", "windows", "shades",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """A converted model.
+
+    Attributes
+    ----------
+    file : Path
+        The file.
+    version : str
+        Version of EnergyPlus that it is written for.
+    building : Building
+        The building.
+    description : dict
+        Content of its YAML file.
+    findings : tuple of Finding
+        What is not carried over as it is, object by object; see `Finding`.
+    names : dict of str to dict of str to str
+        Names of the building by section and name in the file.
+    start, end : str
+        Period of the run, in a year with the same days of the week.
+    steps_per_hour : int
+        Number of time steps of EnergyPlus in an hour.
+    """
+
+    file: Path
+    version: str
+    building: Building
+    description: Section
+    findings: tuple[Finding, ...]
+    names: dict[str, dict[str, str]]
+    start: str
+    end: str
+    steps_per_hour: int
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing that changes the results was left out."""
+        return not any(one.level == "left out" for one in self.findings)
+
+
+def convert(file: str | Path, *, weather: str | Path | None = None) -> Conversion:
+    """Convert a model of EnergyPlus.
+
+    Parameters
+    ----------
+    file : str or Path
+        IDF or epJSON file of version 8.9 or later.
+    weather : str or Path, optional
+        Weather file (EPW) that gives the site where the model has no ``Site:Location``.
+
+    Returns
+    -------
+    Conversion
+        The building, and what is not carried over.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or an object cannot be used; the text names its line, class and name.
+
+    Examples
+    --------
+    >>> from mascarin.convert import convert
+    >>> convert("office.idf")  # doctest: +SKIP
+    """
+    work = Work(read(Path(file)))
+    every = faces(work)
+    if not every and not work.model.of("InternalMass"):
+        raise InputError(f"{file}: found no surfaces; expected walls, floors and roofs of the zones")
+    inside = openings(work, every)
+    describe_site(work, None if weather is None else Path(weather))
+    zones = describe_zones(work, every)
+    films = Films(work)
+    surfaces = describe_surfaces(work, every, films)
+    describe_openings(work, inside, films, surfaces)
+    describe_shades(work, every, inside)
+    describe_gains(work, zones, usual_temperatures(work, zones))
+    describe_air(work, zones)
+    describe_conditioning(work, zones)
+    describe_enclosures(work, _built(work), zones)
+    note_unread(work)
+    building = _built(work)
+    start, end = _period(work)
+    step = work.model.one("Timestep")
+    return Conversion(
+        file=Path(file),
+        version=".".join(str(part) for part in work.model.version[:2]),
+        building=building,
+        description=_ordered(work),
+        findings=tuple(work.findings.every),
+        names=work.names.original,
+        start=start,
+        end=end,
+        steps_per_hour=int((step.number("number_of_timesteps_per_hour") if step is not None else None) or 6),
+    )
+
+
+def _ordered(work: Work) -> Section:
+    main = work.model.one("Building")
+    title = (main.name if main is not None else "") or work.model.file.stem
+    title = work.model.file.stem if title.casefold() == "none" else title
+    return {"name": title} | {key: work.sections[key] for key in _ORDER if work.sections.get(key)}
+
+
+def _built(work: Work) -> Building:
+    """The building as far as it is described.
+
+    Raises
+    ------
+    InputError
+        What the file describes is refused; the text names its objects.
+    """
+    try:
+        return Building.from_dict(_ordered(work))
+    except InputError as error:
+        text = str(error)
+        raise InputError(f"{work.model.file}: {text}{_origins(work, text)}") from None
+
+
+def _origins(work: Work, text: str) -> str:
+    """Lines on the objects behind the names of an error."""
+    lines = {item.name.casefold(): item for item in reversed(work.model.items)}
+    told = []
+    for section, names in work.names.original.items():
+        for name, made in names.items():
+            item = lines.get(name.casefold())
+            if item is not None and re.search(rf"\b{section}\.{re.escape(made)}\b|'{re.escape(made)}'", text):
+                told.append(f"\n  {section}.{made} is {item.where}")
+    return "".join(told)
+
+
+def _period(work: Work) -> tuple[str, str]:
+    """First day, and day after the last one, of the first run period."""
+    year, item = calendar_year(work), work.model.one("RunPeriod")
+    values: dict[str, Any] = {}
+    for key, default in (("begin", (1, 1)), ("end", (12, 31))):
+        month = item.number(f"{key}_month") if item is not None else None
+        day = item.number(f"{key}_day_of_month") if item is not None else None
+        values[key] = date(
+            year, int(month or default[0]), min(int(day or default[1]), 28 if month == 2 else 31)
+        )
+    last = values["end"] + timedelta(days=1)
+    return values["begin"].isoformat(), last.isoformat()

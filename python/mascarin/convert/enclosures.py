@@ -1,0 +1,120 @@
+"""What depends on the whole enclosure of a zone: where the sun falls, view factors of zones not convex."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from mascarin.building import Building
+from mascarin.building.geometry import view_factors
+from mascarin.building.rules import surface_names
+from mascarin.building.zone_surfaces import ZoneSurface, closed, floors, surfaces_of_zone
+from mascarin.convert.geometry import Array
+from mascarin.convert.source import Item
+from mascarin.convert.work import Work
+from mascarin.convert.zones import Zone
+from mascarin.errors import InputError
+
+#: Surfaces whose directions differ by less do not see each other [deg].
+_SAME_DIRECTION: Final = 10.0
+_BARE: Final = "surfaces without corners"
+
+
+def describe_enclosures(work: Work, building: Building, zones: dict[str, Zone]) -> None:
+    """Enter the distribution of the sun, and view factors where those from the corners do not exist.
+
+    Parameters
+    ----------
+    work : Work
+        The conversion; its building has no ``sun`` yet.
+    building : Building
+        The building as far as it is described.
+    zones : dict of Zone
+        Its zones.
+    """
+    main = work.model.one("Building")
+    word = main.word("solar_distribution") if main is not None else ""
+    traced = word.startswith("fullinterior")
+    if word.startswith("minimal"):
+        work.section("site")["self_shading"] = False
+    for zone in zones.values():
+        seen = surfaces_of_zone(zone.name, building.surfaces, building.windows)
+        held = work.section("zones")[zone.name]
+        reason = _not_exact(seen)
+        if reason not in ("", _BARE):
+            held["view_factors"] = by_areas(seen)
+            work.findings.approximated(
+                zone.item, reason, "view factors by areas, as those of EnergyPlus: some tenths of a kelvin"
+            )
+        if not any(item.window is not None for item in seen):
+            continue
+        if traced and reason:
+            work.findings.approximated(zone.item, reason, "beams fall on the floor, not where they would")
+        held["sun"] = _sun(work, zone.item, seen, traced and not reason)
+
+
+def _sun(work: Work, item: Item, seen: list[ZoneSurface], traced: bool) -> str:
+    if traced:
+        return "geometry"
+    if any(floors(seen)):
+        return "floor"
+    work.findings.approximated(item, "a sunlit zone without a floor", "sun falls evenly on all surfaces")
+    return "area"
+
+
+def _not_exact(seen: list[ZoneSurface]) -> str:
+    """Why exact view factors and traced beams do not exist in a zone; empty where they do."""
+    if not closed(seen):
+        return _BARE
+    outlines = {item.name: item.polygon for item in seen if item.polygon is not None}
+    try:
+        view_factors(list(outlines.values()))
+    except InputError as error:
+        return f"a shape that is not convex or not closed ({str(error).split('; expected')[0]})"
+    return ""
+
+
+def by_areas(seen: list[ZoneSurface]) -> dict[str, dict[str, float]]:
+    """View factors in proportion to areas, zero between surfaces of one direction.
+
+    Scaled symmetrically until the rows sum to one and ``A_i F_ij = A_j F_ji``.
+
+    Parameters
+    ----------
+    seen : list of ZoneSurface
+        Surfaces of a zone.
+
+    Returns
+    -------
+    dict of str to dict of str to float
+        View factors by the names of the surfaces. [-]
+    """
+    areas = np.array([float(item.area) for item in seen])
+    exchange = np.outer(areas, areas) * _visible(seen)
+    factors = np.ones(len(seen))
+    for _ in range(2000):
+        rows = exchange @ factors
+        new = np.sqrt(factors * areas / np.maximum(rows, 1e-300))
+        if float(np.max(np.abs(new / factors - 1.0))) < 1e-12:
+            break
+        factors = new
+    shares = exchange * np.outer(factors, factors) / areas[:, None]
+    shares /= shares.sum(axis=1)[:, None]
+    names = surface_names(seen)
+    return {
+        row: {column: round(float(shares[i, j]), 9) for j, column in enumerate(names) if shares[i, j] > 0.0}
+        for i, row in enumerate(names)
+    }
+
+
+def _visible(seen: list[ZoneSurface]) -> Array:
+    """One where two surfaces may see each other, zero for one direction and for a surface itself."""
+    found = 1.0 - np.eye(len(seen))
+    normals: list[Any] = [None if one.polygon is None else one.polygon.normal for one in seen]
+    limit = np.cos(np.radians(_SAME_DIRECTION))
+    for i, first in enumerate(normals):
+        for j, second in enumerate(normals[:i]):
+            if first is not None and second is not None and float(first @ second) > limit:
+                found[i, j] = found[j, i] = 0.0
+    return np.asarray(found)

@@ -1,0 +1,140 @@
+"""Surface heat transfer coefficients of the algorithms of EnergyPlus."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from mascarin.convert.source import Item
+from mascarin.convert.work import Work
+
+#: Coefficients D + E V + F V^2 of the algorithm SimpleCombined by roughness, radiation included
+#: (ASHRAE Handbook of Fundamentals 1989, p. 22.4, as in the EnergyPlus Engineering Reference).
+_COMBINED: Final = {
+    "very_rough": (11.58, 5.894, 0.0),
+    "rough": (12.49, 4.065, 0.028),
+    "medium_rough": (10.79, 4.192, 0.0),
+    "medium_smooth": (8.23, 4.0, -0.057),
+    "smooth": (10.22, 3.1, 0.0),
+    "very_smooth": (8.23, 3.33, -0.036),
+}
+#: Natural convection inside by the algorithm Simple: vertical, heat flow up and down, and both for tilted
+#: surfaces [W/(m2 K)] (Walton 1983, as in the EnergyPlus Engineering Reference).
+_SIMPLE: Final = (3.076, 4.040, 0.948, 3.870, 2.281)
+#: Wind speeds between which the quadratic is replaced by a power [m/s].
+_WINDS: Final = (1.0, 8.0)
+
+
+@dataclass(frozen=True)
+class Film:
+    """A coefficient of the description.
+
+    Attributes
+    ----------
+    convection : dict, str or float
+        The coefficient.
+    combined : bool
+        Whether it contains the long-wave radiation.
+    """
+
+    convection: Any
+    combined: bool = False
+
+
+class Films:
+    """Coefficients of the surfaces, by the algorithms and the values that the file names.
+
+    Parameters
+    ----------
+    work : Work
+        The conversion.
+    """
+
+    def __init__(self, work: Work) -> None:
+        self._work = work
+        self._given: dict[tuple[str, str], Item] = {}
+        for item in work.model.of("SurfaceProperty:ConvectionCoefficients"):
+            for k in (1, 2):
+                side = item.word(f"convection_coefficient_{k}_location")
+                if side:
+                    self._given[item.word("surface_name"), side] = item
+        for item in work.model.of("SurfaceProperty:ConvectionCoefficients:MultipleSurface"):
+            work.findings.left_out(
+                item, "coefficients of a group of surfaces", "those of the algorithm of the building are used"
+            )
+
+    def inside(self, user: Item, zone: Item | None, tilt: float, *, window: bool = False) -> Any:
+        """Coefficient of an inner surface."""
+        given = self._own(user, "inside")
+        if given is not None:
+            return given
+        main = self._work.model.one("SurfaceConvectionAlgorithm:Inside")
+        word = zone.word("zone_inside_convection_algorithm") if zone is not None else ""
+        source = zone if word else main
+        word = word or (main.word("algorithm") if main is not None else "") or "tarp"
+        if word == "simple":
+            return _simple(tilt)
+        if word not in ("tarp", "detailed", "bldgdetailed") and source is not None:
+            self._work.findings.approximated(
+                source, f"inside convection by {word}", "the algorithm TARP is used: coefficients differ"
+            )
+        return "iso15099" if window else "tarp"
+
+    def outside(self, user: Item, zone: Item | None, roughness: str) -> Film:
+        """Coefficient of a surface outdoors."""
+        given = self._own(user, "outside")
+        if given is not None:
+            return Film(given)
+        main = self._work.model.one("SurfaceConvectionAlgorithm:Outside")
+        word = zone.word("zone_outside_convection_algorithm") if zone is not None else ""
+        source = zone if word else main
+        word = word or (main.word("algorithm") if main is not None else "") or "doe-2"
+        if word == "simplecombined":
+            return Film(combined(roughness), combined=True)
+        if word == "mowitt":
+            return Film("mowitt")
+        if word in ("tarp", "detailed", "blast"):
+            return Film({"kind": "tarp", "roughness": roughness})
+        if word != "doe-2" and source is not None:
+            self._work.findings.approximated(
+                source, f"outside convection by {word}", "the algorithm TARP is used: coefficients differ"
+            )
+            return Film({"kind": "tarp", "roughness": roughness})
+        return Film({"kind": "doe2", "roughness": roughness})
+
+    def _own(self, user: Item, side: str) -> Any:
+        """Coefficient that the file gives for one surface; None without it."""
+        item = self._given.get((user.name.casefold(), side))
+        if item is None:
+            return None
+        k = 1 if item.word("convection_coefficient_1_location") == side else 2
+        kind = item.word(f"convection_coefficient_{k}_type")
+        value = item.number(f"convection_coefficient_{k}")
+        if kind == "value" and value is not None:
+            return value
+        word = {"tarp": "tarp", "mowitt": "mowitt", "doe2": "doe2", "simple": None}.get(kind)
+        if word is None or (side == "inside" and word != "tarp"):
+            self._work.findings.left_out(
+                item, f"a coefficient by {kind}", "that of the algorithm of the building is used"
+            )
+        return word if side == "outside" or word == "tarp" else None
+
+
+def _simple(tilt: float) -> Any:
+    steep = abs(np.cos(np.radians(tilt)))
+    vertical, up, down, tilted_up, tilted_down = _SIMPLE
+    if steep < 0.3827:
+        return vertical
+    upward, downward = (up, down) if steep >= 0.9239 else (tilted_up, tilted_down)
+    return {"kind": "power", "upward": {"a": upward}, "downward": {"a": downward}}
+
+
+def combined(roughness: str) -> dict[str, Any]:
+    """A coefficient ``D + E V + F V^2`` as ``a + c V^m``, fitted from 1 to 8 m/s."""
+    d, e, f = _COMBINED[roughness]
+    wind = np.linspace(*_WINDS, 47)
+    slope, offset = np.polyfit(np.log(wind), np.log(e * wind + f * wind**2), 1)
+    law = {"a": d, "c": round(float(np.exp(offset)), 4), "m": round(float(slope), 4)}
+    return {"kind": "power", "upward": law, "downward": dict(law)}

@@ -1,0 +1,78 @@
+"""What a conversion carried over in another form or not at all, object by object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+from mascarin.convert.source import Item
+
+Level = Literal["left out", "approximated", "no effect"]
+
+#: Levels in the order in which they are listed.
+LEVELS: Final[tuple[Level, ...]] = ("left out", "approximated", "no effect")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One object, or one property of it, that is not carried over as it is.
+
+    Attributes
+    ----------
+    level : str
+        ``left out``: not carried over, the results change. ``approximated``: carried over in another form,
+        whose effect is stated. ``no effect``: not needed here.
+    kind, name : str
+        Class and name of the object; several names for objects of the same kind without effect.
+    line : int or None
+        Line in the file.
+    what : str
+        What was found.
+    effect : str
+        What this does to the results.
+    """
+
+    level: Level
+    kind: str
+    name: str
+    line: int | None
+    what: str
+    effect: str
+
+    def text(self) -> str:
+        """The finding on one line."""
+        place = "" if self.line is None else f"line {self.line}: "
+        name = f" '{self.name}'" if self.name else ""
+        return f"{place}{self.kind}{name}: {self.what}: {self.effect}"
+
+
+@dataclass
+class Findings:
+    """Findings in the order in which they were made, each once."""
+
+    every: dict[Finding, None] = field(default_factory=dict)
+
+    def left_out(self, item: Item, what: str, effect: str) -> None:
+        """Note an object or property that is not carried over and changes the results."""
+        self._add("left out", item, what, effect)
+
+    def approximated(self, item: Item, what: str, effect: str) -> None:
+        """Note an object or property that is carried over in another form."""
+        self._add("approximated", item, what, effect)
+
+    def no_effect(self, items: Iterable[Item], what: str, effect: str) -> None:
+        """Note objects of one class that are not needed."""
+        several = list(items)
+        if len(several) == 1:
+            self._add("no effect", several[0], what, effect)
+        elif several:
+            count = f"{len(several)} objects"
+            self.every[Finding("no effect", several[0].kind, count, several[0].line, what, effect)] = None
+
+    def _add(self, level: Level, item: Item, what: str, effect: str) -> None:
+        self.every[Finding(level, item.kind, item.name, item.line, what, effect)] = None
+
+    def of(self, level: Level) -> list[Finding]:
+        """Findings of one level, by line."""
+        return sorted((one for one in self.every if one.level == level), key=lambda one: one.line or 0)

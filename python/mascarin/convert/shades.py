@@ -1,0 +1,183 @@
+"""Overhangs, fins, neighbouring buildings and other shading surfaces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from mascarin.building.geometry import Polygon
+from mascarin.convert import geometry as g
+from mascarin.convert.faces import SURFACES, Face, Opening
+from mascarin.convert.schedules import SCHEDULES, year
+from mascarin.convert.source import Item
+from mascarin.convert.work import Work
+from mascarin.errors import InputError
+
+_DETAILED: Final = ("Shading:Site:Detailed", "Shading:Building:Detailed", "Shading:Zone:Detailed")
+_SIMPLE: Final = ("Shading:Site", "Shading:Building")
+#: Mean transmittance above which a shade is left out rather than taken as opaque [-].
+_HALF: Final = 0.5
+
+
+def describe_shades(work: Work, every: list[Face], openings: list[Opening]) -> None:
+    """Enter all shading surfaces.
+
+    Raises
+    ------
+    InputError
+        A shade of a window or surface that does not exist.
+    """
+    rules, by_face = g.rules_of(work.model), {face.item.name.casefold(): face for face in every}
+    by_opening = {opening.item.name.casefold(): opening for opening in openings}
+    for item in work.model.of(*_DETAILED):
+        points = _detailed(work, rules, item, by_face)
+        if _opaque(work, item):
+            _enter(work, item, item.name, points)
+    for item in work.model.of(*_SIMPLE):
+        _enter(work, item, item.name, _simple(rules, item))
+    attached = {
+        "Shading:Overhang": _overhang, "Shading:Overhang:Projection": _overhang,
+        "Shading:Fin": _fins, "Shading:Fin:Projection": _fins,
+    }  # fmt: skip
+    for kind, made in attached.items():
+        for item in work.model.of(kind):
+            window = by_opening.get(item.word("window_or_door_name"))
+            if window is None:
+                raise item.error(
+                    f"window_or_door_name: found '{item.text('window_or_door_name')}'",
+                    "a window or door of the file",
+                    "Correct it",
+                )
+            for name, points in made(item, window.points):
+                _enter(work, item, name, points)
+    _reflectances(work)
+
+
+def _detailed(work: Work, rules: g.Rules, item: Item, by_face: dict[str, Face]) -> g.Array:
+    corners = g.corners_of(item)
+    if item.kind == "Shading:Site:Detailed":
+        return corners
+    if item.kind == "Shading:Building:Detailed":
+        return g.frame_of(None, rules, rules.relative).place(corners)
+    base = by_face.get(item.word("base_surface_name"))
+    if base is None:
+        work.model.require(item, "base_surface_name", *SURFACES)
+        raise item.error("no surface", "a surface", "Correct base_surface_name")
+    return g.frame_of(base.zone, rules, rules.relative).place(corners)
+
+
+def _simple(rules: g.Rules, item: Item) -> g.Array:
+    moved = item.kind == "Shading:Building" and rules.rectangles_relative
+    frame = g.frame_of(None, rules, moved)
+    start = np.array([[item.number(f"starting_{axis}_coordinate") or 0.0 for axis in "xyz"]])
+    plane = g.plane_of(
+        (item.number("azimuth_angle") or 0.0) + frame.rotation, item.number("tilt_angle") or 0.0
+    )
+    return g.rectangle(frame.place(start)[0], plane, item.needed("length"), item.needed("height"))
+
+
+def _opaque(work: Work, item: Item) -> bool:
+    """Whether a shade is carried over as an opaque one."""
+    if not item.text("transmittance_schedule_name"):
+        return True
+    if work.model.named(item.text("transmittance_schedule_name"), *SCHEDULES) is None:
+        work.model.require(item, "transmittance_schedule_name", *SCHEDULES)
+    values = year(work, item, "transmittance_schedule_name", default=0.0)
+    given = values.constant
+    if given == 0.0:
+        return True
+    mean = values.mean()
+    if mean > _HALF:
+        work.findings.left_out(
+            item, f"a transmittance of {mean:.2f}", "it shades nothing: more sun on what it shades"
+        )
+        return False
+    work.findings.left_out(item, f"a transmittance of {mean:.2f}", "it is opaque: less sun on what it shades")
+    return True
+
+
+def _enter(work: Work, item: Item, name: str, points: g.Array) -> None:
+    points = g.without_repeats(points)
+    try:
+        Polygon.of(name, g.rounded(points))
+    except InputError as error:
+        work.findings.left_out(item, str(error).split("; expected")[0], "it shades nothing")
+        return
+    work.section("shades")[work.names.of("shades", name)] = {"vertices": g.rounded(points)}
+
+
+def _edges(points: g.Array) -> tuple[g.Plane, g.Array, float, float]:
+    """Plane, lower left corner, width and height of a window."""
+    plane = g.plane_through(points)
+    along, above = points @ plane.right, points @ plane.up
+    return plane, g.lower_left(points), float(np.ptp(along)), float(np.ptp(above))
+
+
+def _overhang(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
+    plane, corner, width, height = _edges(points)
+    left, right, above = (
+        item.number(key) or 0.0
+        for key in (
+            "left_extension_from_window_door_width",
+            "right_extension_from_window_door_width",
+            "height_above_window_or_door",
+        )
+    )
+    depth = _depth(item, "depth", height)
+    reach = _leaning(item, "tilt_angle_from_window_door", plane.up, plane.out) * depth
+    start = corner - left * plane.right + (height + above) * plane.up
+    along = (width + left + right) * plane.right
+    if depth > 0.0:
+        yield item.name, np.array([start, start + along, start + along + reach, start + reach])
+
+
+def _fins(item: Item, points: g.Array) -> Iterator[tuple[str, g.Array]]:
+    plane, corner, width, height = _edges(points)
+    for side, sign, place in (("left", -1.0, 0.0), ("right", 1.0, width)):
+        depth = _depth(item, f"{side}_depth", width)
+        if depth <= 0.0:
+            continue
+        beside = item.number(f"{side}_extension_from_window_door") or 0.0
+        top = item.number(f"{side}_distance_above_top_of_window") or 0.0
+        below = item.number(f"{side}_distance_below_bottom_of_window") or 0.0
+        angle = f"{side}_tilt_angle_from_window_door"
+        reach = _leaning(item, angle, sign * plane.right, plane.out) * depth
+        start = corner + (place + sign * beside) * plane.right - below * plane.up
+        up = (height + top + below) * plane.up
+        yield f"{item.name} {side}", np.array([start, start + up, start + up + reach, start + reach])
+
+
+def _depth(item: Item, key: str, size: float) -> float:
+    """Depth of a shade, given in metres or as a fraction of the height or width of the window. [m]"""
+    if not item.kind.endswith("Projection"):
+        return item.number(key) or 0.0
+    fraction = {
+        "depth": "depth_as_fraction_of_window_door_height",
+        "left_depth": "left_depth_as_fraction_of_window_door_width",
+        "right_depth": "right_depth_as_fraction_of_window_door_width",
+    }[key]
+    return (item.number(fraction) or 0.0) * size
+
+
+def _leaning(item: Item, key: str, along: g.Array, out: g.Array) -> g.Array:
+    given = item.number(key)
+    angle = math.radians(90.0 if given is None else given)
+    direction: g.Array = math.cos(angle) * along + math.sin(angle) * out
+    return direction
+
+
+def _reflectances(work: Work) -> None:
+    building = work.model.one("Building")
+    reflects = building is not None and "reflections" in building.word("solar_distribution")
+    for item in work.model.of("ShadingProperty:Reflectance"):
+        if reflects:
+            work.findings.left_out(item, "reflections from it", "less sun on the surfaces that it faces")
+        else:
+            work.findings.no_effect([item], "reflectance", "EnergyPlus uses it only with reflections")
+    if building is not None and reflects:
+        work.findings.left_out(
+            building, "reflections from surfaces outdoors", "the ground and the sky alone reflect and emit"
+        )

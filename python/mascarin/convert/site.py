@@ -1,0 +1,139 @@
+"""Site, wind and sky; temperatures of the ground."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+from mascarin.convert.source import Item
+from mascarin.convert.work import Work
+from mascarin.convert.year import DAYS, Year, constant, year_of
+from mascarin.errors import InputError
+
+_TERRAINS: Final = {
+    "country": "open",
+    "suburbs": "suburb",
+    "urban": "suburb",
+    "city": "city",
+    "ocean": "sea",
+}
+_SKIES: Final = {
+    "clarkallen": "clark_allen",
+    "brunt": "brunt",
+    "idso": "brunt",
+    "berdahlmartin": "martin_berdahl",
+}
+_MONTHS: Final = (
+    "january", "february", "march", "april", "may", "june", "july", "august", "september", "october",
+    "november", "december",
+)  # fmt: skip
+_LENGTHS: Final = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
+#: Temperature of the ground where the file gives none, as in EnergyPlus [degC].
+_GROUND: Final = 18.0
+
+
+def describe_site(work: Work, weather: Path | None) -> None:
+    """Enter the site.
+
+    Raises
+    ------
+    InputError
+        The file has no ``Site:Location`` and no weather file is given.
+    """
+    found = work.section("site")
+    found |= _location(work, weather)
+    reflectance = _monthly(work.model.one("Site:GroundReflectance"), "ground_reflectance")
+    if reflectance is not None:
+        mean = sum(v * n for v, n in zip(reflectance, _LENGTHS, strict=True)) / 365.0
+        found["ground_reflectance"] = round(mean, 4)
+        if max(reflectance) - min(reflectance) > 1e-6:
+            item = work.model.of("Site:GroundReflectance")[0]
+            work.findings.approximated(item, "a reflectance by month", "its mean over the year is used")
+    found["wind"] = _wind(work)
+    _sky(work, found)
+
+
+def _location(work: Work, weather: Path | None) -> dict[str, Any]:
+    item = work.model.one("Site:Location")
+    if item is not None:
+        values = [item.number(key) or 0.0 for key in ("latitude", "longitude", "elevation", "time_zone")]
+    elif weather is not None:
+        values = _of_weather(weather)
+    else:
+        raise InputError(
+            f"{work.model.file}: found no Site:Location; expected the place of the building. Add the object, "
+            "or name the weather file with --weather"
+        )
+    latitude, longitude, altitude, zone = values
+    hours, minutes = divmod(round(abs(zone) * 60.0), 60)
+    offset = f"UTC{'-' if zone < 0.0 else '+'}{hours}" + (f":{minutes:02d}" if minutes else "")
+    return {"latitude": latitude, "longitude": longitude, "altitude": altitude, "timezone": offset}
+
+
+def _of_weather(path: Path) -> list[float]:
+    with path.open(encoding="latin-1") as lines:
+        cells = lines.readline().split(",")
+    try:
+        latitude, longitude, zone, altitude = (float(cell) for cell in cells[6:10])
+    except ValueError:
+        raise InputError(
+            f"{path}:1: found no LOCATION; expected a weather file of EnergyPlus (.epw)"
+        ) from None
+    return [latitude, longitude, altitude, zone]
+
+
+def _wind(work: Work) -> dict[str, Any]:
+    building = work.model.one("Building")
+    word = building.word("terrain") if building is not None else ""
+    wind: dict[str, Any] = {"terrain": _TERRAINS.get(word or "suburbs", "suburb")}
+    heights = work.model.one("Site:HeightVariation")
+    if heights is not None:
+        for key, name in (("exponent", "exponent"), ("layer", "boundary_layer_thickness")):
+            given = heights.fields.get(f"wind_speed_profile_{name}")
+            wind |= {} if given is None else {key: float(given)}
+    station = work.model.one("Site:WeatherStation")
+    for key, name in (
+        ("mast_height", "wind_sensor_height_above_ground"),
+        ("mast_exponent", "wind_speed_profile_exponent"),
+        ("mast_layer", "wind_speed_profile_boundary_layer_thickness"),
+    ):
+        given = None if station is None else station.number(name)
+        wind |= {} if given is None else {key: given}
+    return wind
+
+
+def _sky(work: Work, site: dict[str, Any]) -> None:
+    items = work.model.of("WeatherProperty:SkyTemperature")
+    if not items:
+        return
+    word = items[0].word("calculation_type")
+    if word in _SKIES:
+        site["sky"] = _SKIES[word]
+        work.findings.approximated(items[0], f"sky by {word}", f"the model '{_SKIES[word]}' with its clouds")
+    else:
+        work.findings.left_out(items[0], f"sky temperature by {word}", "that of the weather file is used")
+
+
+def _monthly(item: Item | None, ending: str) -> list[float] | None:
+    if item is None:
+        return None
+    values = [item.number(f"{month}_{ending}") for month in _MONTHS]
+    return [_GROUND if value is None else value for value in values]
+
+
+def ground(work: Work, kind: str = "BuildingSurface") -> Year:
+    """Temperature of the ground under the building over the year. [degC]
+
+    Parameters
+    ----------
+    work : Work
+        The conversion.
+    kind : str
+        Which temperatures: ``BuildingSurface`` or ``FCfactorMethod``.
+    """
+    item = work.model.one(f"Site:GroundTemperature:{kind}")
+    values = _monthly(item, "ground_temperature")
+    if values is None:
+        return constant(_GROUND)
+    ends = [f"{month:02d}-{length:02d}" for month, length in enumerate(_LENGTHS, start=1)]
+    return year_of([(end, (((0, value),),) * len(DAYS)) for end, value in zip(ends, values, strict=True)])

@@ -1,0 +1,336 @@
+"""Objects of an EnergyPlus file (IDF or epJSON), each with its fields, defaults and line.
+
+The parser and the schemas of each version (field names, their order, defaults, extensible groups) are those
+of idfkit; EnergyPlus itself is not needed.
+"""
+
+from __future__ import annotations
+
+import bisect
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from mascarin._io.regular import require_regular
+from mascarin.errors import InputError, did_you_mean
+
+#: Words that let EnergyPlus find a number itself.
+AUTO: Final = ("autosize", "autocalculate", "useweatherfile")
+_TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')
+_SUFFIXES: Final = {".idf": "idf", ".epjson": "epjson", ".json": "epjson"}
+
+
+@dataclass(frozen=True)
+class Item:
+    """One object of the file.
+
+    Attributes
+    ----------
+    kind : str
+        Class of the object, such as ``Zone``.
+    name : str
+        Its name; empty for a class without names.
+    fields : mapping of str to object
+        Values by the names of epJSON; blank fields are left out.
+    defaults : mapping of str to object
+        Default of each field in this version of EnergyPlus.
+    line : int or None
+        Line in the file.
+    file : str
+        Name of the file.
+    """
+
+    kind: str
+    name: str
+    fields: Mapping[str, Any]
+    defaults: Mapping[str, Any] = field(repr=False)
+    line: int | None
+    file: str
+
+    @property
+    def label(self) -> str:
+        """Class and name."""
+        return f"{self.kind} '{self.name}'" if self.name else self.kind
+
+    @property
+    def where(self) -> str:
+        """File, line, class and name."""
+        return f"{self.file}{'' if self.line is None else f':{self.line}'}: {self.label}"
+
+    def get(self, *keys: str) -> Any:
+        """First given value of some fields, else their default; None without either."""
+        for values in (self.fields, self.defaults):
+            for key in keys:
+                if key in values:
+                    return values[key]
+        return None
+
+    def text(self, *keys: str) -> str:
+        """The same as text without spaces at its ends; empty where nothing is given."""
+        found = self.get(*keys)
+        return "" if found is None else str(found).strip()
+
+    def word(self, *keys: str) -> str:
+        """The same in small letters, for words that EnergyPlus compares without case."""
+        return self.text(*keys).casefold()
+
+    def number(self, *keys: str) -> float | None:
+        """A number; None where nothing is given or EnergyPlus finds it (autosize, autocalculate).
+
+        Raises
+        ------
+        InputError
+            The field holds something else.
+        """
+        found = self.get(*keys)
+        if found is None or (isinstance(found, str) and found.strip().casefold() in AUTO):
+            return None
+        try:
+            return float(found)
+        except (TypeError, ValueError):
+            raise self.error(f"{keys[0]}: found {found!r}", "a number", "Correct the field") from None
+
+    def needed(self, *keys: str) -> float:
+        """A number that must be given.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        found = self.number(*keys)
+        if found is None:
+            text = self.text(*keys)
+            raise self.error(f"{keys[0]}: found {text or 'nothing'}", "a number", "Give the number")
+        return found
+
+    def is_auto(self, *keys: str) -> bool:
+        """Whether the field leaves the number to EnergyPlus."""
+        return self.word(*keys) in AUTO
+
+    def rows(self, key: str) -> list[Mapping[str, Any]]:
+        """Groups of an extensible field."""
+        return [row for row in self.fields.get(key) or [] if isinstance(row, Mapping)]
+
+    def error(self, found: str, expected: str, advice: str) -> InputError:
+        """An error that names the object and its line."""
+        return InputError(f"{self.where}: {found}; expected {expected}. {advice}")
+
+
+class Model:
+    """All objects of a file, by class and by name, without regard to case.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    version : tuple of int
+        Version of EnergyPlus that it is written for.
+    items : list of Item
+        In the order of the file.
+    groups : mapping of str to str
+        Group of each class that occurs, in the dictionary of this version.
+    """
+
+    def __init__(
+        self, file: Path, version: tuple[int, ...], items: list[Item], groups: Mapping[str, str]
+    ) -> None:
+        self.file, self.version, self.items, self.groups = file, version, items, groups
+        self._asked: set[str] = set()
+        self._by_kind: dict[str, list[Item]] = {}
+        self._by_name: dict[tuple[str, str], Item] = {}
+        for item in items:
+            self._by_kind.setdefault(item.kind.casefold(), []).append(item)
+            self._by_name.setdefault((item.kind.casefold(), item.name.casefold()), item)
+
+    def of(self, *kinds: str) -> list[Item]:
+        """Objects of some classes; the classes count as read."""
+        self._asked |= {kind.casefold() for kind in kinds}
+        return [item for kind in kinds for item in self._by_kind.get(kind.casefold(), [])]
+
+    def one(self, kind: str) -> Item | None:
+        """The object of a class of which there is one; None without it."""
+        found = self.of(kind)
+        return found[0] if found else None
+
+    def named(self, name: str, *kinds: str) -> Item | None:
+        """The object of one of some classes with a name."""
+        self._asked |= {kind.casefold() for kind in kinds}
+        keys = ((kind.casefold(), name.strip().casefold()) for kind in kinds)
+        return next((self._by_name[key] for key in keys if key in self._by_name), None)
+
+    def require(self, user: Item, key: str, *kinds: str, name: str | None = None) -> Item:
+        """The object that a field names.
+
+        Raises
+        ------
+        InputError
+            There is none; the text names the nearest ones.
+        """
+        wanted = user.text(key) if name is None else name
+        found = self.named(wanted, *kinds)
+        if found is None:
+            known = [item.name for item in self.of(*kinds)]
+            raise user.error(
+                f"{key}: found '{wanted}'" if wanted else f"{key}: found nothing",
+                f"the name of a {' or '.join(kinds[:3])} of the file",
+                did_you_mean(wanted, known) or f"Add the {kinds[0]}",
+            )
+        return found
+
+    def unread(self) -> Iterator[tuple[str, list[Item]]]:
+        """Classes that no part of the conversion has read, with their objects."""
+        for key, items in self._by_kind.items():
+            if key not in self._asked:
+                yield items[0].kind, items
+
+
+def read(path: Path) -> Model:
+    """Read an IDF or epJSON file of EnergyPlus 8.9 or later.
+
+    Parameters
+    ----------
+    path : Path
+        The file; ``.idf``, ``.epJSON`` or ``.json``.
+
+    Returns
+    -------
+    Model
+        Its objects.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, its version is not known, or it has objects or fields that do not exist in
+        its version; the text names file, line and object.
+    """
+    form = _SUFFIXES.get(path.suffix.casefold())
+    if form is None:
+        raise InputError(f"{path}: found a file '{path.suffix}'; expected .idf or .epJSON of EnergyPlus")
+    require_regular(path)
+    kit = _idfkit()
+    try:
+        document: Any = kit.load_idf(path, preserve_formatting=True) if form == "idf" else _epjson(kit, path)
+    except kit.VersionNotFoundError:
+        raise InputError(
+            f"{path}: found no Version object; expected one such as 'Version, 25.2;'. Is this a model of "
+            "EnergyPlus?"
+        ) from None
+    except (kit.SchemaNotFoundError, kit.UnsupportedVersionError):
+        raise _unknown_version(kit, path) from None
+    except kit.IDFParseError as error:
+        raise _unreadable(path, error) from None
+    except kit.IdfKitError as error:
+        raise InputError(f"{path}: {error}; expected a model of EnergyPlus") from None
+    items, schema = _items(document, path, form), document.schema
+    kinds = {item.kind for item in items}
+    groups = {kind: str(schema.get_group(kind) or "") for kind in kinds} if schema is not None else {}
+    return Model(path, tuple(document.version), items, groups)
+
+
+def _idfkit() -> Any:
+    try:
+        import idfkit
+    except ImportError:
+        raise InputError(
+            "convert: found no package idfkit, which reads files of EnergyPlus. Install it: "
+            "pip install 'mascarin[energyplus]'"
+        ) from None
+    return idfkit
+
+
+def _epjson(kit: Any, path: Path) -> Any:
+    try:
+        document: Any = kit.load_epjson(path)
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}:{error.lineno}: found no JSON: {error.msg}; expected epJSON") from None
+    except (UnicodeDecodeError, AttributeError, TypeError) as error:
+        raise InputError(f"{path}: found no epJSON ({error}); expected classes of objects") from None
+    return document
+
+
+def _unknown_version(kit: Any, path: Path) -> InputError:
+    known = kit.get_schema_manager().get_supported_versions()
+    ends = " to ".join(f"{major}.{minor}" for major, minor, _ in (min(known), max(known)))
+    found = re.search(r"version[^0-9]*([0-9.]+)", path.read_text(encoding="latin-1"), re.IGNORECASE)
+    return InputError(
+        f"{path}: found EnergyPlus version {found[1] if found else 'that is not known'}; expected {ends}. "
+        "Bring the file to such a version by IDFVersionUpdater, which comes with EnergyPlus"
+    )
+
+
+def _unreadable(path: Path, error: Any) -> InputError:
+    told = []
+    for one in error.diagnostics:
+        place = f"{path}{'' if one.line is None else f':{one.line}'}"
+        name = f"{one.obj_type or 'object'}{f' {one.obj_name!r}' if one.obj_name else ''}"
+        told.append(f"{place}: {name}: {one.message}")
+    return InputError(
+        "\n".join(told or [f"{path}: {error}"])
+        + "; expected objects and fields of the version that the file names. Correct it, or bring it to "
+        "that version by IDFVersionUpdater, which comes with EnergyPlus"
+    )
+
+
+def _items(document: Any, path: Path, form: str) -> list[Item]:
+    schema = document.schema
+    lines = _idf_lines(document) if form == "idf" else _epjson_lines(path)
+    defaults: dict[str, dict[str, Any]] = {}
+    found = []
+    for k, one in enumerate(document.all_objects):
+        kind = str(one.obj_type)
+        if schema is None or kind not in schema:
+            known = list(schema.object_types) if schema is not None else []
+            raise InputError(
+                f"{path}:{lines.get((kind, one.name), '?')}: found the class '{kind}', which EnergyPlus "
+                f"{'.'.join(map(str, document.version[:2]))} does not have. {did_you_mean(kind, known)}"
+            )
+        if kind not in defaults:
+            defaults[kind] = _defaults(schema, kind)
+        plain = {key: value for key, value in dict(one.data).items() if value is not None and value != ""}
+        line = lines.get(k) if form == "idf" else lines.get((kind, one.name), lines.get((kind, "")))
+        found.append(Item(kind, str(one.name or ""), plain, defaults[kind], line, path.name))
+    return found
+
+
+def _defaults(schema: Any, kind: str) -> dict[str, Any]:
+    names = schema.get_all_field_names(kind)
+    known = ((name, schema.get_field_default(kind, name)) for name in names)
+    return {name: value for name, value in known if value is not None and value != ""}
+
+
+def _idf_lines(document: Any) -> dict[Any, int]:
+    """Line of each object by its place."""
+    text = document.raw_text or ""
+    starts = [0, *(match.end() for match in re.finditer("\n", text))]
+    found: dict[Any, int] = {}
+    for k, one in enumerate(document.all_objects):
+        span = document.region_of(one)
+        if span is not None:
+            found[k] = bisect.bisect_right(starts, span.start)
+    return found
+
+
+def _epjson_lines(path: Path) -> dict[Any, int]:
+    """Line of each object by class and name; that of the class under the empty name."""
+    text = path.read_text(encoding="utf-8-sig")
+    starts = [0, *(match.end() for match in re.finditer("\n", text))]
+    found: dict[Any, int] = {}
+    above: list[str] = []
+    last = ""
+    for token in _TOKEN.finditer(text):
+        mark = token[0]
+        if mark in "{[":
+            above.append(last)
+            if mark == "{" and len(above) in (2, 3):
+                key = (above[1], "" if len(above) == 2 else above[2])
+                found.setdefault(key, bisect.bisect_right(starts, token.start()))
+            last = ""
+        elif mark in "}]":
+            above = above[:-1]
+        else:
+            last = json.loads(mark, strict=False)
+    return found

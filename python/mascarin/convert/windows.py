@@ -1,0 +1,205 @@
+"""Windows with their frames, and opaque doors."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from mascarin.building.geometry import Polygon
+from mascarin.convert import geometry as g
+from mascarin.convert.constructions import construction
+from mascarin.convert.faces import Opening
+from mascarin.convert.films import Films
+from mascarin.convert.glazings import construction_of, glazing
+from mascarin.convert.materials import skin
+from mascarin.convert.source import Item
+from mascarin.convert.surfaces import Surfaces
+from mascarin.convert.work import Section, Work
+from mascarin.errors import InputError
+
+_WINDOWS: Final = ("window", "glassdoor")
+#: Surface resistances that the U value of a frame contains (ISO 10077) [m2 K/W].
+_FILMS: Final = 0.17
+#: Largest U value of a frame in a description [W/(m2 K)].
+_MOST: Final = 5.8
+#: Width [m], U value [W/(m2 K)], absorptance and emissivity [-] of a frame.
+FrameData = tuple[float, float, float, float]
+
+
+def describe_openings(work: Work, every: list[Opening], films: Films, surfaces: Surfaces) -> None:
+    """Enter all windows, and doors as surfaces of their own.
+
+    Raises
+    ------
+    InputError
+        A construction that does not exist.
+    """
+    _shading_controls(work)
+    names = {opening.item.name.casefold() for opening in every}
+    for opening in every:
+        if opening.base.item.name.casefold() in surfaces.reversed_names:
+            if opening.beyond.casefold() not in names:
+                work.findings.left_out(
+                    opening.item, "an opening on one side of an interior wall", "the wall has no opening"
+                )
+            continue
+        if opening.shape in _WINDOWS:
+            _window(work, opening, films, surfaces)
+        elif opening.shape == "door":
+            _door(work, opening, films, surfaces)
+        else:
+            work.findings.left_out(
+                opening.item, f"a {opening.shape}", "its wall is opaque there: no daylight and no sun enters"
+            )
+
+
+def _window(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> None:
+    item, base = opening.item, opening.base
+    wall = surfaces.placed[base.item.name.casefold()]
+    outdoors = bool(work.section("surfaces")[wall]["outside"].get("outdoors"))
+    if not outdoors and base.boundary not in ("surface", "zone"):
+        work.findings.left_out(item, f"a window in a wall to {base.boundary}", "the wall has no window")
+        return
+    if outdoors and not base.sun:
+        work.findings.approximated(item, "a window in a wall without sun", "the sun shines on the window")
+    found = glazing(work, item, construction_of(work, item))
+    if found is None:
+        return
+    frame = _frame_of(work, item) or found.frame
+    points = g.without_repeats(opening.points)
+    shape = _glazed_shape(work, opening, points, frame, surfaces.drawn[wall])
+    film = films.outside(item, base.zone, "very_smooth")
+    tilt = g.tilt_of(base.points)
+    made: Section = {"surface": wall, "glazing": found.name, **shape}
+    if outdoors:
+        # EnergyPlus adds long-wave radiation to a combined coefficient on windows, not on walls.
+        made["outside"] = {"convection": film.convection}
+    else:
+        made["outside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
+    made["inside"] = {"convection": films.inside(item, base.zone, tilt, window=True)}
+    work.section("windows")[work.names.of("windows", item.name)] = made
+
+
+def _glazed_shape(
+    work: Work, opening: Opening, points: g.Array, frame: FrameData | None, drawn: bool
+) -> Section:
+    """Corners, area and frame of a window; the glass of EnergyPlus lies inside its frame."""
+    glass = g.area_of(opening.points)
+    made: Section = {}
+    outline = points
+    if frame is not None:
+        outline = _framed(points, frame[0])
+        whole = g.area_of(outline)
+        _, u_value, absorptance, emissivity = frame
+        made["frame"] = {
+            "fraction": round(1.0 - glass / whole, 9),
+            "u_value": min(round(u_value, 9), _MOST),
+            "absorptance": absorptance,
+            "emissivity": emissivity,
+        }
+        glass = whole
+    total = round(glass * opening.copies, 6)
+    if not drawn or not _accepted(opening, outline):
+        if drawn:
+            work.findings.approximated(
+                opening.item, "corners outside of its wall", "its area alone: nothing shades it"
+            )
+        return {"area": total} | made
+    made = {"vertices": g.rounded(outline), **made}
+    if opening.copies > 1:
+        work.findings.approximated(
+            opening.item,
+            f"{opening.copies} windows",
+            "one window of their area, with the shadows of the first",
+        )
+        made["area"] = total
+    return made
+
+
+def _accepted(opening: Opening, points: g.Array) -> bool:
+    try:
+        wall = Polygon.of("wall", g.rounded(g.without_repeats(opening.base.points)))
+        return bool(wall.contains(Polygon.of(opening.item.name, g.rounded(points))))
+    except InputError:
+        return False
+
+
+def _framed(points: g.Array, width: float) -> g.Array:
+    """A polygon with a strip of a width around it. [m]"""
+    normal = g.normal_of(points)
+    normal = normal / np.linalg.norm(normal)
+    count = len(points)
+    moved = []
+    for k in range(count):
+        before = points[k] - points[k - 1]
+        after = points[(k + 1) % count] - points[k]
+        sides = [np.cross(edge / np.linalg.norm(edge), normal) for edge in (before, after)]
+        # The corner moves so that both edges move outwards by the width.
+        moved.append(points[k] + width * (sides[0] + sides[1]) / (1.0 + float(sides[0] @ sides[1])))
+    return np.array(moved)
+
+
+def _frame_of(work: Work, item: Item) -> FrameData | None:
+    if not item.text("frame_and_divider_name"):
+        return None
+    frame = work.model.require(item, "frame_and_divider_name", "WindowProperty:FrameAndDivider")
+    bars = frame.number("divider_width") or 0.0
+    count = sum(frame.number(f"number_of_{way}_dividers") or 0.0 for way in ("horizontal", "vertical"))
+    if bars > 0.0 and count > 0.0:
+        work.findings.left_out(
+            item, "dividers", "more sun enters, by their fraction of the glass, and less heat is conducted"
+        )
+    width, conductance = frame.number("frame_width") or 0.0, frame.number("frame_conductance")
+    if width <= 0.0:
+        return None
+    if not conductance:
+        raise frame.error("a frame without frame_conductance", "a conductance [W/(m2 K)]", "Add it")
+    for key in ("frame_outside_projection", "frame_inside_projection", "inside_reveal_depth"):
+        if frame.number(key):
+            work.findings.approximated(frame, key.replace("_", " "), "it neither shades nor adds surface")
+    return (
+        width,
+        1.0 / (1.0 / conductance + _FILMS),
+        frame.number("frame_solar_absorptance") or 0.7,
+        frame.number("frame_thermal_hemispherical_emissivity") or 0.9,
+    )
+
+
+def _door(work: Work, opening: Opening, films: Films, surfaces: Surfaces) -> None:
+    """An opaque door: a surface that lies in its wall."""
+    wall_name = surfaces.placed[opening.base.item.name.casefold()]
+    wall = work.section("surfaces")[wall_name]
+    made = construction_of(work, opening.item)
+    points = g.without_repeats(opening.points)
+    if not surfaces.drawn[wall_name] or not _accepted(opening, points):
+        work.findings.left_out(
+            opening.item, "a door whose wall has no corners here", "it has the construction of the wall"
+        )
+        return
+    if opening.copies > 1:
+        work.findings.left_out(opening.item, f"{opening.copies} doors", "there is one of them")
+    sides = {}
+    for side, outer in (("outside", True), ("inside", False)):
+        own = {key: value for key, value in skin(work, made, outer).items() if key in wall[side]}
+        sides[side] = wall[side] | own
+    if wall["outside"].get("outdoors"):
+        film = films.outside(opening.item, opening.base.zone, skin(work, made, outer=True)["roughness"])
+        sides["outside"]["convection"] = film.convection
+    cut = bool(wall["outside"].get("adiabatic"))
+    work.section("surfaces")[work.names.of("surfaces", opening.item.name)] = {
+        "construction": construction(work, made, cut=cut, finite_differences=False),
+        "vertices": g.rounded(points),
+        **sides,
+    }
+
+
+def _shading_controls(work: Work) -> None:
+    for item in work.model.of("WindowShadingControl", "WindowProperty:ShadingControl"):
+        device = item.text("shading_type") or "a device"
+        control = item.text("shading_control_type")
+        work.findings.left_out(
+            item,
+            f"{device}, {control}",
+            "the windows stay unshaded: more sun enters, and at night the glass alone insulates",
+        )

@@ -1,0 +1,107 @@
+"""What the parts of a conversion share: the file, the findings, names, and the sections so far."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from mascarin.convert.findings import Findings
+from mascarin.convert.source import Item, Model
+
+Section = dict[str, Any]
+
+
+@dataclass
+class Names:
+    """Names of Mascarin for names of EnergyPlus.
+
+    Attributes
+    ----------
+    given : dict of (str, str) to str
+        Name by section and name in the file, in small letters.
+    original : dict of str to dict of str to str
+        Name by name in the file, by section.
+    """
+
+    given: dict[tuple[str, str], str] = field(default_factory=dict)
+    original: dict[str, dict[str, str]] = field(default_factory=dict)
+    taken: set[tuple[str, str]] = field(default_factory=set)
+
+    def of(self, section: str, name: str) -> str:
+        """Name of a part: letters, digits and ``_``; the same for the same name without regard to case."""
+        key = (section, name.strip().casefold())
+        if key not in self.given:
+            self.given[key] = self.new(section, name)
+            self.original.setdefault(section, {})[name.strip()] = self.given[key]
+        return self.given[key]
+
+    def new(self, section: str, name: str) -> str:
+        """A name like this one that no other part has."""
+        # Results of zones, surfaces, windows and sensors are named after them: one set of names.
+        room = "parts" if section in ("zones", "surfaces", "windows") else section
+        plain = re.sub(r"\W+", "_", name.strip()).strip("_") or section.rstrip("s")
+        plain = plain if plain.isidentifier() else f"{section.rstrip('s')}_{plain}"
+        found, count = plain, 1
+        while (room, found.casefold()) in self.taken:
+            count += 1
+            found = f"{plain}_{count}"
+        self.taken.add((room, found.casefold()))
+        return found
+
+
+@dataclass
+class Work:
+    """A conversion in progress.
+
+    Attributes
+    ----------
+    model : Model
+        The file.
+    findings : Findings
+        What is not carried over as it is.
+    names : Names
+        Names of the parts.
+    sections : dict of str to dict
+        The description, as far as it is made.
+    """
+
+    model: Model
+    findings: Findings = field(default_factory=Findings)
+    names: Names = field(default_factory=Names)
+    sections: dict[str, Section] = field(default_factory=dict)
+
+    def section(self, name: str) -> Section:
+        """A section of the description."""
+        return self.sections.setdefault(name, {})
+
+    def zone_items(self) -> list[Item]:
+        """Zones of the file."""
+        return self.model.of("Zone")
+
+    def zones_of(self, user: Item, *keys: str) -> list[Item]:
+        """Zones that a field names: a zone, a list of zones, a space or a list of spaces.
+
+        Raises
+        ------
+        InputError
+            There is no such zone.
+        """
+        model, wanted = self.model, user.text(*keys)
+        if (zone := model.named(wanted, "Zone")) is not None:
+            return [zone]
+        if (zones := model.named(wanted, "ZoneList")) is not None:
+            return [model.require(zones, "zone_name", "Zone", name=name) for name in listed(zones, "zones")]
+        if (space := model.named(wanted, "Space")) is not None:
+            return [model.require(space, "zone_name", "Zone")]
+        if (spaces := model.named(wanted, "SpaceList")) is not None:
+            every = [model.require(spaces, "space_name", "Space", name=n) for n in listed(spaces, "spaces")]
+            return [model.require(space, "zone_name", "Zone") for space in every]
+        # Named so that the error lists the zones.
+        key = next((key for key in keys if user.text(key)), keys[0])
+        return [model.require(user, key, "Zone", "ZoneList", "Space", "SpaceList", name=wanted)]
+
+
+def listed(item: Item, wrapper: str) -> list[str]:
+    """Names in the groups of a list."""
+    return [str(value) for row in item.rows(wrapper) for value in row.values()]

@@ -1,0 +1,161 @@
+"""Values over a year by season and kind of day, and what is calculated from several of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+#: Days of the week in the order of EnergyPlus, then holidays.
+DAYS: Final = ("sunday", "monday", "tuesday", "wednesday", "thursday", "friday", "saturday", "holiday")
+_WEEKDAYS: Final = ("monday", "tuesday", "wednesday", "thursday", "friday")
+_WEEKENDS: Final = ("saturday", "sunday")
+
+#: One day: pairs of the minute from which a value is valid, and the value.
+Day = tuple[tuple[int, float], ...]
+#: One day of each kind, in the order of `DAYS`.
+Week = tuple[Day, ...]
+
+
+@dataclass(frozen=True)
+class Year:
+    """Values over a year.
+
+    Attributes
+    ----------
+    seasons : tuple of (str, Week)
+        Last day as ``MM-DD``, and the week that repeats until then.
+    """
+
+    seasons: tuple[tuple[str, Week], ...]
+
+    @property
+    def values(self) -> set[float]:
+        """All values that occur."""
+        return {value for _, week in self.seasons for day in week for _, value in day}
+
+    @property
+    def constant(self) -> float | None:
+        """The value, if there is only one."""
+        values = self.values
+        return next(iter(values)) if len(values) == 1 else None
+
+    def mean(self) -> float:
+        """Mean over the days of the week of all seasons, without regard to their lengths."""
+        days = [day for _, week in self.seasons for day in week[:7]]
+        return sum(_mean(day) for day in days) / len(days)
+
+    def week_at(self, end: str) -> Week:
+        """Week of the season that holds a day ``MM-DD``."""
+        return next((week for until, week in self.seasons if end <= until), self.seasons[-1][1])
+
+
+def _mean(day: Day) -> float:
+    ends = [*(minute for minute, _ in day[1:]), 1440]
+    return sum(value * (end - start) for (start, value), end in zip(day, ends, strict=True)) / 1440.0
+
+
+def constant(value: float) -> Year:
+    """The same value all year."""
+    return Year((("12-31", (((0, float(value)),),) * len(DAYS)),))
+
+
+def combined(rule: Callable[..., float], *years: Year) -> Year:
+    """Value of a function of several values at every time.
+
+    Parameters
+    ----------
+    rule : callable
+        From one value of each to the value.
+    *years : Year
+        The values.
+    """
+    ends = sorted({until for year in years for until, _ in year.seasons})
+    seasons = []
+    for end in ends:
+        weeks = [year.week_at(end) for year in years]
+        seasons.append((end, tuple(_combined_day(rule, days) for days in zip(*weeks, strict=True))))
+    return _merged(Year(tuple(seasons)))
+
+
+def _combined_day(rule: Callable[..., float], days: Sequence[Day]) -> Day:
+    minutes = sorted({minute for day in days for minute, _ in day})
+    return _without_repeats([(minute, rule(*(_at(day, minute) for day in days))) for minute in minutes])
+
+
+def _at(day: Day, minute: int) -> float:
+    return [value for start, value in day if start <= minute][-1]
+
+
+def _without_repeats(points: Sequence[tuple[int, float]]) -> Day:
+    kept: list[tuple[int, float]] = []
+    for minute, value in points:
+        if not kept or kept[-1][1] != value:
+            kept.append((minute, float(value)))
+    return tuple(kept)
+
+
+def _merged(year: Year) -> Year:
+    """Seasons with equal weeks as one."""
+    kept: list[tuple[str, Week]] = []
+    for until, week in year.seasons:
+        if kept and kept[-1][1] == week:
+            kept.pop()
+        kept.append((until, week))
+    return Year(tuple(kept))
+
+
+def year_of(seasons: Sequence[tuple[str, Week]]) -> Year:
+    """A year from its seasons, in order; points that change nothing are left out."""
+    tidy = [(until, tuple(_without_repeats(day) for day in week)) for until, week in seasons]
+    return _merged(Year(tuple(tidy)))
+
+
+def plain(year: Year, kind: str, holidays: Sequence[str]) -> dict[str, Any]:
+    """A schedule of the description.
+
+    Parameters
+    ----------
+    year : Year
+        The values.
+    kind : str
+        ``fraction`` or ``temperature``.
+    holidays : sequence of str
+        Dates of the holidays as ``MM-DD``; without them the profile of holidays is left out.
+    """
+    given = year.constant
+    if given is not None:
+        return {"kind": kind, "value": _number(given)}
+    weeks = [week if holidays else week[:7] for _, week in year.seasons]
+    own = any(week[7] != week[1] for week in weeks) if holidays else False
+    profiles = [_profiles(week, own) for week in weeks]
+    if len(profiles) == 1:
+        found: dict[str, Any] = {"kind": kind, "days": profiles[0]}
+    else:
+        ends = [until for until, _ in year.seasons]
+        pairs = zip(ends, profiles, strict=True)
+        found = {"kind": kind, "seasons": [{"until": end, "days": days} for end, days in pairs]}
+    return found | ({"holidays": list(holidays)} if own else {})
+
+
+def _profiles(week: Week, own_holidays: bool) -> dict[str, Any]:
+    """Profiles of a week with as few names as possible."""
+    days = {name: week[k] for k, name in enumerate(DAYS[:7])}
+    holiday = {"holidays": _points(week[7])} if own_holidays else {}
+    if len(set(days.values())) == 1:
+        return {"all": _points(week[0])} | holiday
+    found: dict[str, Any] = {}
+    for group, names in (("weekdays", _WEEKDAYS), ("weekends", _WEEKENDS)):
+        common = max(names, key=lambda name: sum(days[name] == days[other] for other in names))
+        found[group] = _points(days[common])
+        found |= {name: _points(days[name]) for name in names if days[name] != days[common]}
+    return found | holiday
+
+
+def _points(day: Day) -> list[dict[str, Any]]:
+    return [{"at": f"{m // 60:02d}:{m % 60:02d}", "value": _number(value)} for m, value in day]
+
+
+def _number(value: float) -> float | int:
+    found = round(value, 9)
+    return int(found) if found == int(found) and abs(found) < 1e9 else found
