@@ -4,6 +4,7 @@ from datetime import datetime
 
 import pytest
 
+from mascarin._io import units
 from mascarin.report import text
 
 
@@ -45,8 +46,14 @@ def test_spans() -> None:
 def test_units() -> None:
     assert text.with_unit(25.0, "degC") == "25\u00a0°C"
     assert text.with_unit(20.0, "deg") == "20°"
-    assert text.difference_unit("degC") == "K"
-    assert text.difference_unit("W/m2") == "W/m²"
+    assert units.difference("degC") == "K"
+    assert units.difference("W/m2") == "W/m²"
+    # One notation everywhere: the page has that of the documentation, with signs for powers.
+    assert units.shown("W/(m2 K)") == "W/(m² K)"
+    assert units.shown("m2 K/W") == "m² K/W"
+    assert units.shown("kJ/(kg K)") == "kJ/(kg K)"
+    assert units.shown("-") == ""
+    assert units.bracketed("error", units.difference("degC")) == "error [K]"
 
 
 def test_paths_become_words() -> None:
@@ -59,5 +66,8 @@ def test_paths_become_words() -> None:
 
 def test_plain_signs_are_typeset() -> None:
     assert text.typeset("|max error| <= 2 degC") == "|max error| ≤ 2\u00a0°C"
+    assert text.typeset("a wall of 7 m2, 25 W/(m2 K), 30 kg/m3 and m2x") == (
+        "a wall of 7\u00a0m², 25 W/(m² K), 30 kg/m³ and m2x"
+    )
     assert text.typeset("-1.51 deg") == "−1.51°"
     assert text.typeset("2010-09-20 from -0.2 to 3") == "2010-09-20 from −0.2 to 3"

@@ -188,7 +188,7 @@ def together(ax: Axes, x: Any, sensors: Sequence[tuple[Compared, colors.Look]]) 
     for one, look in sensors:
         _points(ax, x, one.measured, look.color, "_measured")
     for one, look in sensors:
-        line = {"color": look.color, "linestyle": look.dash, "linewidth": 1.2}
+        line: dict[str, Any] = {"color": look.color, "linestyle": look.dash, "linewidth": 1.2}
         ax.plot(x, one.models[one.main], label=one.label, **line)
     bare(ax)
 
@@ -219,7 +219,7 @@ def errors_together(ax: Axes, x: Any, sensors: Sequence[tuple[Compared, colors.L
             _band(ax, x, one.error_band, look.color, 0.5 * _BAND)
     ax.axhline(0.0, color=colors.INK, linewidth=0.7)
     for one, look in sensors:
-        line = {"color": look.color, "linestyle": look.dash, "linewidth": 1.1}
+        line: dict[str, Any] = {"color": look.color, "linestyle": look.dash, "linewidth": 1.1}
         ax.plot(x, one.error(one.main), label=one.label, **line)
     bare(ax)
 

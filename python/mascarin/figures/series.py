@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from datetime import tzinfo
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -134,7 +134,7 @@ def columns(
     days = dates.date2num(edges)  # type: ignore[no-untyped-call]
     for number, curve in enumerate(curves):
         look = colors.look(number)
-        style = {"label": curve.name, "color": look.color, "linestyle": look.dash}
+        style: dict[str, Any] = {"label": curve.name, "color": look.color, "linestyle": look.dash}
         if curve.mean:
             ax.step(days, curve.values, where="post", **style)
         else:

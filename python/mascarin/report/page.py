@@ -234,7 +234,7 @@ def _tables(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 def _further_table(table: Mapping[str, Any]) -> dict[str, Any]:
     columns = table.get("columns", [])
-    rows = [_cells(row, columns, table.get("uncertainty", {})) for row in table.get("rows", [])]
+    rows = _cells(table)
     return {
         "key": "further-" + "-".join(str(table.get("title", "")).lower().split()),
         "numeric": [any(row[k]["numeric"] for row in rows if k < len(row)) for k in range(len(columns))],
@@ -245,25 +245,27 @@ def _further_table(table: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _cells(
-    row: Sequence[Any], columns: Sequence[str], uncertainty: Mapping[str, str]
-) -> list[dict[str, Any]]:
-    """Cells of a row; numbers with an uncertainty have the digits that it supports."""
-    by_name = dict(zip(columns, row, strict=False))
-    size = {
-        name: by_name.get(other) for pair in uncertainty.items() for name, other in (pair, (pair[1],) * 2)
-    }
-    return [_cell(value, size.get(name)) for name, value in zip(columns, row, strict=False)]
+def _cells(table: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
+    """Cells of a table: numbers with the digits of their uncertainty, else those of a column alike."""
+    columns, rows = list(table.get("columns", [])), table.get("rows", [])
+    sizes = dict(table.get("uncertainty", {}))
+    sizes |= {other: other for other in sizes.values()}
+    shown = []
+    for k, name in enumerate(columns):
+        values = [row[k] if k < len(row) else None for row in rows]
+        if name in sizes:
+            size = [row[columns.index(sizes[name])] for row in rows]
+            words = [text.with_uncertainty(v, s) for v, s in zip(values, size, strict=True)]
+        elif name in table.get("significant", ()):
+            words = [text.significant(value, 2) for value in values]
+        else:
+            words = text.alike([{True: "yes", False: "no"}[v] if isinstance(v, bool) else v for v in values])
+        shown.append([_cell(word, value) for word, value in zip(words, values, strict=True)])
+    return [list(row) for row in zip(*shown, strict=True)]
 
 
-def _cell(value: Any, uncertainty: float | None = None) -> dict[str, Any]:
-    if isinstance(value, str):
-        return {"text": value, "numeric": False}
-    if isinstance(value, bool) or value is None:
-        return {"text": {True: "yes", False: "no", None: text.NONE}[value], "numeric": False}
-    if uncertainty is not None:
-        return {"text": text.with_uncertainty(float(value), uncertainty), "numeric": True}
-    return {"text": text.significant(float(value)), "numeric": True}
+def _cell(words: str, value: Any) -> dict[str, Any]:
+    return {"text": words, "numeric": isinstance(value, int | float) and not isinstance(value, bool)}
 
 
 def explorer(study: Mapping[str, Any], series: Series) -> dict[str, Any]:

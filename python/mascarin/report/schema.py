@@ -285,6 +285,8 @@ class Table(TypedDict, total=False):
     rows: list[list[Any]]
     uncertainty: dict[str, str]
     """Columns whose digits another column decides: name of the column -> that of its standard uncertainty."""
+    significant: list[str]
+    """Columns whose numbers span decades, shown with two significant digits each."""
     section: str
     """Identifier of the section it belongs to; ``comparison`` by default."""
 

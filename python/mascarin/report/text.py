@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from datetime import datetime
+from typing import Any
 
 from mascarin._io import numbers
 from mascarin._io.units import shown
@@ -79,6 +81,23 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
         return significant(value), ""
     shown = [_typographic(one) for one in numbers.with_interval(value, low, high)]
     return shown[0], f"{shown[1]} to {shown[2]}"
+
+
+def alike(values: Sequence[Any], digits: int = 3) -> list[str]:
+    """Values of one kind with the same decimals; the largest has so many digits. Texts stay as they are."""
+    finite = [abs(float(v)) for v in values if _is_number(v) and math.isfinite(v)]
+    largest = max(finite, default=0.0)
+    size = math.floor(math.log10(largest)) if largest > 0.0 else 0
+    if finite and not (-3 <= size <= 6):
+        return [significant(v, digits) if _is_number(v) else str(v or NONE) for v in values]
+    # No more decimals than the values have.
+    most = max(0, digits - 1 - size)
+    decimals = next((d for d in range(most) if all(round(v, d) == round(v, most) for v in finite)), most)
+    return [fixed(float(v), decimals) if _is_number(v) else str(v or NONE) for v in values]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def with_uncertainty(value: float | None, uncertainty: float | None) -> str:

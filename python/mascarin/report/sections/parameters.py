@@ -77,7 +77,7 @@ def _means(study: Mapping[str, Any], path: str) -> tuple[str, str] | None:
     if not found or not any(law + found in means for means in models.values()):
         return None
     before, after = (models.get(model, {}).get(law + found) for model in ("nominal", "fitted"))
-    return text.significant(before), text.significant(after)
+    return text.fixed(before), text.fixed(after)
 
 
 def _paper(study: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -99,16 +99,12 @@ def _paper(study: Mapping[str, Any]) -> list[dict[str, Any]]:
             | {
                 "label": label,
                 "symbol": str(line.get("symbol", "")),
-                "published": [_published_value(line.get(key)) for key in ("before", "after")],
+                "published": text.alike([line.get("before"), line.get("after")]),
                 "published_unit": units.shown(str(line.get("unit", ""))),
                 "h": h,
             }
         )
     return rows
-
-
-def _published_value(value: Any) -> str:
-    return text.significant(float(value)) if isinstance(value, int | float) else str(value or text.NONE)
 
 
 def _fixed(study: Mapping[str, Any], path: str) -> dict[str, Any]:

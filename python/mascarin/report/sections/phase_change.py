@@ -19,7 +19,7 @@ TITLE = "Phase change"
 
 def content(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]] | None:
     """Values of the template."""
-    found = []
+    found: list[dict[str, Any]] = []
     short = short_periods(study)
     spans = study["periods"][short[-1]]["spans"] if short else []
     for entry in study.get("phase_change", []):

@@ -119,6 +119,7 @@ def causes_table(found: Diagnosis) -> dict[str, Any]:
         "columns": ["no.", "kind", "where", "estimate", "standard error", "unit", "taken away [%]", "p"],
         "rows": rows,
         "uncertainty": {"estimate": "standard error"},
+        "significant": ["p"],
         "section": "error_sources",
     }
 
