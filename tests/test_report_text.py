@@ -71,3 +71,20 @@ def test_plain_signs_are_typeset() -> None:
     )
     assert text.typeset("-1.51 deg") == "−1.51°"
     assert text.typeset("2010-09-20 from -0.2 to 3") == "2010-09-20 from −0.2 to 3"
+
+
+def test_digits_are_those_that_the_uncertainty_supports() -> None:
+    assert text.with_interval(24.0, 23.96, 24.043) == ("24.000", "23.960 to 24.043")
+    assert text.with_interval(24.0, 22.9, 25.1) == ("24.0", "22.9 to 25.1")
+    assert text.with_uncertainty(0.0107034, 0.111393) == "0.01"
+    assert text.with_uncertainty(None, 0.1) == "–"
+    # A value that misses its limit never looks equal to it.
+    assert text.beside_limit(0.25004, 0.25) == ("0.25004", "0.25")
+
+
+def test_numbers_of_one_column_have_the_same_decimals() -> None:
+    assert text.alike([99.1667, 100.0, None, 85.9]) == ["99", "100", "–", "86"]
+    assert text.alike([0.274, 0.9525, 0.3]) == ["0.274", "0.953", "0.300"]
+    assert text.alike([25, "5.7 V + 11.4"]) == ["25", "5.7 V + 11.4"]
+    assert text.alike([3.5, 1.75]) == ["3.50", "1.75"]
+    assert text.alike([2.5e-8, 0.0]) == ["2.50×10⁻⁸", "0"]

@@ -98,7 +98,15 @@ def test_the_files_that_are_left(done: Done) -> None:
             "metrics", "parameters", "criteria", "quality", "series", "sensitivity", "evaluations",
         )
     }  # fmt: skip
-    assert names >= {"study.json", "report.html"} | figures | tables
+    # The figures of the paper: all sensors together and each by itself, for print and for the screen.
+    of_periods = {
+        f"figures/{period}-{what}{ending}"
+        for period in ("identification", "corroboration")
+        for what in ("all", "joint", "core")
+        for ending in (".svg", ".pdf")
+    }
+    assert names >= {"study.json", "report.html"} | figures | tables | of_periods
+    assert all((done.out / name).read_bytes()[:5] == b"%PDF-" for name in of_periods if name.endswith("pdf"))
     assert not [name for name in names if name.endswith((".part", ".npy"))]
     for figure in figures:
         assert ET.parse(done.out / figure).getroot().tag.endswith("svg")  # noqa: S314 (our own file)
@@ -127,6 +135,11 @@ def test_the_schema_of_the_result(done: Done) -> None:
     assert content["ledger"]["closure"] < 1e-10
     assert {entry["passed"] for entry in content["criteria"] if entry["model"] == "fitted"} == {True}
     assert {entry["passed"] for entry in content["criteria"] if entry["model"] == "nominal"} == {False}
+    # The effective mean of a constant coefficient is the constant.
+    for model, known in (("nominal", "nominal"), ("fitted", "fitted")):
+        for law, mean in content["coefficients"]["models"][model].items():
+            assert mean == pytest.approx(content["parameters"][f"{law}.coefficient"][known], rel=1e-4)
+    assert content["coefficients"]["models"]["fitted"]
     assert content["mascarin_version"]
     assert content["seed"] == 1
     assert {entry["name"].partition(":")[0] for entry in content["inputs"]} == {

@@ -15,7 +15,7 @@ from typing import Final
 PALETTE: Final = (
     "#0078b4", "#d25a00", "#00a55a", "#a578ff", "#a53c87", "#00784b", "#e16996", "#b43c0f",
 )  # fmt: skip
-MEASURED: Final = "#7a7f87"
+MEASURED: Final = "#787878"
 """Observations, drawn as points."""
 FITTED: Final = PALETTE[0]
 NOMINAL: Final = PALETTE[1]
