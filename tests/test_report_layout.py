@@ -78,7 +78,7 @@ def test_print_drops_nothing(page_of_many: Page) -> None:
 def test_series_have_the_same_color_in_light_and_dark(page_of_many: Page) -> None:
     found = []
     for scheme in ("light", "dark"):
-        page_of_many.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+        page_of_many.emulate_media(color_scheme=scheme)
         found.append(
             page_of_many.evaluate(
                 "['--fitted', '--nominal', '--observed', '--c0', '--c7']"
