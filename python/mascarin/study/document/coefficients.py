@@ -47,7 +47,7 @@ def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[s
         return {}
     content = {"period": _PERIOD, "unit": "W/(m2 K)"}
     means = {name: _means(study, run, list(laws)) for name, run in models.items()}
-    return {"coefficients": {**content, "models": means}}
+    return {"coefficients": {**content, "models": means}} if any(means.values()) else {}
 
 
 def _means(study: Setup, run: ModelRun, laws: list[str]) -> dict[str, float]:
