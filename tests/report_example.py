@@ -336,7 +336,7 @@ def _parameters() -> dict[str, Any]:
         if before is not None:
             entry |= {"reference_nominal": before, "reference_fitted": after}
         if fitted in (low, high):
-            entry |= {"at_bound": True, "reason": "beyond 0.5 m²·K/W the mask no longer acts on any sensor"}
+            entry |= {"at_bound": True, "reason": "beyond 0.5 m² K/W the mask no longer acts on any sensor"}
         entries[path] = entry
     return entries
 

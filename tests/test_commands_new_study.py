@@ -1,13 +1,19 @@
-"""A study that was copied is the one that comes with Mascarin."""
+"""A study that was copied is the one that comes with Mascarin, without the description of its data."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
+from ruamel.yaml import YAML
 
 from mascarin.cli import main
 from mascarin.examples import STUDIES
+
+
+def yaml(path: Path) -> dict[str, Any]:
+    return dict(YAML(typ="safe").load(path))
 
 
 @pytest.mark.parametrize("name", STUDIES)
@@ -20,7 +26,20 @@ def test_every_example_can_be_started_from(
     written = [Path(line) for line in said.out.splitlines()]
     source = STUDIES[name].parent
     assert [path.name for path in written] == sorted(p.name for p in source.iterdir() if p.is_file())
-    assert all(path.read_bytes() == (source / path.name).read_bytes() for path in written)
+    same = [path for path in written if path.name != "study.yaml"]
+    assert all(path.read_bytes() == (source / path.name).read_bytes() for path in same)
+    copied, example = yaml(folder / "study.yaml"), yaml(STUDIES[name])
+    # What describes the data of the example would be wrong for other data.
+    assert copied["about"] == "Describe your data here."
+    assert copied["observed"] == "observation"
+    assert "reference" not in copied
+    assert "observed_note" not in copied
+    described = {"name", "about", "observed", "observed_note", "reference", "identification", "variants"}
+    assert {k: v for k, v in copied.items() if k not in described} == {
+        k: v for k, v in example.items() if k not in described
+    }
+    assert list(copied["identification"]["parameters"]) == list(example["identification"]["parameters"])
+    assert "reference: [" not in (folder / "study.yaml").read_text(encoding="utf-8")
     assert f"mascarin study '{folder / 'study.yaml'}'" in said.err
     # What was copied is understood where it is now.
     assert main(["check", str(folder / "building.yaml")]) == 0

@@ -39,6 +39,7 @@ SECTIONS = (
     ("Each form of each of `alternatives`", description.Alternative),
     ("`reference`", description.Reference),
     ("Each of `reference.influential`", description.Influential),
+    ("Each of `reference.parameters`", description.PublishedParameter),
     ("Each period of each of `reference.sensors`", description.Published),
 )
 

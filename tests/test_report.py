@@ -69,7 +69,8 @@ def outline(lgi_page: str) -> Outline:
 def test_every_section_is_there_in_its_order(outline: Outline) -> None:
     assert [s["id"] for s in outline.all("section")] == SECTIONS
     links = [a["href"] for a in outline.all("a") if a["href"].startswith("#")]
-    assert links[1:] == [f"#{name}" for name in SECTIONS]
+    contents = [link for link in links if not link.startswith(("#table-", "#figure-"))]
+    assert contents[1:] == [f"#{name}" for name in SECTIONS]
     assert outline.faults == []
     assert outline.open == []
 
@@ -100,7 +101,7 @@ def test_the_texts_of_the_study_are_shown(outline: Outline) -> None:
         "18 of 18",
         "energain_plasterboard_temperature",
         "20–24 Sep 2010",
-        "beyond 0.5 m²·K/W the mask no longer acts",
+        "beyond 0.5 m² K/W the mask no longer acts",
         "mascarin study lgi",
         "Energy-balance residual 3.1×10⁻¹³",
         "80 mm in all (paper, table 1)",
@@ -141,7 +142,7 @@ def test_published_parameters_stand_beside_ours(lgi_page: str, outline: Outline)
 def test_sources_of_remaining_error_are_listed(outline: Outline) -> None:
     study, _ = report_example.lgi()
     text = re.sub(r"\s+", " ", " ".join(outline.text))
-    table = text[text.index("each week is evaluated with changes estimated from other weeks") :]
+    table = text[text.index("Each week is evaluated with changes estimated from other weeks") :]
     table = table[: table.index("Energy balance")]
     labels = (
         "fitted model",

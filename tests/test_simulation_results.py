@@ -185,7 +185,7 @@ def test_old_names_work_and_are_not_listed(run: Results) -> None:
 
 def test_plot_has_axes_for_each_unit(run: Results) -> None:
     figure = run.plot()
-    assert [axis.get_ylabel() for axis in figure.axes] == ["[degC]", "[W/m2]"]
+    assert [axis.get_ylabel() for axis in figure.axes] == ["[°C]", "[W/m²]"]
     assert [len(axis.get_lines()) for axis in figure.axes] == [3, 1]
     drawn = figure.axes[1].get_lines()[0].get_ydata()
     assert np.array_equal(np.asarray(drawn), run["north.outside_flux"].to_numpy())
@@ -210,13 +210,13 @@ def test_plot_uses_the_axes_of_the_reader(run: Results) -> None:
     above, below = figure.subplots(2, 1)
     assert run.plot(["deep.temperature"], ax=below) is figure
     assert (len(above.get_lines()), len(below.get_lines())) == (0, 1)
-    assert below.get_ylabel() == "[degC]"
+    assert below.get_ylabel() == "[°C]"
     run.plot(ax=[above, below])
     assert (len(above.get_lines()), len(below.get_lines())) == (3, 2)
     one = Figure().subplots()
     run.plot(ax=one)
     assert len(one.get_lines()) == 4
-    assert one.get_ylabel() == "[degC], [W/m2]"
+    assert one.get_ylabel() == "[°C], [W/m²]"
     with pytest.raises(InputError, match="found 3 axes, expected one, or one for each unit"):
         run.plot(ax=[above, below, one])
 

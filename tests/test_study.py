@@ -98,7 +98,15 @@ def test_the_files_that_are_left(done: Done) -> None:
             "metrics", "parameters", "criteria", "quality", "series", "sensitivity", "evaluations",
         )
     }  # fmt: skip
-    assert names >= {"study.json", "report.html"} | figures | tables
+    # The figures of the paper: all sensors together and each by itself, for print and for the screen.
+    of_periods = {
+        f"figures/{period}-{what}{ending}"
+        for period in ("identification", "corroboration")
+        for what in ("all", "joint", "core")
+        for ending in (".svg", ".pdf")
+    }
+    assert names >= {"study.json", "report.html"} | figures | tables | of_periods
+    assert all((done.out / name).read_bytes()[:5] == b"%PDF-" for name in of_periods if name.endswith("pdf"))
     assert not [name for name in names if name.endswith((".part", ".npy"))]
     for figure in figures:
         assert ET.parse(done.out / figure).getroot().tag.endswith("svg")  # noqa: S314 (our own file)

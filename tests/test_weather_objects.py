@@ -63,7 +63,7 @@ def test_a_plot_uses_the_axes_and_the_local_time_of_the_reader(climate: Climate)
     figure, axes = plt.subplots()
     assert climate.plot("air_temperature", ax=axes) is axes
     assert "Indian/Reunion" in axes.get_xlabel()
-    assert axes.get_ylabel() == "[degC]"
+    assert axes.get_ylabel() == "[°C]"
     days = np.asarray(axes.lines[0].get_xdata(), dtype=np.float64)
     first = matplotlib.dates.num2date(days[0], tz=climate.index.tz)  # type: ignore[no-untyped-call]
     assert first.isoformat() == "2024-06-01T00:00:00+04:00"

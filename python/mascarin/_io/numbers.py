@@ -40,6 +40,26 @@ def decimals_for(uncertainty: float) -> int:
     return min(_MOST, _FIGURES - 1 - size)
 
 
+def with_uncertainty(value: float, uncertainty: float) -> str:
+    """A value with the digits that its standard uncertainty supports.
+
+    Parameters
+    ----------
+    value : float
+        May be NaN.
+    uncertainty : float
+        Two of its digits count; where it is 0 or NaN, the value has four.
+
+    Examples
+    --------
+    >>> with_uncertainty(0.17701, 0.06436), with_uncertainty(2.0, 0.0)
+    ('0.177', '2')
+    """
+    if not (uncertainty > 0.0 and math.isfinite(uncertainty)):
+        return significant(value)
+    return fixed(value, decimals_for(uncertainty))
+
+
 def with_interval(value: float, low: float | None, high: float | None) -> tuple[str, str, str]:
     """A value and the ends of its interval, with the digits that the width of the interval supports.
 

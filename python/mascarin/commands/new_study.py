@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 from cyclopts import Parameter
 
@@ -12,11 +13,25 @@ from mascarin._io.atomic import write
 from mascarin._io.locks import writing_into
 from mascarin.errors import InputError, did_you_mean
 
+_STUDY: Final = "study.yaml"
+#: Keys of a study file that describe its data.
+_TEXTS: Final = {
+    "name": "name: New study\n",
+    "about": "about: Describe your data here.\n",
+    "observed": "observed: observation\n",
+    "observed_note": "",
+    # Published numbers belong to the data of the example.
+    "reference": "",
+}
+#: What a publication gives for a parameter.
+_PUBLISHED: Final = re.compile(r"(?:, )?reference: \[[^\]]*\]")
+
 
 def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example", "-e"))] = "lgi") -> None:
     """Copy an example study into a new folder.
 
-    Copies building, study and measurements, and prints the next commands.
+    Copies building, study and measurements, and prints the next commands. Texts of the study that describe
+    the data of the example are replaced: they would be wrong for other data.
 
     Parameters
     ----------
@@ -39,11 +54,45 @@ def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example"
     with writing_into(folder):
         for source in sorted(STUDIES[example].parent.iterdir()):
             if source.is_file():
-                print(write(folder / source.name, source.read_bytes()))
-    study = folder / "study.yaml"
+                content = source.read_bytes()
+                if source.name == _STUDY:
+                    content = undescribed(content.decode("utf-8")).encode("utf-8")
+                print(write(folder / source.name, content))
+    study = folder / _STUDY
     print(
-        f"next: mascarin check '{folder / 'building.yaml'}'\n"
+        f"next: describe your data in '{study}' (name, about)\n"
+        f"      mascarin check '{folder / 'building.yaml'}'\n"
         f"      mascarin validate '{study}'\n"
         f"      mascarin study '{study}' -o '{folder / 'out'}'",
         file=sys.stderr,
     )
+
+
+def undescribed(text: str) -> str:
+    r"""A study file without the texts that describe the data of an example.
+
+    Parameters
+    ----------
+    text : str
+        The study file.
+
+    Returns
+    -------
+    str
+        The same with a placeholder for the description, and without published numbers.
+
+    Examples
+    --------
+    >>> undescribed("name: The cell\nabout: |\n  A cell.\n  Measured.\nstep: 1h\n")
+    'name: New study\nabout: Describe your data here.\nstep: 1h\n'
+    """
+    kept, comments = [], ""
+    for part in re.split(r"(?m)^(?=[A-Za-z_]+:|#)", text):
+        if part.startswith("#"):
+            comments += part
+            continue
+        # A comment above a key describes it.
+        key = part.partition(":")[0]
+        kept.append(_TEXTS.get(key, comments + part))
+        comments = ""
+    return _PUBLISHED.sub("", "".join(kept)) + comments

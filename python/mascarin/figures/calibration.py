@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin._io.units import bracketed, difference
+from mascarin.figures import colors
+
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
 
-_DARK: Final = "#333333"
-_BLUE: Final = "#0072b2"
-_RED: Final = "#d55e00"
 MOST_DOTS: Final = 20_000
 """Evaluations from which their dots are drawn as pixels: vectors would make a file of 100 MB."""
 
@@ -40,8 +40,17 @@ def estimates(
     """
     y = np.arange(len(names))[::-1]
     around = np.stack([np.maximum(estimate - low, 0.0), np.maximum(high - estimate, 0.0)])
-    axes.errorbar(estimate, y, xerr=np.nan_to_num(around), fmt="o", color=_BLUE, markersize=4, capsize=2)
-    axes.plot(nominal, y, "|", color=_DARK, markersize=9, label="nominal")
+    axes.errorbar(
+        estimate,
+        y,
+        xerr=np.nan_to_num(around),
+        fmt="o",
+        color=colors.FITTED,
+        markersize=4,
+        capsize=2,
+        label="fitted",
+    )
+    axes.plot(nominal, y, "|", color=colors.NOMINAL, markersize=9, markeredgewidth=1.6, label="nominal")
     axes.set_yticks(y, list(names), fontsize=8)
     axes.set_xlim(-0.02, 1.02)
     axes.set_xlabel("position in the range [-]", fontsize=9)
@@ -67,7 +76,7 @@ def correlation(axes: Axes, names: Sequence[str], matrix: Floats) -> None:
     axes.set_yticks(places, [f"{k + 1}  {name}" for k, name in enumerate(names)], fontsize=8)
     for i, row in enumerate(matrix):
         for k, value in enumerate(row):
-            color = "white" if abs(value) > 0.6 else _DARK
+            color = "white" if abs(value) > 0.6 else colors.INK
             axes.text(k, i, f"{value:.2f}", ha="center", va="center", fontsize=7, color=color)
 
 
@@ -89,10 +98,10 @@ def profile(
     low, high, estimate : float
         Interval and estimate. [unit]
     """
-    axes.plot(values, rise, color=_BLUE, marker="o", markersize=3, linewidth=1.2)
-    axes.axhline(limit, color=_DARK, linewidth=0.8, linestyle="--")
-    axes.axvspan(low, high, color=_BLUE, alpha=0.12, linewidth=0)
-    axes.axvline(estimate, color=_DARK, linewidth=0.8)
+    axes.plot(values, rise, color=colors.FITTED, marker="o", markersize=3, linewidth=1.2)
+    axes.axhline(limit, color=colors.INK, linewidth=0.8, linestyle="--")
+    axes.axvspan(low, high, color=colors.FITTED, alpha=0.12, linewidth=0)
+    axes.axvline(estimate, color=colors.INK, linewidth=0.8)
     axes.set_ylim(0.0, 2.6 * limit)
     _only_axes_with_numbers(axes)
 
@@ -112,12 +121,16 @@ def convergence(axes: Axes, cost: Floats, final: float) -> None:
     above = np.where(np.isfinite(cost), cost - final, np.nan)
     floor = max(float(np.nanmax(above, initial=0.0)), 1e-300) * 1e-9
     number = np.arange(1, cost.size + 1)
-    dots = axes.plot(number, np.maximum(above, floor), ".", color=_BLUE, markersize=2, alpha=0.5)
+    dots = axes.plot(number, np.maximum(above, floor), ".", color=colors.FITTED, markersize=2, alpha=0.5)
     dots[0].set_rasterized(cost.size > MOST_DOTS)
     lowest = np.fmin.accumulate(np.where(np.isnan(above), np.inf, above))
     steps = np.append(np.flatnonzero(lowest < np.append(np.inf, lowest[:-1])), cost.size - 1)
     axes.plot(
-        number[steps], np.maximum(lowest[steps], floor), color=_RED, linewidth=1.2, drawstyle="steps-post"
+        number[steps],
+        np.maximum(lowest[steps], floor),
+        color=colors.NOMINAL,
+        linewidth=1.2,
+        drawstyle="steps-post",
     )
     axes.set_yscale("log")
     axes.set_xlabel("evaluation", fontsize=9)
@@ -137,7 +150,7 @@ def minima(axes: Axes, counts: NDArray[np.int64], edges: Floats) -> None:
     edges : ndarray, shape (bins + 1,)
         Edges of the bins of the cost.
     """
-    axes.bar(edges[:-1], counts, width=np.diff(edges), align="edge", color=_BLUE, linewidth=0)
+    axes.bar(edges[:-1], counts, width=np.diff(edges), align="edge", color=colors.FITTED, linewidth=0)
     axes.set_xlabel("cost at the end of a search", fontsize=9)
     axes.set_ylabel("searches", fontsize=9)
     _only_axes_with_numbers(axes)
@@ -163,17 +176,13 @@ def residuals(
     # Axes have no time zones: the local clock is drawn, and the label names its zone.
     clock = times if zone is None else times.tz_localize(None)  # type: ignore[union-attr]
     for k, name in enumerate(names):
-        axes.plot(clock, series[:, k], linewidth=0.9, label=f"{name} [{_difference(units[k])}]")
-    axes.axhline(0.0, color=_DARK, linewidth=0.8)
+        look, label = colors.look(k), bracketed(name, difference(units[k]) or "-")
+        axes.plot(clock, series[:, k], linewidth=0.9, color=look.color, linestyle=look.dash, label=label)
+    axes.axhline(0.0, color=colors.INK, linewidth=0.8)
     axes.set_xlabel("sample" if isinstance(times, np.ndarray) else f"local time, {zone}", fontsize=9)
     axes.set_ylabel("simulated minus measured", fontsize=9)
     axes.legend(fontsize=8, frameon=False)
     _only_axes_with_numbers(axes)
-
-
-def _difference(unit: str) -> str:
-    """Unit of a difference: kelvins for temperatures."""
-    return unit.replace("degC", "K") or "-"
 
 
 def _only_axes_with_numbers(axes: Axes) -> None:

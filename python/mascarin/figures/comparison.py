@@ -1,38 +1,103 @@
-"""Figures of a comparison: measured and simulated series, and their difference."""
+"""Figures of a comparison: observations as points, models as lines, prediction intervals as bands."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin.figures import colors
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
 Floats = NDArray[np.float64]
 
-MEASURED: Final = "#2b2f35"
-FITTED: Final = "#0067a8"
-NOMINAL: Final = "#b85400"
-GRAY: Final = "#5a6069"
-COLORS: Final[Mapping[str, str]] = {"nominal": NOMINAL, "fitted": FITTED}
-"""Color of each model; others are gray."""
+_MOST_CIRCLES: Final = 200
+"""Of more observations every k-th is drawn, so that one can see the points."""
+_MOST_POINTS: Final = 3000
+"""Observations from which all are drawn, as pixels: vectors would make a large file."""
+_BAND: Final = 0.2
+_SIZE: Final = 3.2
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """One sensor over a period, with the series of models.
+
+    Attributes
+    ----------
+    label : str
+        Name of the sensor.
+    measured : ndarray, shape (n,)
+        NaN where missing. [unit]
+    models : dict of str to ndarray, shape (n,)
+        Simulated values by model. [unit]
+    main : str
+        The model whose predictions the band shows.
+    half, center : ndarray, shape (n,), optional
+        Half-width of the prediction interval, and its middle minus the series of the main model. [unit]
+    uncertainty : float
+        Expanded uncertainty of the sensor. [unit]
+
+    Examples
+    --------
+    >>> one = Compared("room", np.array([20.0]), {"fitted": np.array([20.5])}, "fitted")
+    >>> float(one.error("fitted")[0])
+    0.5
+    """
+
+    label: str
+    measured: Floats
+    models: Mapping[str, Floats]
+    main: str
+    half: Floats | None = None
+    center: Floats | None = None
+    uncertainty: float = 0.0
+
+    def error(self, model: str) -> Floats:
+        """Simulated minus measured. [unit]
+
+        Parameters
+        ----------
+        model : str
+            Which model.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            NaN where nothing was measured.
+        """
+        return np.asarray(self.models[model] - self.measured)
+
+    @property
+    def band(self) -> tuple[Floats, Floats] | None:
+        """Ends of the interval in which measured values are expected, shape (n,) each. [unit]"""
+        if self.half is None:
+            return None
+        middle = self.models[self.main] + (0.0 if self.center is None else self.center)
+        return middle - self.half, middle + self.half
+
+    @property
+    def error_band(self) -> tuple[Floats, Floats] | None:
+        """Ends of the interval in which the error of the main model is expected. [unit]
+
+        A measured value is inside its interval exactly where the error is inside of this one.
+        """
+        if self.band is None:
+            return None
+        low, high = self.band
+        return self.models[self.main] - high, self.models[self.main] - low
 
 
 def series(
-    ax: Axes,
-    x: Any,
-    measured: Floats,
-    models: Mapping[str, Floats],
-    *,
-    uncertainty: float = 0.0,
-    interval: Floats | None = None,
-    middle: Floats | None = None,
-    label: str = "measured",
+    ax: Axes, x: Any, one: Compared, *, looks: Mapping[str, str] | None = None, label: str = "measured"
 ) -> None:
-    """Draw a measured series and the series of models.
+    """Draw a measured series as points, the series of models as lines, and the prediction interval.
 
     Parameters
     ----------
@@ -40,16 +105,10 @@ def series(
         Where to draw.
     x : array_like, shape (n,)
         Times, such as a pandas.DatetimeIndex without time zone.
-    measured : ndarray, shape (n,)
-        Measured values; NaN where missing. [unit]
-    models : mapping of str to ndarray, shape (n,)
-        Simulated values by model. [unit]
-    uncertainty : float
-        Expanded uncertainty of the sensor, drawn as a band around the measured values. [unit]
-    interval : ndarray, shape (n,), optional
-        Half-width of the prediction interval. [unit]
-    middle : ndarray, shape (n,), optional
-        Its middle; the last model when absent. [unit]
+    one : Compared
+        The sensor.
+    looks : mapping of str to str, optional
+        Color of each model; default those of `colors.models`.
     label : str
         Name of the measured series.
 
@@ -57,26 +116,22 @@ def series(
     --------
     >>> from matplotlib.figure import Figure
     >>> ax = Figure().subplots()
-    >>> series(ax, np.arange(3), np.ones(3), {"fitted": np.zeros(3)}, uncertainty=0.5)
-    >>> [line.get_label() for line in ax.lines]
-    ['measured', 'fitted']
+    >>> one = Compared("room", np.ones(3), {"fitted": np.zeros(3)}, "fitted", half=np.full(3, 0.5))
+    >>> series(ax, np.arange(3), one)
+    >>> [line.get_label() for line in ax.lines], len(ax.collections)
+    (['measured', 'fitted'], 1)
     """
-    if uncertainty > 0.0:
-        ax.fill_between(
-            x, measured - uncertainty, measured + uncertainty, color=GRAY, alpha=0.18, lw=0, label="sensor"
-        )
-    if interval is not None and models:
-        last = list(models.values())[-1] if middle is None else middle
-        ax.fill_between(x, last - interval, last + interval, color=FITTED, alpha=0.14, lw=0)
-    ax.plot(x, measured, linewidth=1.0, color=MEASURED, label=label)
-    for name, values in models.items():
-        style = "--" if name == "nominal" else "-"
-        ax.plot(x, values, linestyle=style, linewidth=1.2, color=COLORS.get(name, GRAY), label=name)
-    _grid(ax)
+    found = colors.models(one.models) if looks is None else looks
+    if one.band is not None:
+        _band(ax, x, one.band, found[one.main])
+    _points(ax, x, one.measured, colors.MEASURED, label)
+    for name, values in one.models.items():
+        ax.plot(x, values, color=found[name], label=name, **_line(name))
+    bare(ax)
 
 
-def errors(ax: Axes, x: Any, found: Mapping[str, Floats], *, uncertainty: float = 0.0) -> None:
-    """Draw simulated minus measured values of models.
+def errors(ax: Axes, x: Any, one: Compared, *, looks: Mapping[str, str] | None = None) -> None:
+    """Draw simulated minus measured values of models, with the prediction interval.
 
     Parameters
     ----------
@@ -84,31 +139,131 @@ def errors(ax: Axes, x: Any, found: Mapping[str, Floats], *, uncertainty: float 
         Where to draw.
     x : array_like, shape (n,)
         Times.
-    found : mapping of str to ndarray, shape (n,)
-        Errors by model. [unit]
-    uncertainty : float
-        Expanded uncertainty of the sensor, drawn as a band around zero. [unit]
+    one : Compared
+        The sensor.
+    looks : mapping of str to str, optional
+        Color of each model; default those of `colors.models`.
 
     Examples
     --------
     >>> from matplotlib.figure import Figure
     >>> ax = Figure().subplots()
-    >>> errors(ax, np.arange(3), {"fitted": np.array([0.1, -0.1, 0.0])})
+    >>> errors(ax, np.arange(3), Compared("room", np.ones(3), {"fitted": np.zeros(3)}, "fitted"))
     >>> len(ax.lines)
     2
     """
-    if uncertainty > 0.0:
-        ax.axhspan(-uncertainty, uncertainty, color=GRAY, alpha=0.18, lw=0)
-    ax.axhline(0.0, color=GRAY, linewidth=0.8)
-    for name, values in found.items():
-        ax.plot(x, values, linewidth=1.0, color=COLORS.get(name, GRAY), label=name)
-    _grid(ax)
+    found = colors.models(one.models) if looks is None else looks
+    if one.error_band is not None:
+        _band(ax, x, one.error_band, found[one.main])
+    if one.uncertainty > 0.0:
+        for end in (-one.uncertainty, one.uncertainty):
+            ax.axhline(end, color=colors.MEASURED, linewidth=0.7, linestyle=(0, (1, 2)))
+    ax.axhline(0.0, color=colors.INK, linewidth=0.7)
+    for name in one.models:
+        ax.plot(x, one.error(name), color=found[name], label=name, **_line(name))
+    bare(ax)
 
 
-def _grid(ax: Axes) -> None:
+def together(ax: Axes, x: Any, sensors: Sequence[tuple[Compared, colors.Look]]) -> None:
+    """Draw several sensors of one unit: measured values as points, those of the main model as lines.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Where to draw.
+    x : array_like, shape (n,)
+        Times.
+    sensors : sequence of (Compared, Look)
+        The sensors and how each is drawn.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> ax = Figure().subplots()
+    >>> one = Compared("room", np.ones(3), {"fitted": np.zeros(3)}, "fitted")
+    >>> together(ax, np.arange(3), [(one, colors.look(0))])
+    >>> len(ax.lines)
+    2
+    """
+    for one, look in sensors:
+        _points(ax, x, one.measured, look.color, "_measured")
+    for one, look in sensors:
+        line: dict[str, Any] = {"color": look.color, "linestyle": look.dash, "linewidth": 1.2}
+        ax.plot(x, one.models[one.main], label=one.label, **line)
+    bare(ax)
+
+
+def errors_together(ax: Axes, x: Any, sensors: Sequence[tuple[Compared, colors.Look]]) -> None:
+    """Draw the errors of the main model for several sensors of one unit; parameters as for `together`.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Where to draw.
+    x : array_like, shape (n,)
+        Times.
+    sensors : sequence of (Compared, Look)
+        The sensors and how each is drawn.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> ax = Figure().subplots()
+    >>> one = Compared("room", np.ones(3), {"fitted": np.zeros(3)}, "fitted")
+    >>> errors_together(ax, np.arange(3), [(one, colors.look(0))])
+    >>> [line.get_label() for line in ax.lines][-1]
+    'room'
+    """
+    for one, look in sensors:
+        if one.error_band is not None:
+            _band(ax, x, one.error_band, look.color, 0.5 * _BAND)
+    ax.axhline(0.0, color=colors.INK, linewidth=0.7)
+    for one, look in sensors:
+        line: dict[str, Any] = {"color": look.color, "linestyle": look.dash, "linewidth": 1.1}
+        ax.plot(x, one.error(one.main), label=one.label, **line)
+    bare(ax)
+
+
+def bare(ax: Axes) -> None:
+    """Show a light grid and only the horizontal axis.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        The axes.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> ax = Figure().subplots()
+    >>> bare(ax)
+    >>> ax.spines["left"].get_visible()
+    False
+    """
     ax.spines[["top", "right", "left"]].set_visible(False)
-    ax.spines["bottom"].set_color(GRAY)
-    ax.grid(axis="y", color=GRAY, alpha=0.25, linewidth=0.7)
+    ax.spines["bottom"].set_color(colors.INK)
+    ax.grid(axis="y", color=colors.INK, alpha=0.18, linewidth=0.7)
     ax.set_axisbelow(True)
-    ax.tick_params(colors=GRAY, length=3)
+    ax.tick_params(colors=colors.INK, length=3)
     ax.tick_params(axis="y", length=0)
+
+
+def _line(model: str) -> dict[str, Any]:
+    """Style of the line of a model."""
+    nominal = model == "nominal"
+    return {"linestyle": (0, (4, 2)) if nominal else "-", "linewidth": 1.0 if nominal else 1.2}
+
+
+def _points(ax: Axes, x: Any, values: Floats, color: str, label: str) -> Line2D:
+    many = values.size > _MOST_POINTS
+    every = 1 if many else max(1, -(-values.size // _MOST_CIRCLES))
+    (drawn,) = ax.plot(
+        x[::every], values[::every], "o", color=color, markerfacecolor=color if many else "none",
+        markersize=1.0 if many else _SIZE, markeredgewidth=0.0 if many else 0.8, label=label, zorder=3.0,
+    )  # fmt: skip
+    drawn.set_rasterized(many)
+    return drawn
+
+
+def _band(ax: Axes, x: Any, ends: tuple[Floats, Floats], color: str, alpha: float = _BAND) -> None:
+    ax.fill_between(x, *ends, color=color, alpha=alpha, lw=0)

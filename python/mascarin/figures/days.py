@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mascarin.figures import colors
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_USED, _OTHER, _PROPOSED = "#009e73", "#8c8c8c", "#d55e00"
+_USED, _OTHER, _PROPOSED = colors.PALETTE[2], colors.REST, colors.PALETTE[1]
 
 
 def leverage(
@@ -43,7 +45,7 @@ def leverage(
     'leverage, relative to the identification'
     """
     _bars(axes, dates, ratio, used, proposed)
-    axes.axhline(far, color="#555555", lw=0.8, ls="--", label="extrapolation above")
+    axes.axhline(far, color=colors.INK, lw=0.8, ls="--", label="extrapolation above")
     axes.set_ylabel("leverage, relative to the identification")
 
 

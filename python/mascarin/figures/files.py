@@ -39,14 +39,14 @@ def require_format(path: Path, option: str) -> None:
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Write a figure as SVG; the same figure gives the same bytes.
+    """Write a figure as SVG or PDF; the same figure gives the same bytes.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         What to write.
     path : Path
-        Where to; missing folders are made.
+        Where to, ending in ``.svg`` or ``.pdf``; missing folders are made.
 
     Returns
     -------
@@ -57,14 +57,46 @@ def save(figure: Figure, path: Path) -> Path:
     --------
     >>> import tempfile
     >>> from matplotlib.figure import Figure
-    >>> file = save(Figure(), Path(tempfile.mkdtemp()) / "figures" / "empty.svg")
-    >>> file.read_text().startswith("<?xml")
+    >>> folder = Path(tempfile.mkdtemp()) / "figures"
+    >>> save(Figure(), folder / "empty.svg").read_text().startswith("<?xml")
     True
+    >>> save(Figure(), folder / "empty.pdf").read_bytes()[:5]
+    b'%PDF-'
     """
     import matplotlib as mpl
 
-    text = io.StringIO()
+    kind = path.suffix.lower().removeprefix(".")
+    file = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "mascarin", "svg.fonttype": "none"}):
-        figure.savefig(text, format="svg", metadata={"Date": None})
+        figure.savefig(
+            file, format=kind, dpi=150, metadata={"Date" if kind == "svg" else "CreationDate": None}
+        )
     path.parent.mkdir(parents=True, exist_ok=True)
-    return atomic.write(path, text.getvalue())
+    return atomic.write(path, file.getvalue())
+
+
+def save_both(figure: Figure, path: Path) -> list[Path]:
+    """Write a figure as SVG and as PDF.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        What to write.
+    path : Path
+        Where to, without ending.
+
+    Returns
+    -------
+    list of Path
+        The two files.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from matplotlib.figure import Figure
+    >>> [file.name for file in save_both(Figure(), Path(tempfile.mkdtemp()) / "empty")]
+    ['empty.svg', 'empty.pdf']
+    """
+    first = save(figure, path.with_name(f"{path.name}.svg"))
+    figure.set_layout_engine("none")  # the places are found
+    return [first, save(figure, path.with_name(f"{path.name}.pdf"))]

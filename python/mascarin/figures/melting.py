@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from mascarin._io.units import bracketed, shown
+from mascarin.figures import colors
 from mascarin.figures.series import axes_for
 
 if TYPE_CHECKING:
@@ -73,12 +75,16 @@ def draw(curves: Sequence[Curve], ax: Axes | Sequence[Axes] | None = None) -> Fi
 
     above, below = axes_for(ax, ["kJ/kg", "kJ/(kg K)"])
     for one in curves:
-        look: dict[str, Any] = {"linestyle": one.style, "color": f"C{one.family}", "label": one.label}
+        look: dict[str, Any] = {
+            "linestyle": one.style,
+            "color": colors.look(one.family).color,
+            "label": one.label,
+        }
         above.plot(one.temperature, np.asarray(one.enthalpy) / 1000.0, **look)
         below.plot(one.middle, np.asarray(one.specific_heat) / 1000.0, **look)
     above.set_ylabel("enthalpy [kJ/kg]")
     below.set_ylabel("apparent specific heat [kJ/(kg K)]")
-    below.set_xlabel("temperature [degC]")
+    below.set_xlabel(bracketed("temperature", shown("degC")))
     for axes in (above, below):
         axes.grid(visible=True, alpha=0.3)
         axes.legend(frameon=False, fontsize="small")

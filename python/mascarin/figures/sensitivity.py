@@ -12,31 +12,19 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from mascarin.figures import colors
+
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
 
-# Distinct in the common kinds of color blindness (Okabe and Ito), and by lightness.
-COLORS: Final = (
-    "#0072b2",
-    "#e69f00",
-    "#009e73",
-    "#cc79a7",
-    "#56b4e9",
-    "#d55e00",
-    "#f0e442",
-    "#7a5195",
-    "#3d3d3d",
-)
-_REST: Final = "#d9d9d9"
-_INK: Final = "#333333"
 _KINDS: Final = {
-    "fundamental": COLORS[0],
-    "harmonic": COLORS[1],
-    "interaction": COLORS[2],
-    "unnamed": "#999999",
+    "fundamental": colors.PALETTE[0],
+    "harmonic": colors.PALETTE[1],
+    "interaction": colors.PALETTE[2],
+    "unnamed": colors.REST,
 }
 
 Legend = tuple[list["Artist"], list[str]]
@@ -107,10 +95,10 @@ def indices(
     """
     y = np.arange(len(names))[::-1].astype(np.float64)
     shift = 0.0 if total is None else 0.14
-    for mask, fill in ((significant, _INK), (~significant, "white")):
-        _points(ax, index[mask], low[mask], high[mask], y[mask] + shift, _INK, fill)
+    for mask, fill in ((significant, colors.INK), (~significant, "white")):
+        _points(ax, index[mask], low[mask], high[mask], y[mask] + shift, colors.INK, fill)
     if total is not None:
-        _points(ax, *total, y - shift, COLORS[5], COLORS[5])
+        _points(ax, *total, y - shift, colors.NOMINAL, colors.NOMINAL)
     ax.set_yticks(y, list(names), fontsize=8)
     ax.tick_params(labelleft=labeled)
     ax.set_xlim(left=0.0)
@@ -146,19 +134,26 @@ def effects(ax: Axes, names: Sequence[str], effect: Floats, unit: str, *, rms: F
     [1.0, -0.5]
     """
     y = np.arange(len(names))[::-1]
-    ax.barh(y, np.nan_to_num(effect), color=[COLORS[5] if e > 0 else COLORS[0] for e in effect], height=0.65)
+    ax.barh(
+        y,
+        np.nan_to_num(effect),
+        color=[colors.PALETTE[1] if e > 0 else colors.PALETTE[0] for e in effect],
+        height=0.65,
+    )
     if rms is not None:
         line = np.nan_to_num(rms)
-        ax.hlines(y, -line, line, color=_INK, linewidth=0.8)
+        ax.hlines(y, -line, line, color=colors.INK, linewidth=0.8)
         ax.set_title("bar: mean, line: rms over time", loc="right", fontsize=8)
-    ax.axvline(0.0, color=_INK, linewidth=0.8)
+    ax.axvline(0.0, color=colors.INK, linewidth=0.8)
     ax.set_yticks(y, list(names), fontsize=8)
     ax.set_xlabel(f"low to high end of the range [{unit or '-'}]", fontsize=9)
     _bare(ax)
     ax.tick_params(axis="y", length=0)
 
 
-def indices_over_time(ax: Axes, x: Floats, index: Floats, names: Sequence[str], *, rest: str) -> Legend:
+def indices_over_time(
+    ax: Axes, x: Floats, index: Floats, named: Sequence[tuple[str, colors.Look]], *, rest: str
+) -> Legend:
     """Draw first-order indices over time as stacked areas.
 
     Parameters
@@ -169,8 +164,8 @@ def indices_over_time(ax: Axes, x: Floats, index: Floats, names: Sequence[str], 
         Times.
     index : ndarray, shape (G, T)
         Indices. [-]
-    names : sequence of str, length G
-        Parameters; at most 9, the number of colors.
+    named : sequence of (str, Look), length G
+        Parameters and how each is drawn; see `colors.parameters`.
     rest : str
         Name of what the indices leave of 1.
 
@@ -183,19 +178,22 @@ def indices_over_time(ax: Axes, x: Floats, index: Floats, names: Sequence[str], 
     --------
     >>> from matplotlib.figure import Figure
     >>> ax = Figure().subplots()
-    >>> handles, labels = indices_over_time(ax, np.arange(3.0), np.full((1, 3), 0.8), ["a"], rest="others")
+    >>> index, named = np.full((1, 3), 0.8), [("a", colors.look(0))]
+    >>> handles, labels = indices_over_time(ax, np.arange(3.0), index, named, rest="others")
     >>> labels
     ['others', 'a']
     """
     percent = 100.0 * index
     # Estimates scatter a little: the rest is never negative.
     remaining = np.maximum(0.0, 100.0 - percent.sum(axis=0))
-    areas = ax.stackplot(x, *percent, remaining, colors=(*COLORS[: len(names)], _REST), linewidth=0.0)
+    shades = (*(look.color for _, look in named), colors.REST)
+    hatches = [*(look.hatch for _, look in named), ""]
+    areas = ax.stackplot(x, *percent, remaining, colors=shades, hatch=hatches, linewidth=0.0)
     ax.set_ylim(0.0, 100.0)
     ax.set_xlim(float(x[0]), float(x[-1]))
     ax.set_ylabel("first-order index S1 [%]")
     _bare(ax)
-    return [*areas[::-1]], [*names, rest][::-1]
+    return [*areas[::-1]], [*(name for name, _ in named), rest][::-1]
 
 
 def standard_deviation(ax: Axes, x: Floats, deviation: Floats, unit: str) -> None:
@@ -220,7 +218,7 @@ def standard_deviation(ax: Axes, x: Floats, deviation: Floats, unit: str) -> Non
     >>> ax.get_ylabel()
     'sd [K]'
     """
-    ax.plot(x, deviation, color=_INK, linewidth=1.2)
+    ax.plot(x, deviation, color=colors.INK, linewidth=1.2)
     ax.set_ylim(bottom=0.0)
     ax.set_ylabel(f"sd [{unit or '-'}]")
     _bare(ax)
@@ -286,15 +284,21 @@ def spectrum(
     from matplotlib.lines import Line2D
 
     numbers = np.arange(1, power.size + 1)
-    ax.vlines(numbers, 0.0, 100.0 * power, color=_INK, linewidth=0.6)
-    ax.axhline(100.0 * threshold, color=_INK, linewidth=0.8, linestyle="--")
+    ax.vlines(numbers, 0.0, 100.0 * power, color=colors.INK, linewidth=0.6)
+    ax.axhline(100.0 * threshold, color=colors.INK, linewidth=0.8, linestyle="--")
     for line in lines:
         ax.vlines(line.number, 0.0, 100.0 * line.power, color=_KINDS[line.kind], linewidth=1.8)
     strongest = sorted(lines, key=lambda line: -line.power)[:listed]
     for line in strongest:
         place = (line.number, 100.0 * line.power)
         ax.annotate(
-            str(line.number), place, (0, 2), textcoords="offset points", ha="center", fontsize=7, color=_INK
+            str(line.number),
+            place,
+            (0, 2),
+            textcoords="offset points",
+            ha="center",
+            fontsize=7,
+            color=colors.INK,
         )
     _bare(ax)
     ax.set_xlim(0, float(numbers[-1] + 1))
@@ -308,7 +312,7 @@ def spectrum(
         handles.append(Line2D([], [], color=_KINDS[line.kind], linewidth=2.0))
         name = line.label if line.kind != "unnamed" else "in this replicate only"
         labels.append(f"{line.number}  {100.0 * line.power:.1f} %  {name}")
-    handles.append(Line2D([], [], color=_INK, linewidth=0.8, linestyle="--"))
+    handles.append(Line2D([], [], color=colors.INK, linewidth=0.8, linestyle="--"))
     labels.append(f"noise stays below {100.0 * threshold:.2g} % (95 %)")
     return handles, labels
 

@@ -3,23 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from datetime import tzinfo
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib import dates
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mascarin._io.arguments import require_type
+from mascarin._io.units import bracketed, shown
 from mascarin.errors import InputError
+from mascarin.figures import colors
 from mascarin.progress import in_notebook
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     import pandas as pd
 
-    Array = npt.NDArray[np.float64]
+Array = npt.NDArray[np.float64]
+
+
+class Curve(NamedTuple):
+    """A column of a table.
+
+    Parameters
+    ----------
+    name : str
+        Name in the legend.
+    values : ndarray, shape (rows + 1,)
+        At the starts of the intervals and at the end of the last one. [unit]
+    mean : bool
+        Whether they are means of the intervals, drawn as steps.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> Curve("wind", np.array([3.0, 4.0]), mean=True).name
+    'wind'
+    """
+
+    name: str
+    values: Array
+    mean: bool
 
 
 def draw(
@@ -61,19 +87,71 @@ def draw(
     # Times in UTC with local labels: a line does not go back where daylight saving time ends.
     days = dates.date2num(index.tz_convert("UTC").tz_localize(None).to_numpy())  # type: ignore[no-untyped-call]
     for name, unit, values in series:
-        axes[units.index(unit)].plot(days, values, label=name, lw=1.1)
+        axis = axes[units.index(unit)]
+        look = colors.look(len(axis.lines))
+        axis.plot(days, values, label=name, lw=1.1, color=look.color, linestyle=look.dash)
     for axis in dict.fromkeys(axes):
         here = [unit for unit, other in zip(units, axes, strict=True) if other is axis]
-        axis.set_ylabel(", ".join(f"[{unit}]" for unit in here))
+        axis.set_ylabel(", ".join(bracketed("", shown(unit) or "-") for unit in here))
         axis.legend(fontsize="small")
         axis.grid(alpha=0.3)
-        locator = dates.AutoDateLocator(tz=index.tz)  # type: ignore[no-untyped-call]
-        axis.xaxis.set_major_locator(locator)
-        formatter = dates.ConciseDateFormatter(locator, tz=index.tz)  # type: ignore[no-untyped-call]
-        axis.xaxis.set_major_formatter(formatter)
+        _mark_dates(axis, index.tz)
     if axes:
         axes[-1].set_xlabel(f"local time ({index.tz})")
     return (axes[0].get_figure(root=True) if axes else None) or Figure()
+
+
+def columns(
+    ax: Axes, edges: npt.NDArray[np.datetime64], curves: Sequence[Curve], unit: str, zone: tzinfo, label: str
+) -> None:
+    """Draw columns of a table over local time.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Where to draw.
+    edges : ndarray of datetime64, shape (rows + 1,)
+        Starts of the intervals and the end of the last one, in UTC.
+    curves : sequence of Curve
+        The columns, all in one unit.
+    unit : str
+        Their unit.
+    zone : datetime.tzinfo
+        Zone of the clock.
+    label : str
+        Its name.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from datetime import UTC
+    >>> edges = np.array(["2001-07-01T00:00", "2001-07-01T01:00"], dtype="datetime64[s]")
+    >>> ax = Figure().subplots()
+    >>> columns(ax, edges, [Curve("air", np.array([20.0, 21.0]), mean=False)], "degC", UTC, "UTC")
+    >>> ax.get_xlabel(), ax.get_ylabel()
+    ('local time (UTC)', '[°C]')
+    """
+    days = dates.date2num(edges)  # type: ignore[no-untyped-call]
+    for number, curve in enumerate(curves):
+        look = colors.look(number)
+        style: dict[str, Any] = {"label": curve.name, "color": look.color, "linestyle": look.dash}
+        if curve.mean:
+            ax.step(days, curve.values, where="post", **style)
+        else:
+            ax.plot(days, curve.values, **style)
+    _mark_dates(ax, zone)
+    ax.set_xlabel(f"local time ({label})")
+    ax.set_ylabel(bracketed("", shown(unit)))
+    if len(curves) > 1:
+        ax.legend()
+    else:
+        ax.set_title("".join(curve.name for curve in curves))
+
+
+def _mark_dates(ax: Axes, zone: tzinfo | None) -> None:
+    locator = dates.AutoDateLocator(tz=zone)  # type: ignore[no-untyped-call]
+    ax.xaxis.set_major_locator(locator)
+    ax.xaxis.set_major_formatter(dates.ConciseDateFormatter(locator, tz=zone))  # type: ignore[no-untyped-call]
 
 
 def _let_notebook_show_figures() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from mascarin._io import atomic
 from mascarin.report.folder import read_folder
@@ -17,7 +17,10 @@ from mascarin.report.html import page
 from mascarin.report.payload import check, tidy
 from mascarin.report.series import Column, Series
 
-__all__ = ["Column", "Series", "render", "write", "write_folder"]
+__all__ = ["Column", "Series", "is_report", "render", "write", "write_folder"]
+
+
+_HEAD: Final = 4096  # bytes
 
 
 def render(study: Mapping[str, Any], series: Series) -> str:
@@ -105,6 +108,30 @@ def write(path: Path, study: Mapping[str, Any], series: Series) -> Path:
     'report.html'
     """
     return atomic.write(path, render(study, series))
+
+
+def is_report(path: Path) -> bool:
+    """Whether a file is a report of Mascarin; another page of the same name is not.
+
+    Parameters
+    ----------
+    path : Path
+        An existing file.
+
+    Returns
+    -------
+    bool
+        Whether its head names Mascarin as the program that made it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "report.html"
+    >>> is_report(write(file, {"title": "An empty study"}, Series("2024-01-01T00:00", 900.0)))
+    True
+    """
+    with path.open("rb") as file:
+        return b'<meta name="generator" content="Mascarin' in file.read(_HEAD)
 
 
 def __dir__() -> list[str]:

@@ -12,7 +12,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from mascarin import __version__
-from mascarin._io import atomic
+from mascarin._io import atomic, units
 from mascarin.report import text
 from mascarin.report.svg import Axis, Chart
 from mascarin.verification.bestest.catalogue import CASES, IN_DEPTH, MAIN, Case
@@ -154,7 +154,7 @@ def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> d
     y = Axis.over(values, around=0.0)
     centres = np.arange(len(rows)) + 0.5
     axis = Axis(0.0, float(len(rows)), tuple(centres), tuple(name for name, _ in rows))
-    chart = Chart(axis, y, width=max(340.0, 90.0 + 62.0 * len(rows)), height=210.0, y_label=text.unit(unit))
+    chart = Chart(axis, y, width=max(340.0, 90.0 + 62.0 * len(rows)), height=210.0, y_label=units.shown(unit))
     width = 0.105
     for centre, (_, row) in zip(centres, rows, strict=True):
         left = centre - 3.5 * width
@@ -167,11 +167,11 @@ def _bar_chart(title: str, rows: Sequence[tuple[str, Quantity]], unit: str) -> d
         x = left + 6 * width
         chart.bar(x, x + width, 0.0, row.value, "ours" if row.passed else "ours outside")
     said = "; ".join(f"{name}: {_shown(row, row.value)} of {_span(row)}" for name, row in rows)
-    return {"title": f"{title}, {text.unit(unit)}", "drawing": chart.markup(f"{title}. {said}")}
+    return {"title": f"{title}, {units.shown(unit)}", "drawing": chart.markup(f"{title}. {said}")}
 
 
 def _outside(row: Quantity) -> str:
-    found = f"{_shown(row, row.value)} {text.unit(row.unit)}"
+    found = f"{_shown(row, row.value)} {units.shown(row.unit)}"
     whose = "the six programs" if (row.case, row.quantity) in ranges() else "--ranges"
     return f"{row.case}: {_words(row.quantity)}, {found} outside of the range {_span(row)} of {whose}"
 
@@ -275,7 +275,7 @@ def _day_values(year: Year, series: str, month: str, day: int) -> Array:
 def _curves(title: str, drawn: Sequence[tuple[str, Array]], unit: str) -> dict[str, Any]:
     y = Axis.over(*[values for _, values in drawn], around=0.0 if unit != "degC" else None)
     x = Axis(0.0, 24.0, (0.0, 6.0, 12.0, 18.0, 24.0), ("0", "6", "12", "18", "24"))
-    chart = Chart(x, y, width=340.0, height=200.0, x_label="hour", y_label=text.unit(unit))
+    chart = Chart(x, y, width=340.0, height=200.0, x_label="hour", y_label=units.shown(unit))
     for index, (_, values) in enumerate(drawn):
         chart.curve(np.asarray(_HOURS, dtype=np.float64), values, f"s{index}")
     said = "; ".join(
@@ -284,7 +284,7 @@ def _curves(title: str, drawn: Sequence[tuple[str, Array]], unit: str) -> dict[s
     )
     return {
         "title": title,
-        "drawing": chart.markup(f"{title}, {text.unit(unit)}. {said}"),
+        "drawing": chart.markup(f"{title}, {units.shown(unit)}. {said}"),
         "keys": [(label, f"s{index}") for index, (label, _) in enumerate(drawn)],
     }
 
@@ -360,7 +360,7 @@ def _table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
         {
             "case": row.case,
             "quantity": _words(row.quantity),
-            "unit": text.unit(row.unit),
+            "unit": units.shown(row.unit),
             "value": _shown(row, row.value),
             "when": row.when,
             "passed": row.passed,

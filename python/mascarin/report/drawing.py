@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from mascarin._io import units
 from mascarin.report import text
 from mascarin.report.series import Array
 from mascarin.report.svg import Svg
@@ -385,7 +386,7 @@ def _layer_text(number: int, layer: Mapping[str, Any]) -> str:
     conductivity = layer.get("conductivity")
     pair = conductivity if isinstance(conductivity, list) else [conductivity]
     shown = "/".join(text.significant(k) for k in pair if k is not None)
-    return f"{number}  {name}{size}" + (f", {shown}\u00a0{text.unit('W/(m K)')}" if shown else "")
+    return f"{number}  {name}{size}" + (f", {shown}\u00a0{units.shown('W/(m K)')}" if shown else "")
 
 
 def _neighbors(building: Mapping[str, Any], construction: str) -> tuple[str, str]:

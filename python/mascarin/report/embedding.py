@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
-from mascarin.figures import comparison, sensitivity
+from mascarin.figures import colors
 from mascarin.figures.page import embedded
 from mascarin.report.drawn import short_day
 
@@ -16,13 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_COLORS: Final = {
-    comparison.MEASURED: "--observed",
-    comparison.FITTED: "--fitted",
-    comparison.NOMINAL: "--nominal",
-    comparison.GRAY: "--soft",
-    **{color: f"--c{number}" for number, color in enumerate(sensitivity.COLORS[:8])},
-}
+# All other colors are the same on light and on dark paper.
+_COLORS: Final = {colors.INK: "--soft"}
 _SIZE: Final = 9.0  # points, as large as the other texts of figures
 
 
@@ -40,9 +35,10 @@ def axes(width: float, height: float, *, bottom: float = 20.0) -> Axes:
 def titled(ax: Axes, name: str) -> None:
     """Write the name of the vertical axis above it, and the numbers in the size of the page."""
     ax.set_ylabel("")
-    ax.set_title(name, loc="left", x=-0.1, fontsize=_SIZE, color=comparison.GRAY, pad=5.0)
-    ax.tick_params(labelsize=_SIZE, colors=comparison.GRAY)
-    ax.xaxis.label.set(fontsize=_SIZE, color=comparison.GRAY)
+    box = ax.get_position()
+    ax.set_title(name, loc="left", x=-box.x0 / box.width, fontsize=_SIZE, color=colors.INK, pad=5.0)
+    ax.tick_params(labelsize=_SIZE, colors=colors.INK)
+    ax.xaxis.label.set(fontsize=_SIZE, color=colors.INK)
     ax.locator_params(axis="y", nbins=5)
 
 

@@ -12,6 +12,8 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from mascarin.figures import colors
+from mascarin.report.numbering import Numbering
 from mascarin.report.page import context, explorer
 from mascarin.report.series import Series
 from mascarin.report.text import significant, typeset
@@ -39,16 +41,34 @@ def page(study: Mapping[str, Any], series: Series) -> str:
     environment.filters["typeset"] = typeset
     environment.filters["significant"] = significant
     environment.filters["symbol"] = _symbol
+    numbering = Numbering()
+    environment.globals["numbering"] = numbering
+    style = "\n".join((_asset("vendor/uPlot.min.css"), palette(), _asset("report.css")))
     template = environment.get_template("page.html")
-    return template.render(
-        **context(study, series),
-        style=Markup(_asset("vendor/uPlot.min.css") + "\n" + _asset("report.css")),  # noqa: S704  (our own files)
+    values = dict(
+        context(study, series),
+        style=Markup(style),  # noqa: S704  (our own files)
         library=Markup(library),  # noqa: S704
         licence=_asset("vendor/uPlot.LICENSE"),
         script=Markup(own),  # noqa: S704
         data=_json(explorer(study, series)),
         policy=_policy(library, own),
     )
+    template.render(values)  # counts the tables and figures to which texts refer
+    numbering.restart()
+    return template.render(values)
+
+
+def palette() -> str:
+    """The colors of all figures as custom properties of a style sheet."""
+    named = {
+        "observed": colors.MEASURED,
+        "fitted": colors.FITTED,
+        "nominal": colors.NOMINAL,
+        "rest": colors.REST,
+    }
+    named |= {f"c{number}": color for number, color in enumerate(colors.PALETTE)}
+    return ":root {" + " ".join(f"--{name}: {color};" for name, color in named.items()) + "}"
 
 
 def _policy(*scripts: str) -> str:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
 from types import ModuleType
 from typing import Any, Final
 
+from mascarin._io import units
+from mascarin.figures import colors
 from mascarin.report import text
+from mascarin.report.compared import model_looks
 from mascarin.report.labels import label_of, main_model, model_label, period_label, short_periods, unit_of
 from mascarin.report.sections import (
     carpets,
@@ -60,6 +63,7 @@ def context(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
     return {
         "title": study["title"],
         "intro": study.get("intro", []),
+        "looks": _looks(study, series),
         "observed": {"label": observed.get("label", "measured"), "note": observed.get("note", "")},
         "facts": _facts(study),
         "headline": headline(study, series),
@@ -75,14 +79,23 @@ def headline(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
     shown = curves.headline(study, series)
     if shown is None:
         return None
-    model = main_model(study)
-    nominal = "nominal" if "nominal" in study.get("models", {}) and model != "nominal" else None
     return {
-        "title": f"{shown.sensor}, {period_label(study, short_periods(study)[-1])}",
+        "title": f"{shown.title}, {period_label(study, short_periods(study)[-1]).lower()}",
         "values": shown.values,
         "errors": shown.errors,
-        "model": model_label(study, model),
-        "nominal": model_label(study, nominal),
+    }
+
+
+def _looks(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
+    """What the legend of the curves of a sensor shows."""
+    model, found = main_model(study), model_looks(study)
+    main = model_label(study, model)
+    nominal = model_label(study, "nominal") if "nominal" in study.get("models", {}) else ""
+    return {
+        "main": {"label": main, "color": found.get(main, "")},
+        "nominal": {"label": nominal, "color": found[nominal]} if nominal and model != "nominal" else None,
+        "band": any(key.startswith("band/") for key in series.columns),
+        "uncertain": any(info.get("uncertainty") for info in study.get("sensor_info", {}).values()),
     }
 
 
@@ -102,9 +115,8 @@ def _facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
         met = sum(1 for c in judged if c.get("passed"))
         kind = "pass" if met == len(judged) else "fail"
         found.append(_fact("Criteria met", f"{met} of {len(judged)}", "by the fitted model", kind))
-    worst = _worst(study)
-    if worst is not None:
-        found.append(worst)
+    found += coverage_facts(study)
+    found += _errors(study)
     fitted = [p for p in study.get("parameters", {}).values() if "fitted" in p]
     if fitted:
         sensed = len({path for shares in study.get("sensitivity", {}).values() for path in shares})
@@ -126,23 +138,70 @@ def _fact(name: str, value: str, note: str, kind: str = "") -> dict[str, str]:
     return {"name": name, "value": value, "note": note, "kind": kind}
 
 
-def _worst(study: Mapping[str, Any]) -> dict[str, str] | None:
-    """Standard deviation of the error over the sensors in the last period with metrics."""
+def coverage_facts(study: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Part of the values of the last period that lies inside the prediction bands.
+
+    Parameters
+    ----------
+    study : mapping
+        As in :class:`~mascarin.report.schema.Study`.
+    """
+    bands = study.get("band", {})
+    for period in reversed(list(study.get("periods", {}))):
+        held = {
+            sensor: (float(share), _values(study, sensor, period))
+            for sensor, entry in bands.items()
+            if (share := entry.get("held", {}).get(period)) is not None
+        }
+        count = sum(n for _, n in held.values())
+        if not count:
+            continue
+        asked = {float(bands[sensor].get("confidence", 0.95)) for sensor in held}
+        lowest = min(held, key=lambda sensor: held[sensor][0])
+        note = f"asked: {_percents(asked)}; {period_label(study, period).lower()}, all sensors"
+        if len(held) > 1:
+            note += f"; lowest: {label_of(study, lowest)}, {text.percent(held[lowest][0], 0)}"
+        share = sum(part * n for part, n in held.values()) / count
+        return [_fact("Coverage of the prediction bands", text.percent(share, 0), note)]
+    return []
+
+
+def _percents(shares: Collection[float]) -> str:
+    return " and ".join(f"{100.0 * share:g}\u00a0%" for share in sorted(shares))
+
+
+def _values(study: Mapping[str, Any], sensor: str, period: str) -> int:
+    """Number of compared values."""
+    found = study.get("sensors", {}).get(sensor, {}).get(period, {})
+    return int(found.get(main_model(study), {}).get("n", 0))
+
+
+def _errors(study: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Standard deviation of the error over the sensors in the last period with metrics, for each unit."""
     model = main_model(study)
     sensors = study.get("sensors", {})
     for period in reversed(list(study.get("periods", {}))):
-        values = [
-            (float(periods[period][model]["sd"]), sensor)
-            for sensor, periods in sensors.items()
-            if periods.get(period, {}).get(model, {}).get("sd") is not None
-        ]
-        if values:
-            low, high = min(values), max(values)
-            unit = text.difference_unit(unit_of(study, high[1]))
-            spread = text.fixed(low[0]) if low == high else f"{text.fixed(low[0])}–{text.fixed(high[0])}"
-            label = str(study["periods"][period].get("label", period)).lower()
-            return _fact("Error of the fitted model", f"{spread}\u00a0{unit}", f"standard deviation, {label}")
-    return None
+        by_unit: dict[str, list[float]] = {}
+        for sensor, periods in sensors.items():
+            sd = periods.get(period, {}).get(model, {}).get("sd")
+            if sd is not None:
+                by_unit.setdefault(units.difference(unit_of(study, sensor)), []).append(float(sd))
+        label = period_label(study, period).lower()
+        if by_unit:
+            return [
+                _fact(
+                    f"Error of the {model_label(study, model)} model",
+                    f"{_span(values)}\u00a0{unit}".strip(),
+                    f"standard deviation, {label}",
+                )
+                for unit, values in by_unit.items()
+            ]
+    return []
+
+
+def _span(values: Sequence[float]) -> str:
+    low, high = text.fixed(min(values)), text.fixed(max(values))
+    return low if low == high else f"{low}–{high}"
 
 
 def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
@@ -174,44 +233,65 @@ def _tables(study: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def _further_table(table: Mapping[str, Any]) -> dict[str, Any]:
-    rows = [[_cell(value) for value in row] for row in table.get("rows", [])]
+    columns = table.get("columns", [])
+    rows = _cells(table)
     return {
+        "key": "further-" + "-".join(str(table.get("title", "")).lower().split()),
+        "numeric": [any(row[k]["numeric"] for row in rows if k < len(row)) for k in range(len(columns))],
         "title": table.get("title", ""),
         "caption": table.get("caption", ""),
-        "columns": table.get("columns", []),
+        "columns": columns,
         "rows": rows,
     }
 
 
-def _cell(value: Any) -> dict[str, Any]:
-    if isinstance(value, bool) or value is None or isinstance(value, str):
-        shown = (
-            {True: "yes", False: "no", None: text.NONE}.get(value, value)
-            if not isinstance(value, str)
-            else value
-        )
-        return {"text": shown, "numeric": False}
-    return {"text": text.significant(float(value), 3), "numeric": True}
+def _cells(table: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
+    """Cells of a table: numbers with the digits of their uncertainty, else those of a column alike."""
+    columns, rows = list(table.get("columns", [])), table.get("rows", [])
+    sizes = dict(table.get("uncertainty", {}))
+    sizes |= {other: other for other in sizes.values()}
+    shown = []
+    for k, name in enumerate(columns):
+        values = [row[k] if k < len(row) else None for row in rows]
+        if name in sizes:
+            size = [row[columns.index(sizes[name])] for row in rows]
+            words = [text.with_uncertainty(v, s) for v, s in zip(values, size, strict=True)]
+        elif name in table.get("significant", ()):
+            words = [text.significant(value, 2) for value in values]
+        else:
+            words = text.alike([{True: "yes", False: "no"}[v] if isinstance(v, bool) else v for v in values])
+        shown.append([_cell(word, value) for word, value in zip(words, values, strict=True)])
+    return [list(row) for row in zip(*shown, strict=True)]
+
+
+def _cell(words: str, value: Any) -> dict[str, Any]:
+    return {"text": words, "numeric": isinstance(value, int | float) and not isinstance(value, bool)}
 
 
 def explorer(study: Mapping[str, Any], series: Series) -> dict[str, Any]:
     """Give what the interactive curves need, ready for JSON."""
     return {
-        "series": series.to_dict(),
+        "series": _shown_units(series.to_dict()),
         "observed": study.get("observed", {}).get("label", "measured"),
         "models": {key: model_label(study, key) for key in study.get("models", {})},
+        "colors": colors.models(study.get("models", {})),
         "main": main_model(study),
         "sensors": {
             key: {
                 "label": label_of(study, key),
-                "unit": text.unit(unit_of(study, key)),
-                "difference": text.difference_unit(unit_of(study, key)),
+                "unit": units.shown(unit_of(study, key)),
+                "difference": units.difference(unit_of(study, key)),
                 "uncertainty": info.get("uncertainty", 0.0),
             }
             for key, info in study.get("sensor_info", {}).items()
         },
         "spans": _spans(study),
     }
+
+
+def _shown_units(raw: dict[str, Any]) -> dict[str, Any]:
+    columns = {key: {**column, "unit": units.shown(column["unit"])} for key, column in raw["columns"].items()}
+    return {**raw, "columns": columns}
 
 
 def _spans(study: Mapping[str, Any]) -> list[Sequence[str]]:

@@ -36,13 +36,7 @@
   const box = document.getElementById("explorer");
   const picks = { sensor: "pick-sensor", period: "pick-period", beside: "pick-beside" };
   const picked = (name) => document.getElementById(picks[name])?.value ?? "";
-  const extra = ["--c2", "--c3", "--c6", "--c5"];
   let plots = [];
-
-  function colour(key, number) {
-    if (key === data.main) return style("--fitted");
-    return key === "nominal" ? style("--nominal") : style(extra[number % extra.length]);
-  }
 
   function axes(label) {
     const ink = style("--soft");
@@ -86,7 +80,7 @@
   function plot(target, label, unit, height, lines, values, bands) {
     const width = target.clientWidth || box.clientWidth;
     return new uPlot({
-      width, height, tzDate: (t) => new Date(t * 1000), axes: axes(`${label}, ${unit}`),
+      width, height, tzDate: (t) => new Date(t * 1000), axes: axes(unit ? `${label} [${unit}]` : label),
       scales: { x: { time: true } }, bands,
       cursor: { sync: { key: "report" }, drag: { x: true, y: false }, points: { size: 6 } },
       legend: { live: true },
@@ -109,35 +103,39 @@
     if (!seen) return;
     const chosen = [...box.querySelectorAll("input[name=model]:checked")].map((i) => i.value)
       .filter((key) => series.columns[`${key}/${sensor}`]);
-    const half = info.uncertainty || 0;
-    const band = style("--band");
     const ghost = (label) => ({ label, stroke: "transparent", width: 0, points: { show: false }, class: "hidden" });
     const lines = [], values = [times], errors = [times], below = [];
     let bands;
+    const fitted = column(`${data.main}/${sensor}`);
+    const half = chosen.includes(data.main) && column(`band/${sensor}`);
     if (half) {
+      // The prediction interval of the measured values, and where the errors are expected for the same reason.
+      const middle = column(`expected/${sensor}`) || fitted;
+      const ends = [1, -1].map((sign) => middle.map((v, i) => (v === null || half[i] === null ? null : v + sign * half[i])));
       lines.push(ghost("upper"), ghost("lower"));
       below.push(ghost("upper"), ghost("lower"));
-      values.push(seen.map((v) => (v === null ? null : v + half)), seen.map((v) => (v === null ? null : v - half)));
-      errors.push(seen.map(() => half), seen.map(() => -half));
-      bands = [{ series: [1, 2], fill: band }];
+      values.push(...ends);
+      errors.push(minus(fitted, ends[1]), minus(fitted, ends[0]));
+      bands = [{ series: [1, 2], fill: data.colors[data.main] + "33" }];
     }
-    chosen.forEach((key, n) => {
+    chosen.forEach((key) => {
       const made = column(`${key}/${sensor}`);
       const dash = key === "nominal" && key !== data.main ? [6, 4] : undefined;
-      lines.push(line(data.models[key] || key, colour(key, n), info.unit, { dash }));
+      lines.push(line(data.models[key] || key, data.colors[key], info.unit, { dash }));
       values.push(made);
-      below.push(line(data.models[key] || key, colour(key, n), info.difference, { dash }));
+      below.push(line(data.models[key] || key, data.colors[key], info.difference, { dash }));
       errors.push(minus(made, seen));
     });
-    lines.push(line(data.observed, style("--observed"), info.unit, { width: 1.2 }));
+    const ink = style("--observed");
+    lines.push(line(data.observed, ink, info.unit, { width: 0, paths: () => null, points: { show: true, size: 3, width: 1, stroke: ink } }));
     values.push(seen);
     plots.push(plot(document.getElementById("plot-values"), info.label, info.unit, 300, lines, values, bands));
     plots.push(plot(document.getElementById("plot-errors"), "error", info.difference, 170, below, errors, bands));
     const key = picked("beside");
     if (key) {
       const raw = series.columns[key];
-      plots.push(plot(document.getElementById("plot-beside"), raw.label, raw.unit || "–", 150,
-        [line(raw.label, style("--c6"), raw.unit)], [times, column(key)]));
+      plots.push(plot(document.getElementById("plot-beside"), raw.label, raw.unit, 150,
+        [line(raw.label, style("--c3"), raw.unit)], [times, column(key)]));
     }
     zoom();
   }

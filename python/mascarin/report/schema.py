@@ -283,6 +283,10 @@ class Table(TypedDict, total=False):
     caption: str
     columns: list[str]
     rows: list[list[Any]]
+    uncertainty: dict[str, str]
+    """Columns whose digits another column decides: name of the column -> that of its standard uncertainty."""
+    significant: list[str]
+    """Columns whose numbers span decades, shown with two significant digits each."""
     section: str
     """Identifier of the section it belongs to; ``comparison`` by default."""
 
@@ -315,7 +319,14 @@ class Study(TypedDict, total=False):
     """sensor -> period -> model -> metrics; other keys beside the models are left alone."""
     reference: dict[str, Any]
     """A publication for comparison: ``label``, ``note``, ``sensors`` (as above, without models), its
-    ``tables`` by what they hold, and its ``influential`` parameters with ``symbol`` and ``frequency``."""
+    ``tables`` by what they hold, its ``influential`` parameters with ``symbol`` and ``frequency``, and its
+    identified ``parameters`` with ``symbol``, ``before``, ``after`` and perhaps ``unit`` and ``delta_t``."""
+    reference_values: dict[str, dict[str, Any]]
+    """``value`` and ``unit`` of its parameters in the building as described."""
+    coefficients: dict[str, Any]
+    """Effective mean convective coefficients: ``period``, ``unit``, and ``models``: model -> law -> value."""
+    band: dict[str, dict[str, Any]]
+    """Prediction interval of each sensor: ``confidence`` [-] and ``held``, the coverage by period [-]."""
     building: BuildingEntry
     assumptions: list[Assumption]
     quality: list[QualityEntry]

@@ -4,28 +4,18 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from datetime import datetime
+from typing import Any
 
 from mascarin._io import numbers
+from mascarin._io.units import shown
 
-_UNITS = {
-    "degC": "°C",
-    "deg": "°",
-    "-": "",
-    "m2": "m²",
-    "m3": "m³",
-    "W/m2": "W/m²",
-    "W/(m K)": "W/(m·K)",
-    "W/(m2 K)": "W/(m²·K)",
-    "m2 K/W": "m²·K/W",
-    "kg/m3": "kg/m³",
-    "J/(kg K)": "J/(kg·K)",
-}
 #: Kinds of the description in words.
 _CHOICES = {
     "linear_wind": "linear in wind",
     "alamdari_hammond": "Alamdari and Hammond",
-    "paper_eq5": "eq. 5 of the paper",
+    "paper_eq5": "Alamdari and Hammond as printed in Guichard et al. 2016, eq. 5",
     "tarp": "TARP",
     "mowitt": "MoWiTT",
     "doe2": "DOE-2",
@@ -54,16 +44,6 @@ _ENDINGS = {
     ".infiltration.constant": ".infiltration",
 }
 MINUS = "−"
-
-
-def unit(raw: str) -> str:
-    """Unit with its typographic signs; unknown ones as they are."""
-    return _UNITS.get(raw, raw)
-
-
-def difference_unit(raw: str) -> str:
-    """Unit of a difference: K for temperatures."""
-    return "K" if raw in ("degC", "°C") else unit(raw)
 
 
 def fixed(value: float | None, digits: int = 2, *, sign: bool = False) -> str:
@@ -103,6 +83,30 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
     return shown[0], f"{shown[1]} to {shown[2]}"
 
 
+def alike(values: Sequence[Any], digits: int = 3) -> list[str]:
+    """Values of one kind with the same decimals; the largest has so many digits. Texts stay as they are."""
+    finite = [abs(float(v)) for v in values if _is_number(v) and math.isfinite(v)]
+    largest = max(finite, default=0.0)
+    size = math.floor(math.log10(largest)) if largest > 0.0 else 0
+    if finite and not (-3 <= size <= 6):
+        return [significant(v, digits) if _is_number(v) else str(v or NONE) for v in values]
+    # No more decimals than the values have.
+    most = max(0, digits - 1 - size)
+    decimals = next((d for d in range(most) if all(round(v, d) == round(v, most) for v in finite)), most)
+    return [fixed(float(v), decimals) if _is_number(v) else str(v or NONE) for v in values]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def with_uncertainty(value: float | None, uncertainty: float | None) -> str:
+    """Value with the digits that its standard uncertainty supports."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    return _typographic(numbers.with_uncertainty(value, uncertainty or 0.0))
+
+
 def beside_limit(value: float | None, limit: float | None) -> tuple[str, str]:
     """Value and limit with so many decimals that one sees whether the limit is met."""
     if value is None or limit is None or not math.isfinite(value):
@@ -121,7 +125,7 @@ def _typographic(number: str) -> str:
 
 def with_unit(value: float | None, raw_unit: str, digits: int = 3) -> str:
     """Number and unit, kept on one line."""
-    text, symbol = significant(value, digits), unit(raw_unit)
+    text, symbol = significant(value, digits), shown(raw_unit)
     if not symbol or text == NONE:
         return text
     return f"{text}{symbol}" if symbol in ("°", "%") else f"{text}\u00a0{symbol}"
@@ -162,8 +166,12 @@ def plain_path(path: str) -> str:
 
 def typeset(words: str) -> str:
     """Plain signs and units in a text by their typographic ones."""
-    for plain, sign in (("<=", "≤"), (">=", "≥"), (" degC", "\u00a0°C"), (" deg", "°"), (" m2", "\u00a0m²")):
+    for plain, sign in (("<=", "≤"), (">=", "≥")):
         words = words.replace(plain, sign)
+    words = re.sub(r"(?<=\d) deg\b", "°", words)
+    words = re.sub(r"(?<=\d) degC\b", "\u00a0°C", words)
+    words = re.sub(r"(?<=\d) (?=m[23]\b)", "\u00a0", words)
+    words = re.sub(r"(?<![\w.])m[23](?!\w)", lambda found: shown(found[0]), words)
     return re.sub(r"(^|\s)-(?=\d)", rf"\1{MINUS}", words)
 
 

@@ -100,14 +100,17 @@ def day(result: SpectralSensitivity, output: str, *, hour: ArrayLike | None = No
     s = result.output_index(output)
     hours = local_hours(result.times) if hour is None else hour
     x, index, variance = result.indices_by_hour(output, hours)
-    order = result.strongest(output, min(top, len(figures.COLORS)))
+    order = result.strongest(output, top)
     figure = _figure(9.0, 5.0)
     upper = figure.add_axes((0.07, 0.36, 0.48, 0.56))
     lower = figure.add_axes((0.07, 0.10, 0.48, 0.20), sharex=upper)
-    names = [f"{result.names[i]}  {100.0 * result.index[i, s]:.1f} %" for i in order]
+    looks = result.looks(top)
+    named = [
+        (f"{result.names[i]}  {100.0 * result.index[i, s]:.1f} %", looks[result.names[i]]) for i in order
+    ]
     remainder = 100.0 * (1.0 - result.index[order, s].sum())
     rest = f"others and interactions  {remainder:.1f} %"
-    legend = figures.indices_over_time(upper, x, index[order], names, rest=rest)
+    legend = figures.indices_over_time(upper, x, index[order], named, rest=rest)
     figure.legend(*legend, loc="upper left", bbox_to_anchor=_LEGEND, fontsize=8, frameon=False)
     upper.set_title(output, loc="left", fontsize=10)
     upper.tick_params(labelbottom=False)

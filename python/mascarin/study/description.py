@@ -319,6 +319,22 @@ class Influential(Part):
     frequency: int | None = Field(None, ge=1, description="Its frequency in the publication")
 
 
+class PublishedParameter(Part):
+    """A parameter that a publication identified, with its values."""
+
+    symbol: str = Field(description="Its symbol in the publication")
+    parameter: str = Field(description="Path of the parameter of this study")
+    before: float | str = Field(description="Value before the identification; a text for a law")
+    after: float | str = Field(description="Value after the identification; a text for a law")
+    unit: str = Field("-", description="Unit of the two values")
+    delta_t: float | None = Field(
+        None,
+        gt=0.0,
+        description="The values are gamma for this delta_t, and the parameter is the half-width of the "
+        "melting range, 4 delta_t / gamma [K]",
+    )
+
+
 class Reference(Part):
     """Results of a publication, shown beside those of the study."""
 
@@ -328,6 +344,10 @@ class Reference(Part):
         Field(default_factory=dict, description="Its tables with the same layout as tables of the report")
     )
     influential: tuple[Influential, ...] = Field((), description="Its influential parameters")
+    parameters: tuple[PublishedParameter, ...] = Field(
+        (), description="Its identified parameters, for a table in the form of the publication"
+    )
+    parameter_note: str = Field("", description="Remark below the title of that table")
     sensors: dict[str, dict[Literal["identification", "corroboration", "blind"], Published]] = Field(
         description="Sensor -> period -> numbers"
     )

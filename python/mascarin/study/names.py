@@ -75,6 +75,9 @@ def _check_reference(plan: StudyPlan, building: Building, places: Places, faults
     for name in plan.reference.sensors:
         with places.noting(faults, "reference", "sensors", name):
             _require_known(name, tuple(plan.sensors))
+    for k, published in enumerate(plan.reference.parameters):
+        with places.noting(faults, "reference", "parameters", k, "parameter"):
+            building.parameter(published.parameter)
     for k, entry in enumerate(plan.reference.influential):
         with places.noting(faults, "reference", "influential", k, "parameter"):
             building.parameter(entry.parameter)

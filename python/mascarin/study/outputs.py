@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io import atomic
 from mascarin.calibration import plot_profiles
-from mascarin.figures import comparison
 from mascarin.figures import days as day_figures
 from mascarin.figures.files import save
+from mascarin.report.figure_files import write_figures
+from mascarin.report.folder import read_folder
 from mascarin.sensitivity.files import save_all
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from mascarin.calibration import Calibration, Profile
     from mascarin.calibration.result import PlotKind
     from mascarin.study.findings import Findings
-    from mascarin.study.setup import Setup
     from mascarin.study.storage import Workspace
 
 
@@ -47,15 +47,17 @@ def write_all(findings: Findings, workspace: Workspace) -> None:
     out = workspace.out
     figures = out / "figures"
     figures.mkdir(parents=True, exist_ok=True)
-    written = [
-        *_figures(findings, figures),
-        save(_days(findings), figures / "days.svg"),
-        *fit_figures(findings.calibration, findings.profiles, figures),
-        *write_tables(out / "tables", tables_of(findings)),
-        *(out / name for name in ("study.json", RUN, "report.html")),
-    ]
+    tables = write_tables(out / "tables", tables_of(findings))
     atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
     atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
+    written = [
+        *write_figures(figures, *read_folder(out)),
+        *_sensitivity_figures(findings, figures),
+        save(_days(findings), figures / "days.svg"),
+        *fit_figures(findings.calibration, findings.profiles, figures),
+        *tables,
+        *(out / name for name in ("study.json", RUN, "report.html")),
+    ]
     workspace.record("study", written)
 
 
@@ -96,21 +98,14 @@ def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> 
     return [save(figure, folder / f"{name}.svg") for name, figure in figures.items()]
 
 
-def _figures(findings: Findings, folder: Path) -> list[Path]:
-    study = findings.setup
-    observation = study.observation
-    models = {
-        run.label: observation.simulated(run.results.index, run.results.records)
-        for run in (findings.nominal, findings.fitted)
-    }
-    drawn = []
-    for s, name in enumerate(observation.names):
-        curves = {label: values[:, s] for label, values in models.items()}
-        drawn.append(save(_comparison(study, s, curves), folder / f"{name}.svg"))
-        if findings.sensitivity is not None:
-            hours = analyzed_hours(study, findings.sensitivity)
-            drawn += save_all(findings.sensitivity, name, folder, name, hours)
-    return drawn
+def _sensitivity_figures(findings: Findings, folder: Path) -> list[Path]:
+    """Figures of the sensitivity analysis of each sensor, if there is one."""
+    found = findings.sensitivity
+    if found is None:
+        return []
+    hours = analyzed_hours(findings.setup, found)
+    names = findings.setup.observation.names
+    return [path for name in names for path in save_all(found, name, folder, name, hours)]
 
 
 def _days(findings: Findings) -> Figure:
@@ -126,31 +121,4 @@ def _days(findings: Findings) -> Figure:
     day_figures.information(lower, dates, found.information, found.used, found.proposed)
     upper.legend(fontsize="small", ncols=4, frameon=False)
     lower.set_xlabel(f"local time ({findings.setup.climate.timezone})")
-    return figure
-
-
-def _comparison(study: Setup, s: int, models: dict[str, Any]) -> Figure:
-    """Measured and simulated series with the uncertainty of the sensor; the error below."""
-    from matplotlib.figure import Figure
-
-    observation = study.observation
-    name = observation.names[s]
-    sensor, measured = study.plan.sensors[name], observation.measured[:, s]
-    local = observation.times.tz_localize(None)
-    unit = study.building.output(sensor.output).unit
-    difference = unit.replace("degC", "K")
-    figure = Figure(figsize=(9.0, 5.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    comparison.series(
-        upper, local, measured, models, uncertainty=sensor.uncertainty, label=study.plan.observed
-    )
-    comparison.errors(lower, local, {label: values - measured for label, values in models.items()})
-    first, last = (stamp.tz_localize(None) for stamp in study.identification)
-    for axes in (upper, lower):
-        axes.axvspan(first, last, color="#009e73", alpha=0.08, lw=0, label="identification")
-    upper.set_title(sensor.label or name, loc="left", fontsize=11)
-    upper.set_ylabel(unit)
-    upper.legend(fontsize="small", ncols=5, loc="upper left", bbox_to_anchor=(0.0, -0.02), frameon=False)
-    lower.set_ylabel(f"simulated minus measured [{difference}]")
-    lower.set_xlabel(f"local time ({study.climate.timezone})")
     return figure

@@ -18,6 +18,7 @@ import numpy as np
 from mascarin._io import atomic
 from mascarin._io.locks import FolderLock
 from mascarin.errors import InputError
+from mascarin.report import is_report
 
 if TYPE_CHECKING:
     from typing import Self
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 _FOLDER: Final = ".work"
+#: The report of a study in the folder of its results.
+REPORT: Final = "report.html"
+_REMOVED: Final = ", and the old report is removed"
 
 
 class Workspace:
@@ -54,11 +58,12 @@ class Workspace:
         self._lock = FolderLock(out, self.folder / "lock")
         self._inputs = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
         manifest, text = self.folder / "manifest.json", json.dumps(inputs, indent=1, sort_keys=True)
+        removed = self._remove_old_report()
         changed = _changed(manifest, inputs)
         if changed:
             warnings.warn(
                 f"{out}: found results of other inputs (different: {', '.join(changed)}); they "
-                "cannot be used, so everything is computed again",
+                f"cannot be used, so everything is computed again{_REMOVED if removed else ''}",
                 stacklevel=3,
             )
             self._clear("*.npy")
@@ -97,6 +102,22 @@ class Workspace:
         for name in {name for entry in before.values() for name in entry["files"]} - wanted:
             (self.out / name).unlink(missing_ok=True)
         atomic.write(results, json.dumps(kept, indent=1))
+
+    def _remove_old_report(self) -> bool:
+        """Remove a report that is not known to be one of these inputs; return whether there was one.
+
+        This is done before anything is computed: an interrupted study leaves no report of other inputs.
+        """
+        report, results = self.out / REPORT, self.path("results.json")
+        if not (report.is_file() and is_report(report)):
+            return False
+        try:
+            current = json.loads(results.read_text(encoding="utf-8"))["study"]["inputs"] == self._inputs
+        except (OSError, ValueError, TypeError, KeyError):
+            current = False
+        if not current:
+            report.unlink()
+        return not current
 
     def _clear(self, names: str) -> None:
         for file in self.folder.glob(names):

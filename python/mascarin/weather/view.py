@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Generic, TypeVar, cast
+from typing import TYPE_CHECKING, Final, Generic, TypeVar, cast
+
+import numpy as np
 
 from mascarin._io import display
+from mascarin._io.arguments import require_type
+from mascarin._io.units import bracketed, shown
+from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.channels import UNITS, Kind
 from mascarin.weather.grid import Grid
-from mascarin.weather.plots import plot, small_figures
 from mascarin.weather.record import Record
 from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SMALL: Final = (6.0, 1.8)  # inches
+_MOST_FIGURES: Final = 4
+_MOST_CURVES: Final = 6
 
 R = TypeVar("R", bound=Record)
 
@@ -116,7 +125,62 @@ class RecordView(Generic[R]):
             known = [str(name) for name in self.data.columns]
             unit = UNITS.get(known[0], "")
             names = [name for name in known if UNITS.get(name, "") == unit]
-        return plot(self._record, [names] if isinstance(names, str) else list(names), ax)
+        chosen = [names] if isinstance(names, str) else list(names)
+        unit = self._common_unit(chosen)
+        import matplotlib.pyplot as plt
+        from matplotlib.axes import Axes
+
+        if ax is not None:
+            require_type("ax", ax, Axes, "axes of matplotlib")
+        ax = plt.subplots(layout="constrained")[1] if ax is None else ax
+        self._draw(ax, chosen, unit)
+        return ax
+
+    def _common_unit(self, names: Sequence[str]) -> str:
+        """The unit of columns; raises if one is unknown or their units differ."""
+        known = [str(name) for name in self.data.columns]
+        for name in names:
+            if name not in known:
+                raise InputError(
+                    f"{self.file}: no column {name!r} to plot. {did_you_mean(name, known)}".rstrip()
+                )
+        units = {UNITS.get(name, "") for name in names}
+        if len(units) > 1:
+            found = ", ".join(f"{name} [{UNITS.get(name, '')}]" for name in names)
+            raise InputError(
+                f"{self.file}: found columns of several units to plot ({found}), expected one unit; call "
+                "plot once for each unit, with an ax for each."
+            )
+        return next(iter(units), "")
+
+    def _draw(self, ax: Axes, names: Sequence[str], unit: str) -> None:
+        """Draw columns of one unit; a mean holds until the end of its interval."""
+        from mascarin.figures.series import Curve, columns  # matplotlib
+
+        record = self._record
+        curves = []
+        for name in names:
+            values = record.data[name].to_numpy(dtype=np.float64)
+            mean = record.kinds[name] == "mean"
+            last = values[-1:] if mean else [record.closing.get(name, np.nan)]
+            curves.append(Curve(name, np.append(values, last), mean))
+        grid = record.grid
+        edges = (grid.start + grid.interval * np.arange(grid.count + 1)).astype("datetime64[s]")
+        columns(ax, edges, curves, unit, grid.zone, zone_name(grid.zone))
+
+    def _small_figures(self) -> dict[str, Figure]:
+        """Small figures for a notebook, by heading: one for each unit, at most four."""
+        from matplotlib.figure import Figure
+
+        groups: dict[str, list[str]] = {}
+        for name in self.data.columns:
+            groups.setdefault(UNITS.get(str(name), ""), []).append(str(name))
+        figures = {}
+        for unit, names in list(groups.items())[:_MOST_FIGURES]:
+            figure = Figure(figsize=_SMALL, layout="constrained")
+            self._draw(figure.add_subplot(), names[:_MOST_CURVES], unit)
+            figures[bracketed(", ".join(names[:_MOST_CURVES]), shown(unit))] = figure
+        return figures
 
     def __repr__(self) -> str:
         return display.text(self._title(), self._rows())
@@ -126,7 +190,7 @@ class RecordView(Generic[R]):
             self._title(),
             self._rows(),
             tables={"Columns": self._summary(), "First rows": self.data.head(5)},
-            figures=small_figures(self._record),
+            figures=self._small_figures(),
         )
 
     def _title(self) -> str:

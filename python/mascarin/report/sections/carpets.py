@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mascarin.report import text
+from mascarin._io import units
 from mascarin.report.carpet import Carpet, carpet, legend, round_limit
 from mascarin.report.labels import label_of, main_model, unit_of
 from mascarin.report.series import Array, Series
@@ -59,7 +59,7 @@ def carpets(study: Mapping[str, Any], series: Series) -> list[SensorCarpet]:
             if key is not None and column is not None:
                 label = str(study.get("models", {}).get(key, {}).get("label", key))
                 pictures.append((key, label, _own_carpet(series, column.values - observed.values)))
-        unit = text.difference_unit(unit_of(study, sensor))
+        unit = units.difference(unit_of(study, sensor))
         found.append(SensorCarpet(sensor, label_of(study, sensor), unit, pictures))
     return found
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from mascarin._io import units
 from mascarin.report import text
 from mascarin.report.labels import (
     is_published,
@@ -53,7 +54,7 @@ def _period_table(
         rows.append(
             {
                 "label": label_of(study, sensor),
-                "unit": text.difference_unit(unit_of(study, sensor)),
+                "unit": units.difference(unit_of(study, sensor)),
                 "bias": text.fixed(metrics.get("bias"), sign=True),
                 "sd": text.fixed(metrics.get("sd")),
                 "sd_nominal": text.fixed(nominal.get("sd")),
@@ -67,13 +68,14 @@ def _period_table(
                 "mean_percent_paper": text.fixed(paper.get("mean_error_percent"), 1),
             }
         )
-    units = list(dict.fromkeys(row["unit"] for row in rows))
+    found = list(dict.fromkeys(row["unit"] for row in rows))
     return {
         "label": period_label(study, period),
+        "key": period.replace("_", "-"),
         "rows": rows,
         "layout": layout(study, period) if published else "",
         "published": published,
-        "unit": units[0] if len(units) == 1 else "",
+        "unit": found[0] if len(found) == 1 else "",
     }
 
 
@@ -107,7 +109,10 @@ def _model_table(study: Mapping[str, Any]) -> dict[str, Any] | None:
             }
             for m, values in table.items()
         ]
-        labels = [label_of(study, sensor) for sensor in sensors]
+        labels = [
+            units.bracketed(label_of(study, sensor), units.difference(unit_of(study, sensor)))
+            for sensor in sensors
+        ]
         return {"period": period_label(study, period), "labels": labels, "rows": rows}
     return None
 

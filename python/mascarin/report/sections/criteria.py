@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from mascarin._io import units
 from mascarin.report import text
 from mascarin.report.labels import label_of, main_model, model_label, period_label
 from mascarin.report.series import Series
@@ -28,7 +29,7 @@ def content(study: Mapping[str, Any], _series: Series) -> list[dict[str, Any]] |
                 else "",
                 "value": found,
                 "limit": wanted,
-                "unit": text.difference_unit(unit),
+                "unit": units.difference(unit),
                 "passed": bool(criterion.get("passed")),
                 "fill": _fill(value, limit),
             }
@@ -42,8 +43,9 @@ def content(study: Mapping[str, Any], _series: Series) -> list[dict[str, Any]] |
             "rows": rows,
             "met": sum(1 for row in rows if row["passed"]),
             "open": model == main or not model,
+            "key": f"criteria-{number}",
         }
-        for (model, period), rows in ordered
+        for number, ((model, period), rows) in enumerate(ordered, start=1)
     ] or None
 
 

@@ -2,26 +2,37 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
-from mascarin.figures import comparison
+from mascarin._io.units import bracketed, shown
+from mascarin.figures.comparison import Compared, errors, errors_together, series, together
 from mascarin.report import embedding, text
+from mascarin.report.compared import (
+    by_unit,
+    compared_sensors,
+    error_unit,
+    model_looks,
+    sensor_looks,
+)
 from mascarin.report.labels import label_of, main_model, model_label, period_label, short_periods, unit_of
-from mascarin.report.series import Array, Series
+from mascarin.report.series import Series, moment
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 TITLE = "Time series"
-#: Largest number of points of a curve in a printed figure.
-_MOST_POINTS = 420
+#: Largest number of points of a curve in a figure of the page.
+_MOST_POINTS: Final = 420
 
 
-def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
+def content(study: Mapping[str, Any], curves: Series) -> dict[str, Any] | None:
     """Values of the template."""
-    sensors = [key for key in study.get("sensor_info", {}) if f"observed/{key}" in series.columns]
+    sensors = [key for key in study.get("sensor_info", {}) if f"observed/{key}" in curves.columns]
     if not sensors:
         return None
     model = main_model(study)
@@ -30,11 +41,11 @@ def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
         "models": [
             {"key": key, "label": model_label(study, key), "main": key == model}
             for key in study.get("models", {})
-            if any(f"{key}/{sensor}" in series.columns for sensor in sensors)
+            if any(f"{key}/{sensor}" in curves.columns for sensor in sensors)
         ],
         "beside": [
             {"key": key, "label": column.label}
-            for key, column in series.columns.items()
+            for key, column in curves.columns.items()
             if key.split("/")[0] in ("weather", "state")
         ],
         "periods": [
@@ -42,109 +53,126 @@ def content(study: Mapping[str, Any], series: Series) -> dict[str, Any] | None:
             for period, entry in study.get("periods", {}).items()
             if (spans := entry.get("spans"))
         ],
-        "printed": [
-            {"label": period_label(study, period), "curves": period_curves(study, series, period)}
-            for period in short_periods(study)
-        ],
+        "printed": _printed(study, curves),
         "model": model_label(study, model),
         "nominal": model_label(study, "nominal") if "nominal" in study.get("models", {}) else "",
-        "band": any(info.get("uncertainty") for info in study.get("sensor_info", {}).values()),
-        "foreseen": any(key.startswith("band/") for key in series.columns),
-        "step": text.significant(series.step / 60.0),
+        "uncertain": any(info.get("uncertainty") for info in study.get("sensor_info", {}).values()),
+        "foreseen": any(key.startswith("band/") for key in curves.columns),
+        "step": text.significant(curves.step / 60.0),
         "timezone": study.get("timezone", ""),
     }
 
 
-@dataclass(frozen=True)
-class PeriodCurves:
-    """Curves of one sensor over one period, with the error below."""
+def _printed(study: Mapping[str, Any], curves: Series) -> list[dict[str, Any]]:
+    """Figures of the short periods: all sensors together, and each by itself."""
+    found = []
+    looks = sensor_looks(study)
+    for period in short_periods(study):
+        times, sensors = _of_period(study, curves, period)
+        if not sensors:
+            continue
+        start, end = study["periods"][period]["spans"][0]
+        found.append(
+            {
+                "key": period.replace("_", "-"),
+                "label": period_label(study, period),
+                "span": text.span_of(moment(start), moment(end)),
+                "together": [_together(study, times, unit, sensors, names, period)
+                             for unit, names in by_unit(study, sensors).items()],
+                "keys": [
+                    {"label": one.label, "color": looks[name].color, "dash": looks[name].round}
+                    for name, one in sensors.items()
+                ],
+                "curves": [_single(study, times, name, one, period) for name, one in sensors.items()],
+            }
+        )  # fmt: skip
+    return found
 
-    sensor: str
+
+@dataclass(frozen=True)
+class Panels:
+    """Values over a period, with the errors below."""
+
+    title: str
     values: Markup
     errors: Markup
 
 
-def period_curves(
-    study: Mapping[str, Any], series: Series, period: str, place: str = ""
-) -> list[PeriodCurves]:
-    """Observed and simulated curves of every sensor over a short period.
-
-    Parameters
-    ----------
-    study : mapping
-        As in :class:`~mascarin.report.schema.Study`.
-    series : Series
-        Curves.
-    period : str
-        Name of a period of one span.
-    place : str
-        Name of the place on the page, if the figures are shown at several.
-    """
-    start, end = study["periods"][period]["spans"][0]
-    part = series.slice_of(start, end)
-    model = main_model(study)
-    found = []
-    for sensor in study.get("sensor_info", {}):
-        observed = series.columns.get(f"observed/{sensor}")
-        simulated = series.columns.get(f"{model}/{sensor}")
-        if observed is None or simulated is None:
-            continue
-        values = observed.values, simulated.values
-        found.append(_period_curves(study, series, sensor, part, values, place))
-    return found
-
-
-def headline(study: Mapping[str, Any], series: Series) -> PeriodCurves | None:
+def headline(study: Mapping[str, Any], curves: Series) -> Panels | None:
     """Curves of the first sensor over the last short period, for the head of the page.
 
     Parameters
     ----------
     study : mapping
         As in :class:`~mascarin.report.schema.Study`.
-    series : Series
+    curves : Series
         Curves.
     """
     periods = short_periods(study)
-    curves = period_curves(study, series, periods[-1], "headline") if periods else []
-    return curves[0] if curves else None
+    if not periods:
+        return None
+    times, sensors = _of_period(study, curves, periods[-1])
+    for name, one in sensors.items():
+        return _single(study, times, name, one, "headline")
+    return None
 
 
-def _period_curves(
+def _of_period(
+    study: Mapping[str, Any], curves: Series, period: str
+) -> tuple[list[datetime], dict[str, Compared]]:
+    start, end = study["periods"][period]["spans"][0]
+    return compared_sensors(study, curves, curves.slice_of(start, end), _MOST_POINTS)
+
+
+def _single(
+    study: Mapping[str, Any], times: list[datetime], sensor: str, one: Compared, place: str
+) -> Panels:
+    """One sensor with the prediction interval."""
+    upper, lower = embedding.axes(340.0, 170.0), embedding.axes(340.0, 110.0)
+    main = replace(one, models={one.main: one.models[one.main]})
+    named, only = _named(study, one), _named(study, main)
+    looks = model_looks(study)
+    series(upper, times, named, looks=looks)
+    errors(lower, times, only, looks=looks)
+    _finish(upper, times, bracketed("", shown(unit_of(study, sensor))))
+    _finish(lower, times, bracketed("error", error_unit(study, sensor)))
+    return Panels(
+        one.label,
+        embedding.drawn(upper, f"{one.label}: measured and simulated", place),
+        embedding.drawn(lower, f"{one.label}: simulated minus measured", place),
+    )
+
+
+def _named(study: Mapping[str, Any], one: Compared) -> Compared:
+    """The same with the names of models for readers."""
+    models = {model_label(study, model): values for model, values in one.models.items()}
+    return replace(one, models=models, main=model_label(study, one.main))
+
+
+def _together(
     study: Mapping[str, Any],
-    series: Series,
-    sensor: str,
-    part: slice,
-    curves: tuple[Array, Array],
+    times: list[datetime],
+    unit: str,
+    sensors: Mapping[str, Compared],
+    names: list[str],
     place: str,
-) -> PeriodCurves:
-    label, unit = label_of(study, sensor), unit_of(study, sensor)
-    every = max(1, math.ceil((part.stop - part.start) / _MOST_POINTS))
-    pick = slice(part.start, part.stop, every)
-    measured, simulated = curves[0][pick], curves[1][pick]
-    times = [series.time(part.start + every * k) for k in range(len(measured))]
-    models = {"fitted": simulated}
-    nominal = series.columns.get(f"nominal/{sensor}")
-    if nominal is not None and main_model(study) != "nominal":
-        models = {"nominal": nominal.values[pick], **models}
-    interval = series.columns.get(f"band/{sensor}")
-    middle = series.columns.get(f"expected/{sensor}")
-    uncertainty = float(study["sensor_info"][sensor].get("uncertainty", 0.0))
-    upper, lower = embedding.axes(340.0, 170.0), embedding.axes(340.0, 104.0)
-    comparison.series(
-        upper,
-        times,
-        measured,
-        models,
-        uncertainty=uncertainty,
-        interval=None if interval is None else interval.values[pick],
-        middle=None if middle is None else middle.values[pick],
+) -> Panels:
+    """All sensors of one unit."""
+    looks = sensor_looks(study)
+    chosen = [(sensors[name], looks[name]) for name in names]
+    upper, lower = embedding.axes(700.0, 290.0), embedding.axes(700.0, 170.0)
+    together(upper, times, chosen)
+    errors_together(lower, times, chosen)
+    _finish(upper, times, bracketed("", shown(unit)))
+    _finish(lower, times, bracketed("error", error_unit(study, names[0])))
+    words = ", ".join(one.label for one, _ in chosen)
+    return Panels(
+        shown(unit),
+        embedding.drawn(upper, f"Measured and simulated: {words}", place),
+        embedding.drawn(lower, f"Simulated minus measured: {words}", place),
     )
-    comparison.errors(lower, times, {"fitted": simulated - measured}, uncertainty=uncertainty)
-    for ax, name in ((upper, text.unit(unit)), (lower, f"error, {text.difference_unit(unit)}")):
-        embedding.titled(ax, name)
-        embedding.days(ax, times)
-    return PeriodCurves(
-        label,
-        embedding.drawn(upper, f"{label}: measured and simulated", place),
-        embedding.drawn(lower, f"{label}: simulated minus measured", place),
-    )
+
+
+def _finish(ax: Axes, times: list[datetime], name: str) -> None:
+    embedding.titled(ax, name)
+    embedding.days(ax, times)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
 
+from mascarin._io import units
 from mascarin.report import text
 from mascarin.report.labels import label_of
 from mascarin.report.series import Series, moment
@@ -31,7 +32,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     sensors = []
     for number, (key, info) in enumerate(study.get("sensor_info", {}).items(), start=1):
         band = info.get("uncertainty")
-        unit = text.difference_unit(str(info.get("unit", "degC")))
+        unit = units.difference(str(info.get("unit", "degC")))
         sensors.append(
             {
                 "number": number,

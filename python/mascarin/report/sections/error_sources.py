@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from mascarin._io import units
 from mascarin.report import text
 from mascarin.report.labels import label_of, note_words, parameter_label, period_label, unit_of
 from mascarin.report.series import Series
@@ -34,12 +35,16 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         label = f"all {found['every']['parameters']} parameters"
         rows.append({"label": label, "change": "", "cells": _scatter(found["every"]["sd"], sensors)})
     wished = _aimed_scatter(aims, str(found.get("period", "")), sensors)
-    units = {text.difference_unit(unit_of(study, sensor)) for sensor in sensors}
+    found_units = {units.difference(unit_of(study, sensor)) for sensor in sensors}
+    common = found_units.pop() if len(found_units) == 1 else ""
     return {
         "aims": _aims(study, aims),
         "met": sum(1 for aim in aims if aim.get("passed")),
         "judged": len(aims),
-        "labels": [label_of(study, sensor) for sensor in sensors],
+        "labels": [
+            units.bracketed(label_of(study, s), "" if common else units.difference(unit_of(study, s)))
+            for s in sensors
+        ],
         "rows": rows if sensors else [],
         "wished": wished,
         "named": bool(found.get("steps")),
@@ -50,7 +55,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
             for words in note_words(study, note)
         ],
         "period": period_label(study, str(found.get("period", ""))).lower(),
-        "unit": units.pop() if len(units) == 1 else "",
+        "unit": common,
     }
 
 
@@ -80,7 +85,7 @@ def _aims(study: Mapping[str, Any], aims: Sequence[Mapping[str, Any]]) -> dict[s
                 "label": label_of(study, key[1]) if key[1] else "",
                 "name": text.typeset(key[0]),
                 "limit": f"{text.beside_limit(key[2], key[2])[1]}\u00a0"
-                f"{text.difference_unit(str(aim.get('unit', '')))}",
+                f"{units.difference(str(aim.get('unit', '')))}",
                 "found": {},
             },
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from mascarin._io import units
 from mascarin.report import drawing, text
 from mascarin.report.labels import label_of
 from mascarin.report.series import Series
@@ -81,7 +82,7 @@ def _assumptions(study: Mapping[str, Any]) -> list[dict[str, str]]:
             "path": str(entry.get("path", "")),
             "value": text.significant(entry.get("value")),
             "range": f"{text.significant(entry.get('low'))} to {text.significant(entry.get('high'))}",
-            "unit": text.unit(str(entry.get("unit", ""))),
+            "unit": units.shown(str(entry.get("unit", ""))),
             "source": str(entry.get("source", "")),
         }
         for entry in study.get("assumptions", [])

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from markupsafe import Markup
 
+from mascarin._io import units
 from mascarin.report import text
-from mascarin.report.labels import is_published, layout, model_label, parameter_label
+from mascarin.report.labels import is_published, layout, model_label, parameter_label, period_label
 from mascarin.report.series import Series
 from mascarin.report.svg import Svg
 
 TITLE = "Calibrated parameters"
+#: Columns of a block of the correlation matrix.
+_COLUMNS: Final = 9
 
 
 def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
@@ -20,80 +23,150 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     entries = study.get("parameters", {})
     if not entries:
         return None
+    paper = _paper(study)
     referenced = any("reference_fitted" in e or "reference_nominal" in e for e in entries.values())
-    rows = []
-    for path, entry in entries.items():
-        fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
-        allowed = entry.get("range")
-        rows.append(
-            {
-                "label": parameter_label(study, path),
-                "path": path,
-                "unit": text.unit(str(entry.get("unit", ""))),
-                "nominal": text.significant(entry.get("nominal")),
-                "fitted": fitted,
-                "interval": interval,
-                "drawing": parameter_range(entry) if allowed else "",
-                "reference_nominal": text.significant(entry.get("reference_nominal")),
-                "reference_fitted": text.significant(entry.get("reference_fitted")),
-                "at_bound": bool(entry.get("at_bound")),
-                "reason": entry.get("reason", ""),
-            }
-        )
+    reference = study.get("reference", {})
     return {
-        "rows": rows,
-        "referenced": referenced,
+        "rows": [_row(study, path, entry, drawn=True) for path, entry in entries.items()],
+        "referenced": referenced and not paper,
         "layout": layout(study, "parameters"),
-        "reference": study.get("reference", {}).get("label", "Publication"),
+        "reference": reference.get("label", "Publication"),
+        "paper": paper,
+        "paper_note": reference.get("parameter_note", ""),
         "facts": study.get("identification", []),
         "correlation": _correlation(study),
+        "coefficients": _coefficients(study),
         "published": _published(study),
     }
 
 
+def _row(
+    study: Mapping[str, Any], path: str, entry: Mapping[str, Any], *, drawn: bool = False
+) -> dict[str, Any]:
+    """One parameter of a table."""
+    fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
+    return {
+        "label": parameter_label(study, path),
+        "path": path,
+        "unit": units.shown(str(entry.get("unit", ""))),
+        "nominal": text.significant(entry.get("nominal")),
+        "fitted": fitted,
+        "interval": interval,
+        "drawing": parameter_range(entry) if drawn and entry.get("range") else "",
+        "reference_nominal": text.significant(entry.get("reference_nominal")),
+        "reference_fitted": text.significant(entry.get("reference_fitted")),
+        "at_bound": bool(entry.get("at_bound")),
+        "reason": entry.get("reason", ""),
+        "h": _means(study, path),
+    }
+
+
+def _coefficients(study: Mapping[str, Any]) -> dict[str, str] | None:
+    """Period and unit of the effective mean coefficients, if the study has any."""
+    found = study.get("coefficients", {})
+    if not found.get("models"):
+        return None
+    period = period_label(study, str(found.get("period", "")))
+    return {"period": period, "unit": units.shown(str(found.get("unit", "W/(m2 K)")))}
+
+
+def _means(study: Mapping[str, Any], path: str) -> tuple[str, str] | None:
+    """Effective mean coefficient before and after, for a parameter of a convection law."""
+    models = study.get("coefficients", {}).get("models", {})
+    law, found, _ = path.partition(".convection")
+    if not found or not any(law + found in means for means in models.values()):
+        return None
+    before, after = (models.get(model, {}).get(law + found) for model in ("nominal", "fitted"))
+    return text.fixed(before), text.fixed(after)
+
+
+def _paper(study: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The parameters of a publication in its form, beside those of the study."""
+    known = study.get("parameters", {})
+    rows = []
+    for line in study.get("reference", {}).get("parameters", []):
+        path = str(line.get("parameter", ""))
+        entry = known.get(path) or _fixed(study, path)
+        if line.get("delta_t") is not None:
+            entry = _as_gamma(entry, float(line["delta_t"]))
+        row = _row(study, path, entry)
+        h = row["h"] or ("", "")
+        label = row["label"]
+        if line.get("delta_t") is not None:
+            label += f" w as γ = 4 δT / w, δT = {text.significant(float(line['delta_t']))} K"
+        rows.append(
+            row
+            | {
+                "label": label,
+                "symbol": str(line.get("symbol", "")),
+                "published": text.alike([line.get("before"), line.get("after")]),
+                "published_unit": units.shown(str(line.get("unit", ""))),
+                "h": h,
+            }
+        )
+    return rows
+
+
+def _fixed(study: Mapping[str, Any], path: str) -> dict[str, Any]:
+    """A parameter that was not calibrated: its value is the same before and after."""
+    given = study.get("reference_values", {}).get(path)
+    return (
+        {} if given is None else {"nominal": given["value"], "fitted": given["value"], "unit": given["unit"]}
+    )
+
+
+def _as_gamma(entry: Mapping[str, Any], delta_t: float) -> dict[str, Any]:
+    """The half-width w of a melting range as gamma = 4 delta_t / w (Guichard et al. 2016)."""
+    changed = {
+        key: 4.0 * delta_t / float(entry[source])
+        for key, source in (("nominal", "nominal"), ("fitted", "fitted"), ("low", "high"), ("high", "low"))
+        if entry.get(source)
+    }
+    return {**{k: v for k, v in entry.items() if k not in ("low", "high")}, **changed, "unit": "-"}
+
+
 def _published(study: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Estimates of the models whose parameters a publication has too, beside its own."""
-    found = []
-    for model, entries in study.get("variant_parameters", {}).items():
-        rows = []
-        for path, entry in entries.items():
-            fitted, interval = text.with_interval(entry.get("fitted"), entry.get("low"), entry.get("high"))
-            rows.append(
-                {
-                    "label": parameter_label(study, path),
-                    "path": path,
-                    "unit": text.unit(str(entry.get("unit", ""))),
-                    "nominal": text.significant(entry.get("nominal")),
-                    "fitted": fitted,
-                    "interval": interval or text.NONE,
-                    "reference_nominal": text.significant(entry.get("reference_nominal")),
-                    "reference_fitted": text.significant(entry.get("reference_fitted")),
-                    "at_bound": bool(entry.get("at_bound")),
-                }
-            )
-        if is_published(entries):
-            note = study.get("models", {}).get(model, {}).get("note", "")
-            found.append({"model": model_label(study, model), "note": note, "rows": rows})
-    return found
+    return [
+        {
+            "model": model_label(study, model),
+            "note": study.get("models", {}).get(model, {}).get("note", ""),
+            "rows": [_row(study, path, entry) for path, entry in entries.items()],
+        }
+        for model, entries in study.get("variant_parameters", {}).items()
+        if is_published(entries)
+    ]
 
 
-def _correlation(study: Mapping[str, Any]) -> dict[str, Any] | None:
+def _correlation(study: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The lower triangle in blocks of columns that fit on a page."""
     entry = study.get("correlation")
     if not entry or len(entry.get("paths", [])) < 2:
-        return None
+        return []
     labels = [parameter_label(study, path) for path in entry["paths"]]
-    rows = []
-    for i, line in enumerate(entry["matrix"]):
-        cells = [
-            {
-                "text": text.fixed(float(value)),
-                "depth": min(6, int(abs(float(value)) * 7.0)),
-                "negative": value < 0,
-            }
-            for value in line[: i + 1]
-        ]
-        rows.append({"number": i + 1, "label": labels[i], "cells": cells})
-    return {"rows": rows, "labels": labels}
+    return [
+        {
+            "columns": [k + 1 for k in range(first, min(first + _COLUMNS, len(labels)))],
+            "rows": [
+                {
+                    "number": i + 1,
+                    "label": labels[i],
+                    "cells": [
+                        _cell(value) for value in entry["matrix"][i][first : min(first + _COLUMNS, i + 1)]
+                    ],
+                }
+                for i in range(first, len(labels))
+            ],
+        }
+        for first in range(0, len(labels), _COLUMNS)
+    ]
+
+
+def _cell(value: float | None) -> dict[str, str]:
+    if value is None:
+        return {"text": text.NONE, "class": ""}
+    depth = min(6, int(abs(float(value)) * 7.0))
+    return {"text": text.fixed(float(value)), "class": f"{'minus' if value < 0 else 'plus'}-{depth}"}
 
 
 def parameter_range(entry: Mapping[str, Any]) -> Markup:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mascarin.figures import colors
 from mascarin.report.drawn import Figure, hours_of, time_axis
 from mascarin.report.labels import period_label, short_periods
 from mascarin.report.series import Series
@@ -18,7 +19,7 @@ TITLE = "Phase change"
 
 def content(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]] | None:
     """Values of the template."""
-    found = []
+    found: list[dict[str, Any]] = []
     short = short_periods(study)
     spans = study["periods"][short[-1]]["spans"] if short else []
     for entry in study.get("phase_change", []):
@@ -26,10 +27,11 @@ def content(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]] | 
         found.append(
             {
                 "label": entry.get("label", ""),
+                "key": f"phase-change-{len(found) + 1}",
                 "figures": [f for f in drawn if f is not None],
                 "rows": entry.get("rows", []),
                 "days": [
-                    {"class": f"d{number % 4}", "label": str(day.get("label", ""))}
+                    {"color": colors.look(number).color, "label": str(day.get("label", ""))}
                     for number, day in enumerate(entry.get("days", []))
                 ],
                 "law": bool(entry.get("law_temperature")),

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from mascarin._io import units
+from mascarin.figures import colors
 from mascarin.report import text
 from mascarin.report.drawn import Figure, hour_marks
 from mascarin.report.labels import label_of, period_label, unit_of
@@ -29,13 +31,14 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
             found.append(
                 {
                     "label": label_of(study, sensor),
+                    "key": f"residuals-{sensor}",
                     "figures": drawn,
                     "period": period_label(study, str(period)) if period else "",
                 }
             )
     if not found:
         return None
-    keys = [{"class": f"d{number % 4}", "label": name} for number, name in enumerate(drivers)]
+    keys = [{"color": colors.look(number).color, "label": name} for number, name in enumerate(drivers)]
     return {"sensors": found, "keys": keys, "rows": _statistics(study)}
 
 
@@ -44,7 +47,7 @@ def _statistics(study: Mapping[str, Any]) -> list[dict[str, Any]]:
     rows = []
     for sensor, entry in study.get("residuals", {}).items():
         cycle = entry.get("daily_cycle") or {}
-        unit = text.difference_unit(unit_of(study, sensor))
+        unit = units.difference(unit_of(study, sensor))
         rows.append(
             {
                 "label": label_of(study, sensor),
@@ -166,7 +169,7 @@ def _by_hour(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) ->
     mean = np.asarray(entry["hour_mean"], dtype=np.float64)
     sd = np.asarray(entry.get("hour_sd", np.zeros(len(mean))), dtype=np.float64)
     hours = np.arange(len(mean), dtype=np.float64) + 0.5
-    unit = text.difference_unit(unit_of(study, sensor))
+    unit = units.difference(unit_of(study, sensor))
     y = Axis.over(mean - sd, mean + sd, count=4, around=0.0)
     chart = _small(Axis(0.0, 24.0, *hour_marks(np.array([0.0, 24.0]))), y, "h", unit)
     chart.band(hours, mean - sd, mean + sd, "spread")

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from mascarin._io import units
+from mascarin.figures import colors
 from mascarin.figures.sensitivity import indices_over_time, time_axis
 from mascarin.report import embedding, text
 from mascarin.report.drawn import Figure
@@ -17,6 +19,8 @@ from mascarin.report.svg import Axis, Chart
 
 TITLE = "Sensitivity analysis"
 _STRONGEST = 14
+#: Parameters that a figure over the day names.
+_NAMED = 8
 #: Lowest part of the variance that a spectrum shows.
 _FLOOR = 1e-4
 
@@ -46,6 +50,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         "spectra": [_spectrum(study, key, entry) for key, entry in study.get("spectra", {}).items()],
         "days": [day_shares(study, key, entry) for key, entry in study.get("day_shares", {}).items()],
         "day_keys": _day_keys(study),
+        "rest": colors.REST,
         "influential": _influential(study, shares),
         "reference": study.get("reference", {}).get("label", ""),
         "layout": layout(study, "influential"),
@@ -96,7 +101,7 @@ def _share(entry: Mapping[str, Any] | None, study: Mapping[str, Any], output: st
     if entry is None:
         return {"text": text.NONE, "depth": 0, "title": ""}
     share = float(entry.get("share", 0.0))
-    unit = text.difference_unit(unit_of(study, output))
+    unit = units.difference(unit_of(study, output))
     words = []
     if "low" in entry and "high" in entry:
         words.append(f"{text.percent(entry['low'])} to {text.percent(entry['high'])}")
@@ -124,11 +129,25 @@ def _spectrum(study: Mapping[str, Any], key: str, entry: Mapping[str, Any]) -> d
     }
 
 
-def _day_keys(study: Mapping[str, Any]) -> list[list[dict[str, str]]]:
+def _looks(study: Mapping[str, Any]) -> dict[str, colors.Look]:
+    """How each parameter is drawn that a figure over the day names."""
+    shares = {
+        output: {path: math.nan if e.get("share") is None else float(e["share"]) for path, e in found.items()}
+        for output, found in study.get("sensitivity", {}).items()
+    }
+    looks = colors.parameters(shares, _NAMED)
+    named = [p for entry in study.get("day_shares", {}).values() for p in entry.get("paths", [])[:_NAMED]]
+    for path in dict.fromkeys(named):
+        looks.setdefault(path, colors.look(len(looks)))
+    return looks
+
+
+def _day_keys(study: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
+    looks = _looks(study)
     return [
         [
-            {"class": f"c{number}", "label": parameter_label(study, path)}
-            for number, path in enumerate(entry.get("paths", [])[:8])
+            {"color": looks[path].color, "round": looks[path].round, "label": parameter_label(study, path)}
+            for path in entry.get("paths", [])[:_NAMED]
         ]
         for entry in study.get("day_shares", {}).values()
     ]
@@ -210,10 +229,12 @@ def day_shares(study: Mapping[str, Any], sensor: str, entry: Mapping[str, Any]) 
         As in :class:`~mascarin.report.schema.DayShares`.
     """
     hours = np.asarray(entry.get("hours", []), dtype=np.float64)
-    index = np.asarray(entry.get("share", []), dtype=np.float64).reshape(-1, len(hours))[:8]
+    index = np.asarray(entry.get("share", []), dtype=np.float64).reshape(-1, len(hours))[:_NAMED]
+    looks = _looks(study)
+    named = [("", looks[path]) for path in entry.get("paths", [])[: len(index)]]
     ax = embedding.axes(340.0, 190.0, bottom=32.0)
-    indices_over_time(ax, hours, index, [""] * len(index), rest="")
+    indices_over_time(ax, hours, index, named, rest="")
     time_axis(ax, hours=True)
-    embedding.titled(ax, "first-order index S1, %")
+    embedding.titled(ax, "first-order index S1 [%]")
     label = label_of(study, sensor)
     return Figure(label, embedding.drawn(ax, f"First-order indices over the day, {label}"))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mascarin.errors import InputError
+from mascarin.figures import colors
 from mascarin.figures import sensitivity as figures
 from mascarin.sensitivity.factors import Floats
 from mascarin.sensitivity.result import Sensitivity, local_hours
@@ -18,8 +19,6 @@ from mascarin.sensitivity.spectral.spectrum import Peak, Spectrum
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_MOST_NAMES: Final = 9  # colors
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -153,6 +152,25 @@ class SpectralSensitivity(Sensitivity):
         with np.errstate(invalid="ignore", divide="ignore"):
             return x, np.clip(power / variance, 0.0, 1.0), variance
 
+    def looks(self, most: int) -> dict[str, colors.Look]:
+        """How parameters are drawn in the figures of all outputs.
+
+        Parameters
+        ----------
+        most : int
+            Parameters that are named for each output. [-]
+
+        Returns
+        -------
+        dict of str to Look
+            By parameter.
+        """
+        shares = {
+            output: dict(zip(self.names, self.index[:, s].tolist(), strict=True))
+            for s, output in enumerate(self.outputs)
+        }
+        return colors.parameters(shares, most)
+
     @property
     def _kinds(self) -> tuple[str, ...]:
         return (*super()._kinds, "day", "spectrum")
@@ -168,9 +186,9 @@ class SpectralSensitivity(Sensitivity):
         elif kind == "day":
             hours = local_hours(self.times)
             x, index, _ = self.indices_by_hour(output, hours)
-            order = self.strongest(output, min(top, _MOST_NAMES))
-            names = [self.names[i] for i in order]
-            legend = figures.indices_over_time(ax, x, index[order], names, rest="others and interactions")
+            order = self.strongest(output, top)
+            named = [(self.names[i], self.looks(top)[self.names[i]]) for i in order]
+            legend = figures.indices_over_time(ax, x, index[order], named, rest="others and interactions")
             figures.time_axis(ax, hours=hours is not None)
             ax.set_title(output, loc="left", fontsize=10)
             ax.legend(*legend, fontsize=7)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from mascarin._io.units import difference
 from mascarin.study.error_model import sensor_errors, statement, used_sensors
 
 if TYPE_CHECKING:
@@ -55,9 +57,10 @@ def error_words(study: Setup, found: Combination | None) -> list[str]:
             words.append(f"{said}; none of the other {len(found.forms) - 1} forms comes near.")
     for name, entry in _of_model(study, found).items():
         full = [part for part in _PARTS if entry[part] >= _REACHED * entry["limit"]]
+        unit = difference(_unit(study, name))
         words += [
-            f"{name}: the error of the model ({_PARTS[part]}) reaches the limit of {entry['limit']:.2g}; the "
-            "model misses more than an error of the model may absorb."
+            f"{_label(study, name)}: the error of the model ({_PARTS[part]}) reaches the limit of "
+            f"{entry['limit']:.2g} {unit}; the model misses more than an error of the model may absorb."
             for part in full
         ]
     return words
@@ -157,15 +160,30 @@ def _table_of_sensors(study: Setup, found: Combination) -> dict[str, Any]:
         "caption": (
             "Estimated together with the parameters: what the readings of a sensor have in common beside the "
             "model, with its standard uncertainty, beside the standard uncertainty that the study states. "
-            "Offsets in the unit of the sensor, gains as a ratio, clocks in seconds."
+            "A gain is a ratio."
         ),
-        "columns": ["error", "estimate", "standard uncertainty", "stated standard uncertainty"],
-        "rows": [
-            [name, entry["estimate"], entry["standard_uncertainty"], entry["stated"]]
-            for name, entry in _of_sensors(study, found).items()
-        ],
+        "columns": ["error", "unit", "estimate", "standard uncertainty", "stated standard uncertainty"],
+        "rows": [_row_of_sensor(study, name, entry) for name, entry in _of_sensors(study, found).items()],
+        "uncertainty": {"estimate": "standard uncertainty"},
         "section": "parameters",
     }
+
+
+def _row_of_sensor(study: Setup, name: str, entry: Mapping[str, float]) -> list[Any]:
+    """Name and unit for readers, estimate and uncertainties."""
+    sensor, _, what = name.rpartition(" ")
+    known = sensor in study.plan.sensors
+    unit = {"gain": "-", "clock": "s"}.get(what) or (_unit(study, sensor) if known else "degC")
+    label = f"{_label(study, sensor)}: {what}" if known else name
+    return [label, difference(unit), entry["estimate"], entry["standard_uncertainty"], entry["stated"]]
+
+
+def _label(study: Setup, name: str) -> str:
+    return study.plan.sensors[name].label or name.replace("_", " ")
+
+
+def _unit(study: Setup, name: str) -> str:
+    return study.building.output(study.plan.sensors[name].output).unit
 
 
 def _table_of_model(study: Setup, found: Combination) -> dict[str, Any]:
@@ -175,11 +193,16 @@ def _table_of_model(study: Setup, found: Combination) -> dict[str, Any]:
             "Standard deviation of what no values of the parameters explain, estimated by marginal "
             "likelihood in the identification period, with a correlation time of "
             f"{found.forms[0].joint.sizes.correlation_hours:g} h within a day. The limit is what each part "
-            "may absorb at most. In the unit of the sensor, K for temperatures."
+            "may absorb at most."
         ),
-        "columns": ["sensor", *(word for word in _PARTS.values()), "limit"],
+        "columns": ["sensor", "unit", *_PARTS.values(), "limit"],
         "rows": [
-            [name, *(entry[part] for part in _PARTS), entry["limit"]]
+            [
+                _label(study, name),
+                difference(_unit(study, name)),
+                *(entry[part] for part in _PARTS),
+                entry["limit"],
+            ]
             for name, entry in _of_model(study, found).items()
         ],
         "section": "comparison",

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from mascarin.study.days_step import day_words, days_table
+from mascarin.study.document.coefficients import coefficients
 from mascarin.study.document.comparison import comparison
 from mascarin.study.document.errors import error_entries, error_tables
 from mascarin.study.document.estimates import estimates, parameters, prediction_entries, profile_entries
@@ -17,6 +19,7 @@ from mascarin.validation.causes import WORDS
 from mascarin.validation.error_sources import explain_missed_aims
 
 if TYPE_CHECKING:
+    from mascarin.building import Building
     from mascarin.study.findings import Findings
     from mascarin.validation.causes import Diagnosis
 
@@ -42,10 +45,18 @@ def document(findings: Findings) -> dict[str, Any]:
         those of every model stand beside them under its name.
     """
     study, fit = findings.setup, findings.calibration
+    reference = study.plan.reference
+    published = [] if reference is None else [entry.parameter for entry in reference.parameters]
     content = {
         **header(study, "study"),
         **comparison(findings.models, findings.criteria),
         **estimates(study, fit),
+        **coefficients(
+            study,
+            {"nominal": findings.nominal, "fitted": findings.fitted},
+            (*fit.problem.paths, *published),
+        ),
+        "reference_values": _values(study.building, published),
         **profile_entries(findings.profiles),
         **prediction_entries(study, findings.prediction_intervals),
         **error_entries(study, findings.combination),
@@ -77,6 +88,12 @@ def document(findings: Findings) -> dict[str, Any]:
     return content
 
 
+def _values(building: Building, paths: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Values as described of parameters that a publication identified."""
+    parameters = {path: building.parameter(path) for path in paths}
+    return {path: {"value": p.value, "unit": p.unit} for path, p in parameters.items()}
+
+
 def causes_table(found: Diagnosis) -> dict[str, Any]:
     """Causes with their evidence, as a table of the report."""
     rows = [
@@ -99,8 +116,10 @@ def causes_table(found: Diagnosis) -> dict[str, Any]:
             "of the sum of squares that is left by the rows above, with the calibrated parameters adjusted "
             "again. p is the probability of chance. The remarks say what to check."
         ),
-        "columns": ["no.", "kind", "where", "estimate", "standard error", "unit", "taken away, %", "p"],
+        "columns": ["no.", "kind", "where", "estimate", "standard error", "unit", "taken away [%]", "p"],
         "rows": rows,
+        "uncertainty": {"estimate": "standard error"},
+        "significant": ["p"],
         "section": "error_sources",
     }
 

@@ -317,7 +317,7 @@ def _correlation(
 CASES: Final = (
     Case(
         name="enclosures",
-        problem="Surfaces behind 0.05 m2K/W with convection of 2 W/(m2 K) around still air: two plates, "
+        problem="Surfaces behind 0.05 m2 K/W with convection of 2 W/(m2 K) around still air: two plates, "
         "a body in a shell, a triangular duct; steady.",
         answer="Q = A s (T1^4 - T2^4)/(1/e1 + (A1/A2)(1/e2 - 1)) for two surfaces; radiosity with crossed "
         "strings for three; the balance with convection and panels by root finding",

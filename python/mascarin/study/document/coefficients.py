@@ -1,0 +1,85 @@
+"""Effective mean convective heat transfer coefficients, so that a factor can be compared with a constant."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from mascarin.building import Building
+    from mascarin.study.findings import ModelRun
+    from mascarin.study.setup import Setup
+
+    Array = npt.NDArray[np.float64]
+
+_LAW: Final = re.compile(r"surfaces\.(?P<surface>[^.]+)\.(?P<side>outside|inside)\.convection")
+_PERIOD: Final = "identification"
+
+
+def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[str]) -> dict[str, Any]:
+    """Effective mean coefficient of each convection law that has one of some parameters.
+
+    It is the constant that exchanges as much heat: the mean of the heat flux without its sign, over the mean
+    of the temperature difference without its sign, in the identification period.
+
+    Parameters
+    ----------
+    study : Setup
+        The study.
+    models : mapping of str to ModelRun
+        The models to compare.
+    paths : iterable of str
+        Parameters; those of other parts of the building are left out.
+
+    Returns
+    -------
+    dict
+        ``coefficients``: ``period``, ``unit`` and ``models``, model -> path of the law -> coefficient;
+        nothing where no parameter belongs to a convection law.
+    """
+    laws = dict.fromkeys(found[0] for path in paths if (found := _LAW.match(path)))
+    if not laws:
+        return {}
+    content = {"period": _PERIOD, "unit": "W/(m2 K)"}
+    means = {name: _means(study, run, list(laws)) for name, run in models.items()}
+    return {"coefficients": {**content, "models": means}} if any(means.values()) else {}
+
+
+def _means(study: Setup, run: ModelRun, laws: list[str]) -> dict[str, float]:
+    """Effective mean coefficients of one model, W/(m2 K); laws that it does not have are left out."""
+    building = run.simulation.building.replace(run.results.provenance.changed)
+    known = {output.name for output in building.outputs()}
+    names = {law: found for law in laws if (found := _outputs(building, law))[0] in known}
+    if not names:
+        return {}
+    recorded = {building.output(sensor.output).name for sensor in study.plan.sensors.values()}
+    wanted = dict.fromkeys(name for found in names.values() for name in found if name is not None)
+    simulation = study.over_record(building, [name for name in wanted if name not in recorded])
+    results = simulation.run()
+    first, last = study.identification
+    during = np.asarray((results.index >= first) & (results.index < last))
+    air = simulation.weather("air_temperature")
+    columns = [output.name for output in results.outputs]
+    means = {}
+    for law, (coefficient, face, zone) in names.items():
+        h, surface = (results.records[during, columns.index(name)] for name in (coefficient, face))
+        beside = air[during] if zone is None else results.records[during, columns.index(zone)]
+        difference = np.abs(surface - beside)
+        if difference.sum() > 0.0:
+            means[law] = float(f"{np.sum(h * difference) / np.sum(difference):.6g}")
+    return means
+
+
+def _outputs(building: Building, law: str) -> tuple[str, str, str | None]:
+    """Outputs: the coefficient, the temperature of the face, that of the air (None outdoors)."""
+    found = _LAW.match(law)
+    assert found is not None  # noqa: S101 (laws are matches)
+    surface, side = found["surface"], found["side"]
+    zone = getattr(building.surfaces[surface], side).zone
+    air = None if zone is None else f"{zone}.air_temperature"
+    return f"{surface}.{side}_convection", f"{surface}.{side}_temperature", air
