@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from mascarin.building.courses import temperature_course
 from mascarin.building.glazing import GivenGap, Glazing, SimpleGlazing
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.part import Part, fault, refuse
@@ -405,6 +406,8 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
         ground = side.ground
         angle = 2.0 * math.pi * (ambient.day - float(ground.coldest_day or 0.0)) / 365.0
         return film, float(ground.mean - ground.amplitude * math.cos(angle))
+    if isinstance(side.measured, tuple):
+        return film, ambient.columns[f"schedule {temperature_course(side.measured).name}"]
     return film, ambient.columns[str(side.measured)]
 
 

@@ -45,6 +45,7 @@ def rows(building: Description, parameters: Sequence[Parameter]) -> list[tuple[s
         "glazings",
         "schedules",
         "air_paths",
+        "ventilation_units",
         "openings",
         "shades",
         "sensors",
@@ -120,4 +121,4 @@ def _set_point(loads: IdealLoads | None) -> str:
 
 
 def _facing(side: Side) -> str:
-    return side.zone or (f"measured {side.measured}" if side.measured else side.faces)
+    return side.zone or side.in_words()
