@@ -78,6 +78,13 @@ class ThermalBridge(Part):
         return next((key for key in _ENDS if getattr(self, key) is not None), "outdoors")
 
     @property
+    def measured_columns(self) -> tuple[str, ...]:
+        """Measured columns of the temperature at the other end."""
+        if self.measured is None:
+            return ()
+        return (self.measured,) if isinstance(self.measured, str) else self.measured
+
+    @property
     def conductance(self) -> float:
         """Heat per degree. [W/K]"""
         if self.psi is not None:

@@ -127,6 +127,9 @@ def _in_zones(building: Description) -> Iterator[str]:
             most = "without limit" if loads.capacity is None else f"at most {loads.capacity:g} W"
             yield f"zone {name}: {which} to {target}, {most}{_scheduled(loads.schedule)}"
         yield from _bridges(name, zone)
+        test = zone.infiltration.blower_door
+        if test is not None:
+            yield f"zone {name}: infiltration of a pressure test, n50 {test.n50:g} 1/h ({test.kind})"
     for name, path in building.air_paths.items():
         ends = (
             f"from {' to '.join(path.between)}" if path.one_way else f"between {' and '.join(path.between)}"
@@ -140,7 +143,7 @@ def _in_zones(building: Description) -> Iterator[str]:
 
 def _bridges(name: str, zone: Zone) -> Iterator[str]:
     for key, bridge in zone.thermal_bridges.items():
-        to = bridge.zone or bridge.faces
+        to = bridge.zone or " and ".join(bridge.measured_columns) or bridge.faces
         yield f"zone {name}: thermal bridge {key} of {bridge.conductance:.3f} W/K to {to}"
 
 

@@ -236,7 +236,7 @@ fn residuals_are_rounding() {
         let mut options = options(scheme, STEP, vec![Probe::AirTemperature { zone: 0 }]);
         options.residuals = true;
         let result = run(&plan, &rows, &options);
-        let largest = result.counters.largest_residual;
+        let largest = result.counters.largest_residual.unwrap();
         assert!(largest < 1e-6 && largest > 0.0, "{largest} W");
         assert!(result.ledger.closure() < 1e-12);
     }
