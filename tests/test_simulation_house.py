@@ -44,7 +44,7 @@ def test_a_power_from_a_column_is_the_mean_of_its_steps() -> None:
     t = hours(4)
     power = np.where(np.arange(len(t)) % 2 == 0, 2.0, 0.0)
     climate = dark(0.0 * t, P=power)
-    results = simulate(building, climate, step="15min")
+    results = simulate(building, climate, step="15min", end="2001-01-05")
     # Instants are joined by straight lines: 1 kW in the mean.
     assert results.energy.into["gains"] == pytest.approx(0.5 * 1000 * 4 * 86400, rel=1e-9)
     assert results.energy.closes
@@ -173,14 +173,15 @@ def test_slopes_by_path_agree_with_differences() -> None:
     bath = {"infiltration": {"blower_door": {"kind": "stack_wind", "n50": 2.2}}}
     leaky = {"makeup_air": "outdoors"}
     zones = {"living": LEAKS | living | leaky, "bath": bath | leaky}
-    door = {"between": ["living", "bath"], "door": {"width": 1, "height": 2}}
+    door = {"between": ["living", "bath"], "door": {"width": 1, "height": 2, "open": 0.5}}
     more = FANS | {"air_paths": FANS["air_paths"] | {"door": door}}
     building = box(zones, **more)
-    flows = {"ventilation_units.unit.exhaust.bath.factor": 1.2}
+    # Away from balances, where slopes differ to both sides.
+    flows = {"ventilation_units.unit.exhaust.bath.factor": 1.2, "air_paths.overflow.factor": 0.9}
     building = building.with_values(flows)
     t = hours(2)
     wave = np.sin(t / 9000.0)
-    columns = {
+    columns: dict[str, Any] = {
         "P": 300 + 200 * wave,
         "V": 100 + 20 * wave,
         "T_supply": 17 + wave,
@@ -203,12 +204,12 @@ def test_slopes_by_path_agree_with_differences() -> None:
         "ventilation_units.unit.supply.living.factor",
         "ventilation_units.unit.exhaust.bath.factor",
     ]
-    slopes = simulation.gradient(Mean("bath.air_temperature"))
+    slopes = simulation.gradient(Mean("bath.air_temperature")).slopes
     for path in paths:
         value = building.parameter(path).value
         step = 1e-4 * value
         high, low = (
-            float(simulation.run({path: value + sign * step})["bath.air_temperature"][1:].mean())
+            float(simulation.run({path: value + sign * step})["bath.air_temperature"].mean())
             for sign in (1, -1)
         )
         assert slopes[path] == pytest.approx((high - low) / (2 * step), rel=2e-4, abs=1e-7), path

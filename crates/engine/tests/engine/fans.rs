@@ -14,8 +14,8 @@ use mascarin_engine::probe::Probe;
 use mascarin_engine::real::{Dual, Real};
 
 const STEP: f64 = 900.0;
-/// 1.225 kg/m3 (sea level) times 1006 J/(kg K).
-const HEAT: f64 = 101_325.0 / (287.055 * 288.15) * 1006.0;
+/// Density at 15 degC and the pressure of the standard atmosphere at 55 m, times 1006 J/(kg K) [J/(m3 K)].
+const HEAT: f64 = 100_666.018_81 / (287.055 * 288.15) * 1006.0;
 const FLOW: f64 = 0.03;
 const OUTDOOR: f64 = 5.0;
 
@@ -195,9 +195,11 @@ fn all_at_once() -> Plan {
     gain(&mut b, 0, 150.0);
     bridge(&mut b, 0, 2.0, Facing::Outdoors);
     bridge(&mut b, 1, 3.0, Facing::Zone { zone: 2 });
+    // Away from balances, where slopes differ to both sides.
+    let factors = [("unit.exhaust", 1.3), ("overflow.0", 0.9), ("overflow.1", 0.8)];
     for number in &mut b.description.parameters {
-        if number.path == "unit.exhaust" {
-            number.value *= 1.3;
+        for (_, factor) in factors.iter().filter(|(path, _)| *path == number.path) {
+            number.value *= factor;
         }
     }
     let mut number = |path: &str, value| b.number(path, value);
