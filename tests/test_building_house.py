@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from mascarin import cli
 from mascarin.building import Building, Gain, load
 from mascarin.building.air import heat_capacity
 from mascarin.building.checks import check
@@ -170,3 +171,23 @@ def test_make_up_air_needs_fans(tmp_path: Path) -> None:
     still = still.replace("  overflow: {between: [living, bath], flow: 0.03, one_way: true}\n", "")
     with pytest.raises(InputError, match="a zone that no fan moves air through"):
         read(tmp_path, still)
+
+
+def test_errors_of_a_run_name_file_and_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Flows that do not balance over time, and a column that the table does not have."""
+    text = HOUSE.replace("supply: {living: 0.03}", "supply: {living: {column: V}}").replace("    recovery: 0.8\n", "")
+    text = text.replace("{column: T_bath}", "20").replace("[T_east, T_west]", "V")
+    text = text.replace("{column: P_living, radiative: 0.3}", "{power: 100}")
+    read(tmp_path, text)
+    hours = [f"2024-01-01 {hour:02d}:00,5,0.03,{0.02 + 0.001 * hour}" for hour in range(24)]
+    (tmp_path / "table.csv").write_text("time,T,other,V\n" + "\n".join(hours) + "\n", encoding="utf-8")
+    absent = ("dew_point", "wind_speed", "wind_direction", "radiation", "cloud_cover")
+    command = ["run", str(tmp_path / "house.yaml"), "--weather", str(tmp_path / "table.csv")]
+    command += ["--column", "air_temperature=T", *(f"--column={name}=none" for name in absent)]
+    assert cli.main([*command, "--timezone", "UTC+1"]) == 2
+    error = capsys.readouterr().err
+    assert "house.yaml:6" in error
+    assert "zones.living: found that 0.043 m3/s of air enters and 0.03 m3/s leaves" in error
+    read(tmp_path, text.replace("column: V}", "column: W}"))
+    assert cli.main([*command, "--timezone", "UTC+1"]) == 2
+    assert "house.yaml:23: " in capsys.readouterr().err
