@@ -175,7 +175,8 @@ def test_make_up_air_needs_fans(tmp_path: Path) -> None:
 
 def test_errors_of_a_run_name_file_and_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Flows that do not balance over time, and a column that the table does not have."""
-    text = HOUSE.replace("supply: {living: 0.03}", "supply: {living: {column: V}}").replace("    recovery: 0.8\n", "")
+    text = HOUSE.replace("supply: {living: 0.03}", "supply: {living: {column: V}}")
+    text = text.replace("    recovery: 0.8\n", "")
     text = text.replace("{column: T_bath}", "20").replace("[T_east, T_west]", "V")
     text = text.replace("{column: P_living, radiative: 0.3}", "{power: 100}")
     read(tmp_path, text)
