@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from mascarin.building import quantities as q
 from mascarin.building.bridge import ThermalBridge
@@ -199,8 +199,27 @@ ZoneSun = Annotated[
 ]
 
 
+def _or_held(schema: dict[str, Any]) -> None:
+    """Allow ``held``, the short form of heating and cooling with one set point, in the JSON Schema."""
+    schema["properties"]["held"] = {
+        "description": "Heating and cooling with this set point",
+        "anyOf": [
+            {"type": "number"},
+            {
+                "type": "object",
+                "properties": {key: {"type": "string"} for key in ("schedule", "column")},
+                "minProperties": 1,
+                "maxProperties": 1,
+                "additionalProperties": False,
+            },
+        ],
+    }
+
+
 class Zone(Part):
     """A volume of well-mixed air.
+
+    ``held`` in place of heating and cooling gives both the same set point.
 
     Examples
     --------
@@ -209,10 +228,10 @@ class Zone(Part):
     0.5
     """
 
+    model_config = ConfigDict(json_schema_extra=_or_held)
     advice: ClassVar[Mapping[str, str]] = {
-        "temperature": "The air temperature is a result: hold it with 'heating: {setpoint: 24}' and "
-        "'cooling: "
-        "{setpoint: 24}'. That at the start of a run is an option of the run (initial).",
+        "temperature": "The air temperature is a result: hold it with 'held: 24' or 'held: {column: "
+        "T_room}'. That at the start of a run is an option of the run (initial).",
         "setpoint": "Write 'heating: {setpoint: 20}' or 'cooling: {setpoint: 26}'.",
         "furniture": "Furniture is a surface with 'internal_mass: true', both sides of which face the zone.",
         "n50": "Write 'infiltration: {blower_door: 2.2}'.",
