@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from mascarin.building.air_rules import air_faults
 from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
+from mascarin.building.course_uses import schedule_uses
 from mascarin.building.derived import shade_outlines, sides_of_zone
 from mascarin.building.material import Resistance
 from mascarin.building.part import Location, fault
 from mascarin.building.schedule import DAYS, Piece
-from mascarin.building.schedule_uses import schedule_uses
 from mascarin.building.surface import NoLongwave, Side
 from mascarin.building.window_rules import windows_lie_in_walls
 from mascarin.building.zone import FloorSun, GivenSun, SunShares, TracedSun

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 from pydantic import Field, model_validator
 
 from mascarin.building import quantities as q
+from mascarin.building.courses import temperature_course
 from mascarin.building.names import ScheduleName
 from mascarin.building.number import problem
 from mascarin.building.part import Part
@@ -18,6 +22,11 @@ class SetPoint(Part):
     >>> SetPoint(temperature=20)
     SetPoint(temperature=20 degC)
     """
+
+    advice: ClassVar[Mapping[str, str]] = {
+        "measured": "Write 'setpoint: {column: NAME}', or 'setpoint: {schedule: NAME}' with a schedule of "
+        "kind temperature."
+    }
 
     temperature: q.SetPoint | None = None
     schedule: ScheduleName | None = Field(None, description="Schedule of temperature")
@@ -33,6 +42,11 @@ class SetPoint(Part):
                 "Write for instance 'setpoint: 20'.",
             )
         return self
+
+    @property
+    def course(self) -> str | None:
+        """Name of the schedule or of the course of the column; None for a number."""
+        return self.schedule if self.column is None else temperature_course(self.column).name
 
     @property
     def words(self) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from mascarin._io.arguments import mapping_of, require_type
 from mascarin.building import Building
 from mascarin.building.convection import measured_column
-from mascarin.building.courses import courses
+from mascarin.building.course_uses import courses
 from mascarin.building.initial_state import Ambient, GivenStart
 from mascarin.building.outputs import named
 from mascarin.errors import InputError

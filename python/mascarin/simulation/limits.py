@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from mascarin.building.courses import temperature_course
 from mascarin.errors import InputError
 from mascarin.weather.channels import CHANNELS
 
@@ -104,8 +103,7 @@ def require_set_points_apart(
         point = building.zones[zone].loads[which].setpoint
         if point.temperature is not None:
             return vectors[:, [positions[f"zones.{zone}.{which}.setpoint.temperature"]]]
-        course = point.schedule if point.column is None else temperature_course(point.column).name
-        place = len(CHANNELS) + list(channels).index(f"schedule {course}")
+        place = len(CHANNELS) + list(channels).index(f"schedule {point.course}")
         return forcing[None, :, -1, place]
 
     for name, zone in building.zones.items():

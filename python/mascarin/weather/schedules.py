@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import tzinfo
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from mascarin.building.courses import ColumnCourse
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import TEMPERATURES
@@ -22,6 +21,7 @@ from mascarin.weather.steps import Steps
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.building.courses import ColumnCourse
     from mascarin.building.schedule import Schedule
 
 # A step that ends at a switch ends before it. [s]
@@ -124,10 +124,11 @@ def scheduled(
     steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme)
     out = np.empty((*steps.stage.shape, len(schedules)))
     for place, (name, schedule) in enumerate(schedules.items()):
-        if isinstance(schedule, ColumnCourse) or schedule.columns:
+        if schedule.columns:
             values = _measured(climate, measurements, name, schedule, steps)
         else:
-            pieces = pieces_of(schedule, timezone, steps.first, steps.last)
+            # Only a schedule has no columns.
+            pieces = pieces_of(cast("Schedule", schedule), timezone, steps.first, steps.last)
             means = schedule.kind == "fraction"
             values = pieces.means(steps.edges)[:, None] if means else pieces.before(steps.stage)
         out[..., place] = values
@@ -213,7 +214,7 @@ def _of_column(
     try:
         record = record_of(climate.record, None if measurements is None else measurements.record, column)
     except InputError as error:
-        if isinstance(course, ColumnCourse):
+        if not hasattr(course, "column"):  # no schedule
             raise
         raise InputError(f"schedules.{name}.column: {error}") from None
     record.grid.require(steps.first, steps.last, f"{record.file}: {column}")

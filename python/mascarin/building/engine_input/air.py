@@ -31,9 +31,7 @@ def set_point(point: SetPoint, places: Places, ids: Ids) -> Json:
     """Describe a temperature that is a number, a schedule or a column."""
     if point.temperature is not None:
         return {"kind": "constant", "temperature": ids("temperature")}
-    if point.column is not None:
-        return {"kind": "scheduled", "channel": places[temperature_course(point.column).name]}
-    return {"kind": "scheduled", "channel": places[str(point.schedule)]}
+    return {"kind": "scheduled", "channel": places[str(point.course)]}
 
 
 def describe_air_path(building: Description, places: Places, name: str, path: AirPath, ids: Ids) -> Json:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mascarin.building.convection import measured_column
-from mascarin.building.courses import courses
+from mascarin.building.course_uses import courses
 from mascarin.building.description import Description
 
 

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.building.courses import courses
+from mascarin.building.course_uses import courses
 from mascarin.building.description import Description
 from mascarin.building.engine_input.air import (
     describe_air_path,
@@ -31,7 +31,7 @@ from mascarin.building.engine_input.windows import (
     framed,
 )
 from mascarin.building.engine_input.zones import describe_zone
-from mascarin.building.mesh import choose
+from mascarin.building.mesh import Mesh, choose
 from mascarin.building.number import Interval
 from mascarin.building.parameters import Parameter
 from mascarin.building.self_shading import obstructions
@@ -94,26 +94,7 @@ def describe(
     description = {
         "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
         "site": _site(building.site, below(ids, "site")),
-        "materials": [
-            *each(building.materials, "materials", ids, describe_material),
-            *(
-                {"kind": "rated", "u_value": ids[f"windows.{name}.frame.u_value"]}
-                for name in framed(building)
-            ),
-        ],
-        "constructions": [
-            *each(
-                building.constructions,
-                "constructions",
-                ids,
-                partial(describe_construction, building, mesh.nodes),
-            ),
-            *each(building.glazings, "glazings", ids, describe_glazing),
-            *(
-                describe_frame_construction(name, len(building.materials) + index)
-                for index, name in enumerate(framed(building))
-            ),
-        ],
+        **_constructions(building, mesh, ids),
         "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
         **_air(building, ids, places),
         "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
@@ -143,6 +124,32 @@ def describe(
         notes=mesh.warnings,
         nodes=mesh.nodes,
     )
+
+
+def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int]) -> Json:
+    """Materials and constructions, those of glazings and frames included."""
+    return {
+        "materials": [
+            *each(building.materials, "materials", ids, describe_material),
+            *(
+                {"kind": "rated", "u_value": ids[f"windows.{name}.frame.u_value"]}
+                for name in framed(building)
+            ),
+        ],
+        "constructions": [
+            *each(
+                building.constructions,
+                "constructions",
+                ids,
+                partial(describe_construction, building, mesh.nodes),
+            ),
+            *each(building.glazings, "glazings", ids, describe_glazing),
+            *(
+                describe_frame_construction(name, len(building.materials) + index)
+                for index, name in enumerate(framed(building))
+            ),
+        ],
+    }
 
 
 def _air(building: Description, ids: Mapping[str, int], places: Places) -> Json:

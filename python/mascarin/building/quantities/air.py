@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Limits, Number, Percent, Quantity, Span, Within
+from mascarin.building.number import Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
 from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE, POSITIVE
 
 CapacityFactor = Annotated[
@@ -184,4 +184,9 @@ PointTransmittance = Annotated[
         Limits(at_least=-100, at_most=1e4),
     ),
 ]
-BridgeNumber = Annotated[Number, Quantity("-", "Number of such bridges", Percent(0, "counted"), NOT_NEGATIVE)]
+BridgeNumber = Annotated[
+    Number,
+    Quantity(
+        "-", "Number of such bridges", OnlyGiven("counted: it varies only if a range is given"), NOT_NEGATIVE
+    ),
+]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Fixed, Limits, Number, Percent, Quantity, Span, Within
+from mascarin.building.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
 from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE
 
 GainPower = Annotated[
@@ -61,7 +61,7 @@ ColumnFactor = Annotated[
     Quantity(
         "-",
         "Factor of the measured column",
-        Percent(0, "measured: only a range that is given is used"),
+        OnlyGiven("measured: it varies only if a range is given"),
         Limits(at_least=-1000, at_most=1000),
     ),
 ]
