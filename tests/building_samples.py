@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from mascarin.building import Building
 from mascarin.building.reading import parse
 
@@ -309,7 +311,7 @@ OPTIONAL = {
 
 
 #: What a house has beside that: in zones by path, and other sections.
-IN_ZONES = {
+IN_ZONES: dict[tuple[str, str], dict[str, Any]] = {
     ("room", "gains"): {"heater": {"column": "T_out", "radiative": 0.3}},
     ("room", "infiltration"): {"blower_door": {"kind": "factor", "n50": 2}},
     ("attic", "infiltration"): {"blower_door": {"kind": "stack_wind", "n50": 2}},
@@ -320,7 +322,7 @@ IN_ZONES = {
         "yard": {"chi": 0.2, "measured": ["T_out"]},
     },
 }
-SECTIONS = {
+SECTIONS: dict[str, dict[str, Any]] = {
     "air_paths": {
         "door": {"between": ["room", "attic"], "door": {"width": 0.9, "height": 2}},
         "overflow": {"between": ["room", "attic"], "column": "T_out", "one_way": True},
@@ -338,9 +340,9 @@ SECTIONS = {
 
 def house() -> Building:
     """Fans, doors, thermal bridges, pressure tests and measured powers."""
-    plain = parse(EVERYTHING, "everything.yaml").to_dict()
+    plain: dict[str, Any] = parse(EVERYTHING, "everything.yaml").to_dict()
     for (zone, key), part in IN_ZONES.items():
-        given = plain["zones"][zone].get(key, {})
+        given: Any = plain["zones"][zone].get(key, {})
         plain["zones"][zone][key] = (given if isinstance(given, dict) and "value" not in given else {}) | part
     for zone in ("room", "attic"):
         plain["zones"][zone] |= {"makeup_air": "outdoors"}

@@ -317,7 +317,7 @@ class AirPath(Driven):
     Examples
     --------
     >>> AirPath(between=("office", "corridor"), flow=0.02)
-    AirPath(between=[office, corridor], flow=0.02 m3/s)
+    AirPath(between=[office, corridor], flow=0.02 m3/s, one_way=False)
     >>> AirPath(between=("office", "corridor"), flow=0.02, one_way=True).one_way
     True
     >>> AirPath(between=("office", "corridor"), door={"width": 0.9, "height": 2}).flow is None
