@@ -85,7 +85,7 @@ mod tests {
         let numbers = [2.2, 0.65, 0.000_145, 0.000_174];
         let (constant, law) = leakage(&test, &Values::new(&numbers));
         let law = law.unwrap();
-        let expected = 2.2 * 0.08_f64.powf(0.65) * 10.0 * 0.15_f64.sqrt() * 0.005_684_f64.sqrt();
+        let expected = 2.2 * Real::powf(0.08, 0.65) * 10.0 * 0.15_f64.sqrt() * 0.005_684_f64.sqrt();
         assert_eq!(constant, 0.0);
         assert!(
             (law.air_changes(4.0, -20.0) / expected - 1.0).abs() < 1e-6,
