@@ -2,10 +2,11 @@
 
     python bench/many_zones.py --weather FILE.epw --energyplus PROGRAM --write docs/speed.md
 
-A row of N rooms, and an office of rooms on several storeys (no chain: a room touches up to five others), free and with ideal
-loads. Both programs get the same polygons, layers, laws of convection (TARP inside, DOE-2 outside) and infrared radiation of
-the sky, 15 min steps and one thread. The time is that of the processor for the whole process, start included; beside it the
-parts of Mascarin. Leave the machine alone meanwhile. (`bench/energyplus.py` says where to get EnergyPlus.)
+A row of N rooms, and an office of rooms on several storeys (no chain: a room touches up to five others), free
+and with ideal loads. Both programs get the same polygons, layers, laws of convection (TARP inside, DOE-2
+outside) and infrared radiation of the sky, 15 min steps and one thread. The time is that of the processor for
+the whole process, start included; beside it the parts of Mascarin. Leave the machine alone meanwhile.
+(`bench/energyplus.py` says where to get EnergyPlus.)
 """
 
 from __future__ import annotations
@@ -47,7 +48,10 @@ Cell = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class Face:
-    """A wall, floor or ceiling: corners counter-clockwise as seen from behind, the room before it, and what is behind."""
+    """A wall, floor or ceiling.
+
+    Its corners run counter-clockwise as seen from behind; it has a room before it, and one or nothing behind.
+    """
 
     name: str
     construction: str
@@ -432,7 +436,8 @@ marks.append(time.process_time())
 run = simulation.run()
 marks.append(time.process_time())
 np.save(folder + "/mascarin.npy", np.stack([run.hourly(name) for name in names]))
-json.dump(dict(zip(("import", "load", "weather", "compile", "run"), np.diff(marks))), open(folder + "/parts.json", "w"))
+parts = dict(zip(("import", "load", "weather", "compile", "run"), np.diff(marks)))
+json.dump(parts, open(folder + "/parts.json", "w"))
 """
 
 
@@ -570,8 +575,8 @@ def main() -> None:
             ]
             what = "with ideal loads" if loads else "free"
             text += (
-                f"\n\nFrom {large[0].rooms} to {large[-1].rooms} rooms {what}: the run grows with N to the power {powers[0]:.2f}, "
-                f"the whole process {powers[1]:.2f}, EnergyPlus {powers[2]:.2f}."
+                f"\n\nFrom {large[0].rooms} to {large[-1].rooms} rooms {what}: the run grows with N to the "
+                f"power {powers[0]:.2f}, the whole process {powers[1]:.2f}, EnergyPlus {powers[2]:.2f}."
             )
     publish("many zones", text, given.write)
 

@@ -20,7 +20,7 @@ from scipy.sparse import lil_matrix
 
 from mascarin.building import Building
 from mascarin.building.air import SPECIFIC_HEAT, density
-from mascarin.building.derived import enclosure, sides_of_zone
+from mascarin.building.derived import enclosure
 from mascarin.building.geometry import view_factors
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.phases import phase
@@ -133,9 +133,9 @@ class NaiveCell:
 
     def _radiosity(self, zone: str) -> tuple[list[Face], Array]:
         """Net long-wave heat of the faces of a zone is the matrix times sigma T^4 [m2]."""
-        polygons = enclosure(zone, self.building.surfaces)
+        polygons = enclosure(self.building.connections.sides(zone), self.building.surfaces)
         assert polygons is not None
-        faces = [self.faces[key] for key in sides_of_zone(zone, self.building.surfaces) if key in self.faces]
+        faces = [self.faces[key] for key in self.building.connections.sides(zone) if key in self.faces]
         emissivity = np.array([face.emissivity for face in faces])
         reflected = np.eye(len(faces)) - (1.0 - emissivity)[:, None] * view_factors(polygons)
         leaving = np.linalg.solve(reflected, np.diag(emissivity))  # radiosity per sigma T^4

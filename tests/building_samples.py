@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from mascarin.building import Building
 from mascarin.building.reading import parse
 
@@ -308,9 +310,51 @@ OPTIONAL = {
 }  # fmt: skip
 
 
+#: What a house has beside that: in zones by path, and other sections.
+IN_ZONES: dict[tuple[str, str], dict[str, Any]] = {
+    ("room", "gains"): {"heater": {"column": "T_out", "radiative": 0.3}},
+    ("room", "infiltration"): {"blower_door": {"kind": "factor", "n50": 2}},
+    ("attic", "infiltration"): {"blower_door": {"kind": "stack_wind", "n50": 2}},
+    ("room", "thermal_bridges"): {
+        "edge": {"psi": 0.05, "length": 10},
+        "post": {"chi": 0.1, "zone": "attic"},
+        "soil": {"psi": 0.1, "length": 4, "ground": {"mean": 10, "amplitude": 3}},
+        "yard": {"chi": 0.2, "measured": ["T_out"]},
+    },
+}
+SECTIONS: dict[str, dict[str, Any]] = {
+    "air_paths": {
+        "door": {"between": ["room", "attic"], "door": {"width": 0.9, "height": 2}},
+        "overflow": {"between": ["room", "attic"], "column": "T_out", "one_way": True},
+    },
+    "ventilation_units": {
+        "unit": {
+            "supply": {"room": 0.01, "attic": {"column": "T_out", "unit": "m3/h"}},
+            "exhaust": {"attic": {"flow": 0.01, "schedule": "always"}},
+            "recovery": 0.7,
+        },
+        "heater": {"supply": {"room": 0.001}, "temperature": 30},
+    },
+}
+
+
+def house() -> Building:
+    """Fans, doors, thermal bridges, pressure tests and measured powers."""
+    plain: dict[str, Any] = parse(EVERYTHING, "everything.yaml").to_dict()
+    for (zone, key), part in IN_ZONES.items():
+        given: Any = plain["zones"][zone].get(key, {})
+        plain["zones"][zone][key] = (given if isinstance(given, dict) and "value" not in given else {}) | part
+    for zone in ("room", "attic"):
+        plain["zones"][zone] |= {"makeup_air": "outdoors"}
+    plain["zones"]["room"] |= {"solar_to_air": 0.1}
+    for section, parts in SECTIONS.items():
+        plain[section] = plain.get(section, {}) | parts
+    return Building.from_dict(plain)
+
+
 def everything() -> list[Building]:
     """Every kind of part: once for each sky, with what has no default, with each law of phase change."""
     building = parse(EVERYTHING, "everything.yaml")
     skies = [building.replace({"site.sky": sky}) for sky in SKIES]
     melting = [everything_melting(*laws) for laws in MELTING]
-    return [*skies, building.replace(OPTIONAL), *melting]
+    return [*skies, building.replace(OPTIONAL), house(), *melting]

@@ -65,7 +65,7 @@ def test_what_to_write_on_a_side(outside: dict[str, Any], says: list[str]) -> No
 @pytest.mark.parametrize(
     ("room", "says"),
     [
-        ({"temperature": 24}, ["zones.room.temperature", "'heating: {setpoint: 24}'"]),
+        ({"temperature": 24}, ["zones.room.temperature", "'held: 24'"]),
         ({"setpoint": 24}, ["zones.room.setpoint", "'heating: {setpoint: 20}'"]),
         ({"heating": {"setpoint": {"measured": "T"}}}, ["setpoint.measured", "{schedule: NAME}"]),
     ],

@@ -30,6 +30,8 @@ STRUCTURAL = {
     "irradiance",
     "schedule",
     "between",
+    "from",
+    "to",
     "continuity",
 }
 

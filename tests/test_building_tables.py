@@ -58,7 +58,9 @@ def numbers(node: Any) -> list[dict[str, Any]]:
         return [found for piece in node for found in numbers(piece)]
     if not isinstance(node, dict):
         return []
-    return ([node] if "unit" in node else []) + [found for piece in node.values() for found in numbers(piece)]
+    # A part may have a key that is called unit, too.
+    own = [node] if isinstance(node.get("unit"), str) else []
+    return own + [found for piece in node.values() for found in numbers(piece)]
 
 
 def test_every_number_of_the_schema_has_unit_meaning_and_range() -> None:

@@ -191,7 +191,7 @@ def test_schedules_and_gains(tmp_path: Path) -> None:
     )
     found = converted(tmp_path, text)
     gain = found.building.zones["Room"].gains["Lamps"]
-    assert float(gain.power) == pytest.approx(40.0)
+    assert float(gain.power or 0.0) == pytest.approx(40.0)
     assert float(gain.radiative) == pytest.approx(0.6)
     schedule = found.building.schedules[str(gain.schedule)]
     assert schedule.pieces(0)[1][:3] == (360.0, 720.0, 0.5)

@@ -68,7 +68,7 @@ def test_epjson_gives_the_same_building(files: Path, name: str) -> None:
         assert first.description.get(section) == second.description.get(section)
     powers = [
         {
-            (zone, gain): (float(one.power), float(one.radiative))
+            (zone, gain): (float(one.power or 0.0), float(one.radiative))
             for zone, part in building.zones.items()
             for gain, one in part.gains.items()
         }

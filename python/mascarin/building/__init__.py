@@ -7,6 +7,7 @@ other by name.
 from __future__ import annotations
 
 from mascarin.building.air import moist_air
+from mascarin.building.bridge import ThermalBridge
 from mascarin.building.building import Building
 from mascarin.building.checks import check
 from mascarin.building.convection import (
@@ -32,6 +33,7 @@ from mascarin.building.glazing import (
     PaneGlazing,
     SimpleGlazing,
 )
+from mascarin.building.leakage import LeakageFactor, LeakageStackWind
 from mascarin.building.material import PhaseChangeMaterial, Resistance, Solid
 from mascarin.building.number import Number
 from mascarin.building.outputs import Output
@@ -58,6 +60,7 @@ from mascarin.building.schedule import (
     TemperaturePoint,
     TemperatureSchedule,
 )
+from mascarin.building.set_point import SetPoint
 from mascarin.building.site import (
     BruntSky,
     ClarkAllenSky,
@@ -71,9 +74,11 @@ from mascarin.building.site import (
 )
 from mascarin.building.surface import Construction, Exposure, Ground, Layer, Sensor, Side, Surface
 from mascarin.building.tables import json_schema, parameter_table
+from mascarin.building.ventilation import UnitFlow, VentilationUnit
 from mascarin.building.window import Frame, Shade, Window, WindowInside, WindowOutside
 from mascarin.building.zone import (
     AirPath,
+    Door,
     EvenSun,
     FloorSun,
     Gain,
@@ -81,7 +86,6 @@ from mascarin.building.zone import (
     IdealLoads,
     Infiltration,
     Opening,
-    SetPoint,
     SunShares,
     TracedSun,
     Ventilation,
@@ -102,6 +106,7 @@ __all__ = [
     "Construction",
     "DiffuseOptics",
     "Doe2",
+    "Door",
     "EngineDescription",
     "EvenSun",
     "Exposure",
@@ -123,6 +128,8 @@ __all__ = [
     "Infiltration",
     "Iso15099",
     "Layer",
+    "LeakageFactor",
+    "LeakageStackWind",
     "LinearLaw",
     "LinearWind",
     "MartinBerdahlSky",
@@ -157,9 +164,12 @@ __all__ = [
     "TemperatureDays",
     "TemperaturePoint",
     "TemperatureSchedule",
+    "ThermalBridge",
     "TracedSun",
     "TriangleLaw",
+    "UnitFlow",
     "Ventilation",
+    "VentilationUnit",
     "Wind",
     "Window",
     "WindowInside",

@@ -91,7 +91,7 @@ class Building(Description):
         insist(*faults(building))
         building._fill(surfaces=derive_surfaces(building.surfaces, building.site.latitude))
         building._fill(windows=derive_windows(building.windows, building.surfaces))
-        building._fill(zones=derive_zones(building.zones, building.surfaces))
+        building._fill(zones=derive_zones(building.zones, building.surfaces, building.site.latitude))
         return building
 
     # --- from and to files and mappings ---------------------------------------------------------------------

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from mascarin.building.air import density, heat_capacity
 from mascarin.building.description import Description
+from mascarin.building.driven import Driven
 from mascarin.building.glazing import Glazing, SimpleGlazing
 from mascarin.building.inactive import sides as every_side
 from mascarin.building.leaves import leaves
@@ -27,7 +28,9 @@ from mascarin.building.u_values import (
     u_value,
     window_u_value,
 )
+from mascarin.building.ventilation import VentilationUnit
 from mascarin.building.window import Window, WindowOutside
+from mascarin.building.zone import AirPath, Zone
 from mascarin.building.zone_surfaces import closed
 from mascarin.errors import InputError
 
@@ -114,21 +117,52 @@ def _in_zones(building: Description) -> Iterator[str]:
     heat = heat_capacity(building.site)
     for name, zone in building.zones.items():
         for key, gain in zone.gains.items():
-            words = f"{gain.power:g} W, {100 * gain.radiative:g} % radiated"
+            words = f"{gain.in_words('W')}, {100 * gain.radiative:g} % radiated"
             yield f"zone {name}: gain {key} of {words}{_scheduled(gain.schedule)}"
         for key, air in zone.ventilation.items():
             flow = float(air.flow or 0.0) + float(air.air_changes or 0.0) * float(zone.volume or 0.0) / 3600.0
             yield f"zone {name}: ventilation {key} of {flow * heat:.2f} W/K{_scheduled(air.schedule)}"
         for which, loads in zone.loads.items():
-            given = loads.setpoint.schedule
-            target = f"{loads.setpoint.temperature:g} degC" if given is None else f"schedule {given}"
+            target = loads.setpoint.words
             most = "without limit" if loads.capacity is None else f"at most {loads.capacity:g} W"
             yield f"zone {name}: {which} to {target}, {most}{_scheduled(loads.schedule)}"
+        yield from _bridges(name, zone)
+        test = zone.infiltration.blower_door
+        if test is not None:
+            yield f"zone {name}: infiltration of a pressure test, n50 {test.n50:g} 1/h ({test.kind})"
     for name, path in building.air_paths.items():
-        ends = " and ".join(path.between)
-        yield f"air path {name}: {path.flow * heat:.2f} W/K between {ends}{_scheduled(path.schedule)}"
+        ends = (
+            f"from {' to '.join(path.between)}" if path.one_way else f"between {' and '.join(path.between)}"
+        )
+        yield f"air path {name}: {_flow(path, heat)} {ends}{_scheduled(path.schedule)}"
+    for name, unit in building.ventilation_units.items():
+        yield from _unit(name, unit, heat)
     for name, opening in building.openings.items():
         yield f"opening {name}: {opening.area:g} m2 in {opening.zone}{_scheduled(opening.schedule)}"
+
+
+def _bridges(name: str, zone: Zone) -> Iterator[str]:
+    for key, bridge in zone.thermal_bridges.items():
+        to = bridge.zone or " and ".join(bridge.measured_columns) or bridge.faces
+        yield f"zone {name}: thermal bridge {key} of {bridge.conductance:.3f} W/K to {to}"
+
+
+def _flow(flow: Driven, heat: float) -> str:
+    """A flow of air in words; ``heat``: that of a cubic metre of air [J/(m3 K)]."""
+    if isinstance(flow, AirPath) and flow.door is not None:
+        door = flow.door
+        return f"door of {door.width:g} m x {door.height:g} m, {100 * door.open:g} % open,"
+    return f"{flow.number * heat:.2f} W/K" if flow.column is None else f"flow of column {flow.column}"
+
+
+def _unit(name: str, unit: VentilationUnit, heat: float) -> Iterator[str]:
+    for word, flows in (("supplies to", unit.supply), ("extracts from", unit.exhaust)):
+        for zone, flow in flows.items():
+            yield f"ventilation unit {name}: {word} {zone}: {_flow(flow, heat)}{_scheduled(flow.schedule)}"
+    if unit.supply:
+        supplied = "outdoor air" if unit.temperature is None else f"air of {unit.temperature.words}"
+        recovery = "" if unit.recovery is None else f", heat recovery {unit.recovery:g}"
+        yield f"ventilation unit {name}: {supplied}{recovery}"
 
 
 def _scheduled(schedule: str | None) -> str:
@@ -217,8 +251,7 @@ def _winds(building: Description) -> Iterator[str]:
 
 
 def _facing(side: Side) -> str:
-    given = {"measured": side.measured, "schedule": side.scheduled}
-    return side.zone or next((f"{kind} {name}" for kind, name in given.items() if name), side.faces)
+    return side.zone or side.in_words()
 
 
 def _constructions(building: Description, mesh: Mesh) -> Iterator[str]:

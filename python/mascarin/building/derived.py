@@ -113,8 +113,8 @@ def _derived_surface(
 
 def _derived_side(side: Side, surface: Surface, polygon: Polygon | None, latitude: float) -> Side:
     update: dict[str, object] = {}
-    if side.ground is not None and side.ground.coldest_day is None:
-        update["ground"] = side.ground.model_copy(update={"coldest_day": _coldest_day(latitude)})
+    if side.ground is not None:
+        update["ground"] = _derived_ground(side.ground, latitude)
     if side.convection is not None:
         area, tilt = float(surface.area or 0.0), float(surface.tilt or 0.0)
         update["convection"] = _derived_convection(side.convection, bool(side.outdoors), area, tilt, polygon)
@@ -226,16 +226,30 @@ def _derived_window(window: Window, wall: Surface, polygon: Polygon | None) -> W
     return window.model_copy(update=update)
 
 
-def derive_zones(zones: Mapping[str, Zone], surfaces: Mapping[str, Surface]) -> dict[str, Zone]:
-    """Derive the volume of every zone."""
+def derive_zones(
+    zones: Mapping[str, Zone], surfaces: Mapping[str, Surface], latitude: float
+) -> dict[str, Zone]:
+    """Derive the volume of every zone, and the coldest day of the ground that thermal bridges end in."""
     sides = sides_by_zone(surfaces)
 
     def derived(name: str, zone: Zone) -> Zone:
-        if zone.volume is not None:
-            return zone
-        return zone.model_copy(update={"volume": _volume(name, enclosure(sides.get(name, ()), surfaces))})
+        update: dict[str, object] = {}
+        if zone.volume is None:
+            update["volume"] = _volume(name, enclosure(sides.get(name, ()), surfaces))
+        if any(bridge.ground is not None for bridge in zone.thermal_bridges.values()):
+            update["thermal_bridges"] = {
+                key: bridge.model_copy(update={"ground": _derived_ground(bridge.ground, latitude)})
+                for key, bridge in zone.thermal_bridges.items()
+            }
+        return zone.model_copy(update=update) if update else zone
 
     return {name: derived(name, zone) for name, zone in zones.items()}
+
+
+def _derived_ground(ground: Ground | None, latitude: float) -> Ground | None:
+    if ground is None or ground.coldest_day is not None:
+        return ground
+    return ground.model_copy(update={"coldest_day": _coldest_day(latitude)})
 
 
 def _volume(zone: str, seen: list[Polygon] | None) -> Number:

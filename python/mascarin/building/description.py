@@ -13,6 +13,7 @@ from mascarin.building.part import Part
 from mascarin.building.schedule import Schedule
 from mascarin.building.site import Site
 from mascarin.building.surface import Construction, Sensor, Surface
+from mascarin.building.ventilation import VentilationUnit
 from mascarin.building.window import Shade, Window
 from mascarin.building.zone import AirPath, Opening, Zone
 from mascarin.building.zone_surfaces import Connections
@@ -29,8 +30,9 @@ class Description(Part):
     )
     schedules: dict[Name, Schedule] = Field(default_factory=dict, description="Schedules by name")
     zones: dict[Name, Zone] = Field(default_factory=dict, description="Air zones by name")
-    air_paths: dict[Name, AirPath] = Field(
-        default_factory=dict, description="Air exchanged between zones, by name"
+    air_paths: dict[Name, AirPath] = Field(default_factory=dict, description="Air between zones, by name")
+    ventilation_units: dict[Name, VentilationUnit] = Field(
+        default_factory=dict, description="Mechanical ventilation, by name"
     )
     openings: dict[Name, Opening] = Field(
         default_factory=dict, description="Openings between zones and outdoors, by name"

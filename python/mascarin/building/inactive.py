@@ -287,6 +287,10 @@ def _in_air(building: Description) -> Reasons:
         for gain, numbers in zone.gains.items():
             if numbers.power == 0.0:
                 yield f"zones.{name}.gains.{gain}.radiative", "the power is 0"
+        for key, bridge in zone.thermal_bridges.items():
+            if bridge.ground is not None and bridge.ground.amplitude == 0.0:
+                path = f"zones.{name}.thermal_bridges.{key}.ground.coldest_day"
+                yield path, "the amplitude is 0"
     for name, opening in building.openings.items():
         if opening.discharge == 0.0:
             yield f"openings.{name}.height", "the discharge is 0"

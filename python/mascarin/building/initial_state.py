@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from mascarin.building.courses import temperature_course
 from mascarin.building.glazing import GivenGap, Glazing, SimpleGlazing
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.part import Part, fault, refuse
@@ -408,6 +409,8 @@ def _beside(side: Side, air: Mapping[str, float], ambient: Ambient) -> tuple[flo
         return film, float(ground.mean - ground.amplitude * math.cos(angle))
     if side.scheduled is not None:
         return film, ambient.columns[schedule_channel(side.scheduled)]
+    if isinstance(side.measured, tuple):
+        return film, ambient.columns[f"schedule {temperature_course(side.measured).name}"]
     return film, ambient.columns[str(side.measured)]
 
 

@@ -204,7 +204,22 @@ class Fixed:
         return {"structural": True, "reason": self.reason}
 
 
-Spread = Percent | Within | Span | Fixed
+@dataclass(frozen=True)
+class OnlyGiven:
+    """No default range: the number varies only where a range is given, for the given reason."""
+
+    reason: str
+
+    def around(self, value: float) -> Interval:
+        """Lowest and highest value: the value."""
+        return (value, value)
+
+    def schema(self) -> dict[str, Any]:
+        """The rule as in the JSON Schema."""
+        return {"only_given": True, "reason": self.reason}
+
+
+Spread = Percent | Within | Span | Fixed | OnlyGiven
 
 
 SMALLEST: Final = 1e-12
@@ -267,7 +282,7 @@ class Quantity:
         Unit of the value; ``-`` where there is none.
     description : str
         What the number is.
-    spread : Percent, Within, Span or Fixed
+    spread : Percent, Within, Span, Fixed or OnlyGiven
         The default range and the physical reason for it.
     limits : Limits
         Limits of the value.

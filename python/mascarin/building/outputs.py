@@ -65,7 +65,7 @@ class Output:
     mean radiant temperature; the globe temperature is that of a black globe of 0.15 m between the two.
 
     Heating and cooling loads are ideal loads, neither below 0, as means over the step that ends at the
-    record. Air changes include infiltration, ventilation and openings.
+    record. Air changes include infiltration, ventilation, openings and the outdoor air of ventilation units.
 
     Solar radiation is the mean over the step that ends at the record: incident on a surface or window after
     shading [W/m2], transmitted by a window or by all windows of a zone, and lost by a zone through its

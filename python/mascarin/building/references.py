@@ -10,13 +10,15 @@ from mascarin.building.convection import SOURCES
 from mascarin.building.glazing import SOURCES as GLASS
 from mascarin.building.glazing import FilledGap, SimpleGlazing, TwoSides
 from mascarin.building.inactive import has_height, sides, without_effect
+from mascarin.building.leakage import BASIC_MODEL, ISO_13789, LeakageFactor, LeakageStackWind
 from mascarin.building.leaves import leaves
 from mascarin.building.material import PhaseChangeMaterial
 from mascarin.building.number import Number, Remark
 from mascarin.building.phase_change import FractionsLaw, TableLaw
 from mascarin.building.self_shading import obstructions
 from mascarin.building.site import ASHRAE_WIND, CLARK, MARTIN
-from mascarin.building.zone import ASHRAE_OPENING, TracedSun
+from mascarin.building.ventilation import RECOVERY_SOURCE
+from mascarin.building.zone import ASHRAE_OPENING, BROWN_SOLVASON, TracedSun
 from mascarin.building.zone_surfaces import closed
 
 if TYPE_CHECKING:
@@ -106,8 +108,7 @@ def _of_methods(building: Description) -> Iterator[str]:
     yield from (SOURCES[kind] for kind in kinds if kind in SOURCES)
     if any(item.windy and has_height(item.side) for item in sides(building)):
         yield ASHRAE_WIND
-    if building.openings:
-        yield ASHRAE_OPENING
+    yield from _of_air(building)
     if any(zone.loads for zone in building.zones.values()):
         yield _IDEAL_LOADS
     yield from _of_glazings(building)
@@ -117,6 +118,20 @@ def _of_methods(building: Description) -> Iterator[str]:
     if _tabulated(building):
         yield _CURVE
     yield _TIME_STEPS
+
+
+def _of_air(building: Description) -> Iterator[str]:
+    if building.openings:
+        yield ASHRAE_OPENING
+    if any(path.door is not None for path in building.air_paths.values()):
+        yield BROWN_SOLVASON
+    if any(unit.recovery is not None for unit in building.ventilation_units.values()):
+        yield RECOVERY_SOURCE
+    tests = [zone.infiltration.blower_door for zone in building.zones.values()]
+    if any(isinstance(test, LeakageFactor) for test in tests):
+        yield ISO_13789
+    if any(isinstance(test, LeakageStackWind) for test in tests):
+        yield BASIC_MODEL
 
 
 def _sunlit(building: Description) -> bool:

@@ -7,7 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from datetime import date
 from typing import TYPE_CHECKING
 
+from mascarin.building.air_rules import air_faults
 from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
+from mascarin.building.course_uses import schedule_uses
 from mascarin.building.derived import shade_outlines
 from mascarin.building.material import Resistance
 from mascarin.building.part import Location, fault
@@ -45,6 +47,7 @@ def faults(building: Description) -> Faults:
     yield from _view_factors_sum_to_one(building)
     yield from _schedules_suit_their_use(building)
     yield from _set_points_apart(building)
+    yield from air_faults(building)
     yield from windows_lie_in_walls(building)
     yield from _sun_can_be_absorbed(building)
     yield from _shades_can_act(building)
@@ -168,7 +171,7 @@ def _sensors_inside_walls(building: Description) -> Faults:
 
 
 def _columns_have_one_meaning(building: Description) -> Faults:
-    temperatures = {side.measured for _, side in _sides(building)} - {None}
+    temperatures = {column for _, side in _sides(building) for column in side.measured_columns}
     for at, side in _sides(building):
         if side.irradiance is not None and side.irradiance in temperatures:
             yield fault(
@@ -319,30 +322,8 @@ def _fractions_sum_to_one(at: Location, sun: GivenSun | SunShares, names: list[s
         )
 
 
-def references(building: Description) -> Iterator[tuple[str, tuple[str, ...], str]]:
-    """Every use of a schedule: its name, the place, and the kind that is needed there."""
-    for name, zone in building.zones.items():
-        at = ("zones", name)
-        for section in ("gains", "ventilation"):
-            for key, part in getattr(zone, section).items():
-                if part.schedule is not None:
-                    yield part.schedule, (*at, section, key, "schedule"), "fraction"
-        for which, loads in zone.loads.items():
-            if loads.setpoint.schedule is not None:
-                yield loads.setpoint.schedule, (*at, which, "setpoint", "schedule"), "temperature"
-            if loads.schedule is not None:
-                yield loads.schedule, (*at, which, "schedule"), "fraction"
-    for (section, name, which), side in _sides(building):
-        if side.scheduled is not None:
-            yield side.scheduled, (section, name, which, "scheduled"), "temperature"
-    for section, parts in (("air_paths", building.air_paths), ("openings", building.openings)):
-        for name, part in parts.items():
-            if part.schedule is not None:
-                yield part.schedule, (section, name, "schedule"), "fraction"
-
-
 def _schedules_suit_their_use(building: Description) -> Faults:
-    for name, at, needed in references(building):
+    for name, at, needed in schedule_uses(building):
         kind = building.schedules[name].kind
         if kind != needed:
             yield fault(
@@ -387,6 +368,8 @@ def _crossing_days(
 
 def _week(building: Description, loads: IdealLoads, day: date) -> list[tuple[str, list[Piece]]]:
     """Pieces of the set point on each day of the week of a season, and on holidays; empty for a column."""
+    if loads.setpoint.column is not None:
+        return [(name, []) for name in (*DAYS, "holidays")]
     if loads.setpoint.schedule is None:
         value = float(loads.setpoint.temperature or 0.0)
         return [(name, [(0.0, 1440.0, value, value)]) for name in (*DAYS, "holidays")]

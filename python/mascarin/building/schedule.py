@@ -245,6 +245,16 @@ class _Schedule(Part):
             )
 
     @property
+    def columns(self) -> tuple[str, ...]:
+        """The measured column; empty without one."""
+        return () if self.column is None else (self.column,)
+
+    @property
+    def scale(self) -> float:
+        """Factor from the unit of a column to that of the schedule: they are the same."""
+        return 1.0
+
+    @property
     def profiles(self) -> tuple[FractionDays | TemperatureDays, ...]:
         """Profiles by kind of day, of each season; none for one value or a column."""
         days, seasons = getattr(self, "days", None), getattr(self, "seasons", None)

@@ -44,6 +44,7 @@ def rows(building: Description, parameters: Sequence[Parameter]) -> list[tuple[s
         "glazings",
         "schedules",
         "air_paths",
+        "ventilation_units",
         "openings",
         "shades",
         "sensors",
@@ -119,5 +120,4 @@ def _set_point(loads: IdealLoads | None) -> str:
 
 
 def _facing(side: Side) -> str:
-    given = {"measured": side.measured, "schedule": side.scheduled}
-    return side.zone or next((f"{kind} {name}" for kind, name in given.items() if name), side.faces)
+    return side.zone or side.in_words()

@@ -192,8 +192,10 @@ class Side(Part):
     outdoors: Literal[True] | None = Field(None, description="Faces the weather: write true")
     zone: ZoneName | None = Field(None, description="Faces the air of this zone")
     ground: Ground | None = Field(None, description="Touches ground of this temperature")
-    measured: str | None = Field(
-        None, description="Faces air of this measured column; without convection, has its temperature"
+    measured: str | tuple[str, ...] | None = Field(
+        None,
+        description="Faces air of this measured column, or of the mean of several; without convection, "
+        "has its temperature",
     )
     scheduled: ScheduleName | None = Field(
         None,
@@ -219,6 +221,21 @@ class Side(Part):
     def faces(self) -> str:
         """Which of the six kinds of surroundings the side faces."""
         return next(name for name in FACINGS if getattr(self, name) is not None)
+
+    @property
+    def measured_columns(self) -> tuple[str, ...]:
+        """Measured columns of the temperature that it faces."""
+        if self.measured is None:
+            return ()
+        return (self.measured,) if isinstance(self.measured, str) else self.measured
+
+    def in_words(self) -> str:
+        """What the side faces: the zone, or measured columns or a schedule by name."""
+        if self.measured is not None:
+            return f"measured {' and '.join(self.measured_columns)}"
+        if self.scheduled is not None:
+            return f"schedule {self.scheduled}"
+        return self.zone or self.faces
 
     def in_short(self) -> str:
         """What the side faces."""

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from mascarin.building import quantities as q
+from mascarin.building.bridge import ThermalBridge
+from mascarin.building.driven import Driven
+from mascarin.building.leakage import PressureTest
 from mascarin.building.names import Name, ScheduleName, ZoneName
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, Shorthand
+from mascarin.building.set_point import SetPoint
 from mascarin.building.surface import Linearised, NoLongwave
 
+BROWN_SOLVASON = "Brown & Solvason 1962, doi:10.1016/0017-9310(62)90184-9 (two-way flow through a door)"
 ASHRAE_OPENING = (
     "ASHRAE Handbook of Fundamentals 2017, ch. 16, eqs. 37, 38 (flow through openings by wind and buoyancy)"
 )
@@ -30,6 +35,9 @@ class Infiltration(Part):
     constant: q.AirChange = Number(0.0, source=Remark("not given: airtight"), assumed=True)
     temperature: q.AirChangePerKelvin = Number(0.0, source=Remark("not given: no stack effect"), assumed=True)
     wind: q.AirChangePerSpeed = Number(0.0, source=Remark("not given: no effect of wind"), assumed=True)
+    blower_door: PressureTest | None = Field(
+        None, description="Infiltration by a pressure test, in addition: n50 [1/h], or a part with its kind"
+    )
 
 
 class Radiosity(Part):
@@ -43,17 +51,28 @@ ZoneLongwave = Annotated[
 ]
 
 
-class Gain(Part):
-    """Internal heat gain from people, light or equipment.
+class Gain(Driven):
+    """Heat from people, light, equipment or heaters; a negative power takes heat away.
 
     Examples
     --------
     >>> people = Gain(power=200, radiative=0.5, schedule="presence")
     >>> float(people.radiative)
     0.5
+    >>> heater = Gain(column="P_heater", unit="kW", radiative=0.3)
+    >>> heater.course.name
+    'P_heater [kW]'
     """
 
-    power: q.GainPower
+    NUMBER: ClassVar = "power"
+    KIND: ClassVar = "power"
+    advice: ClassVar[Mapping[str, str]] = {
+        "latent": "Air is dry here: only sensible heat is simulated. Leave the latent part out of the power.",
+        "convective": "What is not 'radiative' goes to the air: write 'radiative:' alone.",
+    }
+
+    power: q.GainPower | None = None
+    unit: Literal["W", "kW"] | None = Field(None, description="Unit of the column; none: W")
     radiative: q.Radiative = Number(0.0, source=Remark("not given: all of it goes to the air"), assumed=True)
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the power; none: always 1"
@@ -82,34 +101,6 @@ class Ventilation(Part):
                 "ventilation without a flow" if self.flow is None else "air_changes and flow",
                 "exactly one of air_changes [1/h] and flow [m3/s]",
                 "Give the flow of outdoor air in one of the two ways.",
-            )
-        return self
-
-
-class SetPoint(Part):
-    """Set point of ideal heating or cooling: a number, or a schedule.
-
-    Examples
-    --------
-    >>> SetPoint(temperature=20)
-    SetPoint(temperature=20 degC)
-    """
-
-    advice: ClassVar[Mapping[str, str]] = {
-        "measured": "Write 'setpoint: {schedule: NAME}' with a schedule of kind temperature that has this "
-        "column."
-    }
-
-    temperature: q.SetPoint | None = None
-    schedule: ScheduleName | None = Field(None, description="Schedule of temperature")
-
-    @model_validator(mode="after")
-    def _one(self) -> SetPoint:
-        if (self.temperature is None) == (self.schedule is None):
-            raise problem(
-                "neither" if self.schedule is None else "both",
-                "a temperature [degC] or {schedule: name}",
-                "Write for instance 'setpoint: 20'.",
             )
         return self
 
@@ -208,8 +199,27 @@ ZoneSun = Annotated[
 ]
 
 
+def _or_held(schema: dict[str, Any]) -> None:
+    """Allow ``held``, the short form of heating and cooling with one set point, in the JSON Schema."""
+    schema["properties"]["held"] = {
+        "description": "Heating and cooling with this set point",
+        "anyOf": [
+            {"type": "number"},
+            {
+                "type": "object",
+                "properties": {key: {"type": "string"} for key in ("schedule", "column")},
+                "minProperties": 1,
+                "maxProperties": 1,
+                "additionalProperties": False,
+            },
+        ],
+    }
+
+
 class Zone(Part):
     """A volume of well-mixed air.
+
+    ``held`` in place of heating and cooling gives both the same set point.
 
     Examples
     --------
@@ -218,11 +228,13 @@ class Zone(Part):
     0.5
     """
 
+    model_config = ConfigDict(json_schema_extra=_or_held)
     advice: ClassVar[Mapping[str, str]] = {
-        "temperature": "The air temperature is a result: hold it with 'heating: {setpoint: 24}' and "
-        "'cooling: "
-        "{setpoint: 24}'. That at the start of a run is an option of the run (initial).",
+        "temperature": "The air temperature is a result: hold it with 'held: 24' or 'held: {column: "
+        "T_room}'. That at the start of a run is an option of the run (initial).",
         "setpoint": "Write 'heating: {setpoint: 20}' or 'cooling: {setpoint: 26}'.",
+        "furniture": "Furniture is a surface with 'internal_mass: true', both sides of which face the zone.",
+        "n50": "Write 'infiltration: {blower_door: 2.2}'.",
     }
 
     volume: q.Volume | None = None
@@ -249,6 +261,31 @@ class Zone(Part):
     )
     heating: IdealLoads | None = Field(None, description="Ideal heating; none: no heating")
     cooling: IdealLoads | None = Field(None, description="Ideal cooling; none: no cooling")
+    thermal_bridges: dict[Name, ThermalBridge] = Field(
+        default_factory=dict, description="Thermal bridges of the zone, by name"
+    )
+    solar_to_air: q.SolarToAir | None = None
+    makeup_air: Literal["outdoors"] | None = Field(
+        None,
+        description="Where the air comes from that fans take out of the zone and do not bring in, and "
+        "where it goes to that they bring in too much: outdoors, through leaks; none: flows must balance",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _held(cls, raw: Any) -> Any:
+        """Read ``held`` as heating and cooling with the same set point."""
+        if not isinstance(raw, Mapping) or "held" not in raw:
+            return raw
+        both = [key for key in ("heating", "cooling") if raw.get(key) is not None]
+        if both:
+            raise problem(
+                f"held and {' and '.join(both)}",
+                "one of them",
+                "A zone that is held has both at one set point.",
+            )
+        rest = {key: value for key, value in raw.items() if key != "held"}
+        return rest | {key: {"setpoint": raw["held"]} for key in ("heating", "cooling")}
 
     @property
     def loads(self) -> dict[str, IdealLoads]:
@@ -257,25 +294,65 @@ class Zone(Part):
         return {name: plant for name, plant in both.items() if plant is not None}
 
 
-class AirPath(Part):
-    """Air that two zones exchange, with the same flow in both directions.
+class Door(Part):
+    """A door or another large opening through which a temperature difference drives air both ways.
+
+    ``C_d W H/3 sqrt(g H |dT|/T)`` flows in each direction.
+
+    Examples
+    --------
+    >>> Door(width=0.9, height=2)
+    Door(width=0.9 m, height=2 m, discharge=0.65, open=1)
+    """
+
+    width: q.DoorWidth
+    height: q.DoorHeight
+    discharge: q.Discharge = Number(0.65, source=BROWN_SOLVASON, assumed=True)
+    open: q.OpenFraction = Number(1.0, source=Remark("not given: fully open"))
+
+
+class AirPath(Driven):
+    """Air between two zones: the same flow both ways, a flow from one to the other, or through a door.
 
     Examples
     --------
     >>> AirPath(between=("office", "corridor"), flow=0.02)
-    AirPath(between=[office, corridor], flow=0.02 m3/s)
+    AirPath(between=[office, corridor], flow=0.02 m3/s, one_way=False)
+    >>> AirPath(between=("office", "corridor"), flow=0.02, one_way=True).one_way
+    True
+    >>> AirPath(between=("office", "corridor"), door={"width": 0.9, "height": 2}).flow is None
+    True
     """
 
+    NUMBER: ClassVar = "flow"
+    KIND: ClassVar = "flow"
+
     between: tuple[ZoneName, ZoneName] = Field(description="Names of the two zones")
-    flow: q.VolumeFlow
+    flow: q.VolumeFlow | None = None
+    unit: Literal["m3/s", "m3/h", "L/s"] | None = Field(None, description="Unit of the column; none: m3/s")
+    one_way: bool = Field(
+        False, description="Whether air flows from the first zone to the second, driven by fans"
+    )
+    door: Door | None = Field(None, description="Flow by temperature difference; none: a given flow")
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the flow; none: always 1"
     )
+
+    def _needs_none(self) -> bool:
+        return self.door is not None
 
     @model_validator(mode="after")
     def _two(self) -> AirPath:
         if self.between[0] == self.between[1]:
             raise problem(f"'{self.between[0]}' twice", "two different zones", "Name the other zone.")
+        given = "flow" if self.flow is not None else "column" if self.column is not None else ""
+        given = given or ("one_way" if self.one_way else "")
+        if self.door is not None and given:
+            raise problem(
+                f"door and {given}",
+                "one of them: the flow through a door follows from temperatures",
+                "Describe the other flow as an air path of its own.",
+            )
         return self
 
 

@@ -15,6 +15,7 @@ from mascarin._io.atomic import drafted
 from mascarin._io.locks import writing
 from mascarin.commands.inputs import AsJson, Outside, Settings, Step, read_building, seconds
 from mascarin.commands.output import print_json, print_table
+from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
 from mascarin.errors import InputError, did_you_mean
 
@@ -89,7 +90,7 @@ def run(
     """
     described = read_building(building, settings)
     _require_format(out)
-    with writing(out):
+    with writing(out), lines_named(building):
         climate, measured = run_inputs(
             described,
             weather,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from mascarin.building import Building
 from mascarin.building.geometry import view_factors
 from mascarin.building.rules import surface_names
-from mascarin.building.zone_surfaces import ZoneSurface, closed, floors, surfaces_of_zone
+from mascarin.building.zone_surfaces import ZoneSurface, closed, floors
 from mascarin.convert.geometry import Array
 from mascarin.convert.source import Item
 from mascarin.convert.work import Work
@@ -39,7 +40,7 @@ def describe_enclosures(work: Work, building: Building, zones: dict[str, Zone]) 
     if word.startswith("minimal"):
         work.section("site")["self_shading"] = False
     for zone in zones.values():
-        seen = surfaces_of_zone(zone.name, building.surfaces, building.windows)
+        seen = building.connections.of(zone.name)
         held = work.section("zones")[zone.name]
         reason = _not_exact(seen)
         if reason not in ("", _BARE):
@@ -54,7 +55,7 @@ def describe_enclosures(work: Work, building: Building, zones: dict[str, Zone]) 
         held["sun"] = _sun(work, zone.item, seen, traced and not reason)
 
 
-def _sun(work: Work, item: Item, seen: list[ZoneSurface], traced: bool) -> str:
+def _sun(work: Work, item: Item, seen: Sequence[ZoneSurface], traced: bool) -> str:
     if traced:
         return "geometry"
     if any(floors(seen)):
@@ -63,7 +64,7 @@ def _sun(work: Work, item: Item, seen: list[ZoneSurface], traced: bool) -> str:
     return "area"
 
 
-def _not_exact(seen: list[ZoneSurface]) -> str:
+def _not_exact(seen: Sequence[ZoneSurface]) -> str:
     """Why exact view factors and traced beams do not exist in a zone; empty where they do."""
     if not closed(seen):
         return _BARE
@@ -75,7 +76,7 @@ def _not_exact(seen: list[ZoneSurface]) -> str:
     return ""
 
 
-def by_areas(seen: list[ZoneSurface]) -> dict[str, dict[str, float]]:
+def by_areas(seen: Sequence[ZoneSurface]) -> dict[str, dict[str, float]]:
     """View factors in proportion to areas, zero between surfaces of one direction.
 
     Scaled symmetrically until the rows sum to one and ``A_i F_ij = A_j F_ji``.
@@ -108,7 +109,7 @@ def by_areas(seen: list[ZoneSurface]) -> dict[str, dict[str, float]]:
     }
 
 
-def _visible(seen: list[ZoneSurface]) -> Array:
+def _visible(seen: Sequence[ZoneSurface]) -> Array:
     """One where two surfaces may see each other, zero for one direction and for a surface itself."""
     found = 1.0 - np.eye(len(seen))
     normals: list[Any] = [None if one.polygon is None else one.polygon.normal for one in seen]

@@ -10,9 +10,11 @@ import numpy as np
 from mascarin._io.arguments import mapping_of, require_type
 from mascarin.building import Building
 from mascarin.building.convection import measured_column
+from mascarin.building.course_uses import courses
 from mascarin.building.initial_state import Ambient, GivenStart
 from mascarin.building.outputs import named
 from mascarin.errors import InputError
+from mascarin.simulation.flow_balance import require_balanced_flows
 from mascarin.simulation.initial import MeasuredStart, resolved
 from mascarin.simulation.initial import read as read_initial
 from mascarin.simulation.sky import with_sky_of
@@ -197,7 +199,7 @@ def forcing_of(
     if names:
         profiles = scheduled(
             climate,
-            {name: building.schedules[name] for name in names},
+            courses(building),
             parse_timezone(building.site.timezone),
             start,
             end,
@@ -209,6 +211,7 @@ def forcing_of(
     else:
         forcing = np.ascontiguousarray(weather, dtype=np.float64)
     _require_numbers(forcing, description.channels, building)
+    require_balanced_flows(building, forcing, description.channels, (start, step_seconds))
     return forcing
 
 
@@ -259,7 +262,7 @@ def settings_of(
 def _limits(building: Building) -> dict[str, tuple[float, float]]:
     """Limits of the measured columns that act on a building, by what each is used for."""
     sides = [side for surface in building.surfaces.values() for side in surface.sides]
-    temperatures = {side.measured: TEMPERATURES for side in sides if side.measured is not None}
+    temperatures = {side.measured: TEMPERATURES for side in sides if isinstance(side.measured, str)}
     irradiances = {side.irradiance: IRRADIANCES for side in sides if side.irradiance is not None}
     panes = [side for window in building.windows.values() for side in (window.outside, window.inside)]
     films = [measured_column(side.convection) for side in [*sides, *panes]]

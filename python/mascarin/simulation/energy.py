@@ -26,6 +26,7 @@ FLOWS: Final = (
     "cooling",
     "transmitted",
     "glass",
+    "bridges",
 )
 """Heat flows into a building; cooling removes heat and is negative."""
 
@@ -141,7 +142,8 @@ class EnergyLedger:
         values : mapping of str to float
             The values.
         """
-        into = {flow: float(values[f"{flow}_joule"]) for flow in FLOWS}
+        # Files of earlier versions have no thermal bridges.
+        into = {flow: float(values.get(f"{flow}_joule", 0.0)) for flow in FLOWS}
         numbers = (values[key] for key in ("stored_joule", "turnover_joule", "closure"))
         return cls(into, *(float(number) for number in numbers))
 

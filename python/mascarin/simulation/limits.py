@@ -100,10 +100,10 @@ def require_set_points_apart(
 
     def set_point(zone: str, which: str) -> Array:
         """Set points at the ends of the steps, shape (members, 1) or (1, steps). [degC]"""
-        loads = building.zones[zone].loads[which]
-        if loads.setpoint.schedule is None:
+        point = building.zones[zone].loads[which].setpoint
+        if point.temperature is not None:
             return vectors[:, [positions[f"zones.{zone}.{which}.setpoint.temperature"]]]
-        place = len(CHANNELS) + list(channels).index(f"schedule {loads.setpoint.schedule}")
+        place = len(CHANNELS) + list(channels).index(f"schedule {point.course}")
         return forcing[None, :, -1, place]
 
     for name, zone in building.zones.items():

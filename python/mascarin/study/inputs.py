@@ -196,7 +196,8 @@ def open_measurements(
     # Entry that needs each column, for errors.
     needed = {name: places.at("measurements", "inspect") for name in table.inspect}
     for name in boundaries:
-        line = of_building.find("measured", name) or of_building.find("irradiance", name)
+        keys = ("measured", "irradiance", "column")
+        line = next((at for key in keys if (at := of_building.find(key, name))), None)
         needed[name] = f"{line or of_building.file}: measured column"
     for sensor, entry in study.sensors.items():
         needed |= dict.fromkeys(entry.columns, places.at("sensors", sensor, "column"))

@@ -1,11 +1,11 @@
-"""Schedules at the stages of every step: fractions as means over the step, temperatures at the stage."""
+"""Schedules at the stages of every step: temperatures at the stage, all else as means."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import tzinfo
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from mascarin.weather.steps import Steps
 if TYPE_CHECKING:
     import pandas as pd
 
+    from mascarin.building.courses import ColumnCourse
     from mascarin.building.schedule import Schedule
 
 # A step that ends at a switch ends before it. [s]
@@ -63,7 +64,7 @@ class StraightPieces:
 
 def scheduled(
     climate: Climate,
-    schedules: Mapping[str, Schedule],
+    schedules: Mapping[str, Schedule | ColumnCourse],
     timezone: tzinfo,
     start: object,
     end: object,
@@ -73,15 +74,16 @@ def scheduled(
 ) -> Array:
     """Values of schedules at the stages of every step of a period.
 
-    A fraction is the mean over the step, the same in all stages, so that the heat is right where a switch is
-    inside a step. A temperature is the value at the time of the stage; at a jump, the value before it.
+    A fraction, power or flow is the mean over the step, the same in all stages, so that the heat is right
+    where a switch is inside a step. A temperature is the value at the time of the stage; at a jump, the value
+    before it.
 
     Parameters
     ----------
     climate : Climate
         Gives the time zone of the period, and may hold measured columns.
-    schedules : mapping of str to Schedule
-        Schedules by name.
+    schedules : mapping of str to Schedule or ColumnCourse
+        Schedules and courses of measured columns, by name.
     timezone : datetime.tzinfo
         Time zone of the site: days and hours are those of its clocks, summer time included.
     start, end : str, datetime or pandas.Timestamp
@@ -96,7 +98,7 @@ def scheduled(
     Returns
     -------
     ndarray, shape (steps, stages, schedules)
-        Fractions [-] and temperatures [degC].
+        Fractions [-], temperatures [degC], powers [W] and flows [m3/s].
 
     Raises
     ------
@@ -122,12 +124,13 @@ def scheduled(
     steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme)
     out = np.empty((*steps.stage.shape, len(schedules)))
     for place, (name, schedule) in enumerate(schedules.items()):
-        if schedule.column is None:
-            pieces = pieces_of(schedule, timezone, steps.first, steps.last)
+        if schedule.columns:
+            values = _measured(climate, measurements, name, schedule, steps)
+        else:
+            # Only a schedule has no columns.
+            pieces = pieces_of(cast("Schedule", schedule), timezone, steps.first, steps.last)
             means = schedule.kind == "fraction"
             values = pieces.means(steps.edges)[:, None] if means else pieces.before(steps.stage)
-        else:
-            values = _measured(climate, measurements, name, schedule, steps)
         out[..., place] = values
     return out
 
@@ -179,18 +182,44 @@ def _instants(stamps: pd.DatetimeIndex, timezone: tzinfo) -> Array:
     )
 
 
+#: Limits of measured columns by their use, in the unit of the engine.
+_LIMITS: Final = {
+    "fraction": (0.0, 1.0),
+    "temperature": TEMPERATURES,
+    "power": (-1e7, 1e7),
+    "flow": (0.0, 1000.0),
+}
+
+
 def _measured(
-    climate: Climate, measurements: Measurements | None, name: str, schedule: Schedule, steps: Steps
+    climate: Climate,
+    measurements: Measurements | None,
+    name: str,
+    course: Schedule | ColumnCourse,
+    steps: Steps,
 ) -> Array:
-    """A schedule from a measured column."""
-    column = str(schedule.column)
+    """A schedule or another course from measured columns, the mean of several."""
+    values = [_of_column(climate, measurements, name, course, column, steps) for column in course.columns]
+    return np.asarray(sum(values[1:], values[0]) * (course.scale / len(values)))
+
+
+def _of_column(
+    climate: Climate,
+    measurements: Measurements | None,
+    name: str,
+    course: Schedule | ColumnCourse,
+    column: str,
+    steps: Steps,
+) -> Array:
     try:
         record = record_of(climate.record, None if measurements is None else measurements.record, column)
     except InputError as error:
+        if not hasattr(course, "column"):  # no schedule
+            raise
         raise InputError(f"schedules.{name}.column: {error}") from None
     record.grid.require(steps.first, steps.last, f"{record.file}: {column}")
-    fraction = schedule.kind == "fraction"
-    require_range(record, column, (0.0, 1.0) if fraction else TEMPERATURES, steps.first, steps.last)
-    if fraction:
-        return column_means(record, column, steps)[:, None]
-    return column_values(record, column, steps)
+    low, high = _LIMITS[course.kind]
+    require_range(record, column, (low / course.scale, high / course.scale), steps.first, steps.last)
+    if course.kind == "temperature":
+        return column_values(record, column, steps)
+    return column_means(record, column, steps)[:, None]

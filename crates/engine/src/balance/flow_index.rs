@@ -96,7 +96,9 @@ impl<S: Real> FlowIndex<S> {
             imposed,
             gaining: zones(&|zone| !numbers.zones[zone].gains.is_empty()),
             ventilated: zones(&|zone| {
-                !numbers.zones[zone].ventilation.is_empty() || !numbers.zones[zone].openings.is_empty()
+                let zone_flows = &numbers.zones[zone];
+                let fans = numbers.mechanical_air.reaches(zone);
+                fans || !zone_flows.ventilation.is_empty() || !zone_flows.openings.is_empty()
             }),
         }
     }

@@ -15,9 +15,9 @@ pub enum Flow {
     Boundary,
     /// Outdoor air entering zones.
     Infiltration,
-    /// Outdoor air through ventilation and openings.
+    /// Outdoor air through ventilation and openings, and the air of ventilation units.
     Ventilation,
-    /// Air exchanged between zones: zero in sum, but part of the total heat exchanged.
+    /// Heat exchanged between zones by air and thermal bridges: zero in sum, but part of the total heat exchanged.
     Interzone,
     /// People, light and machines.
     Gains,
@@ -29,11 +29,13 @@ pub enum Flow {
     Transmitted,
     /// Sun absorbed in glass, from both sides.
     Glass,
+    /// Thermal bridges to outdoors, ground and measured temperatures.
+    Bridges,
 }
 
 impl Flow {
     /// All flows, in the order of the ledger's arrays.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Solar,
         Self::Convection,
         Self::Longwave,
@@ -46,6 +48,7 @@ impl Flow {
         Self::Cooling,
         Self::Transmitted,
         Self::Glass,
+        Self::Bridges,
     ];
 
     /// Name in results.
@@ -64,6 +67,7 @@ impl Flow {
             Self::Cooling => "cooling",
             Self::Transmitted => "transmitted",
             Self::Glass => "glass",
+            Self::Bridges => "bridges",
         }
     }
 }

@@ -163,7 +163,28 @@ fn neighbours(
     for path in &description.air_paths {
         couple(zones[path.between[0]].air_row, zones[path.between[1]].air_row);
     }
+    for [a, b] in coupled_airs(description) {
+        couple(zones[a].air_row, zones[b].air_row);
+    }
     neighbours
+}
+
+/// Zones whose airs exchange heat through doors, by fans or through thermal bridges.
+fn coupled_airs(description: &Description) -> Vec<[usize; 2]> {
+    let mut pairs: Vec<[usize; 2]> = description.doors.iter().map(|door| door.between).collect();
+    pairs.extend(description.directed_flows.iter().map(|flow| [flow.from, flow.to]));
+    for unit in description.ventilation_units.iter().filter(|unit| unit.recovery.is_some()) {
+        for supply in &unit.supply {
+            pairs.extend(unit.exhaust.iter().map(|exhaust| [exhaust.zone, supply.zone]));
+        }
+    }
+    for bridge in &description.thermal_bridges {
+        if let Facing::Zone { zone } = bridge.to {
+            pairs.push([bridge.zone, zone]);
+        }
+    }
+    pairs.retain(|[a, b]| a != b);
+    pairs
 }
 
 /// An order of elimination and what it does.

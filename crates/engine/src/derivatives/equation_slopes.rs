@@ -251,6 +251,14 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
     }
 
     #[inline(always)]
+    fn carry(&mut self, ends: [Node; 2], conductance: S, reference: S) {
+        let excess = self.temperature(ends[0]) - reference.lane(0);
+        let slope = conductance.lane(0);
+        self.size_carries = false;
+        self.between(ends, S::one(), slope * excess, [(conductance, excess), (reference, -slope)]);
+    }
+
+    #[inline(always)]
     fn conduct_linearised(&mut self, ends: [Node; 2], area: S, link: &Link<S>, places: [S; 2]) {
         let left = self.temperature(ends[0]) - places[0].lane(0);
         let right = self.temperature(ends[1]) - places[1].lane(0);

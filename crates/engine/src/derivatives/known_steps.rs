@@ -140,7 +140,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         stepper.write_known_solution(state, place, known, matrix, at);
         stepper.linearise_known_stage(state, place, known);
         let Balances { walls, laws, conditions, .. } = stepper.balances();
-        matrix.factor((laws, walls, &conditions.paths), place.length, new);
+        matrix.factor((laws, walls, conditions), place.length, new);
         let mut slopes = EquationSlopes::new(&stepper.model, carries, equations, at);
         stepper.balances().visit(&stepper.stage_of(state, place), &mut slopes);
         stepper.store_solution(

@@ -6,10 +6,11 @@
 use core::fmt::{Display, Write};
 
 use super::description::{
-    AirPath, Angular, Clouds, Construction, Convection, Description, Facing, FrameShare, Gain, Gap, Glazing,
-    IdealLoad, Infiltration, Layer, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
-    ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, SunShares, Surface, Ventilation,
-    WindProfile, Zone, ZoneLongwave, ZoneSun,
+    AirPath, Angular, Clouds, Construction, Convection, Description, DirectedFlow, Door, Facing, FrameShare,
+    Gain, Gap, Glazing, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening,
+    OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
+    SunShares, Surface, ThermalBridge, UnitFlow, Ventilation, VentilationUnit, WindProfile, Zone,
+    ZoneLongwave, ZoneSun,
 };
 
 /// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
@@ -101,7 +102,8 @@ macro_rules! walk {
     };
 }
 
-walk!(Description { site, materials, constructions, zones, air_paths, openings, surfaces, sensors }
+walk!(Description { site, materials, constructions, zones, air_paths, directed_flows, doors, ventilation_units,
+    thermal_bridges, openings, surfaces, sensors }
     plain { parameters, shades, channels });
 
 walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse });
@@ -163,9 +165,13 @@ walk!(Angular { transmittance_scale, absorptance_scale }
     plain { angles, transmittance, absorptance, diffuse_transmittance, diffuse_absorptance, back_transmittance,
         back_absorptance });
 
-walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, gains, ventilation, heating, cooling }
+walk!(Zone { volume, capacity_factor, infiltration, longwave, sun, solar_to_air, gains, ventilation, heating, cooling }
     plain { name, view_weights });
-walk!(Infiltration { constant, temperature, wind } plain {});
+walk!(Infiltration { constant, temperature, wind, leakage } plain {});
+walk!(Leakage by variant {
+    Factor { n50, factor } plain {},
+    StackWind { n50, exponent, stack, wind } plain {},
+});
 walk!(ZoneLongwave by variant {
     Radiosity {} plain {},
     Linearised { reference } plain {},
@@ -186,6 +192,11 @@ walk!(SetPoint by variant {
     Scheduled {} plain { channel },
 });
 walk!(AirPath { flow } plain { name, between, schedule });
+walk!(DirectedFlow { flow } plain { name, from, to, schedule });
+walk!(Door { width, height, discharge, open } plain { name, between, schedule });
+walk!(UnitFlow { flow } plain { zone, schedule });
+walk!(VentilationUnit { supply, exhaust, temperature, recovery } plain { name });
+walk!(ThermalBridge { coefficient, size, to } plain { name, zone });
 walk!(Opening { area, height, discharge, wind_coefficient } plain { name, zone, schedule });
 
 walk!(Surface { area, openings, frame, cavity_height, tilt, azimuth, outside, inside }

@@ -4,7 +4,7 @@
 //! zone onto what it shares with the rest of the building ([`ZoneFronts`]), and what is left is solved as one small dense
 //! system ([`CoupledSystem`]). Walls of constant properties are factored once for each stage length.
 
-use crate::building::coefficients::Boundary;
+use crate::building::coefficients::{Boundary, BridgeEnd};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::model::Model;
 use crate::building::plan::SurfaceRole;
@@ -208,6 +208,38 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             let [a, b] = path.between.map(|zone| model.plan.zones[zone].air_row);
             self.coupled.couple(a, b, conductance);
         }
+        self.assemble_exchanges(inputs);
+    }
+
+    /// Doors, air that fans carry from zone to zone, and thermal bridges.
+    #[inline(always)]
+    fn assemble_exchanges(&mut self, inputs: &StageInputs<'_, S>) {
+        let (model, conditions) = (inputs.model, inputs.conditions);
+        let row = |zone: usize| model.plan.zones[zone].air_row;
+        for (door, line) in model.coefficients.doors.iter().zip(&inputs.laws.doors) {
+            let [a, b] = door.between.map(row);
+            self.coupled.couple(a, b, line.slope);
+            self.coupled.right[a] += -line.offset;
+            self.coupled.right[b] += line.offset;
+        }
+        let carries = &model.coefficients.mechanical_air.carries;
+        for (ends, &conductance) in carries.iter().zip(&conditions.mechanical_air.carried) {
+            let [from, to] = ends.map(row);
+            self.coupled.add_diagonal(from, conductance);
+            self.coupled.add(to, from, -conductance);
+            let at_outdoors = conductance * conditions.outdoor_air;
+            self.coupled.right[from] += at_outdoors;
+            self.coupled.right[to] += -at_outdoors;
+        }
+        for (bridge, &temperature) in model.coefficients.bridges.iter().zip(&conditions.bridges) {
+            let air = row(bridge.zone);
+            if let BridgeEnd::Zone(other) = bridge.to {
+                self.coupled.couple(air, row(other), bridge.conductance);
+            } else if let Some(temperature) = temperature {
+                self.coupled.add_diagonal(air, bridge.conductance);
+                self.coupled.right[air] += bridge.conductance * temperature;
+            }
+        }
     }
 
     /// Storage of the air of a zone, outdoor air that enters it, and the heat released into it.
@@ -224,6 +256,9 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         self.coupled.right[air] +=
             storage * inputs.air[zone] + entering.offset + entering.slope * inputs.conditions.outdoor_air;
         self.coupled.right[air] += inputs.conditions.zones[zone].convective + inputs.load[zone];
+        if let Some(&sun) = inputs.conditions.sun.to_air.get(zone) {
+            self.coupled.right[air] += sun;
+        }
         if let Some(holding) = inputs.holding.get(zone) {
             self.coupled.add_diagonal(air, holding.slope);
             self.coupled.right[air] += holding.offset;

@@ -18,6 +18,8 @@ pub(crate) struct LinearisedLaws<S> {
     pub(crate) infiltration: Vec<Line<S>>,
     /// Heat that ventilation and openings bring into each zone, of `T_outdoor - T_air` [W].
     pub(crate) ventilation: Vec<Line<S>>,
+    /// Heat through each door, of the difference of its zones [W].
+    pub(crate) doors: Vec<Line<S>>,
 }
 
 impl<S: Real> LinearisedLaws<S> {
@@ -39,6 +41,7 @@ impl<S: Real> LinearisedLaws<S> {
             surfaces: model.plan.surfaces.ids().map(constant).collect(),
             infiltration: vec![Line::zero(); zones],
             ventilation: vec![Line::zero(); zones],
+            doors: vec![Line::zero(); model.coefficients.doors.len()],
         }
     }
 }
@@ -53,8 +56,11 @@ impl LinearisedLaws<f64> {
                 emission: Line::of(&theirs.emission),
             };
         }
-        let pairs =
-            [(&mut self.infiltration, &other.infiltration), (&mut self.ventilation, &other.ventilation)];
+        let pairs = [
+            (&mut self.infiltration, &other.infiltration),
+            (&mut self.ventilation, &other.ventilation),
+            (&mut self.doors, &other.doors),
+        ];
         for (mine, theirs) in pairs {
             for (mine, theirs) in mine.iter_mut().zip(theirs) {
                 *mine = Line::of(theirs);

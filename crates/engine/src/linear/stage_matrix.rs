@@ -59,12 +59,16 @@ impl<'a> StageMatrix<'a> {
     #[inline(always)]
     pub(crate) fn factor<S: Real>(
         &mut self,
-        (laws, walls, paths): (&LinearisedLaws<S>, &[WallSystem<S>], &[S]),
+        (laws, walls, at): (&LinearisedLaws<S>, &[WallSystem<S>], &Conditions<S>),
         length: f64,
         new: bool,
     ) {
         self.laws.copy_values(laws);
-        for (mine, theirs) in self.conditions.paths.iter_mut().zip(paths) {
+        for (mine, theirs) in self.conditions.paths.iter_mut().zip(&at.paths) {
+            *mine = theirs.lane(0);
+        }
+        let carried = &mut self.conditions.mechanical_air.carried;
+        for (mine, theirs) in carried.iter_mut().zip(&at.mechanical_air.carried) {
             *mine = theirs.lane(0);
         }
         let Self { model, laws, conditions, zeros, system } = self;

@@ -224,6 +224,13 @@ impl Sink<f64> for Network<'_> {
         self.couple(ends, [area * conductance; 2], 0.0);
     }
 
+    fn carry(&mut self, ends: [Node; 2], conductance: f64, _reference: f64) {
+        self.couple(ends, [conductance, 0.0], 0.0);
+        for (node, sign) in ends.into_iter().zip([1.0, -1.0]) {
+            self.drive(node, (self.place(node), 1), "outdoor_air_temperature", sign * conductance);
+        }
+    }
+
     fn conduct_linearised(&mut self, ends: [Node; 2], area: f64, link: &Link<f64>, places: [f64; 2]) {
         let offset = link.flux(-places[0], -places[1]);
         self.couple(ends, [area * link.left, area * link.right], area * offset);

@@ -1,6 +1,6 @@
 //! Whether all laws of a building are linear and constant.
 
-use crate::building::coefficients::{Boundary, Coefficients};
+use crate::building::coefficients::{Boundary, Bridge, BridgeEnd, Coefficients};
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::input::description::{Infiltration, Material};
@@ -31,6 +31,24 @@ pub(super) fn require_linear(
     require_linear_zones(plan, numbers, coefficients)?;
     if let Some(opening) = plan.description.openings.first() {
         return refuse(&format!("opening {}", opening.name), "use ventilation without a schedule");
+    }
+    if let Some(door) = plan.description.doors.first() {
+        return refuse(&format!("door {}", door.name), "give the air path a flow");
+    }
+    if let Some(unit) = plan.description.ventilation_units.first() {
+        return refuse(&format!("ventilation unit {}", unit.name), "use the ventilation of zones");
+    }
+    let flows = coefficients.mechanical_air.directed.iter().zip(&plan.description.directed_flows);
+    if let Some((_, flow)) = flows.into_iter().find(|(flow, _)| flow.whole().is_none()) {
+        return refuse(&format!("air path {}", flow.name), "remove its schedule");
+    }
+    let bridges = coefficients.bridges.iter().zip(&plan.description.thermal_bridges);
+    let imposed = |bridge: &Bridge<f64>| matches!(bridge.to, BridgeEnd::Imposed(_));
+    if let Some((_, bridge)) = bridges.into_iter().find(|(bridge, _)| imposed(bridge)) {
+        return refuse(
+            &format!("thermal bridge {} to a given temperature", bridge.name),
+            "let it end outdoors or in a zone",
+        );
     }
     let paths = coefficients.paths.iter().zip(&plan.description.air_paths);
     if let Some((_, path)) = paths.into_iter().find(|(path, _)| path.whole().is_none()) {
@@ -70,7 +88,8 @@ fn require_linear_zones(
             );
         }
         let Infiltration { temperature, wind, .. } = &definition.infiltration;
-        if [temperature, wind].iter().any(|id| numbers[id.0 as usize] != 0.0) {
+        let varies = [temperature, wind].iter().any(|id| numbers[id.0 as usize] != 0.0);
+        if varies || zone.leakage.is_some() {
             return refuse(
                 &format!("infiltration of zone {}", definition.name),
                 "keep only its constant part",

@@ -21,6 +21,11 @@ impl<S: Real> Line<S> {
         let slope = slope.fixed();
         Self { offset: value - slope * at, slope }
     }
+    /// The sum of two lines.
+    #[inline(always)]
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self { offset: self.offset + other.offset, slope: self.slope + other.slope }
+    }
     #[inline(always)]
     pub(crate) fn at(&self, x: S) -> S {
         self.offset + self.slope * x

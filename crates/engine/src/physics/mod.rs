@@ -3,8 +3,11 @@
 pub mod air_flow;
 pub mod constants;
 pub mod convection;
+pub mod doors;
 pub mod gains;
+pub mod leakage;
 pub mod longwave;
+pub mod mechanical_air;
 pub mod optics;
 pub mod pcm;
 pub mod solar;

@@ -9,6 +9,7 @@ use crate::linear::wall::{Iterate, Link, Start, WallSystem};
 use crate::number::line::Line;
 use crate::number::real::Real;
 use crate::physics::air_flow;
+use crate::physics::doors;
 use crate::physics::longwave::Emission;
 use crate::physics::window_gaps::GapTangent;
 use crate::step::stage::Stage;
@@ -124,6 +125,18 @@ impl<S: Real> Linearisation<S> {
             self.laws.infiltration[zone] =
                 air_flow::infiltration(&numbers.infiltration, numbers.air_capacity, wind, outdoor, air);
             self.laws.ventilation[zone] = conditions.zones[zone].outdoor_heat(numbers, wind, outdoor, air);
+            if let Some(law) = &numbers.leakage {
+                let heat = law.heat(numbers.air_capacity, wind, outdoor, air);
+                self.laws.infiltration[zone] = self.laws.infiltration[zone].plus(&heat);
+            }
+        }
+        for (line, fans) in self.laws.ventilation.iter_mut().zip(&conditions.mechanical_air.zones) {
+            *line = line.plus(&fans.heat());
+        }
+        let doors = model.coefficients.doors.iter().zip(&conditions.doors);
+        for (line, (door, &whole)) in self.laws.doors.iter_mut().zip(doors) {
+            let [a, b] = door.between.map(|zone| iterate.air[zone]);
+            *line = doors::tangent(whole, a - b);
         }
     }
 }

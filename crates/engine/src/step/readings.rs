@@ -10,7 +10,9 @@ impl<S: Real> Stepper<'_, S> {
     /// Outdoor air entering a zone at an air temperature, in the weather of the last stage [1/h].
     pub(crate) fn air_changes(&self, zone: usize, air: S) -> S {
         let (conditions, numbers) = (&self.weather.conditions, &self.model.coefficients.zones[zone]);
-        conditions.zones[zone].air_changes(numbers, conditions.wind, conditions.outdoor_air, air)
+        let rate = conditions.zones[zone].air_changes(numbers, conditions.wind, conditions.outdoor_air, air);
+        let fans = conditions.mechanical_air.zones.get(zone);
+        fans.map_or(rate, |fans| rate + fans.fresh.scale(3600.0) / numbers.air_capacity)
     }
 
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].

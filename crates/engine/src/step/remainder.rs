@@ -15,6 +15,7 @@ use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::StorageRule;
 use crate::number::real::{Mask, Real};
 use crate::physics::convection::natural::ROUND_OFF;
+use crate::physics::doors;
 use crate::step::stage::Stage;
 
 /// Largest remainder that is accepted, over the largest heat flow density [-].
@@ -133,6 +134,14 @@ impl<S: Real> NonlinearLaws<S> {
             let before = old.surfaces[surface] - old.air[zone];
             let after = new.surfaces[surface] - new.air[zone];
             small = small & self.limit.accepts_convection(before, after);
+        }
+        for (door, &whole) in stage.model.coefficients.doors.iter().zip(&stage.conditions.doors) {
+            let [zone, other] = door.between;
+            let [before, after] = [old.air[zone] - old.air[other], new.air[zone] - new.air[other]];
+            let left = doors::heat(whole, after) - doors::tangent(whole, before).at(after);
+            let areas = &stage.model.coefficients.zones[zone].areas;
+            let area = areas.iter().fold(S::zero(), |sum, &area| sum + area);
+            small = small & left.abs().lt(self.limit.remainder * area);
         }
         if stage.storage == StorageRule::ApparentCapacity || !small.any() {
             return small;

@@ -1,6 +1,6 @@
 //! What acts on the building at one instant: on each surface, zone, window and air path.
 
-use crate::building::coefficients::{Boundary, Coefficients};
+use crate::building::coefficients::{Boundary, BridgeEnd, Coefficients};
 use crate::building::ids::BySurface;
 use crate::building::plan::Plan;
 use crate::input::forcing::channel;
@@ -10,6 +10,7 @@ use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::sky_emission;
 use crate::weather::index::WeatherIndex;
 pub use crate::weather::instant::{Instant, Weather};
+use crate::weather::mechanical_air::MechanicalConditions;
 pub use crate::weather::sun::SolarConditions;
 pub use crate::weather::surface::SurfaceConditions;
 use crate::weather::surface::{forced, imposed_temperature};
@@ -24,6 +25,12 @@ pub struct Conditions<S: Real> {
     pub zones: Vec<ZoneConditions<S>>,
     /// Heat carried between two zones, per path [W/K].
     pub paths: Vec<S>,
+    /// Heat that each door carries at a temperature difference of 1 K [W].
+    pub doors: Vec<S>,
+    /// Flows that fans drive.
+    pub mechanical_air: MechanicalConditions<S>,
+    /// Temperature at the other end of each thermal bridge; none where that is a zone [degC].
+    pub bridges: Vec<Option<S>>,
     /// Outdoor air [degC].
     pub outdoor_air: S,
     /// Wind at the mast [m/s].
@@ -49,6 +56,13 @@ impl<S: Real> Conditions<S> {
             surfaces: surfaces.collect(),
             zones: coefficients.zones.iter().map(ZoneConditions::new).collect(),
             paths: vec![zero; coefficients.paths.len()],
+            doors: vec![zero; coefficients.doors.len()],
+            mechanical_air: MechanicalConditions::new(&coefficients.mechanical_air, plan.zones.len()),
+            bridges: coefficients
+                .bridges
+                .iter()
+                .map(|bridge| (!matches!(bridge.to, BridgeEnd::Zone(_))).then_some(zero))
+                .collect(),
             outdoor_air: zero,
             wind: zero,
             sky: zero,
@@ -74,6 +88,13 @@ impl<S: Real> Conditions<S> {
         }
         for (at, (&a, &b)) in self.paths.iter_mut().zip(first.paths.iter().zip(&second.paths)) {
             *at = rate(a, b);
+        }
+        for (at, (&a, &b)) in self.doors.iter_mut().zip(first.doors.iter().zip(&second.doors)) {
+            *at = rate(a, b);
+        }
+        self.mechanical_air.interpolate(&first.mechanical_air, &second.mechanical_air, fraction);
+        for (at, (&a, &b)) in self.bridges.iter_mut().zip(first.bridges.iter().zip(&second.bridges)) {
+            *at = a.zip(b).map(|(a, b)| line(a, b));
         }
         self.sun.interpolate(&first.sun, &second.sun, fraction);
         self.sky = line(first.sky, second.sky);
@@ -120,14 +141,36 @@ impl<S: Real> Conditions<S> {
         for (at, path) in self.paths.iter_mut().zip(&coefficients.paths) {
             *at = path.conductance(now.row);
         }
+        self.update_airs(coefficients, now);
         if !self.sun.windows.is_empty() {
             self.sun.transmit(plan, coefficients, now);
+            if !self.sun.to_air.is_empty() {
+                self.sun.give_to_air(coefficients);
+            }
             self.sun.trace(plan, coefficients, now);
             if !plan.passages.is_empty() {
                 self.sun.pass(plan, coefficients, now);
             }
             self.sun.distribute(plan, coefficients, now, &mut self.surfaces);
             self.sun.absorb_in_panes(plan, &mut self.surfaces);
+        }
+    }
+
+    /// Doors, fans and thermal bridges.
+    #[inline(always)]
+    fn update_airs(&mut self, coefficients: &Coefficients<S>, now: &Instant<'_>) {
+        for (at, door) in self.doors.iter_mut().zip(&coefficients.doors) {
+            *at = door.at(now.row);
+        }
+        if !coefficients.mechanical_air.is_empty() {
+            self.mechanical_air.update(&coefficients.mechanical_air, now.row, self.outdoor_air);
+        }
+        for (at, bridge) in self.bridges.iter_mut().zip(&coefficients.bridges) {
+            *at = match &bridge.to {
+                BridgeEnd::Outdoors => Some(self.outdoor_air),
+                BridgeEnd::Zone(_) => None,
+                BridgeEnd::Imposed(imposed) => Some(imposed_temperature(imposed, now)),
+            };
         }
     }
 

@@ -89,7 +89,11 @@ impl<'a> Weather<'a> {
     fn keeping(plan: &'a Plan, forcing: &Forcing<'a>, steps: usize) -> Self {
         let sides = || plan.surfaces.ids().map(|surface| plan.side(surface));
         let terms = WindTerms::of(sides().filter_map(|side| side.convection.as_ref()));
-        let ground = sides().any(|side| matches!(side.facing, Facing::Ground { .. }));
+        let bridges = plan.description.thermal_bridges.iter().map(|bridge| &bridge.to);
+        let ground = sides()
+            .map(|side| &side.facing)
+            .chain(bridges)
+            .any(|facing| matches!(facing, Facing::Ground { .. }));
         let stages = (0..steps * forcing.stages()).map(|_| OnceLock::new()).collect();
         Self { plan, forcing: *forcing, terms, ground, stages }
     }

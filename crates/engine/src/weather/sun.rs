@@ -56,6 +56,8 @@ pub struct SolarConditions<S> {
     entering: Vec<S>,
     /// Per zone, where there are such passages: what enters from other zones less what leaves to them [W].
     pub(crate) exchanged: Vec<S>,
+    /// Per zone, where some give a part of the sun to their air: that part [W].
+    pub(crate) to_air: Vec<S>,
 }
 
 impl<S: Real> SolarConditions<S> {
@@ -76,6 +78,7 @@ impl<S: Real> SolarConditions<S> {
             passing: vec![zero; plan.passages.len()],
             entering: vec![zero; if plan.passages.is_empty() { 0 } else { plan.zones.len() }],
             exchanged: vec![zero; if plan.passages.is_empty() { 0 } else { plan.zones.len() }],
+            to_air: vec![zero; if to_air(plan) { plan.zones.len() } else { 0 }],
         }
     }
 
@@ -103,6 +106,9 @@ impl<S: Real> SolarConditions<S> {
             at.in_glass = line(a.in_glass, b.in_glass);
         }
         for (at, (&a, &b)) in self.exchanged.iter_mut().zip(first.exchanged.iter().zip(&second.exchanged)) {
+            *at = line(a, b);
+        }
+        for (at, (&a, &b)) in self.to_air.iter_mut().zip(first.to_air.iter().zip(&second.to_air)) {
             *at = line(a, b);
         }
     }
@@ -166,6 +172,15 @@ impl<S: Real> SolarConditions<S> {
             if let SurfaceRole::Zone { zone, .. } = plan.surfaces[SurfaceId::inside(w)].role {
                 self.zones[zone].transmitted += at.transmitted;
             }
+        }
+    }
+
+    /// What the airs of zones get at once of what windows transmit.
+    // A rare part of a building: kept out of the code of the others.
+    #[inline(never)]
+    pub(crate) fn give_to_air(&mut self, coefficients: &Coefficients<S>) {
+        for ((heat, zone), numbers) in self.to_air.iter_mut().zip(&self.zones).zip(&coefficients.zones) {
+            *heat = numbers.solar_to_air.map_or_else(S::zero, |part| part * zone.transmitted);
         }
     }
 
@@ -237,7 +252,10 @@ impl<S: Real> SolarConditions<S> {
     /// Sun that enters a zone from outdoors and from other zones [W].
     #[inline(always)]
     fn reaching(&self, z: usize) -> S {
-        let outdoors = self.zones[z].transmitted;
+        let outdoors = match self.to_air.get(z) {
+            Some(&to_air) => self.zones[z].transmitted - to_air,
+            None => self.zones[z].transmitted,
+        };
         self.entering.get(z).map_or(outdoors, |&entering| outdoors + entering)
     }
 
@@ -316,7 +334,11 @@ impl<S: Real> SolarConditions<S> {
     /// Beam and diffuse sun that enter a zone [W].
     fn parts(&self, z: usize, zone: &ZonePlan) -> [S; 2] {
         let beams = zone.windows.iter().map(|&(window, _)| self.windows[window].beam);
-        let direct = beams.fold(S::zero(), |sum, beam| sum + beam);
+        let mut direct = beams.fold(S::zero(), |sum, beam| sum + beam);
+        if let Some(&to_air) = self.to_air.get(z) {
+            // The air gets as much of the beam as of the rest.
+            direct = direct * (S::one() - part(to_air, self.zones[z].transmitted));
+        }
         [direct, self.reaching(z) - direct]
     }
 
@@ -338,6 +360,12 @@ impl<S: Real> SolarConditions<S> {
                 if let Some(fractions) = fractions {
                     *power += beam.scale(fractions[j]);
                 }
+            }
+        }
+        if let Some(&to_air) = self.to_air.get(z) {
+            let kept = S::one() - part(to_air, self.zones[z].transmitted);
+            for power in incidence {
+                *power = *power * kept;
             }
         }
     }
@@ -392,6 +420,16 @@ impl<S: Real> SolarConditions<S> {
             surfaces[SurfaceId::inside(w)].solar += both[1];
         }
     }
+}
+
+/// Whether a zone gives a part of the sun to its air.
+fn to_air(plan: &Plan) -> bool {
+    plan.description.zones.iter().any(|zone| zone.solar_to_air.is_some())
+}
+
+/// A part over the whole, which may be zero.
+fn part<S: Real>(some: S, all: S) -> S {
+    some / all.max(S::constant(f64::MIN_POSITIVE))
 }
 
 /// The sun over a step: means of its stages.

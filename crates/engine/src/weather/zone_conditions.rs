@@ -70,7 +70,9 @@ impl<S: Real> ZoneConditions<S> {
 
     /// Flow of outdoor air into the zone, infiltration included [1/h].
     pub(crate) fn air_changes(&self, zone: &ZoneCoefficients<S>, wind: S, outdoor: S, air: S) -> S {
-        air_flow::air_changes(&zone.infiltration, zone.air_capacity, &self.intake(zone), wind, outdoor, air)
+        let intake = self.intake(zone);
+        let rate = air_flow::air_changes(&zone.infiltration, zone.air_capacity, &intake, wind, outdoor, air);
+        zone.leakage.as_ref().map_or(rate, |law| rate + law.air_changes(wind, outdoor - air))
     }
 }
 

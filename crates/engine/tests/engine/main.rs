@@ -10,6 +10,7 @@ mod difficult_steps;
 mod empty_ensemble;
 mod energy_balance;
 mod ensemble_shapes;
+mod fans;
 mod first_step;
 mod golden;
 mod halved_steps;

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
+from mascarin.building.course_uses import courses
 from mascarin.building.description import Description
-from mascarin.building.engine_input.channels import channels, used_schedules
-from mascarin.building.engine_input.ids import Ids, Json, below, corners, each, fields_of
+from mascarin.building.engine_input.air import (
+    describe_air_path,
+    describe_bridges,
+    describe_door,
+    describe_opening,
+    describe_unit,
+)
+from mascarin.building.engine_input.channels import channels
+from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners, each, fields_of
 from mascarin.building.engine_input.materials import describe_construction, describe_material
 from mascarin.building.engine_input.surfaces import describe_sensor, describe_surface
 from mascarin.building.engine_input.windows import (
@@ -22,13 +30,14 @@ from mascarin.building.engine_input.windows import (
     describe_window,
     framed,
 )
-from mascarin.building.engine_input.zones import describe_air_path, describe_opening, describe_zone
-from mascarin.building.mesh import choose
+from mascarin.building.engine_input.zones import describe_zone
+from mascarin.building.mesh import Mesh, choose
 from mascarin.building.number import Interval
 from mascarin.building.parameters import Parameter
 from mascarin.building.schedule import schedule_channel
 from mascarin.building.self_shading import obstructions
 from mascarin.building.site import CloudFactor, CloudLayer, Site
+from mascarin.building.zone import AirPath
 
 
 @dataclass(frozen=True)
@@ -46,7 +55,7 @@ class EngineDescription:
     channels : list of str
         What the forcing holds after the climate's channels: measured columns, then schedules.
     schedules : tuple of str
-        Names of the schedules, which are the last of the channels.
+        Names of the schedules and of other courses over time, which are the last of the channels.
     notes : tuple of str
         Warnings about the mesh.
     nodes : mapping of (str, str) to int
@@ -80,12 +89,47 @@ def describe(
     leaves = [parameter for parameter in parameters if not parameter.structural]
     ids = {leaf.path: index for index, leaf in enumerate(leaves)}
     columns = channels(building)
-    schedules = used_schedules(building)
+    schedules = list(courses(building))
     places = {name: len(columns) + k for k, name in enumerate(schedules)}
     columns = [*columns, *(schedule_channel(name) for name in schedules)]
     description = {
         "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
         "site": _site(building.site, below(ids, "site")),
+        **_constructions(building, mesh, ids),
+        "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
+        **_air(building, ids, places),
+        "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
+        "surfaces": _obstructed(
+            building,
+            [
+                *each(
+                    building.surfaces,
+                    "surfaces",
+                    ids,
+                    partial(describe_surface, building, (columns, places), ids),
+                ),
+                *each(building.windows, "windows", ids, partial(describe_window, building, columns, ids)),
+                *(describe_frame(building, columns, name, ids) for name in framed(building)),
+            ],
+        ),
+        "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
+        "shades": [corners(shade.vertices) for shade in building.shades.values()],
+        "channels": columns,
+    }
+    return EngineDescription(
+        json=json.dumps(description, allow_nan=False),
+        paths=[leaf.path for leaf in leaves],
+        values=np.array([leaf.value for leaf in leaves], dtype=np.float64),
+        channels=columns,
+        schedules=tuple(schedules),
+        notes=mesh.warnings,
+        nodes=mesh.nodes,
+    )
+
+
+def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int]) -> Json:
+    """Materials and constructions, those of glazings and frames included."""
+    return {
         "materials": [
             *each(building.materials, "materials", ids, describe_material),
             *(
@@ -106,30 +150,26 @@ def describe(
                 for index, name in enumerate(framed(building))
             ),
         ],
-        "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
-        "air_paths": each(building.air_paths, "air_paths", ids, partial(describe_air_path, building, places)),
-        "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
-        "surfaces": _obstructed(
-            building,
-            [
-                *each(building.surfaces, "surfaces", ids, partial(describe_surface, building, columns, ids)),
-                *each(building.windows, "windows", ids, partial(describe_window, building, columns, ids)),
-                *(describe_frame(building, columns, name, ids) for name in framed(building)),
-            ],
-        ),
-        "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
-        "shades": [corners(shade.vertices) for shade in building.shades.values()],
-        "channels": columns,
     }
-    return EngineDescription(
-        json=json.dumps(description, allow_nan=False),
-        paths=[leaf.path for leaf in leaves],
-        values=np.array([leaf.value for leaf in leaves], dtype=np.float64),
-        channels=columns,
-        schedules=tuple(schedules),
-        notes=mesh.warnings,
-        nodes=mesh.nodes,
-    )
+
+
+def _air(building: Description, ids: Mapping[str, int], places: Places) -> Json:
+    """Air between zones, mechanical ventilation and thermal bridges."""
+    paths = building.air_paths
+
+    def listed(chosen: Callable[[AirPath], bool], write: Callable[..., Json]) -> list[Json]:
+        some = {name: path for name, path in paths.items() if chosen(path)}
+        return each(some, "air_paths", ids, partial(write, building, places))
+
+    return {
+        "air_paths": listed(lambda path: path.door is None and not path.one_way, describe_air_path),
+        "directed_flows": listed(lambda path: path.one_way, describe_air_path),
+        "doors": listed(lambda path: path.door is not None, describe_door),
+        "ventilation_units": each(
+            building.ventilation_units, "ventilation_units", ids, partial(describe_unit, building, places)
+        ),
+        "thermal_bridges": describe_bridges(building, places, ids),
+    }
 
 
 def _obstructed(building: Description, written: list[Json]) -> list[Json]:

@@ -6,14 +6,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin.building.convection import Convection, Measured, Power
+from mascarin.building.courses import temperature_course
 from mascarin.building.description import Description
-from mascarin.building.engine_input.ids import Ids, Json, corners, deeper, fields_of
+from mascarin.building.engine_input.ids import Ids, Json, Places, corners, deeper, fields_of
 from mascarin.building.schedule import schedule_channel
 from mascarin.building.surface import Side, Surface
 
 
 def describe_surface(
-    building: Description, columns: list[str], every: Mapping[str, int], name: str, surface: Surface, ids: Ids
+    building: Description,
+    channels: tuple[list[str], Places],
+    every: Mapping[str, int],
+    name: str,
+    surface: Surface,
+    ids: Ids,
 ) -> Json:
     """Describe a surface with its two sides."""
     zones = list(building.zones)
@@ -25,13 +31,14 @@ def describe_surface(
         "vertices": corners(surface.vertices),
         "tilt": ids("tilt"),
         "azimuth": ids("azimuth"),
-        "outside": _side(surface.outside, zones, columns, deeper(ids, "outside")),
-        "inside": _side(surface.inside, zones, columns, deeper(ids, "inside")),
+        "outside": _side(surface.outside, zones, channels, deeper(ids, "outside")),
+        "inside": _side(surface.inside, zones, channels, deeper(ids, "inside")),
     }
 
 
-def _side(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
-    written = fields_of(side, ids) | {"facing": _facing(side, zones, columns, ids)}
+def _side(side: Side, zones: list[str], channels: tuple[list[str], Places], ids: Ids) -> Json:
+    columns, places = channels
+    written = fields_of(side, ids) | {"facing": _facing(side, zones, columns, places, ids)}
     if side.convection is not None:
         written["convection"] = describe_convection(side.convection, columns, ids)
     if side.longwave is not None:
@@ -43,9 +50,11 @@ def _side(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
     return written
 
 
-def _facing(side: Side, zones: list[str], columns: list[str], ids: Ids) -> Json:
+def _facing(side: Side, zones: list[str], columns: list[str], places: Places, ids: Ids) -> Json:
     if side.zone is not None:
         return {"kind": "zone", "zone": zones.index(side.zone)}
+    if isinstance(side.measured, tuple):
+        return {"kind": "measured", "channel": places[temperature_course(side.measured).name]}
     if side.measured is not None:
         return {"kind": "measured", "channel": columns.index(side.measured)}
     if side.scheduled is not None:

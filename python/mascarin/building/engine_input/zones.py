@@ -1,69 +1,63 @@
-"""Zones and the air between them as the engine reads them."""
+"""Zones as the engine reads them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from mascarin.building.description import Description
-from mascarin.building.engine_input.ids import Ids, Json, Places, fields_of
+from mascarin.building.engine_input.air import driven, schedule_of, set_point
+from mascarin.building.engine_input.ids import Ids, Json, Places, deeper, fields_of
 from mascarin.building.geometry import closed_exchange_areas
-from mascarin.building.part import Part
 from mascarin.building.rules import surface_names
-from mascarin.building.zone import AirPath, FloorSun, GivenSun, IdealLoads, Opening, SunShares, Zone
+from mascarin.building.zone import FloorSun, GivenSun, IdealLoads, SunShares, Zone
 from mascarin.building.zone_surfaces import closed, floors
 from mascarin.errors import InputError
 
 
 def describe_zone(building: Description, places: Places, name: str, zone: Zone, ids: Ids) -> Json:
     """Describe a zone."""
-
-    def each(section: str) -> list[Json]:
-        parts: Mapping[str, Part] = getattr(zone, section)
-        return [
-            {"name": key, **fields_of(part, ids, f"{section}.{key}."), **_schedule(part, places)}
-            for key, part in parts.items()
-        ]
-
+    gains = [
+        {
+            "name": key,
+            **driven(part, "power", places, deeper(ids, f"gains.{key}")),
+            "radiative": ids(f"gains.{key}.radiative"),
+        }
+        for key, part in zone.gains.items()
+    ]
+    ventilation = [
+        {"name": key, **fields_of(part, ids, f"ventilation.{key}."), **schedule_of(part, places)}
+        for key, part in zone.ventilation.items()
+    ]
     loads = {which: _ideal_loads(loads, places, ids, which) for which, loads in zone.loads.items()}
     return {
         "name": name,
-        "gains": each("gains"),
-        "ventilation": each("ventilation"),
+        "gains": gains,
+        "ventilation": ventilation,
         **loads,
         "volume": ids("volume"),
         "capacity_factor": ids("capacity_factor"),
-        "infiltration": fields_of(zone.infiltration, ids, "infiltration."),
+        "infiltration": _infiltration(zone, ids),
+        "solar_to_air": None if zone.solar_to_air is None else ids("solar_to_air"),
         "longwave": fields_of(zone.longwave, ids, "longwave."),
         "view_weights": view_weights(building, name),
         "sun": _sun(building, name, zone, ids),
     }
 
 
-def _schedule(part: Any, places: Places) -> Json:
-    return {"schedule": None if part.schedule is None else places[part.schedule]}
+def _infiltration(zone: Zone, ids: Ids) -> Json:
+    written = fields_of(zone.infiltration, ids, "infiltration.")
+    test = zone.infiltration.blower_door
+    if test is not None:
+        written["leakage"] = fields_of(test, ids, "infiltration.blower_door.")
+    return written
 
 
 def _ideal_loads(loads: IdealLoads, places: Places, ids: Ids, which: str) -> Json:
-    given = loads.setpoint.schedule
-    setpoint: Json = (
-        {"kind": "constant", "temperature": ids(f"{which}.setpoint.temperature")}
-        if given is None
-        else {"kind": "scheduled", "channel": places[given]}
-    )
-    return {"setpoint": setpoint, **fields_of(loads, ids, f"{which}."), **_schedule(loads, places)}
-
-
-def describe_air_path(building: Description, places: Places, name: str, path: AirPath, ids: Ids) -> Json:
-    """Describe the air that two zones exchange."""
-    between = [list(building.zones).index(zone) for zone in path.between]
-    return {"name": name, "between": between, **fields_of(path, ids), **_schedule(path, places)}
-
-
-def describe_opening(building: Description, places: Places, name: str, opening: Opening, ids: Ids) -> Json:
-    """Describe an opening to outdoors."""
-    zone = list(building.zones).index(opening.zone)
-    return {"name": name, "zone": zone, **fields_of(opening, ids), **_schedule(opening, places)}
+    return {
+        "setpoint": set_point(loads.setpoint, places, deeper(ids, f"{which}.setpoint")),
+        **fields_of(loads, ids, f"{which}."),
+        **schedule_of(loads, places),
+    }
 
 
 def _sun(building: Description, name: str, zone: Any, ids: Ids) -> Json:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Limits, Number, Percent, Quantity, Span
-from mascarin.building.quantities.common import FRACTION, POSITIVE
+from mascarin.building.number import Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
+from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE, POSITIVE
 
 CapacityFactor = Annotated[
     Number,
@@ -95,5 +95,98 @@ WindCoefficient = Annotated[
             "sheltered, by diagonal wind (0.25 to 0.35), to wind square on the opening (0.5 to 0.6)",
         ),
         FRACTION,
+    ),
+]
+AirChangeOfTest = Annotated[
+    Number,
+    Quantity(
+        "1/h",
+        "Air changes at 50 Pa in a pressure test, n50",
+        Percent(20, "pressure tests, and the share of a zone in the leaks of a house"),
+        Limits(at_least=0, at_most=100),
+    ),
+]
+LeakageFactor = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Air changes of infiltration over those at 50 Pa",
+        Span(0.01, 0.10, "one facade exposed with heavy shielding, to several without shielding"),
+        FRACTION,
+    ),
+]
+LeakageExponent = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Exponent of the pressure difference in the flow through leaks",
+        Span(0.6, 0.7, "pressure tests of houses"),
+        Limits(at_least=0.5, at_most=1.0),
+    ),
+]
+StackCoefficient = Annotated[
+    Number,
+    Quantity(
+        "(L/s)2/(cm4 K)",
+        "Stack coefficient of the leakage area",
+        Percent(30, "height of the house, and where its leaks are"),
+        Limits(at_least=0, at_most=0.01),
+    ),
+]
+WindLeakageCoefficient = Annotated[
+    Number,
+    Quantity(
+        "(L/s)2/(cm4 (m/s)2)",
+        "Wind coefficient of the leakage area",
+        Percent(50, "the next shelter class to either side"),
+        Limits(at_least=0, at_most=0.01),
+    ),
+]
+Recovery = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Sensible effectiveness of heat recovery, of the smaller flow",
+        Within(0.1, "tests and operation differ; leaks in the unit"),
+        FRACTION,
+    ),
+]
+DoorWidth = Annotated[
+    Number,
+    Quantity("m", "Width of the door", Percent(5, "frame and leaf"), Limits(above=0, at_most=100)),
+]
+DoorHeight = Annotated[
+    Number,
+    Quantity("m", "Height of the door", Percent(3, "frame and threshold"), Limits(above=0, at_most=50)),
+]
+OpenFraction = Annotated[
+    Number,
+    Quantity("-", "Fraction of the width that is open", Within(0.1, "how far the leaf is open"), FRACTION),
+]
+LinearTransmittance = Annotated[
+    Number,
+    Quantity(
+        "W/(m K)",
+        "Linear thermal transmittance, psi",
+        Percent(50, "catalogues against the joint as built: 20 to 50 % (EN ISO 14683)"),
+        Limits(at_least=-10, at_most=100),
+    ),
+]
+BridgeLength = Annotated[
+    Number, Quantity("m", "Length of the joint", Percent(5, "measured from plans"), NOT_NEGATIVE)
+]
+PointTransmittance = Annotated[
+    Number,
+    Quantity(
+        "W/K",
+        "Point thermal transmittance, chi",
+        Percent(50, "catalogues against the fixing as built"),
+        Limits(at_least=-100, at_most=1e4),
+    ),
+]
+BridgeNumber = Annotated[
+    Number,
+    Quantity(
+        "-", "Number of such bridges", OnlyGiven("counted: it varies only if a range is given"), NOT_NEGATIVE
     ),
 ]

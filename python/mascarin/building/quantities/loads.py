@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Fixed, Limits, Number, Percent, Quantity, Within
+from mascarin.building.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
 from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE
 
 GainPower = Annotated[
     Number,
-    Quantity("W", "Heat at a schedule of 1", Percent(30, "rated and actual power differ"), NOT_NEGATIVE),
+    Quantity(
+        "W",
+        "Heat at a schedule of 1; negative: heat is taken away",
+        Percent(30, "rated and actual power differ"),
+        Limits(at_least=-1e7, at_most=1e7),
+    ),
 ]
 Radiative = Annotated[
     Number,
@@ -49,5 +54,23 @@ ScheduledTemperature = Annotated[
         "Temperature",
         Fixed("acts through the forcing; vary a set point without a schedule"),
         Limits(at_least=-60, at_most=90),
+    ),
+]
+ColumnFactor = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Factor of the measured column",
+        OnlyGiven("measured: it varies only if a range is given"),
+        Limits(at_least=-1000, at_most=1000),
+    ),
+]
+SolarToAir = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Part of the transmitted solar radiation that the air gets at once, from light furniture",
+        Span(0.0, 0.3, "empty to densely furnished, with curtains"),
+        FRACTION,
     ),
 ]

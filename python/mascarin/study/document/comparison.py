@@ -26,6 +26,7 @@ FLOW_LABELS: Final = {
     "cooling": "cooling",
     "transmitted": "solar radiation transmitted by windows",
     "glass": "solar radiation absorbed by windows",
+    "bridges": "thermal bridges",
 }
 
 

@@ -41,6 +41,13 @@ impl<S: Real, H: HeatSink<S>> Evaluation<'_, S, H> {
         }
     }
 
+    /// Heat from one zone to another.
+    #[inline(always)]
+    fn interzone(&mut self, heat: S) {
+        self.heat.add_to_building(Flow::Interzone, heat);
+        self.heat.add_to_building(Flow::Interzone, -heat);
+    }
+
     /// Heat from one node to another.
     #[inline(always)]
     fn between(&mut self, [from, to]: [Node; 2], size: S, heat: S) {
@@ -76,9 +83,15 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
         let heat = area * (conductance * (from - to));
         self.between(ends, area, heat);
         if let [Node::Air(_), Node::Air(_)] = ends {
-            self.heat.add_to_building(Flow::Interzone, heat);
-            self.heat.add_to_building(Flow::Interzone, -heat);
+            self.interzone(heat);
         }
+    }
+
+    #[inline(always)]
+    fn carry(&mut self, ends: [Node; 2], conductance: S, reference: S) {
+        let heat = conductance * (self.temperature(ends[0]) - reference);
+        self.between(ends, S::one(), heat);
+        self.interzone(heat);
     }
 
     #[inline(always)]
@@ -101,6 +114,9 @@ impl<S: Real, H: HeatSink<S>> Sink<S> for Evaluation<'_, S, H> {
                 // Heat that leaves the environment enters the building.
                 End::Environment { flow, .. } => self.heat.add_to_building(flow, -heat),
             }
+        }
+        if let [End::Node(Node::Air(_)), End::Node(Node::Air(_))] = ends {
+            self.interzone(heat);
         }
     }
 

@@ -68,6 +68,8 @@ impl<S: Real> Balances<'_, S> {
         self.outdoor_air(&mut others);
         self.gains(&mut others);
         self.air_paths(&mut others);
+        self.mechanical_air(&mut others);
+        self.bridges(&mut others);
         self.ideal_loads(&mut others);
         power
     }

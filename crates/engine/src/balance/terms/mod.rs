@@ -6,8 +6,8 @@
 //! - cell: storage, conduction to its neighbours, sun absorbed in panes;
 //! - surface: conduction into its wall, convection, emission and exchange of long-wave radiation, absorbed sun, radiant
 //!   gains; or an imposed temperature in place of a balance; an adiabatic surface has only what is left;
-//! - zone air: storage, convection from surfaces, infiltration, ventilation and openings, air paths, convective gains,
-//!   ideal load.
+//! - zone air: storage, convection from surfaces, infiltration, ventilation and openings, air paths and doors, fans, thermal
+//!   bridges, convective gains, sun, ideal load.
 //!
 //! Nonlinear laws are replaced by their tangents. [`Balances`] goes through all terms and passes each of them to a [`Sink`]:
 //! the residual ([`residual`]), the slopes of the equations (`derivatives`), the linear model (`linear_model`), the energy
@@ -22,7 +22,7 @@ mod tests;
 
 use crate::balance::flow_index::FlowIndex;
 use crate::balance::ledger::Flow;
-use crate::building::coefficients::Matter;
+use crate::building::coefficients::{BridgeEnd, Matter};
 use crate::building::ids::SurfaceId;
 use crate::building::model::Model;
 use crate::linear::laws::LinearisedLaws;
@@ -157,6 +157,9 @@ pub(crate) trait Sink<S: Real> {
     /// `area (left (T_from - place_from) - right (T_to - place_to) + offset)` [W].
     fn conduct_linearised(&mut self, ends: [Node; 2], area: S, link: &Link<S>, places: [S; 2]);
 
+    /// `conductance (T_from - reference)` [W], carried with air from one zone to another.
+    fn carry(&mut self, ends: [Node; 2], conductance: S, reference: S);
+
     /// `area law(T_from - T_to)` [W].
     fn exchange(&mut self, ends: [End<S>; 2], area: S, law: &Line<S>);
 
@@ -204,6 +207,9 @@ impl<S: Real> Balances<'_, S> {
         self.outdoor_air(sink);
         self.gains(sink);
         self.air_paths(sink);
+        self.mechanical_air(sink);
+        self.bridges(sink);
+        self.sun_to_air(sink);
         self.ideal_loads(sink);
     }
 
@@ -385,6 +391,40 @@ impl<S: Real> Balances<'_, S> {
         for (path, &conductance) in self.model.coefficients.paths.iter().zip(&self.conditions.paths) {
             let [a, b] = path.between;
             sink.conduct([Node::Air(b), Node::Air(a)], S::one(), conductance);
+        }
+        for (door, line) in self.model.coefficients.doors.iter().zip(&self.laws.doors) {
+            sink.exchange(door.between.map(|zone| End::Node(Node::Air(zone))), S::one(), line);
+        }
+    }
+
+    /// Heat that fans carry from zone to zone, with the air or by heat recovery.
+    #[inline(always)]
+    pub(crate) fn mechanical_air(&self, sink: &mut impl Sink<S>) {
+        let carries = &self.model.coefficients.mechanical_air.carries;
+        for (ends, &conductance) in carries.iter().zip(&self.conditions.mechanical_air.carried) {
+            sink.carry(ends.map(Node::Air), conductance, self.conditions.outdoor_air);
+        }
+    }
+
+    /// Thermal bridges.
+    #[inline(always)]
+    pub(crate) fn bridges(&self, sink: &mut impl Sink<S>) {
+        for (bridge, &temperature) in self.model.coefficients.bridges.iter().zip(&self.conditions.bridges) {
+            let (air, slope) = (Node::Air(bridge.zone), bridge.conductance);
+            if let BridgeEnd::Zone(other) = bridge.to {
+                sink.conduct([Node::Air(other), air], S::one(), slope);
+            } else if let Some(temperature) = temperature {
+                let ends = [End::Environment { flow: Flow::Bridges, temperature }, End::Node(air)];
+                sink.exchange(ends, S::one(), &Line { offset: S::zero(), slope });
+            }
+        }
+    }
+
+    /// Sun that the airs of zones get at once; it is counted where it enters, see [`Self::windows`].
+    #[inline(always)]
+    fn sun_to_air(&self, sink: &mut impl Sink<S>) {
+        for (zone, &heat) in self.conditions.sun.to_air.iter().enumerate() {
+            sink.release(Node::Air(zone), S::one(), heat, Origin::Window);
         }
     }
 

@@ -1,11 +1,15 @@
 //! The coefficients of a building: a plan evaluated at a parameter vector, for one run or for a pack of members in lanes.
 
 pub(crate) mod air;
+pub(crate) mod bridge;
+pub(crate) mod mechanical_air;
 pub(crate) mod passing;
 pub(crate) mod surface;
 pub(crate) mod wall;
 pub(crate) mod zone;
 
+pub use self::bridge::{Bridge, BridgeEnd};
+pub use self::mechanical_air::MechanicalAir;
 pub use self::passing::Passing;
 pub use self::surface::{Boundary, Imposed, Outdoors, SurfaceCoefficients};
 pub use self::wall::WallCoefficients;
@@ -16,6 +20,7 @@ use super::plan::Plan;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::Path;
+use crate::physics::doors::Door;
 use crate::physics::longwave::CloudEffect;
 
 /// All coefficients of a run.
@@ -31,6 +36,12 @@ pub struct Coefficients<S> {
     pub passing: Passing<S>,
     /// Air exchanged between zones.
     pub paths: Vec<Path<S>>,
+    /// Doors between zones.
+    pub doors: Vec<Door<S>>,
+    /// Flows that fans drive.
+    pub mechanical_air: MechanicalAir<S>,
+    /// Thermal bridges.
+    pub bridges: Vec<Bridge<S>>,
     /// Solar reflectance of the ground [-].
     pub ground_reflectance: S,
     /// Effect of clouds on the sky's emission.
@@ -61,6 +72,9 @@ impl<S: Real> Coefficients<S> {
             zones,
             passing,
             paths,
+            doors: description.doors.iter().map(|door| Door::new(door, &values, heat)).collect(),
+            mechanical_air: MechanicalAir::new(plan, &values, heat),
+            bridges: description.thermal_bridges.iter().map(|bridge| Bridge::new(bridge, &values)).collect(),
             ground_reflectance: values.get(site.ground_reflectance),
             clouds: CloudEffect::new(&site.cloud, &values),
             sensor_depths: description.sensors.iter().map(|sensor| values.get(sensor.depth)).collect(),

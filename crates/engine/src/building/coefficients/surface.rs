@@ -119,14 +119,21 @@ fn radians<S: Real>(degrees: S) -> S {
 fn boundary<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Boundary<S> {
     match side.facing {
         Facing::Zone { .. } => Boundary::Zone,
-        Facing::Adiabatic => Boundary::Adiabatic,
-        Facing::Measured { channel } => Boundary::Imposed(Imposed::Channel(CLIMATE_CHANNELS + channel)),
+        Facing::Outdoors => Boundary::Outdoors(Box::new(outdoors(plan, index, side, values))),
+        _ => imposed(&side.facing, values).map_or(Boundary::Adiabatic, Boundary::Imposed),
+    }
+}
+
+/// The temperature that a contact imposes; none where it imposes none.
+pub(super) fn imposed<S: Real>(facing: &Facing, values: &Values<'_, S>) -> Option<Imposed<S>> {
+    match *facing {
+        Facing::Measured { channel } => Some(Imposed::Channel(CLIMATE_CHANNELS + channel)),
         Facing::Ground { mean, amplitude, coldest_day } => {
             let (amplitude, angle) = (values.get(amplitude), values.get(coldest_day).scale(PER_DAY));
             let swing = [amplitude * angle.cos(), amplitude * angle.sin()];
-            Boundary::Imposed(Imposed::Annual { mean: values.get(mean), swing })
+            Some(Imposed::Annual { mean: values.get(mean), swing })
         }
-        Facing::Outdoors => Boundary::Outdoors(Box::new(outdoors(plan, index, side, values))),
+        Facing::Zone { .. } | Facing::Outdoors | Facing::Adiabatic => None,
     }
 }
 

@@ -8,6 +8,7 @@ use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::{AirFlow, Opening};
 use crate::physics::gains::{Gain, Thermostat};
+use crate::physics::leakage::{StackWind, leakage};
 use crate::physics::longwave::{Emission, direct_exchange_areas, exchange_areas, self_weight};
 
 use super::surface::SurfaceCoefficients;
@@ -22,6 +23,10 @@ pub struct ZoneCoefficients<S> {
     pub air_capacity: S,
     /// Infiltration: constant, by temperature difference, by wind [1/h], [1/(h K)], [1/(h m/s)].
     pub infiltration: [S; 3],
+    /// Infiltration by stack and wind, from a pressure test.
+    pub leakage: Option<StackWind<S>>,
+    /// Part of the transmitted sun that the air gets at once [-].
+    pub solar_to_air: Option<S>,
     /// Exchange areas between its surfaces, by row [m2]; empty without long-wave exchange.
     pub exchange: Vec<S>,
     /// Sum of each surface's exchange areas with the others [m2].
@@ -73,7 +78,14 @@ impl<S: Real> ZoneCoefficients<S> {
         };
         let exchange_sums = sums_of_others(&exchange, zone_surfaces.len());
         let air_capacity = values.get(definition.volume) * heat;
-        let Infiltration { constant, temperature, wind } = &definition.infiltration;
+        let Infiltration { constant, temperature, wind, leakage: test } = &definition.infiltration;
+        let mut infiltration = [constant, temperature, wind].map(|id| values.get(*id));
+        let mut by_stack_and_wind = None;
+        if let Some(test) = test {
+            let (constant, law) = leakage(test, values);
+            infiltration[0] += constant;
+            by_stack_and_wind = law;
+        }
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
         let ventilation = definition.ventilation.iter();
         let thermostat = |ideal_load| Thermostat::new(ideal_load, values);
@@ -86,7 +98,9 @@ impl<S: Real> ZoneCoefficients<S> {
             cooling: definition.cooling.as_ref().map(thermostat),
             capacity: air_capacity * values.get(definition.capacity_factor),
             air_capacity,
-            infiltration: [constant, temperature, wind].map(|id| values.get(*id)),
+            infiltration,
+            leakage: by_stack_and_wind,
+            solar_to_air: definition.solar_to_air.map(|id| values.get(id)),
             exchange,
             exchange_sums,
             emission,

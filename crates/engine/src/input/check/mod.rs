@@ -6,6 +6,7 @@
 //!
 //! A message says where, what was found and what was expected.
 
+mod air;
 mod construction;
 mod numbers;
 mod surface;
@@ -61,6 +62,7 @@ pub(crate) fn check(description: &Description) -> Checked {
     for path in &description.air_paths {
         zone::check_air_path(description, path)?;
     }
+    air::check_air(description)?;
     for opening in &description.openings {
         zone::check_opening(description, opening)?;
     }

@@ -2,7 +2,8 @@
 
 use serde::Deserialize;
 
-use super::air_flow::{AirPath, Opening};
+use super::air_flow::{AirPath, DirectedFlow, Door, Opening, VentilationUnit};
+use super::bridge::ThermalBridge;
 use super::construction::Construction;
 use super::material::Material;
 use super::parameter::Parameter;
@@ -27,6 +28,18 @@ pub struct Description {
     /// Air exchanged between zones.
     #[serde(default)]
     pub air_paths: Vec<AirPath>,
+    /// Air that flows from zone to zone.
+    #[serde(default)]
+    pub directed_flows: Vec<DirectedFlow>,
+    /// Doors between zones.
+    #[serde(default)]
+    pub doors: Vec<Door>,
+    /// Mechanical ventilation.
+    #[serde(default)]
+    pub ventilation_units: Vec<VentilationUnit>,
+    /// Thermal bridges.
+    #[serde(default)]
+    pub thermal_bridges: Vec<ThermalBridge>,
     /// Openings between zones and outdoors.
     #[serde(default)]
     pub openings: Vec<Opening>,

@@ -10,6 +10,7 @@
 //! [`ParamId`] has to be named in `input/parameter_walk.rs` too; the compiler asks for it.
 
 mod air_flow;
+mod bridge;
 mod building;
 mod construction;
 mod convection;
@@ -21,7 +22,8 @@ mod site;
 mod surface;
 mod zone;
 
-pub use air_flow::{AirPath, Opening};
+pub use air_flow::{AirPath, DirectedFlow, Door, Opening, UnitFlow, VentilationUnit};
+pub use bridge::ThermalBridge;
 pub use building::Description;
 pub use construction::{Construction, Layer};
 pub use convection::{Convection, PowerLaw};
@@ -32,5 +34,5 @@ pub use phase_change::{HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail}
 pub use site::{Clouds, DiffuseSky, Site, Sky, WindProfile};
 pub use surface::{Exposure, Facing, FrameShare, OutdoorLongwave, Sensor, Side, Surface};
 pub use zone::{
-    Gain, IdealLoad, Infiltration, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave, ZoneSun,
+    Gain, IdealLoad, Infiltration, Leakage, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave, ZoneSun,
 };

@@ -27,6 +27,9 @@ pub struct Zone {
     /// Which surfaces the sun transmitted by its windows reaches.
     #[serde(default)]
     pub sun: ZoneSun,
+    /// Part of the sun transmitted by its windows that the air gets at once, by what light furniture gives off [-]. None: nothing.
+    #[serde(default)]
+    pub solar_to_air: Option<ParamId>,
     /// Heat from people, light and machines.
     #[serde(default)]
     pub gains: Vec<Gain>,
@@ -53,6 +56,34 @@ pub struct Infiltration {
 
     /// Air changes per wind speed at the mast [1/h per m/s].
     pub wind: ParamId,
+
+    /// What a pressure test adds to them. None: nothing.
+    #[serde(default)]
+    pub leakage: Option<Leakage>,
+}
+
+/// Infiltration by the air changes of a pressure test at 50 Pa; equations and sources in `physics/leakage.rs`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Leakage {
+    /// `factor n50`.
+    Factor {
+        /// Air changes at 50 Pa [1/h].
+        n50: ParamId,
+        /// Shielding [-].
+        factor: ParamId,
+    },
+    /// By stack and wind.
+    StackWind {
+        /// Air changes at 50 Pa [1/h].
+        n50: ParamId,
+        /// Exponent of the pressure difference [-].
+        exponent: ParamId,
+        /// Stack coefficient [(m/s)2/K], of flows in L/s and areas in cm2.
+        stack: ParamId,
+        /// Wind coefficient [-], of flows in L/s and areas in cm2.
+        wind: ParamId,
+    },
 }
 
 /// Long-wave exchange inside a zone.

@@ -30,7 +30,7 @@ pub const SCHEMES: [Scheme; 3] = [Scheme::Sdirk2, Scheme::BackwardEuler, Scheme:
 
 /// Writes a description part by part.
 pub struct Builder {
-    description: Description,
+    pub description: Description,
 }
 
 /// A layer: material, thickness [m] (ignored for a resistance), nodes.
@@ -75,6 +75,10 @@ impl Builder {
             constructions: Vec::new(),
             zones: Vec::new(),
             air_paths: Vec::new(),
+            directed_flows: Vec::new(),
+            doors: Vec::new(),
+            ventilation_units: Vec::new(),
+            thermal_bridges: Vec::new(),
             openings: Vec::new(),
             surfaces: Vec::new(),
             sensors: Vec::new(),
@@ -174,10 +178,12 @@ impl Builder {
                 constant: self.number(&format!("zones.{name}.infiltration.constant"), air_changes),
                 temperature: self.number(&format!("zones.{name}.infiltration.temperature"), 0.0),
                 wind: self.number(&format!("zones.{name}.infiltration.wind"), 0.0),
+                leakage: None,
             },
             longwave,
             view_weights: Vec::new(),
             sun: ZoneSun::Area,
+            solar_to_air: None,
             gains: Vec::new(),
             ventilation: Vec::new(),
             heating: None,

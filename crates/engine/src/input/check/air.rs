@@ -1,0 +1,88 @@
+//! Doors, flows that fans drive, and thermal bridges.
+
+use super::{Checked, check_index, check_schedule, refuse};
+use crate::input::description::{Description, Door, Facing, SetPoint, ThermalBridge, VentilationUnit};
+
+/// All of them.
+pub(super) fn check_air(description: &Description) -> Checked {
+    for door in &description.doors {
+        check_door(description, door)?;
+    }
+    for flow in &description.directed_flows {
+        let place = format!("air path {}", flow.name);
+        check_ends(description, &place, [flow.from, flow.to])?;
+        check_schedule(description, &place, flow.schedule)?;
+    }
+    for unit in &description.ventilation_units {
+        check_unit(description, unit)?;
+    }
+    for bridge in &description.thermal_bridges {
+        check_bridge(description, bridge)?;
+    }
+    for (index, zone) in description.zones.iter().enumerate() {
+        if zone.solar_to_air.is_some() && window_between_zones(description, index) {
+            return refuse(
+                format_args!("zone {}, solar_to_air", zone.name),
+                "a window to another zone",
+                "windows to outdoors only",
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Two different zones.
+fn check_ends(description: &Description, place: &str, ends: [usize; 2]) -> Checked {
+    for zone in ends {
+        check_index(place, "zone", zone, description.zones.len())?;
+    }
+    if ends[0] == ends[1] {
+        return refuse(place, format_args!("zone {} twice", ends[0]), "two zones");
+    }
+    Ok(())
+}
+
+fn check_door(description: &Description, door: &Door) -> Checked {
+    let place = format!("door {}", door.name);
+    check_ends(description, &place, door.between)?;
+    check_schedule(description, &place, door.schedule)
+}
+
+fn check_unit(description: &Description, unit: &VentilationUnit) -> Checked {
+    let place = format!("ventilation unit {}", unit.name);
+    for flow in unit.supply.iter().chain(&unit.exhaust) {
+        check_index(&place, "zone", flow.zone, description.zones.len())?;
+        check_schedule(description, &place, flow.schedule)?;
+    }
+    if let Some(SetPoint::Scheduled { channel }) = unit.temperature {
+        check_schedule(description, &place, Some(channel))?;
+    }
+    if unit.temperature.is_some() && unit.recovery.is_some() {
+        return refuse(place, "both", "a temperature of the supplied air or heat recovery");
+    }
+    Ok(())
+}
+
+fn check_bridge(description: &Description, bridge: &ThermalBridge) -> Checked {
+    let place = format!("thermal bridge {}", bridge.name);
+    check_index(&place, "zone", bridge.zone, description.zones.len())?;
+    match bridge.to {
+        Facing::Zone { zone } => check_ends(description, &place, [bridge.zone, zone]),
+        Facing::Measured { channel } => check_schedule(description, &place, Some(channel)),
+        Facing::Adiabatic => refuse(place, "adiabatic", "outdoors, a zone or a temperature"),
+        Facing::Outdoors | Facing::Ground { .. } => Ok(()),
+    }
+}
+
+/// Whether sun passes from a zone to another one.
+fn window_between_zones(description: &Description, zone: usize) -> bool {
+    let of = |facing: &Facing| match facing {
+        Facing::Zone { zone } => Some(*zone),
+        _ => None,
+    };
+    description.surfaces.iter().any(|wall| {
+        let ends = [of(&wall.outside.facing), of(&wall.inside.facing)];
+        let glazed = description.constructions.get(wall.construction).is_some_and(|c| c.glazing.is_some());
+        glazed && ends.iter().all(Option::is_some) && ends.contains(&Some(zone))
+    })
+}

@@ -1,0 +1,59 @@
+"""Quantities over time that a building takes from measured columns, without a schedule of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, Literal
+
+CourseKind = Literal["temperature", "power", "flow"]
+
+#: Units that a column may have, by what it means: the factor to the unit of the engine.
+POWER_UNITS: Final[Mapping[str, float]] = {"W": 1.0, "kW": 1000.0}
+FLOW_UNITS: Final[Mapping[str, float]] = {"m3/s": 1.0, "m3/h": 1.0 / 3600.0, "L/s": 1e-3}
+_UNITS: Final[Mapping[str, Mapping[str, float]]] = {
+    "temperature": {"degC": 1.0},
+    "power": POWER_UNITS,
+    "flow": FLOW_UNITS,
+}
+
+
+@dataclass(frozen=True)
+class ColumnCourse:
+    """A measured column, or the mean of several, as a course over time.
+
+    Attributes
+    ----------
+    kind : str
+        What it is: a temperature is used with its value at an instant, a power or flow with its mean over a
+        step.
+    columns : tuple of str
+        Names of the columns; their mean is used.
+    unit : str
+        Unit of the columns.
+
+    Examples
+    --------
+    >>> ColumnCourse("flow", ("supply",), "m3/h").name
+    'supply [m3/h]'
+    """
+
+    kind: CourseKind
+    columns: tuple[str, ...]
+    unit: str
+
+    @property
+    def name(self) -> str:
+        """The columns and their unit."""
+        mean = "mean of " if len(self.columns) > 1 else ""
+        return f"{mean}{' and '.join(self.columns)} [{self.unit}]"
+
+    @property
+    def scale(self) -> float:
+        """Factor from the unit of the columns to that of the engine."""
+        return _UNITS[self.kind][self.unit]
+
+
+def temperature_course(columns: str | tuple[str, ...]) -> ColumnCourse:
+    """Course of a measured temperature, or of the mean of several."""
+    return ColumnCourse("temperature", (columns,) if isinstance(columns, str) else columns, "degC")

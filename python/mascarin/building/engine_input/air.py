@@ -1,0 +1,108 @@
+"""Air between zones, mechanical ventilation, openings and thermal bridges as the engine reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from mascarin.building.bridge import ThermalBridge
+from mascarin.building.courses import temperature_course
+from mascarin.building.description import Description
+from mascarin.building.driven import Driven
+from mascarin.building.engine_input.ids import Ids, Json, Places, below, deeper, fields_of
+from mascarin.building.set_point import SetPoint
+from mascarin.building.ventilation import VentilationUnit
+from mascarin.building.zone import AirPath, Opening
+
+
+def schedule_of(part: Any, places: Places) -> Json:
+    """Channel of the schedule of a part."""
+    return {"schedule": None if part.schedule is None else places[part.schedule]}
+
+
+def driven(part: Driven, key: str, places: Places, ids: Ids) -> Json:
+    """Describe a power or flow: a number with its schedule, or a factor with the channel of its column."""
+    if part.course is None:
+        return {key: ids(key), **schedule_of(part, places)}
+    return {key: ids("factor"), "schedule": places[part.course.name]}
+
+
+def set_point(point: SetPoint, places: Places, ids: Ids) -> Json:
+    """Describe a temperature that is a number, a schedule or a column."""
+    if point.temperature is not None:
+        return {"kind": "constant", "temperature": ids("temperature")}
+    return {"kind": "scheduled", "channel": places[str(point.course)]}
+
+
+def describe_air_path(building: Description, places: Places, name: str, path: AirPath, ids: Ids) -> Json:
+    """Describe the air that two zones exchange, or that flows from one to the other."""
+    first, second = _zones(building, path)
+    ends = {"from": first, "to": second} if path.one_way else {"between": [first, second]}
+    return {"name": name, **ends, **driven(path, "flow", places, ids)}
+
+
+def describe_door(building: Description, places: Places, name: str, path: AirPath, ids: Ids) -> Json:
+    """Describe a door between two zones."""
+    written = {"name": name, "between": list(_zones(building, path))}
+    return {**written, **fields_of(path.door, ids, "door."), **schedule_of(path, places)}
+
+
+def _zones(building: Description, path: AirPath) -> tuple[int, int]:
+    first, second = (list(building.zones).index(zone) for zone in path.between)
+    return first, second
+
+
+def describe_unit(building: Description, places: Places, name: str, unit: VentilationUnit, ids: Ids) -> Json:
+    """Describe a ventilation unit."""
+    zones = list(building.zones)
+
+    def flows(section: str) -> list[Json]:
+        return [
+            {"zone": zones.index(zone), **driven(flow, "flow", places, deeper(ids, f"{section}.{zone}"))}
+            for zone, flow in getattr(unit, section).items()
+        ]
+
+    given = unit.temperature
+    return {
+        "name": name,
+        "supply": flows("supply"),
+        "exhaust": flows("exhaust"),
+        "temperature": None if given is None else set_point(given, places, deeper(ids, "temperature")),
+        "recovery": None if unit.recovery is None else ids("recovery"),
+    }
+
+
+def describe_opening(building: Description, places: Places, name: str, opening: Opening, ids: Ids) -> Json:
+    """Describe an opening to outdoors."""
+    zone = list(building.zones).index(opening.zone)
+    return {"name": name, "zone": zone, **fields_of(opening, ids), **schedule_of(opening, places)}
+
+
+def describe_bridges(building: Description, places: Places, ids: Mapping[str, int]) -> list[Json]:
+    """Describe the thermal bridges of all zones."""
+    return [
+        _bridge(building, places, (zone, name), bridge, below(ids, f"zones.{zone}.thermal_bridges.{name}"))
+        for zone, part in building.zones.items()
+        for name, bridge in part.thermal_bridges.items()
+    ]
+
+
+def _bridge(
+    building: Description, places: Places, at: tuple[str, str], bridge: ThermalBridge, ids: Ids
+) -> Json:
+    zones = list(building.zones)
+    to: Json = {"kind": bridge.faces}
+    if bridge.zone is not None:
+        to["zone"] = zones.index(bridge.zone)
+    elif bridge.ground is not None:
+        to |= fields_of(bridge.ground, ids, "ground.")
+    elif bridge.measured is not None:
+        to["channel"] = places[temperature_course(bridge.measured).name]
+    linear = bridge.psi is not None
+    return {
+        "name": ".".join(at),
+        "zone": zones.index(at[0]),
+        "coefficient": ids("psi" if linear else "chi"),
+        "size": ids("length" if linear else "number"),
+        "to": to,
+    }
