@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from mascarin.building.glazing import Glazing
@@ -41,3 +43,8 @@ class Description(Part):
         default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
     )
     sensors: dict[Name, Sensor] = Field(default_factory=dict, description="Thermometers inside walls by name")
+    ties: dict[str, Literal["factor", "value"]] = Field(
+        default_factory=dict,
+        description="Path with * -> how all numbers that it matches vary as one parameter of that path: by a "
+        "common factor, or by a common value",
+    )

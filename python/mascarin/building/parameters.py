@@ -48,6 +48,8 @@ class Parameter:
         Why it is structural or has no effect in this building; None: it has an effect.
     range_reason : str
         Reason for the width of the range.
+    members : tuple of str
+        Paths that vary as one with it, where it is a tied parameter; see ``ties`` of the building.
 
     Examples
     --------
@@ -72,6 +74,7 @@ class Parameter:
     structural: bool
     reason: str | None
     range_reason: str
+    members: tuple[str, ...] = ()
 
     @property
     def varies(self) -> bool:

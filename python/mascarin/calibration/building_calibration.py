@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.arguments import kind_of, mapping_of, require_type
+from mascarin.building.ties import expanded
 from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.calibration.cost import CostName
 from mascarin.calibration.problem import FitParameter
@@ -77,7 +78,8 @@ def calibrate(
         of 0.5 degC; every other unit needs one.
     vary : sequence of str or FitParameter, or mapping of str to (float, float) or FitParameter
         Parameters to estimate by path, within the ranges of the building, with bounds (low, high), or from
-        `fit_parameter` with start, scale and prior. [unit of each]
+        `fit_parameter` with start, scale and prior. A path with ``*`` stands for all that it matches, which
+        vary as one where the building ties them. [unit of each]
     parameters : mapping of str to float, optional
         Values by path that replace those of the building. [unit of each]
     start, end : str, datetime or pandas.Timestamp, optional
@@ -151,6 +153,7 @@ def calibrate(
     from mascarin.weather.timezones import moment
 
     _require_types(measurements, sensors, vary, record)
+    vary = _written_out(building, vary)
     paths = [p if isinstance(p, str) else p.path for p in vary]
     chosen = in_climate(building, climate, parameters=parameters, varied=paths)
     named = {name: s if isinstance(s, Sensor) else Sensor(s) for name, s in sensors.items()}
@@ -211,6 +214,16 @@ def _uncertainties(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dic
         name: sensor.uncertainty(output.unit, f"sensors: {name}")
         for (name, sensor), output in zip(sensors.items(), simulation.outputs, strict=True)
     }
+
+
+def _written_out(
+    building: Building,
+    vary: Sequence[str | FitParameter] | Mapping[str, tuple[float, float] | FitParameter],
+) -> Sequence[str | FitParameter] | Mapping[str, tuple[float, float] | FitParameter]:
+    """The same with every path with ``*`` replaced by those that it matches, unless they are tied."""
+    if isinstance(vary, Mapping):
+        return {one: bounds for path, bounds in vary.items() for one in expanded(building, [path])}
+    return [one for p in vary for one in (expanded(building, [p]) if isinstance(p, str) else [p])]
 
 
 def _parameters(

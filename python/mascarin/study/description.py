@@ -184,7 +184,17 @@ class SensitivityPlan(Part):
     groups: dict[str, tuple[str, ...]] = Field(
         default_factory=dict, description="Name -> paths of parameters that are analyzed as a group"
     )
+    only: tuple[str, ...] | None = Field(
+        None,
+        min_length=1,
+        description="Parameters that are varied; by default all with a range. In every path * stands for any "
+        "name between two dots, or for a part of one",
+    )
     leave_out: tuple[str, ...] = Field((), description="Parameters that are not varied")
+    tie: dict[str, Literal["factor", "value"]] = Field(
+        default_factory=dict,
+        description="Path with * -> how all numbers that it matches vary as one, as in `identification`",
+    )
 
 
 class Free(Part):
@@ -202,6 +212,12 @@ class Free(Part):
     )
     scale: Literal["linear", "log"] = Field(
         "linear", description="Scale of the search; log for parameters that span several decades"
+    )
+    tie: bool | Literal["factor", "value"] = Field(
+        False,
+        description="Whether all numbers that a path with * matches vary as one: by a common factor (true or "
+        "factor; bounds, prior and start are factors, 1 is the building), or by a common value (value); "
+        "false: each varies alone",
     )
     at_bound: str | None = Field(None, description="Why an estimate at a bound would be plausible")
     reference: tuple[float, float] | None = Field(

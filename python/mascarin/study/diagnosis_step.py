@@ -240,9 +240,10 @@ class _Search:
         """Refit, and derive by all parameters."""
         self._refit()
         paths = self.model.paths
-        here = [self.model.simulation.position(path) for path in paths]
+        value = self.model.simulation.value_in
+        now, then = (np.array([value(v, path) for path in paths]) for v in (self.vector, self.slopes_at))
         width = np.array([self.model.range[path][1] - self.model.range[path][0] for path in paths])
-        moved = np.abs(self.vector - self.slopes_at)[here] / width
+        moved = np.abs(now - then) / width
         if len(self.paths) != len(paths) or moved.max(initial=0.0) > _FAR:
             self.paths, self.slopes = paths, self.model.slopes(paths, self.vector)
             self.slopes_at = self.vector

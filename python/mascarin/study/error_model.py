@@ -207,7 +207,7 @@ def effects_of_unknowns(
     moved, steps = [base], []
     for one in unknown:
         parameter = simulation.building.parameter(one.path)
-        value = float(base[simulation.position(one.path)])
+        value = simulation.value_in(base, one.path)
         step = _STEP * one.uncertainty
         step = step if value + step <= min(parameter.upper, parameter.high) else -step
         moved.append(simulation.varied([one.path], np.array([[value + step]]), base)[0])

@@ -94,8 +94,8 @@ class Effects:
             chosen = self._factors[first : first + _CHUNK]
             samples, steps = [], []
             for factor in chosen:
-                place, span = self._simulation.position(factor.path), factor.high - factor.low
-                value = float(self._values[place])
+                span = factor.high - factor.low
+                value = self._simulation.value_in(self._values, factor.path)
                 step = STEP if value + STEP * span <= factor.high else -STEP
                 moved = np.array([[value + step * span]])
                 samples.append(self._simulation.varied([factor.path], moved, self._values)[0])

@@ -51,8 +51,7 @@ def slopes(study: Setup, run: ModelRun, fit: Calibration) -> Array:
     base = run.simulation.vector(fit.values)
     vectors, steps = [base], []
     for parameter in fit.problem.parameters:
-        at = run.simulation.position(parameter.path)
-        here = parameter.position(float(base[at]))
+        here = parameter.position(run.simulation.value_in(base, parameter.path))
         there = here + (_STEP if here + _STEP <= 1.0 else -_STEP)
         moved = np.array([[parameter.value(there)]])
         vectors.append(run.simulation.varied([parameter.path], moved, base)[0])

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import __version__
+from mascarin.building.ties import expanded, with_ties
 from mascarin.errors import InputError
 from mascarin.simulation.initial import Initial, MeasuredStart
 from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, problem
 from mascarin.study.description import IdentificationPlan, StudyFile
 from mascarin.study.forms import Choice, Forms, label
+from mascarin.study.patterns import ties_of
 from mascarin.study.phase_change import melting_layers
 from mascarin.validation.comparison import Metrics, compare
 from mascarin.validation.observation import PERIODS, Observation, observe
@@ -238,8 +240,11 @@ class Setup:
             return self.building
         if variant in self._further:
             return self.building.replace(self._further[variant].changes)
+        own = self.plan.variants[variant]
         with self.places.blame("variants", variant, "changes"):
-            return self.building.replace(self.plan.variants[variant].changes)
+            building = self.building.replace(own.changes)
+        with self.places.blame("variants", variant, "parameters"):
+            return with_ties(building, ties_of(own.parameters))
 
     @cached_property
     def forms(self) -> Forms:
@@ -296,11 +301,13 @@ class Setup:
         """Ranges of the parameters; the mesh is chosen once, for the whole ranges."""
         ranges = {p.path: (p.low, p.high) for p in building.parameters() if not p.structural}
         if self.plan.sensitivity is not None:
-            for path, span in self.plan.sensitivity.ranges.items():
-                known = self.building.parameter(path).path
-                if known in ranges:
-                    low, high = ranges[known]
-                    ranges[known] = (min(low, span[0]), max(high, span[1]))
+            for pattern, span in self.plan.sensitivity.ranges.items():
+                for known in (
+                    self.building.parameter(one).path for one in expanded(self.building, [pattern])
+                ):
+                    if known in ranges:
+                        low, high = ranges[known]
+                        ranges[known] = (min(low, span[0]), max(high, span[1]))
         sought = self.plan.identification
         for free in [] if sought is None else fit_parameters(self.building, sought):
             if free.path in ranges:
@@ -356,7 +363,12 @@ class Setup:
             for path, free in plan.parameters.items()
             if not own.alone and self.building.parameter(path).path in known
         }
-        return plan.model_copy(update={"parameters": shared | own.parameters})
+        every = {
+            one: free
+            for path, free in own.parameters.items()
+            for one in expanded(self.building_of(variant), [path])
+        }
+        return plan.model_copy(update={"parameters": shared | every})
 
     @cached_property
     def observation(self) -> Observation:
