@@ -15,7 +15,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from mascarin.building.initial_state import GivenStart
-from mascarin.study import description
+from mascarin.study import data_sources, description
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "studies.md"
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
@@ -23,10 +23,11 @@ BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
 #: Title and kind of each section, in the order of the page.
 SECTIONS = (
     ("The study", description.StudyFile),
-    ("`climate`", description.ClimateSource),
-    ("`climate.measured`", description.MeasuredWeather),
-    ("`measurements`", description.Table),
+    ("`climate`", data_sources.ClimateSource),
+    ("`climate.measured`", data_sources.MeasuredWeather),
+    ("`measurements`", data_sources.Table),
     ("Each of `sensors`", description.Sensor),
+    ("`periods` of a sensor", description.SensorPeriods),
     ("`initial`", GivenStart),
     ("`periods`", description.Periods),
     ("`quality`", description.Quality),

@@ -355,8 +355,8 @@ class Building(Description):
         *above, key = path.split(".")
         holder = piece_at(self, above)
         fields = type(holder).model_fields if isinstance(holder, Part) else holder
-        if isinstance(fields, Mapping) and key in fields:
-            return path
+        if isinstance(fields, Mapping) and (key in fields or (above and not isinstance(holder, Part))):
+            return path  # what is there, or a new part of a section
         return self.parameter(path).path
 
     def _is_structural(self, path: str) -> bool:

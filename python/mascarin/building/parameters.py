@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io.listing import Listing
 from mascarin.building.inactive import without_effect
@@ -18,6 +18,9 @@ from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
+
+
+_MEASURED: Final = "follows a measured column: give a range if it is uncertain"
 
 
 @dataclass(frozen=True)
@@ -92,10 +95,24 @@ def listed(found: Iterable[Parameter]) -> Listing[Parameter]:
 def parameters(building: Description) -> list[Parameter]:
     """All numbers of a building, in the order of the description."""
     inactive, cut = without_effect(building), cut_ranges(building)
+    measured = _measured_powers(building)
+    inactive = {**dict.fromkeys(measured, _MEASURED), **inactive}
+    cut |= measured
     return [
         _parameter(path, number, source, inactive.get(path), cut.get(path))
         for path, number, source in leaves(building)
     ]
+
+
+def _measured_powers(building: Description) -> dict[str, tuple[float, float]]:
+    """Powers that follow a measured column and have no range of their own: they are as they were measured."""
+    found = {}
+    for name, zone in building.zones.items():
+        for gain, numbers in zone.gains.items():
+            schedule = None if numbers.schedule is None else building.schedules[numbers.schedule]
+            if schedule is not None and schedule.column is not None and numbers.power.range is None:
+                found[f"zones.{name}.gains.{gain}.power"] = (float(numbers.power), float(numbers.power))
+    return found
 
 
 def _parameter(

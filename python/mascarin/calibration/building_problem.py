@@ -149,6 +149,8 @@ def problem_of(
     parameters: Sequence[FitParameter],
     uncertainties: Mapping[str, SensorUncertainty],
     weight: float = 1.0,
+    *,
+    only: Flags | None = None,
 ) -> CalibrationProblem:
     """Make a calibration problem from a simulation and its measured series.
 
@@ -166,6 +168,8 @@ def problem_of(
         Standard uncertainty of the sensors to compare, by name.
     weight : float
         How many times each sample counts. [-]
+    only : ndarray of bool, shape (n, S), optional
+        Values of each sensor to compare, of those at these instants; all when absent.
 
     Returns
     -------
@@ -189,6 +193,7 @@ def problem_of(
             standard_uncertainty=uncertainties[observation.names[s]].absolute,
             relative_standard_uncertainty=uncertainties[observation.names[s]].relative,
             unit=simulation.outputs[s].unit,
+            use=None if only is None else only[rows, s],
             weight=weight,
         )
         for s in columns

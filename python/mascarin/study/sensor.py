@@ -8,9 +8,26 @@ from pydantic import AliasChoices, Field
 
 from mascarin.building.part import Part
 from mascarin.calibration.sensor_errors import SensorError
-from mascarin.study.field_types import Duration
+from mascarin.study.field_types import Duration, Hours, Spans, Stretch
 from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
 from mascarin.weather.times import seconds_of
+
+
+class SensorPeriods(Part):
+    """Periods of one sensor, in place of those of the study; what is excluded is excluded in addition."""
+
+    identification: Spans | None = Field(
+        None, description="Start and end of its identification period, or a list of such pairs"
+    )
+    corroboration: Spans | None = Field(
+        None, description="Start and end of its validation period, or a list of such pairs"
+    )
+    exclude: tuple[Stretch, ...] = Field(
+        (), description="Days and pairs of times in which it is not compared"
+    )
+    exclude_hours: tuple[Hours, ...] = Field(
+        (), description="Pairs of hours of the day in which it is not compared"
+    )
 
 
 class Sensor(Part):
@@ -74,6 +91,9 @@ class Sensor(Part):
     )
     label: str | None = Field(None, description="Name in the report")
     use: bool = Field(True, description="Whether it is used in the identification")
+    periods: SensorPeriods | None = Field(
+        None, description="Its own periods, where they differ from those of the study"
+    )
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -235,12 +235,13 @@ class Study(Setup):
         if out is None:
             with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), self.inputs()) as workspace:
                 return self._carried_out(workspace, progress)
-        with Workspace(Path(out), self.inputs()) as workspace:
+        with Workspace(Path(out), self.inputs()) as workspace, self.keeping(workspace):
             results = self._carried_out(workspace, progress)
             write_all(results, workspace)
             report.write(workspace.out / "report.html", *read_folder(workspace.out))
             workspace.drop("sensitivity")
             workspace.drop("diagnosis")
+            workspace.drop(NAME)
         return results
 
     def _carried_out(self, workspace: Workspace, progress: ProgressOption) -> StudyResults:
@@ -253,10 +254,10 @@ class Study(Setup):
         fitted, fit, intervals = found.run, found.fit, found.intervals
         variants = runs.variants()
         residuals = examined(self, fitted)
-        sources = error_sources(self, fitted, fit, progress)
         criteria = judged(self, before, fitted)
         aims = judge(self.plan.aims, fitted.scores, where=f"{self.places.file}: aims")
         missed = not all(verdict.passed for verdict in (*criteria["fitted"], *aims))
+        sources = error_sources(self, fitted, fit, progress) if missed else None
         causes = diagnosis(self, fitted, fit, workspace, missed=missed, progress=progress)
         slope = slopes(self, fitted, fit)
         return StudyResults(

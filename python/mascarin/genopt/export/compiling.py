@@ -81,7 +81,7 @@ def compile_study(study: Study) -> Case:
         run=simulation.compiled,
         seen=seen,
         positions=np.array([simulation.position(path) for path in problem.paths], dtype=np.int64),
-        place=((at - seconds[0]) / step)[np.flatnonzero(study.during["identification"])],
+        place=((at - seconds[0]) / step)[np.flatnonzero(study.rows)],
         parameters=problem.parameters,
         sensors=problem.sensors,
         cost=study.sought.cost,
