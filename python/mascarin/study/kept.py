@@ -13,6 +13,7 @@ import io
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
@@ -74,6 +75,23 @@ def kept(
     np.savez(buffer, tree=np.frombuffer(text.encode(), dtype=np.uint8), **arrays)
     atomic.write(path, buffer.getvalue())
     return made
+
+
+def written_once(workspace: Workspace, key: object, write: Callable[[], Sequence[Path]]) -> list[Path]:
+    """Files that a function writes, unless they were written with the same key before.
+
+    Parameters
+    ----------
+    workspace : Workspace
+        The folder.
+    key : object
+        All that the files depend on beside the inputs of the study.
+    write : callable
+        Writes them.
+    """
+    names = kept(workspace, ("files", key), lambda: [str(path) for path in write()])
+    paths = [Path(name) for name in names]
+    return paths if all(path.is_file() for path in paths) else list(write())
 
 
 def kept_series(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -17,6 +17,7 @@ from mascarin.figures.files import save
 from mascarin.sensitivity.files import save_all
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
+from mascarin.study.kept import written_once
 from mascarin.study.tables import tables_of, write_tables
 from mascarin.validation.days import FAR
 
@@ -47,10 +48,14 @@ def write_all(findings: Findings, workspace: Workspace) -> None:
     out = workspace.out
     figures = out / "figures"
     figures.mkdir(parents=True, exist_ok=True)
+
+    def once(name: str, write: Callable[[], Sequence[Path]]) -> list[Path]:
+        return written_once(workspace, (str(out), name, findings.calibration.x.tolist()), write)
+
     written = [
-        *_figures(findings, figures),
-        save(_days(findings), figures / "days.svg"),
-        *fit_figures(findings.calibration, findings.profiles, figures),
+        *_figures(findings, figures, workspace),
+        *once("days", lambda: [save(_days(findings), figures / "days.svg")]),
+        *once("fit", lambda: fit_figures(findings.calibration, findings.profiles, figures)),
         *write_tables(out / "tables", tables_of(findings)),
         *(out / name for name in ("study.json", RUN, "report.html")),
     ]
@@ -96,7 +101,7 @@ def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> 
     return [save(figure, folder / f"{name}.svg") for name, figure in figures.items()]
 
 
-def _figures(findings: Findings, folder: Path) -> list[Path]:
+def _figures(findings: Findings, folder: Path, workspace: Workspace) -> list[Path]:
     study = findings.setup
     observation = study.observation
     models = {
@@ -105,11 +110,17 @@ def _figures(findings: Findings, folder: Path) -> list[Path]:
     }
     drawn = []
     for s, name in enumerate(observation.names):
-        curves = {label: values[:, s] for label, values in models.items()}
-        drawn.append(save(_comparison(study, s, curves), folder / f"{name}.svg"))
-        if findings.sensitivity is not None:
-            hours = analyzed_hours(study, findings.sensitivity)
-            drawn += save_all(findings.sensitivity, name, folder, name, hours)
+
+        def draw(s: int = s, name: str = name) -> list[Path]:
+            curves = {label: values[:, s] for label, values in models.items()}
+            files = [save(_comparison(study, s, curves), folder / f"{name}.svg")]
+            if findings.sensitivity is not None:
+                hours = analyzed_hours(study, findings.sensitivity)
+                files += save_all(findings.sensitivity, name, folder, name, hours)
+            return files
+
+        key = (str(folder), name, findings.calibration.x.tolist())
+        drawn += written_once(workspace, key, draw)
     return drawn
 
 
