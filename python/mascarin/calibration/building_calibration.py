@@ -17,6 +17,7 @@ from mascarin.calibration.problem import FitParameter
 from mascarin.calibration.result import Calibration
 from mascarin.calibration.rules import MethodName, Rules
 from mascarin.calibration.search import solve
+from mascarin.calibration.stated_errors import depth_paths, require_supported, with_sensor_errors
 from mascarin.errors import InputError
 from mascarin.progress import ProgressOption
 from mascarin.simulation.options import Scheme, TimeLike
@@ -75,7 +76,9 @@ def calibrate(
     sensors : mapping of str to str or Sensor
         Output of the model -> column of the table, or `Sensor` with its uncertainty. The key of a sensor with
         an ``output`` of its own is its name. A sensor in degC without uncertainty has an expanded uncertainty
-        of 0.5 degC; every other unit needs one.
+        of 0.5 degC; every other unit needs one. Where a sensor states an ``offset``, ``common``, ``gain``,
+        ``clock`` or ``depth``, these errors and those of the model are estimated together with the
+        parameters, as in a study; the period then has at least two days.
     vary : sequence of str or FitParameter, or mapping of str to (float, float) or FitParameter
         Parameters to estimate by path, within the ranges of the building, with bounds (low, high), or from
         `fit_parameter` with start, scale and prior. A path with ``*`` stands for all that it matches, which
@@ -172,6 +175,10 @@ def calibrate(
         ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
     )  # fmt: skip
     _require_varying(measurements, named, begin, simulation.end)
+    errors = any(sensor.states_errors for sensor in named.values())
+    if errors:
+        require_supported(method, cost, (simulation.end - begin).total_seconds() / 3600.0)
+        depth_paths(simulation, named)
     observation = observe(simulation, measurements, named, begin)
     every = np.ones(len(observation.times), dtype=np.bool_)
     found = solve(
@@ -183,6 +190,8 @@ def calibrate(
         record=None if record is None else Path(record),
         progress=progress,
     )
+    if errors:
+        found = with_sensor_errors(found, simulation, observation, named, rules or Rules())
     return replace(found, nominal_building=chosen, times=observation.times)
 
 

@@ -116,6 +116,20 @@ def _errors(study: Setup) -> None:
             )
     if not study.estimates_errors:
         return
+    leave_out = "or leave out discrepancy, alternatives and the errors of the sensors"
+    if plan.method == "emcee":
+        with study.places.blame("identification", "method"):
+            raise InputError(
+                "found emcee in a study that estimates errors of sensors and model, which it would not "
+                f"sample; expected a method that finds a minimum: write least-squares, {leave_out}"
+            )
+    if plan.profiles:
+        with study.places.blame("identification", "profiles"):
+            raise InputError(
+                "found true in a study that estimates errors of sensors and model, which a profile would "
+                "hold at zero; expected false: the intervals of the estimates account for these errors "
+                f"already; leave profiles out, {leave_out}"
+            )
     if hours < _FEWEST_HOURS:
         with study.places.blame("periods", "identification"):
             raise InputError(
