@@ -118,7 +118,7 @@ def test_the_table_of_keys_agrees_with_the_code() -> None:
 def test_every_kind_of_section_is_on_the_page() -> None:
     kinds = {
         kind
-        for kind in vars(description).values()
+        for kind in [*vars(description).values(), *vars(data_sources).values()]
         if isinstance(kind, type)
         and issubclass(kind, BaseModel)
         and kind.__module__.startswith("mascarin.study.")

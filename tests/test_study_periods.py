@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -39,7 +40,7 @@ def days_of(study: Study, period: str, sensor: int) -> list[int]:
     """Days of March of which a sensor has values in a period."""
     measured = np.isfinite(study.observation.measured[:, sensor])
     use = study.used[period][:, sensor] & measured
-    return sorted(set(study.observation.times[use].day))
+    return sorted({stamp.day for stamp in study.observation.times[use]})
 
 
 def test_several_periods(bench: Bench) -> None:
@@ -65,7 +66,7 @@ def test_excluded_days_and_hours(bench: Bench) -> None:
     study = Study.from_yaml(bench.study)
     times, measured = study.observation.times, study.observation.measured
     gone = np.isnan(measured[:, 0])
-    local = times.tz_localize(None)
+    local: Any = times.tz_localize(None)
     expected = (
         (local.day == 4)
         | ((local.day == 7) & (local.hour >= 6) & (local.hour < 12))
@@ -182,4 +183,4 @@ def test_a_study_of_several_periods_is_written_and_read(bench: Bench, tmp_path: 
 
 def test_no_period_is_refused() -> None:
     with pytest.raises(InputError, match="no period"):
-        Periods(identification=[])  # type: ignore[arg-type]
+        Periods(identification=[])

@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -60,11 +61,11 @@ def kept(
     path = workspace.path(f"{NAME}-{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}.npz")
     if path.exists():
         try:
-            with np.load(path, allow_pickle=False) as stored:
+            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as stored:
                 arrays = {name: stored[name] for name in stored.files}
             tree = json.loads(bytes(arrays.pop("tree")).decode())
             found: _T = _decoded(tree, arrays, known)
-        except (ValueError, OSError, KeyError, TypeError, AttributeError, EOFError):
+        except (ValueError, OSError, KeyError, TypeError, AttributeError, EOFError, BadZipFile):
             path.unlink()  # of another version, or incomplete
         else:
             return found
