@@ -63,16 +63,20 @@ class ModelRuns:
         plan : SensitivityPlan
             What is varied, and how often.
         """
-        setup = self._setup
+        setup, key = self._setup, ("analysis", plan.model_dump_json())
         with reporting(self._progress, "sensitivity analysis") as report:
-            return analyze(
-                setup.short(),
-                plan,
-                factors(setup.building, plan),
-                setup.lead_seconds,
-                setup.observation.names,
-                self._workspace,
-                report,
+            return kept(
+                setup.workspace,
+                key,
+                lambda: analyze(
+                    setup.short(),
+                    plan,
+                    factors(setup.building, plan),
+                    setup.lead_seconds,
+                    setup.observation.names,
+                    self._workspace,
+                    report,
+                ),
             )
 
     def fitted(self) -> tuple[ModelRun, Calibration]:
