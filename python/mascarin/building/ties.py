@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from mascarin.building.parameters import Parameter
 from mascarin.building.part import fault
@@ -19,13 +19,36 @@ from mascarin.errors import InputError
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
 
-    from mascarin.building.building import Building
     from mascarin.building.description import Description
 
 How = Literal["factor", "value"]
 
 
-def with_ties(building: Building, ties: Mapping[str, How]) -> Building:
+class Building(Protocol):
+    """What is needed of a building, which itself needs this module."""
+
+    @property
+    def ties(self) -> Mapping[str, How]:
+        """Pattern -> how."""
+        ...
+
+    def parameters(self) -> Iterable[Parameter]:
+        """All numbers."""
+        ...
+
+    def parameter(self, path: str) -> Parameter:
+        """One number."""
+        ...
+
+    def replace(self, values: Mapping[str, Any]) -> Any:
+        """The same building with other parts."""
+        ...
+
+
+AnyBuilding = TypeVar("AnyBuilding", bound=Building)
+
+
+def with_ties(building: AnyBuilding, ties: Mapping[str, How]) -> AnyBuilding:
     """The building with further tied parameters.
 
     Parameters
@@ -52,7 +75,8 @@ def with_ties(building: Building, ties: Mapping[str, How]) -> Building:
     if all(building.ties.get(path) == how for path, how in ties.items()):
         return building
     _ = tied(ties, _numbers(building))
-    return building.replace({"ties": {**building.ties, **ties}})
+    changed: AnyBuilding = building.replace({"ties": {**building.ties, **ties}})
+    return changed
 
 
 def with_tied(building: Description, found: Iterable[Parameter]) -> list[Parameter]:

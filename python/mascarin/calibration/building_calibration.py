@@ -175,10 +175,7 @@ def calibrate(
         ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
     )  # fmt: skip
     _require_varying(measurements, named, begin, simulation.end)
-    errors = any(sensor.states_errors for sensor in named.values())
-    if errors:
-        require_supported(method, cost, (simulation.end - begin).total_seconds() / 3600.0)
-        depth_paths(simulation, named)
+    errors = _states_errors(simulation, named, method, cost, begin)
     observation = observe(simulation, measurements, named, begin)
     every = np.ones(len(observation.times), dtype=np.bool_)
     found = solve(
@@ -193,6 +190,17 @@ def calibrate(
     if errors:
         found = with_sensor_errors(found, simulation, observation, named, rules or Rules())
     return replace(found, nominal_building=chosen, times=observation.times)
+
+
+def _states_errors(
+    simulation: Simulation, sensors: Mapping[str, Sensor], method: str, cost: str, start: pd.Timestamp
+) -> bool:
+    """Whether errors of sensors are estimated; what cannot estimate them is refused."""
+    if not any(sensor.states_errors for sensor in sensors.values()):
+        return False
+    require_supported(method, cost, (simulation.end - start).total_seconds() / 3600.0)
+    depth_paths(simulation, sensors)
+    return True
 
 
 def _require_types(measurements: object, sensors: object, vary: object, record: object) -> None:
