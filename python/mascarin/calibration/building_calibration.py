@@ -150,10 +150,7 @@ def calibrate(
     >>> found.building.parameter(path).value == found.values[path]
     True
     """
-    import pandas as pd
-
     from mascarin.simulation.compiling import in_climate  # needs pydantic
-    from mascarin.weather.timezones import moment
 
     _require_types(measurements, sensors, vary, record)
     vary = _written_out(building, vary)
@@ -161,8 +158,7 @@ def calibrate(
     chosen = in_climate(building, climate, parameters=parameters, varied=paths)
     named = {name: s if isinstance(s, Sensor) else Sensor(s) for name, s in sensors.items()}
     free = _parameters(chosen, vary)
-    lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))
-    begin = climate.index[0] + lead if start is None else moment(start, climate.grid.zone, "start")
+    lead, begin = _beginning(climate, start, warm_up)
     simulation = Simulation(
         chosen,
         climate,
@@ -190,6 +186,18 @@ def calibrate(
     if errors:
         found = with_sensor_errors(found, simulation, observation, named, rules or Rules())
     return replace(found, nominal_building=chosen, times=observation.times)
+
+
+def _beginning(
+    climate: Climate, start: TimeLike | None, warm_up: str | float
+) -> tuple[pd.Timedelta, pd.Timestamp]:
+    """Length of the warm-up, and the first instant that is compared."""
+    import pandas as pd
+
+    from mascarin.weather.timezones import moment
+
+    lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))
+    return lead, climate.index[0] + lead if start is None else moment(start, climate.grid.zone, "start")
 
 
 def _states_errors(
