@@ -15,7 +15,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from mascarin.building.initial_state import GivenStart
-from mascarin.study import description
+from mascarin.study import data_sources, description
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "studies.md"
 BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
@@ -23,10 +23,11 @@ BEGIN, END = "<!-- keys: begin -->", "<!-- keys: end -->"
 #: Title and kind of each section, in the order of the page.
 SECTIONS = (
     ("The study", description.StudyFile),
-    ("`climate`", description.ClimateSource),
-    ("`climate.measured`", description.MeasuredWeather),
-    ("`measurements`", description.Table),
+    ("`climate`", data_sources.ClimateSource),
+    ("`climate.measured`", data_sources.MeasuredWeather),
+    ("`measurements`", data_sources.Table),
     ("Each of `sensors`", description.Sensor),
+    ("`periods` of a sensor", description.SensorPeriods),
     ("`initial`", GivenStart),
     ("`periods`", description.Periods),
     ("`quality`", description.Quality),
@@ -118,7 +119,7 @@ def test_the_table_of_keys_agrees_with_the_code() -> None:
 def test_every_kind_of_section_is_on_the_page() -> None:
     kinds = {
         kind
-        for kind in vars(description).values()
+        for kind in [*vars(description).values(), *vars(data_sources).values()]
         if isinstance(kind, type)
         and issubclass(kind, BaseModel)
         and kind.__module__.startswith("mascarin.study.")

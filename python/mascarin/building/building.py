@@ -28,6 +28,8 @@ from mascarin.building.part import Part, insist, is_number, plain_value
 from mascarin.building.references import sources
 from mascarin.building.replacing import piece_at, put, replaced_at, without_parts
 from mascarin.building.rules import faults
+from mascarin.building.ties import faults as tie_faults
+from mascarin.building.ties import spread, spread_ranges, with_tied
 from mascarin.building.yaml_document import read
 from mascarin.building.yaml_text import text_of
 from mascarin.errors import InputError
@@ -92,6 +94,7 @@ class Building(Description):
         building._fill(surfaces=derive_surfaces(building.surfaces, building.site.latitude))
         building._fill(windows=derive_windows(building.windows, building.surfaces))
         building._fill(zones=derive_zones(building.zones, building.surfaces, building.site.latitude))
+        insist(*(tie_faults(building, parameters(building)) if building.ties else ()))
         return building
 
     # --- from and to files and mappings ---------------------------------------------------------------------
@@ -223,7 +226,7 @@ class Building(Description):
 
     @cached_property
     def _parameters(self) -> dict[str, Parameter]:
-        return {parameter.path: parameter for parameter in parameters(self)}
+        return {one.path: one for one in with_tied(self, parameters(self))}
 
     def parameters(self) -> Listing[Parameter]:
         """All numbers of the description, each with its path, unit, range and source.
@@ -279,14 +282,13 @@ class Building(Description):
         values : mapping of str to float, part or other
             By path: a number, which keeps its range; a whole part, as an object or as what the YAML file
             would hold there (``"tarp"``, ``{"kind": "tarp", "roughness": "smooth"}``); a word; or None,
-            which removes the key.
+            which removes the key. ``*`` in a path stands for any name between two dots.
 
         Returns
         -------
         Building
-            Checked as a description that is read from a file. What Mascarin derived from the rest is derived
-            again when a part, a word or a structural number is replaced. When only parameters that may vary
-            in a run are replaced it stays as it was, as in a sweep over these parameters.
+            Checked as if read from a file. What Mascarin derived from the rest is derived again when a part,
+            a word or a structural number is replaced; it stays when only numbers that may vary are replaced.
 
         Raises
         ------
@@ -300,7 +302,7 @@ class Building(Description):
         >>> cell.replace({"site.sky": "brunt"}).site.sky.kind
         'brunt'
         """
-        changes = mapping_of("values", values, "values or parts by path")
+        changes = spread(self, mapping_of("values", values, "values or parts by path"))
         places = {self._place(path, value): without_parts(value) for path, value in changes.items()}
         structural = any(self._is_structural(path) for path in places)
         plain = self.written(keep_derived=not structural)
@@ -353,8 +355,8 @@ class Building(Description):
         *above, key = path.split(".")
         holder = piece_at(self, above)
         fields = type(holder).model_fields if isinstance(holder, Part) else holder
-        if isinstance(fields, Mapping) and key in fields:
-            return path
+        if isinstance(fields, Mapping) and (key in fields or (above and not isinstance(holder, Part))):
+            return path  # what is there, or a new part of a section
         return self.parameter(path).path
 
     def _is_structural(self, path: str) -> bool:
@@ -482,7 +484,8 @@ class Building(Description):
         >>> cell.to_engine().paths[0]
         'site.altitude'
         """
-        return describe(self, self.parameters(), step_seconds, ranges or {})
+        numbers = [one for one in self.parameters() if not one.members]
+        return describe(self, numbers, step_seconds, spread_ranges(self, ranges or {}))
 
     # --- how it is shown ------------------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Literal
 
 from pydantic import Field
 
@@ -46,6 +47,11 @@ class Description(Part):
         default_factory=dict, description="Overhangs, fins and other opaque screens outdoors by name"
     )
     sensors: dict[Name, Sensor] = Field(default_factory=dict, description="Thermometers inside walls by name")
+    ties: dict[str, Literal["factor", "value"]] = Field(
+        default_factory=dict,
+        description="Path with * -> how all numbers that it matches vary as one parameter of that path: by a "
+        "common factor, or by a common value",
+    )
 
     @cached_property
     def connections(self) -> Connections:

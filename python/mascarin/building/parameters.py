@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from mascarin._io.listing import Listing
 from mascarin.building.inactive import without_effect
@@ -18,6 +18,9 @@ from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building.description import Description
+
+
+_MEASURED: Final = "follows a measured column: give a range if it is uncertain"
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,8 @@ class Parameter:
         Why it is structural or has no effect in this building; None: it has an effect.
     range_reason : str
         Reason for the width of the range.
+    members : tuple of str
+        Paths that vary as one with it, where it is a tied parameter; see ``ties`` of the building.
 
     Examples
     --------
@@ -72,6 +77,7 @@ class Parameter:
     structural: bool
     reason: str | None
     range_reason: str
+    members: tuple[str, ...] = ()
 
     @property
     def varies(self) -> bool:
@@ -89,10 +95,25 @@ def listed(found: Iterable[Parameter]) -> Listing[Parameter]:
 def parameters(building: Description) -> list[Parameter]:
     """All numbers of a building, in the order of the description."""
     inactive, cut = without_effect(building), cut_ranges(building)
+    measured = _measured_powers(building)
+    inactive = {**dict.fromkeys(measured, _MEASURED), **inactive}
+    cut |= measured
     return [
         _parameter(path, number, source, inactive.get(path), cut.get(path))
         for path, number, source in leaves(building)
     ]
+
+
+def _measured_powers(building: Description) -> dict[str, tuple[float, float]]:
+    """Powers that follow a measured column and have no range of their own: they are as they were measured."""
+    found = {}
+    for name, zone in building.zones.items():
+        for gain, numbers in zone.gains.items():
+            power, named = numbers.power, numbers.schedule
+            measured = named is not None and building.schedules[named].column is not None
+            if measured and power is not None and power.range is None:
+                found[f"zones.{name}.gains.{gain}.power"] = (float(power), float(power))
+    return found
 
 
 def _parameter(

@@ -9,6 +9,7 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from mascarin.building.building import Building
 from mascarin.building.documenting import summary_of
+from mascarin.building.inheriting import EXTENDS, SET
 from mascarin.building.number import Number
 
 USUAL_KINDS: Final = ("solid", "factor")
@@ -23,6 +24,21 @@ class _Schema(GenerateJsonSchema):
 
     def field_title_should_be_set(self, schema: Any) -> bool:
         return False
+
+
+#: Keys that are read before the description itself.
+_INHERITING: Final = {
+    EXTENDS: {
+        "type": "string",
+        "description": "File of another description, which this one adds to and changes; its path is counted "
+        "from this file",
+    },
+    SET: {
+        "type": "object",
+        "description": "Path -> value or part that replaces the one of the extended description",
+        "additionalProperties": True,
+    },
+}
 
 
 def json_schema() -> dict[str, Any]:
@@ -42,6 +58,9 @@ def json_schema() -> dict[str, Any]:
     for part in (schema, *schema["$defs"].values()):
         for form in (part, *part.get("anyOf", ())):
             _as_written(form)
+    schema["properties"] |= _INHERITING
+    # What a description extends may give all that is required.
+    schema["anyOf"] = [{"required": schema.pop("required")}, {"required": [EXTENDS]}]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | schema
 
 

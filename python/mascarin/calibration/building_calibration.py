@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin._io.arguments import kind_of, mapping_of, require_type
+from mascarin.building.ties import expanded
 from mascarin.calibration.building_problem import fit_parameter, problem_of
 from mascarin.calibration.cost import CostName
 from mascarin.calibration.problem import FitParameter
 from mascarin.calibration.result import Calibration
 from mascarin.calibration.rules import MethodName, Rules
 from mascarin.calibration.search import solve
+from mascarin.calibration.stated_errors import depth_paths, require_supported, with_sensor_errors
 from mascarin.errors import InputError
 from mascarin.progress import ProgressOption
 from mascarin.simulation.options import Scheme, TimeLike
@@ -74,10 +76,13 @@ def calibrate(
     sensors : mapping of str to str or Sensor
         Output of the model -> column of the table, or `Sensor` with its uncertainty. The key of a sensor with
         an ``output`` of its own is its name. A sensor in degC without uncertainty has an expanded uncertainty
-        of 0.5 degC; every other unit needs one.
+        of 0.5 degC; every other unit needs one. Where a sensor states an ``offset``, ``common``, ``gain``,
+        ``clock`` or ``depth``, these errors and those of the model are estimated together with the
+        parameters, as in a study; the period then has at least two days.
     vary : sequence of str or FitParameter, or mapping of str to (float, float) or FitParameter
         Parameters to estimate by path, within the ranges of the building, with bounds (low, high), or from
-        `fit_parameter` with start, scale and prior. [unit of each]
+        `fit_parameter` with start, scale and prior. A path with ``*`` stands for all that it matches, which
+        vary as one where the building ties them. [unit of each]
     parameters : mapping of str to float, optional
         Values by path that replace those of the building. [unit of each]
     start, end : str, datetime or pandas.Timestamp, optional
@@ -145,18 +150,15 @@ def calibrate(
     >>> found.building.parameter(path).value == found.values[path]
     True
     """
-    import pandas as pd
-
     from mascarin.simulation.compiling import in_climate  # needs pydantic
-    from mascarin.weather.timezones import moment
 
     _require_types(measurements, sensors, vary, record)
+    vary = _written_out(building, vary)
     paths = [p if isinstance(p, str) else p.path for p in vary]
     chosen = in_climate(building, climate, parameters=parameters, varied=paths)
     named = {name: s if isinstance(s, Sensor) else Sensor(s) for name, s in sensors.items()}
     free = _parameters(chosen, vary)
-    lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))
-    begin = climate.index[0] + lead if start is None else moment(start, climate.grid.zone, "start")
+    lead, begin = _beginning(climate, start, warm_up)
     simulation = Simulation(
         chosen,
         climate,
@@ -169,6 +171,7 @@ def calibrate(
         ranges={parameter.path: (parameter.lower, parameter.upper) for parameter in free},
     )  # fmt: skip
     _require_varying(measurements, named, begin, simulation.end)
+    errors = _states_errors(simulation, named, method, cost, begin)
     observation = observe(simulation, measurements, named, begin)
     every = np.ones(len(observation.times), dtype=np.bool_)
     found = solve(
@@ -180,7 +183,32 @@ def calibrate(
         record=None if record is None else Path(record),
         progress=progress,
     )
+    if errors:
+        found = with_sensor_errors(found, simulation, observation, named, rules or Rules())
     return replace(found, nominal_building=chosen, times=observation.times)
+
+
+def _beginning(
+    climate: Climate, start: TimeLike | None, warm_up: str | float
+) -> tuple[pd.Timedelta, pd.Timestamp]:
+    """Length of the warm-up, and the first instant that is compared."""
+    import pandas as pd
+
+    from mascarin.weather.timezones import moment
+
+    lead = pd.Timedelta(seconds=seconds_of(warm_up, "warm_up"))
+    return lead, climate.index[0] + lead if start is None else moment(start, climate.grid.zone, "start")
+
+
+def _states_errors(
+    simulation: Simulation, sensors: Mapping[str, Sensor], method: str, cost: str, start: pd.Timestamp
+) -> bool:
+    """Whether errors of sensors are estimated; what cannot estimate them is refused."""
+    if not any(sensor.states_errors for sensor in sensors.values()):
+        return False
+    require_supported(method, cost, (simulation.end - start).total_seconds() / 3600.0)
+    depth_paths(simulation, sensors)
+    return True
 
 
 def _require_types(measurements: object, sensors: object, vary: object, record: object) -> None:
@@ -211,6 +239,16 @@ def _uncertainties(simulation: Simulation, sensors: Mapping[str, Sensor]) -> dic
         name: sensor.uncertainty(output.unit, f"sensors: {name}")
         for (name, sensor), output in zip(sensors.items(), simulation.outputs, strict=True)
     }
+
+
+def _written_out(
+    building: Building,
+    vary: Sequence[str | FitParameter] | Mapping[str, tuple[float, float] | FitParameter],
+) -> Sequence[str | FitParameter] | Mapping[str, tuple[float, float] | FitParameter]:
+    """The same with every path with ``*`` replaced by those that it matches, unless they are tied."""
+    if isinstance(vary, Mapping):
+        return {one: bounds for path, bounds in vary.items() for one in expanded(building, [path])}
+    return [one for p in vary for one in (expanded(building, [p]) if isinstance(p, str) else [p])]
 
 
 def _parameters(

@@ -128,9 +128,14 @@ class BuildingModel:
         _, found = self.simulation.jacobian_vector([*self.paths, *following.values()], vector)
         by_parameter = found[: len(self.paths)]
         for path, further in zip(following, found[len(self.paths) :], strict=True):
-            by_parameter[self.paths.index(path)] += further
+            by_parameter[self._owner(path)] += further
         # Instants and means are linear in the records, and so are their derivatives.
         return np.moveaxis(self._compared(by_parameter), 0, -1)
+
+    def _owner(self, path: str) -> int:
+        """Position of the parameter that a number belongs to: its own, or one that ties it."""
+        known = [self.simulation.building.parameter(one) for one in self.paths]
+        return next(k for k, one in enumerate(known) if path in (one.path, *one.members))
 
     def _compared(self, records: Array) -> Array:
         series = self.observation.simulated(self.simulation.index, records)
@@ -144,6 +149,8 @@ def problem_of(
     parameters: Sequence[FitParameter],
     uncertainties: Mapping[str, SensorUncertainty],
     weight: float = 1.0,
+    *,
+    only: Flags | None = None,
 ) -> CalibrationProblem:
     """Make a calibration problem from a simulation and its measured series.
 
@@ -161,6 +168,8 @@ def problem_of(
         Standard uncertainty of the sensors to compare, by name.
     weight : float
         How many times each sample counts. [-]
+    only : ndarray of bool, shape (n, S), optional
+        Values of each sensor to compare, of those at these instants; all when absent.
 
     Returns
     -------
@@ -175,7 +184,7 @@ def problem_of(
     rows = np.flatnonzero(use)
     paths = tuple(parameter.path for parameter in parameters)
     for path in paths:
-        simulation.position(path)  # refuses structural parameters
+        simulation.value_in(simulation.values, path)  # refuses structural parameters
     model = BuildingModel(simulation, observation, paths, rows, columns)
     sensors = tuple(
         FitSensor(
@@ -184,6 +193,7 @@ def problem_of(
             standard_uncertainty=uncertainties[observation.names[s]].absolute,
             relative_standard_uncertainty=uncertainties[observation.names[s]].relative,
             unit=simulation.outputs[s].unit,
+            use=None if only is None else only[rows, s],
             weight=weight,
         )
         for s in columns

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final
 
 import numpy as np
@@ -16,8 +16,42 @@ from mascarin.errors import SolverError
 
 Floats = NDArray[np.float64]
 
+#: A search ends when so many steps lower the cost by less than a part `_MOVING` of it.
+_IDLE: Final = 6
+_MOVING: Final = 1e-7
 #: Rows of one block of the QR decomposition.
 _BLOCK: Final = 256
+
+
+class _Idle(Exception):
+    """The cost no longer moves."""
+
+
+class _Watch:
+    """Ends a search whose cost no longer moves.
+
+    Where a run has a small error of its own (iterations that end, a layer that begins to melt) the reduction
+    differs from what the derivatives predict. The method then never takes its tolerance of the cost as met,
+    and shrinks its steps down to the tolerance of the position.
+    """
+
+    def __init__(self, size: Callable[[Floats], Floats]) -> None:
+        self._size = size
+        self._lowest: list[float] = []
+        self.best: Floats = np.empty(0)
+
+    def __call__(self, z: Floats) -> Floats:
+        found = self._size(z)
+        cost = float(found @ found)
+        before = self._lowest[-1] if self._lowest else np.inf
+        if cost < before or not self._lowest:
+            self.best = np.array(z)
+        self._lowest.append(float(np.fmin(cost, before)))
+        if len(self._lowest) > _IDLE:
+            fall = self._lowest[-1 - _IDLE] - self._lowest[-1]
+            if fall <= _MOVING * self._lowest[-1]:
+                raise _Idle
+        return found
 
 
 def least_squares(
@@ -53,23 +87,28 @@ def least_squares(
             continue
         squares = Squares(problem, evaluator, rules)
         tight = rules.tolerance
-        found = optimize.least_squares(
-            squares.size,
-            z,
-            jac=squares.condensed,
-            bounds=(0.0, 1.0),
-            method="trf",
-            ftol=tight,
-            xtol=tight,
-            gtol=tight,
-            max_nfev=100,
-        )
+        watch = _Watch(squares.size)
+        try:
+            found = optimize.least_squares(
+                watch,
+                z,
+                jac=squares.condensed,
+                bounds=(0.0, 1.0),
+                method="trf",
+                ftol=tight,
+                xtol=tight,
+                gtol=tight,
+                max_nfev=100,
+            )
+            ended, message = found.x, str(found.message)
+        except _Idle:
+            ended, message = watch.best, f"the cost did not move in {_IDLE} steps"
         # The method stays a little inside its bounds: an end that near to a bound is the bound.
-        end = np.where(found.x < 1e-6, 0.0, np.where(found.x > 1.0 - 1e-6, 1.0, found.x))
+        end = np.where(ended < 1e-6, 0.0, np.where(ended > 1.0 - 1e-6, 1.0, ended))
         x = problem.values(end[None])[0]
         cost = float(evaluator.costs(x[None])[0])
         start = problem.values(z[None])[0]
-        minima.append(Minimum(k, start, x, cost, squares.evaluations, str(found.message)))
+        minima.append(Minimum(k, start, x, cost, squares.evaluations, message))
     text = f"{len(minima)} start{'s' * (len(minima) != 1)} searched"
     return minima, text + (f", {skipped} skipped because the model fails there" if skipped else "")
 

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from mascarin.calibration.cost import Cost
 from mascarin.calibration.least_squares import derivative, scale_of
+from mascarin.calibration.refining import METHOD
 from mascarin.errors import InputError, did_you_mean
 from mascarin.figures import calibration as figures
 
@@ -202,7 +203,8 @@ def profiles(
     Raises
     ------
     InputError
-        Another cost than ``nll``, an unknown parameter, or fewer than 5 points.
+        Another cost than ``nll``, a calibration together with errors of sensors, an unknown parameter, or
+        fewer than 5 points.
 
     Examples
     --------
@@ -220,6 +222,11 @@ def profiles(
     if fit.cost_name != "nll":
         msg = f"a profile needs a likelihood: found the cost '{fit.cost_name}', expected 'nll'"
         raise InputError(msg)
+    if fit.uncertainty_method.startswith(METHOD):
+        raise InputError(
+            "a profile holds the errors of the sensors and of the model at zero: found a calibration "
+            "together with these errors, expected one without; its intervals account for them already"
+        )
     if points < 5:
         msg = f"points: found {points}, expected at least 5"
         raise InputError(msg)

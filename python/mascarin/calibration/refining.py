@@ -21,6 +21,7 @@ from mascarin.calibration.uncertainty import AT_BOUND
 from mascarin.calibration.warnings import on_bounds, warnings
 
 Floats = NDArray[np.float64]
+Keep = Callable[[object, Callable[[], tuple[Floats, Floats]]], tuple[Floats, Floats]]
 
 METHOD: Final = (
     "joint normal distribution of the parameters, the errors of the sensors and the errors of the model, "
@@ -37,7 +38,12 @@ _ENOUGH: Final = 0.05
 
 
 def refined(
-    fit: Calibration, stated: ErrorStatement, rules: Rules, further: Floats | None = None
+    fit: Calibration,
+    stated: ErrorStatement,
+    rules: Rules,
+    further: Floats | None = None,
+    *,
+    keep: Keep | None = None,
 ) -> tuple[Calibration, Joint]:
     """Estimate the parameters again, together with the errors of the sensors and of the model.
 
@@ -51,6 +57,8 @@ def refined(
         Kind of derivatives.
     further : ndarray, shape (T, S, K), optional
         Effects of numbers that are not estimated, for one standard uncertainty. [unit]
+    keep : callable, optional
+        From a key and a function to what the function returns, or returned before.
 
     Returns
     -------
@@ -66,9 +74,12 @@ def refined(
     """
     problem = fit.problem
     evaluator = Evaluator(Cost(problem, fit.cost_name))
+    kept: Keep = keep or (lambda key, make: make())
 
     def linear(z: Floats) -> Linear:
-        residuals, jacobian = residuals_and_derivatives(problem, evaluator, z, rules)
+        residuals, jacobian = kept(
+            z.tolist(), lambda: residuals_and_derivatives(problem, evaluator, z, rules)
+        )
         simulated = np.where(problem.mask, residuals + np.where(problem.mask, problem.measured, 0.0), 0.0)
         return Linear(z, simulated, jacobian, np.zeros((*simulated.shape, 0)))
 

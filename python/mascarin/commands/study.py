@@ -151,7 +151,8 @@ def validate(
     file : str
         Study file (YAML), or the name of an example study.
     out : Path
-        Folder for validation.json and tables. Default: nothing is written.
+        Folder for validation.json, series.csv (measured, predicted, band and residual of each sensor) and
+        tables. Default: nothing is written.
     """
     from mascarin.study import steps
 

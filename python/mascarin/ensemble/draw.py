@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from mascarin._io import memory
 from mascarin.building.set_points import tied_set_points
+from mascarin.building.ties import expanded
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
@@ -29,7 +30,8 @@ def latin_hypercube(
     seed : int
         Seed: the same one gives the same members.
     vary : sequence of str, optional
-        Paths of the parameters to draw; default all that are not structural and whose range is not empty.
+        Paths of the parameters to draw, ``*`` for any name between two dots; default
+        all that are not structural and whose range is not empty.
 
     Returns
     -------
@@ -56,7 +58,13 @@ def latin_hypercube(
 
     if members < 1:
         raise InputError(f"members: found {members}; expected 1 or more")
-    chosen = [building.parameter(path) for path in vary] if vary else building.parameters()
+    every = building.parameters()
+    following = {path for one in every for path in one.members}
+    chosen = (
+        [building.parameter(path) for path in expanded(building, vary)]
+        if vary
+        else [one for one in every if one.path not in following]
+    )
     for parameter in chosen if vary else ():
         if parameter.structural:
             raise InputError(f"{parameter.path}: is structural and not drawn; give it in a table of samples")
@@ -74,5 +82,5 @@ def latin_hypercube(
     )
     unit = qmc.LatinHypercube(len(free), seed=seed).random(members)
     drawn = {p.path: p.low + (p.high - p.low) * unit[:, k] for k, p in enumerate(free)}
-    following = {tied[path]: values for path, values in drawn.items() if path in tied}
-    return pd.DataFrame(drawn | following)
+    second_values = {tied[path]: values for path, values in drawn.items() if path in tied}
+    return pd.DataFrame(drawn | second_values)

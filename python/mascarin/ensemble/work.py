@@ -187,7 +187,7 @@ def _batches(inputs: EnsembleInputs, simulation: Simulation, rows: list[int]) ->
 def _vectors(simulation: Simulation, members: Members, rows: list[int]) -> Array:
     vectors = np.tile(simulation.values, (len(rows), 1))
     for path, column in members.numbers.items():
-        vectors[:, simulation.position(path)] = column[rows]
+        simulation.assign(vectors, path, column[rows])
     return vectors
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -25,7 +26,16 @@ _EVERY: Final = 1_000_000
 """More points than a record has: none is left out of a file."""
 
 
-def write_figures(folder: Path, study: Mapping[str, Any], curves: Series) -> list[Path]:
+Once = Callable[[str, Callable[[], Sequence[Path]]], list[Path]]
+"""Calls a function that writes files, or names the files that it wrote before under this name."""
+
+
+def write_figures(
+    folder: Path,
+    study: Mapping[str, Any],
+    curves: Series,
+    once: Once = lambda _, write: list(write()),
+) -> list[Path]:
     """Write the figures of a study that compare models with measurements.
 
     Parameters
@@ -37,6 +47,8 @@ def write_figures(folder: Path, study: Mapping[str, Any], curves: Series) -> lis
         As in :class:`~mascarin.report.schema.Study`.
     curves : Series
         Curves.
+    once : callable, optional
+        Leaves out figures that were written before a study was interrupted.
 
     Returns
     -------
@@ -50,15 +62,23 @@ def write_figures(folder: Path, study: Mapping[str, Any], curves: Series) -> lis
         if not sensors:
             continue
         title = f"{period_label(study, period)}, {text.span_of(moment(start), moment(end))}"
-        written += save_both(_all(study, times, sensors, title), folder / f"{period}-all")
+        whole = partial(_all, study, times, sensors, title)
+        written += once(f"{period}-all", partial(_save, whole, folder / f"{period}-all"))
         for sensor, one in sensors.items():
-            figure = _single(study, times, sensor, one, f"{one.label}: {title}")
-            written += save_both(figure, folder / f"{period}-{sensor}")
+            single = partial(_single, study, times, sensor, one, f"{one.label}: {title}")
+            written += once(f"{period}-{sensor}", partial(_save, single, folder / f"{period}-{sensor}"))
     times, sensors = compared_sensors(study, curves, slice(0, len(curves)), _EVERY)
     for sensor, one in sensors.items():
-        figure = _single(study, times, sensor, one, f"{one.label}: whole record", shaded=True)
-        written.append(save(figure, folder / f"{sensor}.svg"))
+        title = f"{one.label}: whole record"
+        single = partial(_single, study, times, sensor, one, title, shaded=True)
+        path = folder / f"{sensor}.svg"
+        written += once(sensor, partial(_save, single, path))
     return written
+
+
+def _save(draw: Callable[[], Figure], path: Path) -> list[Path]:
+    """Draw a figure and save it: as SVG where the path says so, else as SVG and PDF."""
+    return [save(draw(), path)] if path.suffix == ".svg" else list(save_both(draw(), path))
 
 
 def _all(

@@ -11,6 +11,7 @@ import numpy as np
 
 from mascarin._io.arguments import bounds_of, finite_number, mapping_of, names_of
 from mascarin.building.set_points import tied_set_points
+from mascarin.building.ties import expanded, spread
 from mascarin.errors import InputError, SolverError
 from mascarin.progress import reporting
 from mascarin.sensitivity.factors import DistributionName, Factor
@@ -69,7 +70,7 @@ def factors_of(
     leave_out : sequence of str
         Paths that keep their value.
     only : sequence of str, optional
-        Paths that vary; default all.
+        Paths that vary; default all. In every path ``*`` stands for any name between two dots.
 
     Returns
     -------
@@ -95,8 +96,8 @@ def factors_of(
         building, mapping_of("distributions", distributions, "names by path: {path: 'normal'}")
     )
     group_of = _members(building, mapping_of("groups", groups, "lists of paths by name: {name: [path]}"))
-    fixed = {building.parameter(path).path for path in names_of("leave_out", leave_out)}
-    chosen = None if only is None else {building.parameter(path).path for path in only}
+    fixed = _every(building, names_of("leave_out", leave_out))
+    chosen = None if only is None else _every(building, only)
     tied = tied_set_points(building)
     found: list[Factor] = []
     for parameter in building.parameters():
@@ -206,7 +207,7 @@ def sensitivity_analysis(
     if vary is not None and not isinstance(vary, Mapping):
         vary = names_of("vary", vary)
     building = in_climate(building, climate, measurements=measurements, varied=[*fixed, *(vary or ())])
-    given = {building.parameter(path).path: value for path, value in fixed.items()}
+    given = {building.parameter(path).path: value for path, value in spread(building, fixed).items()}
     only, ranges = _chosen(building, vary, given)
     chosen = factors_of(
         building, ranges=ranges, distributions=distributions, groups=groups,
@@ -350,15 +351,24 @@ def checked_range(building: Building, path: str, span: tuple[float, float]) -> t
 
 
 def _resolved(building: Building, given: Mapping[str, _T] | None) -> dict[str, _T]:
-    """The same mapping by the full paths of the building."""
-    return {building.parameter(path).path: value for path, value in (given or {}).items()}
+    """The same mapping by the full paths of the building; what is given later counts."""
+    return {
+        building.parameter(path).path: value
+        for pattern, value in (given or {}).items()
+        for path in expanded(building, [pattern])
+    }
+
+
+def _every(building: Building, paths: Sequence[str]) -> set[str]:
+    """Full paths of all that is named, patterns included."""
+    return {building.parameter(path).path for path in expanded(building, paths)}
 
 
 def _members(building: Building, groups: Mapping[str, Sequence[str]]) -> dict[str, str]:
     """Group of each path that has one."""
     found: dict[str, str] = {}
     for name, paths in groups.items():
-        for given in names_of(f"groups: {name}", paths):
+        for given in expanded(building, names_of(f"groups: {name}", paths)):
             path = building.parameter(given).path
             if path in found:
                 raise InputError(f"{given}: is in the groups {found[path]} and {name}; expected one of them")
@@ -376,11 +386,14 @@ def _chosen(
         raise InputError(
             f"vary: found the text '{vary}', expected a list of paths or a mapping to (low, high)"
         )
-    paths = [building.parameter(path).path for path in vary]
+    spans = vary if isinstance(vary, Mapping) else dict.fromkeys(vary)
+    wide = {
+        building.parameter(path).path: span
+        for pattern, span in spans.items()
+        for path in expanded(building, [pattern])
+    }
+    paths = list(wide)
     both = [path for path in paths if path in given]
     if both:
         raise InputError(f"{both[0]}: is in vary and in parameters; a fixed value does not vary: remove one")
-    ranges = {}
-    if isinstance(vary, Mapping):
-        ranges = {path: span for path, span in zip(paths, vary.values(), strict=True) if span is not None}
-    return paths, ranges
+    return paths, {path: span for path, span in wide.items() if span is not None}

@@ -84,8 +84,46 @@ class VectorRuns:
         """
         vector = self.values.copy()
         for path, value in parameters.items():
-            vector[self.position(path)] = value
+            self.assign(vector, path, value)
         return vector
+
+    def assign(self, vectors: Array, path: str, values: Array | float) -> None:
+        """Write values of one parameter into vectors, tied parameters into all that they stand for.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (..., P)
+            Changed in place. [unit of each]
+        path : str
+            The parameter.
+        values : float or ndarray, shape (...)
+            Its values. [unit]
+        """
+        for position, weight in self._spread(path):
+            vectors[..., position] = values if weight is None else weight * values
+
+    def value_in(self, vector: Array, path: str) -> float:
+        """Value of one parameter in a vector, that of a tied one from the first that it stands for. [unit]
+
+        Parameters
+        ----------
+        vector : ndarray, shape (P,)
+            Parameter vector. [unit of each]
+        path : str
+            The parameter.
+        """
+        position, weight = next(one for one in self._spread(path) if one[1] != 0.0)
+        value = float(vector[position])
+        return value if weight is None else value / weight
+
+    def _spread(self, path: str) -> list[tuple[int, float | None]]:
+        """Positions of what a path stands for; a factor has the value of the building that it multiplies."""
+        parameter = self.building.parameter(path)
+        if not parameter.members:
+            return [(self.position(path), None)]
+        places = [self.position(member) for member in parameter.members]
+        by_factor = self.building.ties[parameter.path] == "factor"
+        return [(place, float(self.values[place]) if by_factor else None) for place in places]
 
     def varied(self, paths: Sequence[str], values: Array, base: Array | None = None) -> Array:
         """Parameter vectors with some parameters varied.
@@ -113,7 +151,8 @@ class VectorRuns:
             Unknown or structural path.
         """
         vectors = np.tile(self.values if base is None else base, (len(values), 1))
-        vectors[:, [self.position(path) for path in paths]] = values
+        for k, path in enumerate(paths):
+            self.assign(vectors, path, values[:, k])
         for path, other in self.followers(paths).items():
             vectors[:, self.position(other)] = vectors[:, self.position(path)]
         return vectors
@@ -124,7 +163,8 @@ class VectorRuns:
         from mascarin.building.set_points import tied_set_points
 
         tied = tied_set_points(self.building)
-        full = [self.building.parameter(path).path for path in paths] if tied else []
+        named = [self.building.parameter(path) for path in paths] if tied else []
+        full = [path for one in named for path in one.members or (one.path,)]
         return {path: tied[path] for path in full if path in tied and tied[path] not in full}
 
     def position(self, path: str) -> int:
@@ -136,6 +176,11 @@ class VectorRuns:
             Unknown path, or a structural one, which needs another compiled building.
         """
         parameter = self.building.parameter(path)
+        if parameter.members:
+            raise InputError(
+                f"{path}: found a tied parameter, which stands for {len(parameter.members)} numbers; "
+                f"expected one number, such as {parameter.members[0]}"
+            )
         if parameter.path not in self._positions:
             raise InputError(
                 f"{path}: is structural ({parameter.reason}); give it in the building, for example with "
@@ -197,12 +242,24 @@ class VectorRuns:
             raise InputError(
                 "derivatives: no parameters; give at least one path, as `mascarin parameters` lists"
             )
-        return self.compiled.jacobian(
-            [self.position(path) for path in vary],
+        spread = [self._spread(path) for path in vary]
+        places = list(dict.fromkeys(place for pairs in spread for place, _ in pairs))
+        records, slopes = self.compiled.jacobian(
+            places,
             self._checked(vector),
             record_from=record_from,
             record_every=record_every,
             progress=progress,
+        )
+        row = {place: k for k, place in enumerate(places)}
+        if spread == [[(place, None)] for place in places]:
+            return records, slopes
+        # Chain rule: the derivative by a tied parameter is the sum over what it stands for.
+        return records, np.stack(
+            [
+                sum(slopes[row[place]] * (1.0 if weight is None else weight) for place, weight in pairs)
+                for pairs in spread
+            ]
         )
 
     def trajectory(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from mascarin.study.combined import combined_intervals, estimates_of
+from mascarin.study.kept import kept
 from mascarin.study.prediction_intervals import prediction_intervals, slopes
 
 if TYPE_CHECKING:
@@ -56,7 +57,10 @@ def calibrated(study: Setup, runs: ModelRuns) -> Calibrated:
         return Calibrated(run, fit, intervals, runs.profiled(fit), None)
     found = runs.combination()
     best = found.forms[0]
-    fit, intervals = estimates_of(study, found), combined_intervals(study, found)
+    known = (best.fit.problem, best.fit.trace, best.fit.nominal_building)
+    key = [(form.label, form.fit.x.tolist()) for form in found.forms]
+    fit = kept(study.workspace, ("estimates", key), lambda: estimates_of(study, found), known)
+    intervals = kept(study.workspace, ("intervals", key), lambda: combined_intervals(study, found))
     note = "after the calibration; its parameters are the same on all other days"
     if len(found.forms) > 1:
         note += f"; of {len(found.forms)} forms '{best.label}' is the simplest of those that "

@@ -58,6 +58,7 @@ def fit_parameters(building: Building, plan: IdentificationPlan) -> list[FitPara
 def problem(
     simulation: Simulation,
     observation: Observation,
+    rows: npt.NDArray[np.bool_],
     use: npt.NDArray[np.bool_],
     sensors: Mapping[str, Sensor],
     plan: IdentificationPlan,
@@ -70,8 +71,10 @@ def problem(
         Covers the warm-up and the identification period.
     observation : Observation
         Measured series.
-    use : ndarray of bool, shape (n,)
-        Instants of the identification period.
+    rows : ndarray of bool, shape (n,)
+        Instants from the first to the last of the identification.
+    use : ndarray of bool, shape (n, S)
+        Values of each sensor that are used.
     sensors : mapping of str to Sensor
         Uncertainties, and which sensors are used.
     plan : IdentificationPlan
@@ -85,7 +88,7 @@ def problem(
     return problem_of(
         simulation,
         observation,
-        use,
+        rows,
         fit_parameters(simulation.building, plan),
         {
             name: sensor.stated_uncertainty(simulation.building.output(sensor.output).unit, name)
@@ -93,6 +96,7 @@ def problem(
             if sensor.use
         },
         independent_weight(plan, observation.interval),
+        only=use,
     )
 
 

@@ -5,8 +5,11 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from mascarin.calibration.building_calibration import CONSTANT, MOST_CONSTANT
 from mascarin.errors import InputError
+from mascarin.study.periods import overlap
 from mascarin.validation.observation import require_comparable
 from mascarin.weather.times import seconds_of
 
@@ -57,30 +60,45 @@ def _periods(study: Setup) -> None:
     covered = (
         f"and periods.end leave, {_words(first, last)}" if given else f"both cover, {_words(first, last)}"
     )
-    spans = {name: study.span(name) for name in ("warm_up", "identification", "corroboration")}
-    for name, span in spans.items():
-        with blame("periods", name):
-            if span is not None and span[1] <= span[0]:
+    timeline, warm_up = study.timeline, study.timeline.warm_up()
+    known, held = timeline.every("identification"), timeline.every("corroboration")
+    for span in (*([] if warm_up is None else [warm_up]), *known, *held):
+        with blame(*span.place):
+            if not (first <= span.start and span.end <= last):
                 raise InputError(
-                    f"found {_words(*span)}, expected the end after the start; exchange the two times"
-                )
-            if span is not None and not (first <= span[0] and span[1] <= last):
-                raise InputError(
-                    f"found {_words(*span)}, expected a period inside what climate and measurements "
+                    f"found {span.words}, expected a period inside what climate and measurements "
                     f"{covered} ({study.climate.timezone}); move it"
                 )
-    known, held, warm_up = study.identification, spans["corroboration"], spans["warm_up"]
-    with blame("periods", "corroboration"):
-        if held is not None and held[0] < known[1] and known[0] < held[1]:
+    for sensor in study.plan.sensors:
+        _apart(study, sensor)
+    for span in known:
+        with blame(*span.place):
+            if warm_up is not None and span.start < warm_up.end:
+                raise InputError(
+                    f"found {span.words}, expected a start not before the warm-up ends, "
+                    f"{warm_up.end:%Y-%m-%d %H:%M}: nothing is compared until then; move one of the two"
+                )
+    _ = timeline.every("exclude")
+
+
+def _apart(study: Setup, sensor: str) -> None:
+    """Refuse periods of one sensor that overlap."""
+    known = study.timeline.spans("identification", sensor)
+    held = study.timeline.spans("corroboration", sensor)
+    for name, spans in (("identification", known), ("corroboration", held)):
+        twice = next(((a, b) for k, a in enumerate(spans) for b in spans[:k] if a.overlaps(b)), None)
+        if twice is not None:
+            with study.places.blame(*twice[0].place):
+                raise InputError(
+                    f"found {twice[0].words}, which overlaps {twice[1].words}; expected {name} periods that "
+                    "have no instant in common: join them, or move one of the two"
+                )
+    both = overlap(known, held)
+    if both is not None:
+        with study.places.blame(*both[1].place):
             raise InputError(
-                f"found {_words(*held)}, which overlaps the identification {_words(*known)}; expected days "
+                f"found {both[1].words}, which overlaps the identification {both[0].words}; expected days "
                 "that the identification does not use: move one of the two"
-            )
-    with blame("periods", "identification"):
-        if warm_up is not None and known[0] < warm_up[1]:
-            raise InputError(
-                f"found {_words(*known)}, expected a start not before the warm-up ends, "
-                f"{warm_up[1]:%Y-%m-%d %H:%M}: nothing is compared until then; move one of the two"
             )
 
 
@@ -89,8 +107,7 @@ def _errors(study: Setup) -> None:
     plan = study.plan.identification
     if plan is None:
         return
-    start, end = study.identification
-    hours = (end - start).total_seconds() / 3600.0
+    hours = _hours(study)
     if plan.independent is not None and seconds_of(plan.independent) >= hours * 3600.0:
         with study.places.blame("identification", "independent"):
             raise InputError(
@@ -99,6 +116,20 @@ def _errors(study: Setup) -> None:
             )
     if not study.estimates_errors:
         return
+    leave_out = "or leave out discrepancy, alternatives and the errors of the sensors"
+    if plan.method == "emcee":
+        with study.places.blame("identification", "method"):
+            raise InputError(
+                "found emcee in a study that estimates errors of sensors and model, which it would not "
+                f"sample; expected a method that finds a minimum: write least-squares, {leave_out}"
+            )
+    if plan.profiles:
+        with study.places.blame("identification", "profiles"):
+            raise InputError(
+                "found true in a study that estimates errors of sensors and model, which a profile would "
+                "hold at zero; expected false: the intervals of the estimates account for these errors "
+                f"already; leave profiles out, {leave_out}"
+            )
     if hours < _FEWEST_HOURS:
         with study.places.blame("periods", "identification"):
             raise InputError(
@@ -106,6 +137,7 @@ def _errors(study: Setup) -> None:
                 "day are estimated, and days are left out in turn; make it longer, or leave out discrepancy, "
                 "alternatives and the errors of the sensors"
             )
+    _persistence(study, hours)
     for name, variant in study.plan.variants.items():
         if variant.candidate:
             with study.places.blame("variants", name, "candidate"):
@@ -114,6 +146,24 @@ def _errors(study: Setup) -> None:
                     "alternatives, which are weighed with these errors; move it there, or leave candidate out"
                 )
     _ = study.forms
+
+
+def _hours(study: Setup) -> float:
+    """Length of all identification periods together. [h]"""
+    return float(np.count_nonzero(study.during["identification"]) * study.observation.interval / 3600.0)
+
+
+def _persistence(study: Setup, hours: float) -> None:
+    """Refuse a statement that errors of days last longer than the days from which they are estimated."""
+    discrepancy = study.sought.discrepancy
+    if discrepancy is None or "persistence" not in discrepancy.model_fields_set:
+        return
+    if hours < seconds_of(discrepancy.persistence) / 3600.0:
+        with study.places.blame("identification", "discrepancy", "persistence"):
+            raise InputError(
+                f"found {discrepancy.persistence}, but the identification lasts {hours:g} h; expected errors "
+                "of days that last shorter than it: make the identification longer, or persistence shorter"
+            )
 
 
 def _words(first: pd.Timestamp, last: pd.Timestamp) -> str:
@@ -149,8 +199,9 @@ def _runs(study: Setup) -> None:
     _require_validation_days(study)
     for period in ("identification", "corroboration"):
         for name in (name for name, sensor in file.sensors.items() if sensor.use):
+            s = study.observation.names.index(name)
             with blame("sensors", name):
-                require_comparable(study.observation, study.during[period], period, [name])
+                require_comparable(study.observation, study.used[period][:, s], period, [name])
     if file.identification is not None:
         with blame("identification"):
             _ = study.problem()
@@ -165,12 +216,13 @@ def _require_validation_days(study: Setup) -> None:
     """Refuse a study without measured instants outside of the identification period."""
     if study.during["corroboration"].any():
         return
-    held = study.span("corroboration")
-    with study.places.blame("periods", "identification" if held is None else "corroboration"):
+    held = study.timeline.spans("corroboration")
+    with study.places.blame("periods", "corroboration" if held else "identification"):
         why = "a model is validated on days that the identification does not use"
-        if held is not None:
+        if held:
             raise InputError(
-                f"found {_words(*held)}, which contains no measured instant; {why}: make it longer"
+                f"found {', '.join(span.words for span in held)}, which contains no measured instant; {why}: "
+                "make it longer"
             )
         raise InputError(
             f"found {_words(*study.identification)}, which leaves nothing of the record, up to "
@@ -181,8 +233,6 @@ def _require_validation_days(study: Setup) -> None:
 
 def _plausible(study: Setup) -> None:
     """Refuse temperatures that are error codes; warn of irradiances that look like kW/m2."""
-    import numpy as np
-
     low, high = _TEMPERATURES
     observation = study.observation
     for s, name in enumerate(observation.names):

@@ -88,7 +88,7 @@ def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
     shared = found.forms[0].joint.quantile(confidence) ** 2 * np.maximum(variance - noise, 0.0)
     half = np.sqrt(shared + float(stats.norm.ppf(0.5 + 0.5 * confidence)) ** 2 * noise)
     misses = fitted + center - observation.measured
-    coverage = {period: coverage_of(misses, half, use) for period, use in study.during.items()}
+    coverage = {period: coverage_of(misses, half, use) for period, use in study.used.items()}
     return PredictionIntervals(confidence, half, np.sqrt(of_parameters), np.sqrt(new_day), coverage, center)
 
 
@@ -107,7 +107,7 @@ def _predicted(
     # Effects of one form serve all others that have the same numbers: they only give the width.
     missing = [number for number in form.unknown.numbers if number.path not in effects]
     if missing:
-        own_effects = effects_of_unknowns(study.observation, form.run.simulation, base, missing)
+        own_effects = effects_of_unknowns(study, study.observation, form.run.simulation, base, missing)
         effects |= {number.path: own_effects[:, :, k] for k, number in enumerate(missing)}
     every = np.zeros((*slope.shape[:2], len(form.unknown.numbers)))
     for k, number in enumerate(form.unknown.numbers):
@@ -124,10 +124,10 @@ def _predicted(
     # What the identification does not tell of these numbers remains as uncertain as it was.
     variance += np.maximum(np.sum(every**2, axis=2) - np.sum(further**2, axis=2), 0.0)
     own[columns], white[columns] = joint.sizes.new_day, joint.sizes.independent
-    seen = study.during["identification"]
+    seen = study.used["identification"]
     for s in range(own.size):
         if s not in columns:
-            misses = (simulated - study.observation.measured)[seen, s]
+            misses = (simulated - study.observation.measured)[seen[:, s], s]
             own[s] = float(np.nanmean(misses**2)) if np.isfinite(misses).any() else np.nan
             variance[:, s] += parameters[:, s]
     return about, variance, np.maximum(parameters, 0.0), own, white

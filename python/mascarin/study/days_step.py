@@ -50,7 +50,7 @@ def days(
     }
     known = {sensor.name: k for k, sensor in enumerate(fit.problem.sensors)}
     seen = setup.during["identification"]
-    samples = np.isfinite(observation.measured[seen]).sum(axis=0)
+    samples = (np.isfinite(observation.measured) & setup.used["identification"]).sum(axis=0)
     effective = fit.uncertainty.effective_samples
     weight = np.array(
         [

@@ -13,8 +13,19 @@ from mascarin.calibration.rules import WITH_SQUARES, SlopesName
 from mascarin.calibration.rules import MethodName as FitMethod
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
-from mascarin.study.field_types import Columns, Duration, Initial, Span, Time, TimeZone, require_bounds
+from mascarin.study.data_sources import ClimateSource, Table, with_shared_table
+from mascarin.study.field_types import (
+    Duration,
+    Hours,
+    Initial,
+    Span,
+    Spans,
+    Stretch,
+    Time,
+    require_bounds,
+)
 from mascarin.study.sensor import Sensor as Sensor
+from mascarin.study.sensor import SensorPeriods as SensorPeriods
 from mascarin.validation.criteria import Criterion
 
 if TYPE_CHECKING:
@@ -32,104 +43,6 @@ TAKEN: Final = (
 #: Keys that name files.
 FILE_KEYS: Final = ("building", "epw", "tmy", "table")
 
-#: Keys of a table that hold for weather and measurements where both are in it.
-OF_THE_TABLE: Final = (
-    "table", "timezone", "stamps", "separator", "decimal", "time", "time_format", "skip_lines", "missing",
-)  # fmt: skip
-
-
-class Table(Part):
-    """A table of measured columns."""
-
-    table: str = Field(
-        description="CSV or Parquet file, its path starting at the folder of the study, or data:NAME of a "
-        "known data set"
-    )
-    timezone: TimeZone = Field(
-        description="Time zone of the stamps: IANA name (Europe/Paris) or offset (UTC+4)"
-    )
-    stamps: Literal["start", "end"] = Field(
-        "start", description="Whether a stamp marks the start or the end of its interval"
-    )
-    mean: tuple[str, ...] = Field((), description="Columns that are means over their interval")
-    separator: str | None = Field(None, description="Column separator; detected by default")
-    decimal: str | None = Field(None, description="Decimal mark; detected by default")
-    time: str | tuple[str, ...] | None = Field(
-        None, description="Time column or columns; detected by default"
-    )
-    time_format: str | None = Field(None, description="Format of the stamps, as in strptime")
-    skip_lines: int | None = Field(
-        None, ge=0, description="Lines before the names of the columns; detected by default"
-    )
-    missing: tuple[str | float, ...] = Field(
-        (), description="Entries that mark a missing value, such as -999"
-    )
-    fill_gaps: Duration | None = Field(
-        None,
-        description="Gaps up to this length are filled by linear interpolation in the inputs of the model, "
-        "never in "
-        "the columns of the sensors",
-    )
-    inspect: tuple[str, ...] = Field(
-        (),
-        description="Further columns to check for suspicious values; by default all columns of numbers",
-    )
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """Options that every table reader takes."""
-        keys = (
-            "timezone",
-            "stamps",
-            "separator",
-            "decimal",
-            "time",
-            "time_format",
-            "skip_lines",
-            "mean",
-            "missing",
-        )
-        return {key: getattr(self, key) for key in keys}
-
-
-class MeasuredWeather(Table):
-    """Weather from a measured table."""
-
-    columns: dict[str, Columns] = Field(description="Climate channel -> column")
-    absent: tuple[str, ...] = Field(
-        (), description="Channels that were not measured; they get a neutral value"
-    )
-
-
-def with_shared_table(data: Any) -> Any:
-    """Weather and measurements in one table: what one of them says of it holds for the other one too."""
-    if not isinstance(data, dict) or not isinstance(data.get("climate"), dict):
-        return data
-    weather, measured = data["climate"].get("measured"), data.get("measurements")
-    measured = {} if measured is None else measured
-    if not isinstance(weather, dict) or not isinstance(measured, dict):
-        return data
-    if "table" in weather and "table" in measured and weather["table"] != measured["table"]:
-        return data
-    said = {key: value for key, value in (weather | measured).items() if key in OF_THE_TABLE}
-    both = {**data["climate"], "measured": {**said, **weather}}
-    return {**data, "climate": both, "measurements": {**said, **measured}}
-
-
-class ClimateSource(Part):
-    """Source of the weather data; exactly one kind."""
-
-    epw: str | None = Field(None, description="EPW file")
-    tmy: str | None = Field(None, description="TMY3 file")
-    measured: MeasuredWeather | None = Field(None, description="A measured table")
-
-    @model_validator(mode="after")
-    def _one(self) -> Self:
-        given = [key for key in ("epw", "tmy", "measured") if getattr(self, key) is not None]
-        if len(given) != 1:
-            insist(fault((), ", ".join(given) or "nothing", "one of epw, tmy, measured", "Keep exactly one."))
-        return self
-
 
 class Periods(Part):
     """Parts of the record, in local time of the weather data. The end of a period is not included."""
@@ -138,10 +51,21 @@ class Periods(Part):
         None,
         description="Start and end of the warm-up, which is simulated but not compared; the run starts here",
     )
-    identification: Span = Field(description="Start and end of the period used to identify the parameters")
-    corroboration: Span | None = Field(
+    identification: Spans = Field(
+        description="Start and end of the period used to identify the parameters, or a list of such pairs; "
+        "one run covers all of them"
+    )
+    corroboration: Spans | None = Field(
         None,
-        description="Start and end of the validation period; by default everything after the identification",
+        description="Start and end of the validation period, or a list of such pairs; by default everything "
+        "after the identification",
+    )
+    exclude: tuple[Stretch, ...] = Field(
+        (), description="Days (2013-09-05) and pairs of times that are compared in no period"
+    )
+    exclude_hours: tuple[Hours, ...] = Field(
+        (),
+        description='Pairs of hours of the day, such as ["22:00", "06:00"], that are compared in no period',
     )
     end: Time | None = Field(
         None, description="End of the used part of the record; by default the end of the record"
@@ -184,7 +108,17 @@ class SensitivityPlan(Part):
     groups: dict[str, tuple[str, ...]] = Field(
         default_factory=dict, description="Name -> paths of parameters that are analyzed as a group"
     )
+    only: tuple[str, ...] | None = Field(
+        None,
+        min_length=1,
+        description="Parameters that are varied; by default all with a range. In every path * stands for any "
+        "name between two dots, or for a part of one",
+    )
     leave_out: tuple[str, ...] = Field((), description="Parameters that are not varied")
+    tie: dict[str, Literal["factor", "value"]] = Field(
+        default_factory=dict,
+        description="Path with * -> how all numbers that it matches vary as one, as in `identification`",
+    )
 
 
 class Free(Part):
@@ -202,6 +136,12 @@ class Free(Part):
     )
     scale: Literal["linear", "log"] = Field(
         "linear", description="Scale of the search; log for parameters that span several decades"
+    )
+    tie: bool | Literal["factor", "value"] = Field(
+        False,
+        description="Whether all numbers that a path with * matches vary as one: by a common factor (true or "
+        "factor; bounds, prior and start are factors, 1 is the building), or by a common value (value); "
+        "false: each varies alone",
     )
     at_bound: str | None = Field(None, description="Why an estimate at a bound would be plausible")
     reference: tuple[float, float] | None = Field(

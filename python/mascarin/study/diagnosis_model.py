@@ -151,20 +151,20 @@ class Model:
         """A parameter vector with changes in ranges, inside the ranges."""
         moved = vector.copy()
         for path, step in zip(paths, steps, strict=True):
-            (low, high), at = self.range[path], self.simulation.position(path)
-            bounds = min(low, vector[at]), max(high, vector[at])
-            moved[at] = float(np.clip(vector[at] + step * (high - low), *bounds))
+            (low, high), here = self.range[path], self.simulation.value_in(vector, path)
+            bounds = min(low, here), max(high, here)
+            self.simulation.assign(moved, path, float(np.clip(here + step * (high - low), *bounds)))
         return np.asarray(self.simulation.varied([], np.zeros((1, 0)), moved)[0])
 
     def priors(self, paths: Sequence[str], vector: Array) -> tuple[Array, Array, Array]:
         """Centre, precision and limits of the changes of parameters from a vector. [ranges]"""
         center, precision, limits = [], [], []
         for path in paths:
-            (low, high), at = self.range[path], self.simulation.position(path)
-            width, here = high - low, float(vector[at])
+            (low, high), here = self.range[path], self.simulation.value_in(vector, path)
+            width = high - low
             known = self.fitted.get(path)
             if known is None:
-                mean, sd = float(self.simulation.values[at]), PRIOR
+                mean, sd = self.simulation.value_in(self.simulation.values, path), PRIOR
             elif known.prior is None:
                 mean, sd = 0.5 * (low + high), _WIDE
             else:
@@ -183,10 +183,8 @@ class Model:
 
     def transferred(self, vector: Array, other: Simulation) -> Array:
         """The parameter vector of another building with the values of the calibrated parameters it has."""
-        known = set(other.paths)
-        values = {
-            path: float(vector[self.simulation.position(path)]) for path in self.fitted if path in known
-        }
+        known = {parameter.path for parameter in other.building.parameters()}
+        values = {path: self.simulation.value_in(vector, path) for path in self.fitted if path in known}
         return other.vector(values)
 
     def neighbours(self, vector: Array) -> dict[int, dict[str, Array]]:

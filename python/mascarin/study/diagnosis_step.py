@@ -9,7 +9,7 @@ tried first: the fault must remain with it.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -240,15 +240,14 @@ class _Search:
         """Refit, and derive by all parameters."""
         self._refit()
         paths = self.model.paths
-        here = [self.model.simulation.position(path) for path in paths]
+        value = self.model.simulation.value_in
+        now, then = (np.array([value(v, path) for path in paths]) for v in (self.vector, self.slopes_at))
         width = np.array([self.model.range[path][1] - self.model.range[path][0] for path in paths])
-        moved = np.abs(self.vector - self.slopes_at)[here] / width
+        moved = np.abs(now - then) / width
         if len(self.paths) != len(paths) or moved.max(initial=0.0) > _FAR:
             self.paths, self.slopes = paths, self.model.slopes(paths, self.vector)
             self.slopes_at = self.vector
         self.whitening = None
-
-    # --- faults of data ---------------------------------------------------------------------------------
 
     def _series(self, near: bool) -> Series:
         simulated = self.corrected(self.model.series(self.vector))
@@ -300,17 +299,20 @@ class _Search:
 
     def suspicious(self) -> bool:
         """Whether a sensor shows a fault that the calibrated parameters do not explain, or too much noise."""
+        found = self._stored(("suspicious",), lambda: self._best_fault(near=False) is not None)
+        return bool(found) or bool(self.noise()[1])
 
-        def found() -> bool:
-            return self._best_fault(near=False) is not None
-
-        return bool(self.model.store.value((*self._key, "suspicious"), found)) or bool(self.noise()[1])
+    def _stored(self, key: tuple[object, ...], make: Callable[[], Any]) -> Any:
+        """A result of the folder or a new one, with the sums of squares that it leaves."""
+        stored = self.model.store.value((*self._key, *key), lambda: [make(), self.first, self.last])
+        found, self.first, self.last = stored
+        return found
 
     def data_faults(self) -> list[Cause]:
         """Faults of sensors, one after the other."""
         causes: list[Cause] = []
         while len(causes) < _MOST:
-            step = self.model.store.value((*self._key, "data", len(causes)), self._next_fault)
+            step = self._stored(("data", len(causes)), self._next_fault)
             if step is None:
                 break
             causes.append(Cause.from_dict(step["cause"]))

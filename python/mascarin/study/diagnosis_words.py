@@ -124,7 +124,7 @@ def of_parameter(
     """Another value of a parameter that was not calibrated."""
     parameter = model.simulation.building.parameter(path)
     low, high = model.range[path]
-    now = float(vector[model.simulation.position(path)])
+    now = model.simulation.value_in(vector, path)
     value, error = now + change[0] * (high - low), change[1] * (high - low)
     unit = "" if parameter.unit == "-" else f" {parameter.unit}"
     if change[2]:

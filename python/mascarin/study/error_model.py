@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -14,6 +14,7 @@ from mascarin.calibration.refining import refined
 from mascarin.calibration.sensor_errors import error_columns
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.description import DiscrepancyPlan
+from mascarin.study.kept import kept, kept_series
 from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
@@ -35,7 +36,6 @@ RANGES: Final = 0.25
 #: Directions whose effect in the identification, as a root mean square, is smaller than this part of the
 #: uncertainty of the sensors are not estimated: the data cannot tell them.
 _SMALL: Final = 0.03
-_BATCH: Final = 64
 _ROWS: Final = 300
 
 
@@ -115,7 +115,7 @@ def unknowns(study: Setup, simulation: Simulation, fit: Calibration) -> list[Unk
 def statement(study: Setup, fit: Calibration, further: tuple[str, ...] = ()) -> ErrorStatement:
     """What is known of the errors before the calibration."""
     plan = study.sought.discrepancy or DiscrepancyPlan()
-    seen = study.during["identification"]
+    seen = study.rows
     return ErrorStatement(
         sensor_errors(study, [sensor.name for sensor in fit.problem.sensors]),
         local_hours(study)[seen],
@@ -148,11 +148,11 @@ def with_errors(study: Setup, variant: str | None, fit: Calibration) -> tuple[Ca
         Numbers that are not estimated; their directions are the last effects of sensors of the joint
         distribution.
     """
-    short, seen = study.short(variant), study.during["identification"]
+    short, seen = study.short(variant), study.rows
     columns = [s for s, name in enumerate(study.observation.names) if study.plan.sensors[name].use]
     base = short.vector(fit.values)
     every = unknowns(study, short, fit)
-    effects = effects_of_unknowns(_part(study.observation, seen), short, base, every)[:, columns]
+    effects = effects_of_unknowns(study, _part(study.observation, seen), short, base, every)[:, columns]
     sigma, mask = fit.problem.sigma, fit.problem.mask
     scaled = (effects / np.where(mask, sigma, 1.0)[:, :, None])[mask]
     # A thinned series has the same combinations; the product would take longer than all else.
@@ -162,7 +162,11 @@ def with_errors(study: Setup, variant: str | None, fit: Calibration) -> tuple[Ca
     names = tuple(f"numbers that are not estimated, {k + 1}" for k in range(directions.shape[1]))
     stated = statement(study, fit, names)
     rules = Rules(slopes=study.sought.slopes)
-    found, joint = refined(fit, stated, rules, effects @ directions)
+
+    def keep(key: object, make: Callable[[], tuple[Array, Array]]) -> tuple[Array, Array]:
+        return kept(study.workspace, ("linear", short.identity, fit.problem.fingerprint(), key), make)
+
+    found, joint = refined(fit, stated, rules, effects @ directions, keep=keep)
     return found, joint, Unknowns(tuple(every), directions)
 
 
@@ -183,12 +187,14 @@ def _part(observation: Observation, use: npt.NDArray[np.bool_]) -> Observation:
 
 
 def effects_of_unknowns(
-    observation: Observation, simulation: Simulation, base: Array, unknown: Sequence[Unknown]
+    study: Setup, observation: Observation, simulation: Simulation, base: Array, unknown: Sequence[Unknown]
 ) -> Array:
     """Effects of numbers that are not estimated on all series.
 
     Parameters
     ----------
+    study : Setup
+        Has the folder where runs are kept.
     observation : Observation
         Gives the instants.
     simulation : Simulation
@@ -203,19 +209,14 @@ def effects_of_unknowns(
     ndarray, shape (n, S, K)
         For one standard uncertainty; 0 where the model cannot be run. [unit of each sensor]
     """
-    sensors = len(observation.names)
     moved, steps = [base], []
     for one in unknown:
         parameter = simulation.building.parameter(one.path)
-        value = float(base[simulation.position(one.path)])
+        value = simulation.value_in(base, one.path)
         step = _STEP * one.uncertainty
         step = step if value + step <= min(parameter.upper, parameter.high) else -step
         moved.append(simulation.varied([one.path], np.array([[value + step]]), base)[0])
         steps.append(step / one.uncertainty)
-    parts = []
-    for first in range(0, len(moved), _BATCH):
-        records, _, _ = simulation.ensemble(np.array(moved[first : first + _BATCH]))
-        parts.append(observation.simulated(simulation.index, records[..., :sensors]))
-    series = np.concatenate(parts)
+    series = kept_series(study, simulation, np.array(moved), observation)
     found = (series[1:] - series[0]) / np.array(steps).reshape(-1, 1, 1)
     return np.moveaxis(np.nan_to_num(found), 0, -1)

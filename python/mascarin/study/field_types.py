@@ -41,6 +41,28 @@ def _timezone(text: object) -> object:
     return text
 
 
+def _listed(given: Any) -> Any:
+    """One pair of times is a list of one period."""
+    if (
+        isinstance(given, list | tuple)
+        and len(given) == 2
+        and not any(isinstance(t, list | tuple) for t in given)
+    ):
+        return (tuple(given),)
+    if isinstance(given, list | tuple) and not given:
+        raise problem("no period", "a pair of times, or a list of pairs", "Write [start, end].")
+    return given
+
+
+def _hour(text: str) -> str:
+    """An hour of the day."""
+    hours, colon, minutes = text.partition(":")
+    known = colon and hours.isdigit() and minutes.isdigit() and int(minutes) < 60
+    if known and 60 * int(hours) + int(minutes) <= 24 * 60:
+        return text
+    raise problem(f"'{text}'", "an hour of the day", "Write 06:00 or 22:30.")
+
+
 def require_bounds(given: Any) -> Any:
     """Refuse two numbers, which are probably bounds, and a single number."""
     if isinstance(given, list) and len(given) == 2:
@@ -75,6 +97,10 @@ Initial = Annotated[
 #: A local time, ISO 8601, with or without an offset.
 Time = str
 Span = tuple[Time, Time]
+Spans = Annotated[tuple[Span, ...], BeforeValidator(_listed)]
+#: A part of the record: start and end, or one day.
+Stretch = Span | Time
+Hours = tuple[Annotated[str, AfterValidator(_hour)], Annotated[str, AfterValidator(_hour)]]
 Duration = Annotated[str, BeforeValidator(_seconds), AfterValidator(_duration)]
 TimeZone = Annotated[str, BeforeValidator(_timezone)]
 Columns = str | tuple[str, ...] | dict[str, Any]

@@ -21,7 +21,8 @@ from mascarin.weather.table import read_table
 if TYPE_CHECKING:
     from mascarin.building import Building
     from mascarin.building.site import Site
-    from mascarin.study.description import ClimateSource, MeasuredWeather, StudyFile, Table
+    from mascarin.study.data_sources import ClimateSource, MeasuredWeather, Table
+    from mascarin.study.description import StudyFile
 
 #: Prefix of a known data set.
 KNOWN = "data:"

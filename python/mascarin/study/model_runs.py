@@ -15,6 +15,7 @@ from mascarin.study.calibration_step import identify
 from mascarin.study.error_model import with_errors
 from mascarin.study.findings import Combination, FormFit, ModelRun
 from mascarin.study.forms import label
+from mascarin.study.kept import kept
 from mascarin.study.sensitivity_step import analyze, factors
 from mascarin.validation.criteria import judge
 
@@ -62,16 +63,20 @@ class ModelRuns:
         plan : SensitivityPlan
             What is varied, and how often.
         """
-        setup = self._setup
+        setup, key = self._setup, ("analysis", plan.model_dump_json())
         with reporting(self._progress, "sensitivity analysis") as report:
-            return analyze(
-                setup.short(),
-                plan,
-                factors(setup.building, plan),
-                setup.lead_seconds,
-                setup.observation.names,
-                self._workspace,
-                report,
+            return kept(
+                setup.workspace,
+                key,
+                lambda: analyze(
+                    setup.short(),
+                    plan,
+                    factors(setup.building, plan),
+                    setup.lead_seconds,
+                    setup.observation.names,
+                    self._workspace,
+                    report,
+                ),
             )
 
     def fitted(self) -> tuple[ModelRun, Calibration]:
@@ -148,7 +153,10 @@ class ModelRuns:
         first = None if name is None else self._plain(None)
         plain = self._plain(name, first)
         with reporting(self._progress, f"errors of sensors and model ({label(choice)})"):
-            fit, joint, unknown = with_errors(setup, name, plain)
+            # The problem holds the model, and the trace all evaluations: both are there already.
+            key = ("form", label(choice), plain.x.tolist(), plain.cost)
+            known = (plain.problem, plain.trace, plain.nominal_building)
+            fit, joint, unknown = kept(setup.workspace, key, lambda: with_errors(setup, name, plain), known)
         whole = setup.whole(name)
         note = "the building as described" if name is None else label(choice)
         run = compared(setup, label(choice), whole, whole.vector(fit.values), fit, note)

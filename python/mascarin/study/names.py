@@ -38,7 +38,7 @@ def check_names(plan: StudyPlan, building: Building, places: Places, faults: Fau
             raise InputError("found use: false on every sensor, expected at least one that is used")
     if plan.identification is not None:
         _check_parameters(plan.identification.parameters, building, places, faults)
-    _check_limits(plan, places, faults)
+    _check_limits(plan, building, places, faults)
     _check_reference(plan, building, places, faults)
     if plan.sensitivity is not None:
         with faults.kept():
@@ -60,13 +60,22 @@ def _check_parameters(
             seen[found] = path
 
 
-def _check_limits(plan: StudyPlan, places: Places, faults: Faults) -> None:
+def _check_limits(plan: StudyPlan, building: Building, places: Places, faults: Faults) -> None:
     for what, limits in (("criteria", plan.criteria), ("aims", plan.aims)):
         for k, criterion in enumerate(limits):
-            for key, known in (("sensors", tuple(plan.sensors)), ("periods", PERIODS)):
+            units = _units(plan, building, criterion.sensors)
+            for key, known in (("sensors", tuple(plan.sensors)), ("periods", PERIODS), ("units", units)):
                 for name in getattr(criterion, key) or ():
                     with places.noting(faults, what, k, key):
                         _require_known(name, known)
+
+
+def _units(plan: StudyPlan, building: Building, sensors: Sequence[str] | None) -> tuple[str, ...]:
+    """Units of the sensors of a criterion."""
+    known = {output.name: output.unit for output in building.outputs()}
+    chosen = [plan.sensors[name] for name in sensors or plan.sensors if name in plan.sensors]
+    found = (known[sensor.output] for sensor in chosen if sensor.output in known)
+    return tuple(dict.fromkeys(found))
 
 
 def _check_reference(plan: StudyPlan, building: Building, places: Places, faults: Faults) -> None:

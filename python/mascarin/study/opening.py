@@ -28,6 +28,7 @@ from mascarin.study.inputs import (
 )
 from mascarin.study.locations import Faults, Places
 from mascarin.study.names import check_names
+from mascarin.study.patterns import tied_building, written_out
 from mascarin.validation.criteria import Criterion
 from mascarin.weather.files import file_hash
 from mascarin.weather.filled import filled_stretches
@@ -107,6 +108,8 @@ def _from_file(path: Path, beside: Beside) -> Inputs:
     as_described = load(described)
     with places.blame("set"):
         building = as_described.replace(file.set)
+    building = tied_building(file, building, places)
+    file = written_out(file, building, places)
     check_names(file, building, places, faults)
     with faults.kept():
         require_one_clock(file, places)
@@ -135,6 +138,7 @@ def _with_sky(building: Building, climate: Climate, plan: StudyPlan) -> Building
     named: list[str] = list(plan.identification.parameters) if plan.identification else []
     if plan.sensitivity:
         named += [*plan.sensitivity.ranges, *plan.sensitivity.distributions, *plan.sensitivity.leave_out]
+        named += plan.sensitivity.only or ()
     return in_climate(building, climate, varied=named)
 
 
@@ -167,6 +171,8 @@ def from_objects(
     except ValidationError as error:
         raise explained(error, plain, "study") from None
     places, faults = Places(), Faults()
+    building = tied_building(checked, building, places)
+    checked = written_out(checked, building, places)
     check_names(checked, building, places, faults)
     faults.raise_all(places.file)
     building = _with_sky(building, climate, checked)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -13,11 +13,12 @@ from mascarin._io import atomic
 from mascarin.calibration import plot_profiles
 from mascarin.figures import days as day_figures
 from mascarin.figures.files import save
-from mascarin.report.figure_files import write_figures
+from mascarin.report.figure_files import Once, write_figures
 from mascarin.report.folder import read_folder
 from mascarin.sensitivity.files import save_all
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
+from mascarin.study.kept import written_once
 from mascarin.study.tables import tables_of, write_tables
 from mascarin.validation.days import FAR
 
@@ -47,14 +48,18 @@ def write_all(findings: Findings, workspace: Workspace) -> None:
     out = workspace.out
     figures = out / "figures"
     figures.mkdir(parents=True, exist_ok=True)
+
+    def once(name: str, write: Callable[[], Sequence[Path]]) -> list[Path]:
+        return written_once(workspace, (str(out), name, findings.calibration.x.tolist()), write)
+
     tables = write_tables(out / "tables", tables_of(findings))
     atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
     atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
     written = [
-        *write_figures(figures, *read_folder(out)),
-        *_sensitivity_figures(findings, figures),
-        save(_days(findings), figures / "days.svg"),
-        *fit_figures(findings.calibration, findings.profiles, figures),
+        *write_figures(figures, *read_folder(out), once),
+        *_sensitivity_figures(findings, figures, once),
+        *once("days", lambda: [save(_days(findings), figures / "days.svg")]),
+        *once("fit", lambda: fit_figures(findings.calibration, findings.profiles, figures)),
         *tables,
         *(out / name for name in ("study.json", RUN, "report.html")),
     ]
@@ -98,14 +103,20 @@ def fit_figures(fit: Calibration, profiles: Sequence[Profile], folder: Path) -> 
     return [save(figure, folder / f"{name}.svg") for name, figure in figures.items()]
 
 
-def _sensitivity_figures(findings: Findings, folder: Path) -> list[Path]:
+def _sensitivity_figures(findings: Findings, folder: Path, once: Once) -> list[Path]:
     """Figures of the sensitivity analysis of each sensor, if there is one."""
     found = findings.sensitivity
     if found is None:
         return []
     hours = analyzed_hours(findings.setup, found)
-    names = findings.setup.observation.names
-    return [path for name in names for path in save_all(found, name, folder, name, hours)]
+    written = []
+    for name in findings.setup.observation.names:
+
+        def draw(name: str = name) -> list[Path]:
+            return list(save_all(found, name, folder, name, hours))
+
+        written += once(f"sensitivity {name}", draw)
+    return written
 
 
 def _days(findings: Findings) -> Figure:

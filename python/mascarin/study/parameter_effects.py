@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.sensitivity.building_analysis import factors_of
+from mascarin.study.kept import kept_series
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
     from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
+    from mascarin.study.setup import Setup
     from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
@@ -30,6 +32,8 @@ class Effects:
 
     Parameters
     ----------
+    study : Setup
+        Has the folder where runs are kept.
     simulation : Simulation
         The model.
     results : Results
@@ -38,7 +42,8 @@ class Effects:
         Its parameter vector. [unit of each]
     """
 
-    def __init__(self, simulation: Simulation, results: Results, values: Array) -> None:
+    def __init__(self, study: Setup, simulation: Simulation, results: Results, values: Array) -> None:
+        self._study = study
         self._simulation, self._results, self._values = simulation, results, values
         self._factors = factors_of(simulation.building)
         self.room: dict[str, tuple[float, float]] = {}
@@ -71,18 +76,14 @@ class Effects:
             By path; parameters whose run failed are left out. `room` contains for each the largest change
             down and up, in ranges. [unit of each sensor]
         """
-        sensors = len(observation.names)
-
-        def sampled(records: Array) -> Array:
-            return observation.simulated(self._results.index, records[..., :sensors])[use]
-
-        base, done = sampled(self._results.records), 0
+        sensors, index = len(observation.names), self._results.index
+        base, done = observation.simulated(index, self._results.records[..., :sensors])[use], 0
         effects: dict[str, Array] = {}
         for paths, steps, samples in self._chunks():
-            records, _, _ = self._simulation.ensemble(samples)
-            for path, step, record in zip(paths, steps, records, strict=True):
-                effect = (sampled(record) - base) / step
-                if np.isfinite(record).all() and np.abs(effect).max() > 0.0:
+            series = kept_series(self._study, self._simulation, samples)[:, use]
+            for path, step, moved in zip(paths, steps, series, strict=True):
+                effect = (moved - base) / step
+                if np.isfinite(effect).all() and np.abs(effect).max() > 0.0:
                     effects[path] = effect
             done += len(paths)
             progress(done, len(self._factors))
@@ -94,8 +95,8 @@ class Effects:
             chosen = self._factors[first : first + _CHUNK]
             samples, steps = [], []
             for factor in chosen:
-                place, span = self._simulation.position(factor.path), factor.high - factor.low
-                value = float(self._values[place])
+                span = factor.high - factor.low
+                value = self._simulation.value_in(self._values, factor.path)
                 step = STEP if value + STEP * span <= factor.high else -STEP
                 moved = np.array([[value + step * span]])
                 samples.append(self._simulation.varied([factor.path], moved, self._values)[0])

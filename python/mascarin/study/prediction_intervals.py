@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin.study.findings import PredictionIntervals
+from mascarin.study.kept import kept_series
 from mascarin.validation.series import effective_samples
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 #: Step of the differences, in ranges.
 _STEP: Final = 1e-3
-_BATCH: Final = 64
 #: A coverage below this is mentioned in the notes. [-]
 _LOW_COVERAGE: Final = 0.85
 _SHARED: Final = (
@@ -51,13 +51,12 @@ def slopes(study: Setup, run: ModelRun, fit: Calibration) -> Array:
     base = run.simulation.vector(fit.values)
     vectors, steps = [base], []
     for parameter in fit.problem.parameters:
-        at = run.simulation.position(parameter.path)
-        here = parameter.position(float(base[at]))
+        here = parameter.position(run.simulation.value_in(base, parameter.path))
         there = here + (_STEP if here + _STEP <= 1.0 else -_STEP)
         moved = np.array([[parameter.value(there)]])
         vectors.append(run.simulation.varied([parameter.path], moved, base)[0])
         steps.append(there - here)
-    series = _series(study, run, np.array(vectors))
+    series = kept_series(study, run.simulation, np.array(vectors))
     return np.asarray((series[1:] - series[0]) / np.array(steps)[:, None, None])
 
 
@@ -77,7 +76,7 @@ def prediction_intervals(study: Setup, run: ModelRun, fit: Calibration, slope: A
     """
     from scipy import stats
 
-    found, observation, seen = fit.uncertainty, study.observation, study.during["identification"]
+    found, observation, seen = fit.uncertainty, study.observation, study.used["identification"]
     variance = np.maximum(np.einsum("pts,pq,qts->ts", slope, found.covariance, slope, optimize=True), 0.0)
     misses = observation.simulated(run.results.index, run.results.records) - observation.measured
     known = {sensor.name: k for k, sensor in enumerate(fit.problem.sensors)}
@@ -86,15 +85,16 @@ def prediction_intervals(study: Setup, run: ModelRun, fit: Calibration, slope: A
         if name in known:
             error[s], count[s] = found.error[known[name]], found.effective_samples[known[name]]
         else:  # Not used in the calibration; its error in the same period is known all the same.
-            error[s] = _root_mean_square(misses[seen, s])
-            count[s] = effective_samples(misses[seen, s]) if np.isfinite(error[s]) else 1.0
+            own = misses[seen[:, s], s]
+            error[s] = _root_mean_square(own)
+            count[s] = effective_samples(own) if np.isfinite(error[s]) else 1.0
     tail = 0.5 + 0.5 * fit.confidence
     estimates = float(stats.t.ppf(tail, found.freedom)) * np.sqrt(variance)
     # With few independent samples their standard deviation is as uncertain as their mean.
     count = np.maximum(count, 2.0)
     errors = stats.t.ppf(tail, count - 1.0) * error * np.sqrt(1.0 + 1.0 / count)
     half = np.hypot(estimates, errors)
-    coverage = {period: coverage_of(misses, half, use) for period, use in study.during.items()}
+    coverage = {period: coverage_of(misses, half, use) for period, use in study.used.items()}
     return PredictionIntervals(fit.confidence, half, np.sqrt(variance), error, coverage, np.zeros_like(half))
 
 
@@ -158,18 +158,9 @@ def _root_mean_square(misses: Array) -> float:
     return float(np.sqrt(np.mean(there**2))) if there.size > 1 else float("nan")
 
 
-def _series(study: Setup, run: ModelRun, vectors: Array) -> Array:
-    """Series (M, n, S) of all sensors at the instants of the comparison; NaN for a member that failed."""
-    parts = []
-    for first in range(0, len(vectors), _BATCH):
-        records, _, _ = run.simulation.ensemble(vectors[first : first + _BATCH])
-        parts.append(study.observation.simulated(run.simulation.index, records))
-    return np.concatenate(parts)
-
-
 def coverage_of(misses: Array, half: Array, use: Flags) -> Array:
-    """Part of the measured values of a period inside the interval, by sensor."""
-    there = np.isfinite(misses) & np.isfinite(half) & use[:, None]
+    """Part of the measured values of a period, (n, S), inside the interval, by sensor."""
+    there = np.isfinite(misses) & np.isfinite(half) & use
     inside = there & (np.abs(np.where(there, misses, 0.0)) <= half)
     with np.errstate(invalid="ignore"):
         return np.asarray(

@@ -68,7 +68,7 @@ def examined(setup: Setup, run: ModelRun) -> dict[str, ResidualAnalysis]:
             step=observation.interval,
             hour=hour,
             drivers=channels,
-            use=setup.during["blind"],
+            use=setup.used["blind"][:, s],
             sensor=name,
             unit=run.results.outputs[s].unit,
         )
@@ -83,8 +83,8 @@ def error_sources(
     observation, blind, analyzed = setup.observation, setup.during["blind"].copy(), _analyzed(setup)
     if not analyzed:
         return None
-    error = observation.simulated(run.results.index, run.results.records) - observation.measured
-    effects = Effects(run.simulation, run.results, run.simulation.vector(fit.values))
+    error = observation.simulated(run.results.index, run.results.records) - _blind(setup)
+    effects = Effects(setup, run.simulation, run.results, run.simulation.vector(fit.values))
     # In a long record every second or third instant contains the same information.
     values = int(blind.sum()) * len(observation.names) * effects.count
     blind &= np.arange(blind.size) % max(1, math.ceil(values / MOST_EFFECTS)) == 0
@@ -102,9 +102,14 @@ def error_sources(
     )
 
 
+def _blind(setup: Setup) -> npt.NDArray[np.float64]:
+    """Measured values of the blind days, NaN elsewhere, shape (n, S). [unit of each sensor]"""
+    return np.where(setup.used["blind"], setup.observation.measured, np.nan)
+
+
 def _blind_values(setup: Setup) -> dict[str, int]:
     """Number of values of each sensor on the blind days."""
-    count = np.isfinite(setup.observation.measured[setup.during["blind"]]).sum(axis=0)
+    count = np.isfinite(_blind(setup)).sum(axis=0)
     return dict(zip(setup.observation.names, count.tolist(), strict=True))
 
 

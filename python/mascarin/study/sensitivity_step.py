@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin.building.ties import expanded
 from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
 from mascarin.sensitivity.methods import collector
 from mascarin.sensitivity.methods import plan as design
@@ -42,19 +43,24 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
     """
     for path, span in plan.ranges.items():
         with places.blame("sensitivity", "ranges", path):
-            checked_range(building, path, span)
+            for one in expanded(building, [path]):
+                checked_range(building, one, span)
     for path in plan.distributions:
         with places.blame("sensitivity", "distributions", path):
-            building.parameter(path)
+            _require_known(building, [path])
     for name, paths in plan.groups.items():
         with places.blame("sensitivity", "groups", name):
-            for path in paths:
-                building.parameter(path)
-    for path in plan.leave_out:
-        with places.blame("sensitivity", "leave_out"):
-            building.parameter(path)
+            _require_known(building, paths)
+    for key in ("only", "leave_out"):
+        with places.blame("sensitivity", key):
+            _require_known(building, getattr(plan, key) or ())
     with places.blame("sensitivity"):
         runs_of(plan, factors(building, plan))
+
+
+def _require_known(building: Building, paths: Sequence[str]) -> None:
+    for path in expanded(building, paths):
+        building.parameter(path)
 
 
 def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
@@ -71,6 +77,7 @@ def factors(building: Building, plan: SensitivityPlan) -> list[Factor]:
         distributions=plan.distributions,
         groups=plan.groups,
         leave_out=plan.leave_out,
+        only=plan.only,
     )
 
 

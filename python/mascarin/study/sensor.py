@@ -9,9 +9,26 @@ from pydantic import AliasChoices, Field
 
 from mascarin.building.part import Part
 from mascarin.calibration.sensor_errors import SensorError
-from mascarin.study.field_types import Duration
+from mascarin.calibration.stated_errors import shared_errors
+from mascarin.study.field_types import Duration, Hours, Spans, Stretch
 from mascarin.validation.sensors import COVERAGE_FACTOR, DEFAULT_EXPANDED, SensorUncertainty
-from mascarin.weather.times import seconds_of
+
+
+class SensorPeriods(Part):
+    """Periods of one sensor, in place of those of the study; what is excluded is excluded in addition."""
+
+    identification: Spans | None = Field(
+        None, description="Start and end of its identification period, or a list of such pairs"
+    )
+    corroboration: Spans | None = Field(
+        None, description="Start and end of its validation period, or a list of such pairs"
+    )
+    exclude: tuple[Stretch, ...] = Field(
+        (), description="Days and pairs of times in which it is not compared"
+    )
+    exclude_hours: tuple[Hours, ...] = Field(
+        (), description="Pairs of hours of the day in which it is not compared"
+    )
 
 
 class Sensor(Part):
@@ -77,6 +94,9 @@ class Sensor(Part):
     )
     label: str | None = Field(None, description="Name in the report")
     use: bool = Field(True, description="Whether it is used in the identification")
+    periods: SensorPeriods | None = Field(
+        None, description="Its own periods, where they differ from those of the study"
+    )
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -123,18 +143,5 @@ class Sensor(Part):
         return any(part is not None and part != 0.0 for part in shared)
 
     def shared_errors(self, stated: SensorUncertainty) -> SensorError:
-        """Errors that all readings share.
-
-        A stated uncertainty without an ``offset`` counts as one: datasheets state the accuracy, of which
-        the repeatability is the smaller part.
-        """
-        rest = stated.absolute if self.repeatability is None else 0.0
-        if self.repeatability is not None and stated.absolute > self.repeatability:
-            rest = math.sqrt(stated.absolute**2 - self.repeatability**2)
-        return SensorError(
-            offset=rest if self.offset is None else self.offset,
-            common=self.common,
-            gain=self.gain if self.gain else stated.relative,
-            reference=self.reference,
-            clock=0.0 if self.clock is None else seconds_of(self.clock),
-        )
+        """Errors that all readings share; see `mascarin.calibration.stated_errors`."""
+        return shared_errors(self, stated)

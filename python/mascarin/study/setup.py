@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -11,15 +13,18 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin import __version__
+from mascarin.building.ties import expanded, with_ties
 from mascarin.errors import InputError
 from mascarin.simulation.initial import Initial, MeasuredStart
 from mascarin.simulation.simulation import Simulation
 from mascarin.study.calibration_step import fit_parameters, problem
 from mascarin.study.description import IdentificationPlan, StudyFile
 from mascarin.study.forms import Choice, Forms, label
+from mascarin.study.patterns import ties_of
+from mascarin.study.periods import Timeline
 from mascarin.study.phase_change import melting_layers
 from mascarin.validation.comparison import Metrics, compare
-from mascarin.validation.observation import PERIODS, Observation, observe
+from mascarin.validation.observation import Observation, observe
 from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import moment
 
@@ -35,6 +40,7 @@ if TYPE_CHECKING:
     from mascarin.study.description import Free, StudyPlan, Variant
     from mascarin.study.locations import Places
     from mascarin.study.opening import Inputs
+    from mascarin.study.storage import Workspace
     from mascarin.validation.criteria import Criterion
     from mascarin.weather import Climate, Measurements
     from mascarin.weather.grid import Grid
@@ -69,6 +75,8 @@ class Setup:
         self.quality: list[Stretch] = inputs.quality
         self.places: Places = inputs.places
         self.criteria: tuple[Criterion, ...] = inputs.plan.criteria
+        #: Where results of steps are kept; None while nothing is written.
+        self.workspace: Workspace | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """The inputs; models and series are made again where they are needed."""
@@ -76,6 +84,15 @@ class Setup:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         Setup.__init__(self, state["sources"])
+
+    @contextmanager
+    def keeping(self, workspace: Workspace) -> Iterator[None]:
+        """Keep results of steps in a folder while something is computed."""
+        self.workspace = workspace
+        try:
+            yield
+        finally:
+            self.workspace = None
 
     @property
     def path(self) -> Path:
@@ -113,34 +130,27 @@ class Setup:
 
     # --- periods ----------------------------------------------------------------------------------------
 
-    def _moment(self, text: str, what: str) -> pd.Timestamp:
-        with self.places.blame("periods", what):
-            return moment(text, self.climate.grid.zone, what)
-
-    def span(self, name: str) -> tuple[pd.Timestamp, pd.Timestamp] | None:
-        """Start and end of a period as the study gives it."""
-        span = getattr(self.plan.periods, name)
-        return None if span is None else self._moments(span, name)
-
-    def _moments(self, span: tuple[str, str], name: str) -> tuple[pd.Timestamp, pd.Timestamp]:
-        return self._moment(span[0], name), self._moment(span[1], name)
+    @cached_property
+    def timeline(self) -> Timeline:
+        """Periods of the study and of its sensors."""
+        return Timeline(self.plan, self.climate.grid.zone, self.places)
 
     @cached_property
     def identification(self) -> tuple[pd.Timestamp, pd.Timestamp]:
-        """Start and end of the identification period."""
-        return self._moments(self.plan.periods.identification, "identification")
+        """Start of the first and end of the last identification period."""
+        return self.timeline.identification()
 
     @cached_property
     def start(self) -> pd.Timestamp:
         """Start of the run: that of the warm-up, else of the record."""
-        span = self.span("warm_up")
-        return span[0] if span is not None else self.record[0]
+        span = self.timeline.warm_up()
+        return span.start if span is not None else self.record[0]
 
     @cached_property
     def compared_from(self) -> pd.Timestamp:
         """First instant that is compared."""
-        span = self.span("warm_up")
-        return span[1] if span is not None else self.start
+        span = self.timeline.warm_up()
+        return span.end if span is not None else self.start
 
     @cached_property
     def record(self) -> tuple[pd.Timestamp, pd.Timestamp]:
@@ -162,7 +172,8 @@ class Setup:
     def moment_of_end(self) -> pd.Timestamp | None:
         """End of the record to use, as the study gives it."""
         given = self.plan.periods.end
-        return None if given is None else self._moment(given, "end")
+        with self.places.blame("periods", "end"):
+            return None if given is None else moment(given, self.climate.grid.zone, "end")
 
     @cached_property
     def end(self) -> pd.Timestamp:
@@ -184,21 +195,24 @@ class Setup:
         return pd.Timedelta(seconds=step * math.floor(seconds / step + 1e-9))
 
     @cached_property
-    def during(self) -> dict[str, Flags]:
-        """Instants of each period, shape (n,).
+    def used(self) -> dict[str, Flags]:
+        """Values of each period, shape (n, S); those that were not measured or are excluded included."""
+        return self.timeline.used(self.observation)
 
-        `blind` contains every instant that is neither in the identification period nor in the corroboration
-        period; if there is none, it is the corroboration period itself.
-        """
-        seen = self.observation.during(*self.identification)
-        held = self.span("corroboration")
-        named = ~seen & (
-            self.observation.during(*held)
-            if held is not None
-            else np.asarray(self.observation.times >= self.identification[1])
-        )
-        rest = ~seen & ~named
-        return dict(zip(PERIODS, (seen, named, rest if rest.any() else named), strict=True))
+    @cached_property
+    def during(self) -> dict[str, Flags]:
+        """Instants of each period, those in which some sensor is in it, shape (n,)."""
+        return {period: np.asarray(use.any(axis=1)) for period, use in self.used.items()}
+
+    @cached_property
+    def rows(self) -> Flags:
+        """Instants from the first to the last that are used to identify, shape (n,)."""
+        used = [s for s, sensor in enumerate(self.plan.sensors.values()) if sensor.use]
+        at = np.flatnonzero(self.used["identification"][:, used].any(axis=1))
+        found = np.zeros(len(self.observation.times), dtype=np.bool_)
+        if at.size:
+            found[at[0] : at[-1] + 1] = True
+        return found
 
     def _simulate(
         self, building: Building, start: TimeLike, end: TimeLike, further: Sequence[str] = ()
@@ -238,8 +252,11 @@ class Setup:
             return self.building
         if variant in self._further:
             return self.building.replace(self._further[variant].changes)
+        own = self.plan.variants[variant]
         with self.places.blame("variants", variant, "changes"):
-            return self.building.replace(self.plan.variants[variant].changes)
+            building = self.building.replace(own.changes)
+        with self.places.blame("variants", variant, "parameters"):
+            return with_ties(building, ties_of(own.parameters))
 
     @cached_property
     def forms(self) -> Forms:
@@ -296,11 +313,13 @@ class Setup:
         """Ranges of the parameters; the mesh is chosen once, for the whole ranges."""
         ranges = {p.path: (p.low, p.high) for p in building.parameters() if not p.structural}
         if self.plan.sensitivity is not None:
-            for path, span in self.plan.sensitivity.ranges.items():
-                known = self.building.parameter(path).path
-                if known in ranges:
-                    low, high = ranges[known]
-                    ranges[known] = (min(low, span[0]), max(high, span[1]))
+            for pattern, span in self.plan.sensitivity.ranges.items():
+                for known in (
+                    self.building.parameter(one).path for one in expanded(self.building, [pattern])
+                ):
+                    if known in ranges:
+                        low, high = ranges[known]
+                        ranges[known] = (min(low, span[0]), max(high, span[1]))
         sought = self.plan.identification
         for free in [] if sought is None else fit_parameters(self.building, sought):
             if free.path in ranges:
@@ -317,7 +336,8 @@ class Setup:
         return problem(
             self.short(variant),
             self.observation,
-            self.during["identification"],
+            self.rows,
+            self.used["identification"],
             self.plan.sensors,
             self.plan_of(variant),
         )
@@ -356,12 +376,21 @@ class Setup:
             for path, free in plan.parameters.items()
             if not own.alone and self.building.parameter(path).path in known
         }
-        return plan.model_copy(update={"parameters": shared | own.parameters})
+        every = {
+            one: free
+            for path, free in own.parameters.items()
+            for one in expanded(self.building_of(variant), [path])
+        }
+        return plan.model_copy(update={"parameters": shared | every})
 
     @cached_property
     def observation(self) -> Observation:
-        """Measured series on the instants of the comparison."""
-        return observe(self.simulation, self.measurements, self.plan.sensors, self.compared_from)
+        """Measured series on the instants of the comparison; what is excluded counts as not measured."""
+        found = observe(self.simulation, self.measurements, self.plan.sensors, self.compared_from)
+        excluded = self.timeline.excluded(found)
+        if not excluded.any():
+            return found
+        return replace(found, measured=np.where(excluded, np.nan, found.measured))
 
     @cached_property
     def lead_seconds(self) -> float:
@@ -378,9 +407,12 @@ class Setup:
         return {
             name: {
                 period: compare(
-                    self.observation.measured[:, s], simulated[:, s], use=use, unit=results.outputs[s].unit
+                    self.observation.measured[:, s],
+                    simulated[:, s],
+                    use=use[:, s],
+                    unit=results.outputs[s].unit,
                 )
-                for period, use in self.during.items()
+                for period, use in self.used.items()
             }
             for s, name in enumerate(self.observation.names)
         }

@@ -29,6 +29,7 @@ from mascarin.study.tables import (
     estimates_table,
     metrics_table,
     quality_table,
+    validation_series,
     write_tables,
 )
 
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
     from mascarin.progress import ProgressOption
     from mascarin.sensitivity import MethodName
+    from mascarin.study.findings import ModelRun
     from mascarin.study.setup import Setup
 
 
@@ -102,7 +104,8 @@ def calibration(study: Setup, out: Path, *, progress: ProgressOption = True) -> 
     with Workspace(out, study.inputs()) as workspace:
         runs = ModelRuns(study, workspace, progress)
         before = nominal(study)
-        found = calibrated(study, runs)
+        with study.keeping(workspace):
+            found = calibrated(study, runs)
         fitted, fit, intervals, profiles = found.run, found.fit, found.intervals, found.profiles
         models, verdicts = {"nominal": before, "fitted": fitted}, judged(study, before, fitted)
         content = {
@@ -142,7 +145,7 @@ def validation(study: Setup, out: Path | None) -> dict[str, Any]:
     study : Setup
         Its calibration is not carried out.
     out : Path, optional
-        Folder for validation.json and its tables; without it nothing is written.
+        Folder for validation.json, series.csv and the tables; without it nothing is written.
 
     Returns
     -------
@@ -152,12 +155,14 @@ def validation(study: Setup, out: Path | None) -> dict[str, Any]:
     if out is None:
         return _validated(study)[0]
     with Workspace(out, study.inputs()) as workspace:  # raises before the run if the folder cannot be used
-        content, tables = _validated(study)
-        _write(workspace, "validation", content, tables)
+        content, tables, run = _validated(study)
+        series = out / "series.csv"
+        atomic.write(series, validation_series(study, run).to_csv(index=False, lineterminator="\n"))
+        _write(workspace, "validation", content, tables, [series])
     return content
 
 
-def _validated(study: Setup) -> tuple[dict[str, Any], dict[str, pd.DataFrame]]:
+def _validated(study: Setup) -> tuple[dict[str, Any], dict[str, pd.DataFrame], ModelRun]:
     run = nominal(study)
     verdicts = judged(study, run)
     tables = {
@@ -165,7 +170,7 @@ def _validated(study: Setup) -> tuple[dict[str, Any], dict[str, pd.DataFrame]]:
         "validation_criteria": criteria_table(verdicts),
         "quality": quality_table(study.quality),
     }
-    return {**header(study, "validate"), **comparison({"nominal": run}, verdicts)}, tables
+    return {**header(study, "validate"), **comparison({"nominal": run}, verdicts)}, tables, run
 
 
 def _write(

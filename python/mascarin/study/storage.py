@@ -68,6 +68,7 @@ class Workspace:
             )
             self._clear("*.npy")
             self._clear("*.jsonl")
+            self._clear("*.npz")
         atomic.remove_drafts(self.folder)
         atomic.write(manifest, text)
 
@@ -143,7 +144,7 @@ class Workspace:
 
     def drop(self, name: str) -> None:
         """Remove outputs that are no longer needed."""
-        for file in self.folder.glob(f"{name}-*.npy"):
+        for file in (*self.folder.glob(f"{name}-*.npy"), *self.folder.glob(f"{name}-*.npz")):
             file.unlink()
 
 

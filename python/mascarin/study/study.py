@@ -18,6 +18,7 @@ from mascarin.study.checking import check
 from mascarin.study.days_step import days
 from mascarin.study.diagnosis_step import diagnosis
 from mascarin.study.document.errors import error_words
+from mascarin.study.kept import NAME, kept
 from mascarin.study.model_runs import ModelRuns, judged, nominal
 from mascarin.study.outputs import write_all
 from mascarin.study.prediction_intervals import interval_words, slopes
@@ -235,12 +236,13 @@ class Study(Setup):
         if out is None:
             with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), self.inputs()) as workspace:
                 return self._carried_out(workspace, progress)
-        with Workspace(Path(out), self.inputs()) as workspace:
+        with Workspace(Path(out), self.inputs()) as workspace, self.keeping(workspace):
             results = self._carried_out(workspace, progress)
             write_all(results, workspace)
             report.write(workspace.out / "report.html", *read_folder(workspace.out))
             workspace.drop("sensitivity")
             workspace.drop("diagnosis")
+            workspace.drop(NAME)
         return results
 
     def _carried_out(self, workspace: Workspace, progress: ProgressOption) -> StudyResults:
@@ -252,11 +254,14 @@ class Study(Setup):
         found = calibrated(self, runs)
         fitted, fit, intervals = found.run, found.fit, found.intervals
         variants = runs.variants()
-        residuals = examined(self, fitted)
-        sources = error_sources(self, fitted, fit, progress)
+        at = fit.x.tolist()
+        residuals = kept(workspace, ("residuals", at), lambda: examined(self, fitted))
         criteria = judged(self, before, fitted)
         aims = judge(self.plan.aims, fitted.scores, where=f"{self.places.file}: aims")
         missed = not all(verdict.passed for verdict in (*criteria["fitted"], *aims))
+        sources = None
+        if missed:
+            sources = kept(workspace, ("sources", at), lambda: error_sources(self, fitted, fit, progress))
         causes = diagnosis(self, fitted, fit, workspace, missed=missed, progress=progress)
         slope = slopes(self, fitted, fit)
         return StudyResults(
@@ -271,7 +276,7 @@ class Study(Setup):
             residuals=residuals,
             error_sources=sources,
             diagnosis=causes,
-            days=days(self, fitted, fit, slope, intervals),
+            days=kept(workspace, ("days", at), lambda: days(self, fitted, fit, slope, intervals)),
             prediction_intervals=intervals,
             profiles=found.profiles,
             notes=[

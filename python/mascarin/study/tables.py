@@ -10,12 +10,14 @@ import numpy as np
 
 from mascarin._io import atomic
 from mascarin.study.residuals_step import DRIVERS
+from mascarin.validation.sensors import COVERAGE_FACTOR
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from mascarin.calibration import Calibration
     from mascarin.study.findings import Findings, ModelRun
+    from mascarin.study.setup import Setup
     from mascarin.validation.causes import Diagnosis
     from mascarin.validation.criteria import Verdict
     from mascarin.validation.days import DayChoice
@@ -141,6 +143,46 @@ def days_table(found: DayChoice) -> pd.DataFrame:
             **{f"outside {name}": values for name, values in found.outside.items()},
         }
     )
+
+
+def validation_series(study: Setup, run: ModelRun) -> pd.DataFrame:
+    """Measured and predicted series of an uncalibrated model, one row for each instant; units in the header.
+
+    Parameters
+    ----------
+    study : Setup
+        The study.
+    run : ModelRun
+        The model.
+
+    Returns
+    -------
+    DataFrame
+        ``time`` (local, with its offset), then for each sensor its ``period``, ``measured`` and ``predicted``
+        value, ``band`` (half-width of the 95 % interval of a measured value, from its stated uncertainty) and
+        ``residual`` (predicted minus measured).
+    """
+    import pandas as pd
+
+    observation = study.observation
+    simulated = observation.simulated(run.results.index, run.results.records)
+    columns: dict[str, object] = {"time": observation.times.map(lambda stamp: stamp.isoformat())}
+    for s, name in enumerate(observation.names):
+        unit = run.results.outputs[s].unit
+        difference = unit.replace("degC", "K")
+        measured, stated = observation.measured[:, s], study.plan.sensors[name].stated_uncertainty(unit, name)
+        half = COVERAGE_FACTOR * np.hypot(stated.absolute, stated.relative * measured)
+        period = np.full(len(measured), "", dtype=object)
+        for word in ("blind", "corroboration", "identification"):
+            period[study.used[word][:, s]] = word
+        columns |= {
+            f"{name}.period": period,
+            f"{name}.measured [{unit}]": measured,
+            f"{name}.predicted [{unit}]": np.round(simulated[:, s], 6),
+            f"{name}.band [{difference}]": np.round(half, 6),
+            f"{name}.residual [{difference}]": np.round(simulated[:, s] - measured, 6),
+        }
+    return pd.DataFrame(columns)
 
 
 def series_table(findings: Findings) -> pd.DataFrame:

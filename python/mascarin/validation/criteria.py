@@ -58,6 +58,8 @@ class Criterion(BaseModel):
         Largest size of the metric, itself allowed. [unit of the metric]
     sensors, periods : sequence of str, optional
         Sensors and periods it applies to. Default: all.
+    units : sequence of str, optional
+        Units of the sensors it applies to. Default: all.
     name : str, optional
         A name for the report.
 
@@ -84,9 +86,14 @@ class Criterion(BaseModel):
     periods: tuple[str, ...] | None = Field(
         default=None, min_length=1, description="Periods it applies to; every period when absent."
     )
+    units: tuple[str, ...] | None = Field(
+        default=None,
+        min_length=1,
+        description="Units of the sensors it applies to, such as degC or W; every unit when absent.",
+    )
     name: str | None = Field(default=None, description="A name for the report.")
 
-    @field_validator("sensors", "periods", mode="before")
+    @field_validator("sensors", "periods", "units", mode="before")
     @classmethod
     def _listed(cls, value: object) -> object:
         """A single name is read as a list of one."""
@@ -231,6 +238,7 @@ def judge(
     every = {period: None for periods in metrics.values() for period in periods}
     for k, criterion in enumerate(criteria):
         sensors = _selected(criterion.sensors, metrics, f"{where}[{k}]: sensor")
+        sensors = _of_units(criterion, sensors, metrics, f"{where}[{k}]")
         _require_true_zero(criterion, sensors, metrics, f"{where}[{k}]")
         periods = _selected(criterion.periods, every, f"{where}[{k}]: period")
         verdicts += [
@@ -286,6 +294,22 @@ def _selected(wanted: tuple[str, ...] | None, known: Mapping[str, object], where
             msg = f"{where} '{name}' was not compared. {did_you_mean(name, known)}"
             raise InputError(msg)
     return list(wanted)
+
+
+def _of_units(
+    criterion: Criterion, sensors: list[str], metrics: Mapping[str, Mapping[str, Metrics]], where: str
+) -> list[str]:
+    """Sensors of the units that a criterion applies to."""
+    if criterion.units is None:
+        return sensors
+    unit_of = {s: next((found.unit for found in metrics[s].values()), "") for s in sensors}
+    for unit in criterion.units:
+        if unit not in unit_of.values():
+            raise InputError(
+                f"{where}: unit '{unit}' is that of no sensor it applies to. "
+                f"{did_you_mean(unit, unit_of.values())}".rstrip()
+            )
+    return [sensor for sensor in sensors if unit_of[sensor] in criterion.units]
 
 
 def _explain(error: ValidationError, where: str) -> str:

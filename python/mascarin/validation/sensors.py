@@ -123,6 +123,19 @@ class Sensor:
         Further part in proportion to the measured value, such as 0.05 for a heat flux meter. [-]
     output : str, optional
         Output of the model; the key of the sensor in ``sensors=`` when absent.
+    offset, common : float, optional
+        Standard uncertainty of a constant added to all readings of this sensor, and of one that all sensors
+        with a ``common`` share, such as that of a logger. [unit of the output]
+    gain : float
+        Standard uncertainty of a part of the distance from `reference` that is added to it. [-]
+    reference : float
+        Reading at which a gain has no effect. [unit of the output]
+    clock : str or float, optional
+        Standard uncertainty of the time by which the clock of the logger is fast, such as ``5min``. [s]
+    depth : float, optional
+        Standard uncertainty of the depth of a sensor in a wall. [m]
+    repeatability : float, optional
+        Standard deviation of repeated readings under the same conditions. [unit of the output]
 
     Raises
     ------
@@ -143,9 +156,36 @@ class Sensor:
     relative_expanded_uncertainty: float | None = None
     relative_standard_uncertainty: float | None = None
     output: str | None = None
+    offset: float | None = None
+    common: float = 0.0
+    gain: float = 0.0
+    reference: float = 0.0
+    clock: str | float | None = None
+    depth: float | None = None
+    repeatability: float | None = None
 
     def __post_init__(self) -> None:
+        for key in ("offset", "common", "gain", "depth", "repeatability"):
+            value = getattr(self, key)
+            if value is not None and not 0.0 <= value < math.inf:
+                raise InputError(
+                    f"sensor of column {', '.join(self.columns)}: found {key} {value:g}, expected a positive "
+                    "number; give the magnitude"
+                )
         self.uncertainty("degC")
+
+    @property
+    def states_errors(self) -> bool:
+        """Whether it says which errors the readings share."""
+        shared = (self.offset, self.common, self.gain, self.clock, self.depth)
+        return any(part is not None and part != 0.0 for part in shared)
+
+    @property
+    def _standard(self) -> float | None:
+        """Standard uncertainty of a reading: as stated, else from its parts. [unit of the output]"""
+        if self.standard_uncertainty is not None or self.expanded_uncertainty is not None:
+            return self.standard_uncertainty
+        return math.hypot(self.offset or 0.0, self.common, self.repeatability or 0.0) or None
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -173,7 +213,7 @@ class Sensor:
         """
         return SensorUncertainty.stated(
             unit,
-            standard=self.standard_uncertainty,
+            standard=self._standard,
             expanded=self.expanded_uncertainty,
             relative_standard=self.relative_standard_uncertainty,
             relative_expanded=self.relative_expanded_uncertainty,

@@ -63,6 +63,12 @@ def compile_study(study: Study) -> Case:
             f"{path}: found the same set point as {other}, which would follow it; expected set points that "
             "differ in a GenOpt project: lower the heating set point or raise the cooling set point"
         )
+    for path in problem.paths:
+        if simulation.building.parameter(path).members:
+            raise InputError(
+                f"{path}: found a tied parameter, expected parameters of one number in a GenOpt project; "
+                "leave it out, or write each number alone"
+            )
     seconds, at = epoch_seconds(simulation.index), epoch_seconds(observation.times)
     step = seconds[1] - seconds[0]
     columns = [observation.names.index(sensor.name) for sensor in problem.sensors]
@@ -75,7 +81,7 @@ def compile_study(study: Study) -> Case:
         run=simulation.compiled,
         seen=seen,
         positions=np.array([simulation.position(path) for path in problem.paths], dtype=np.int64),
-        place=((at - seconds[0]) / step)[np.flatnonzero(study.during["identification"])],
+        place=((at - seconds[0]) / step)[np.flatnonzero(study.rows)],
         parameters=problem.parameters,
         sensors=problem.sensors,
         cost=study.sought.cost,
