@@ -69,7 +69,7 @@ def experiment(study: Study, seed: int) -> tuple[Study, dict[str, float], dict[s
     """A study of simulated data, with the true parameters and forms, and the noise. [K]"""
     rng = np.random.default_rng(seed)
     building, values, chosen = truth(study, rng)
-    simulation = study._simulate(building, study.start, study.end)
+    simulation = study.over_record(building)
     records = simulation.run_vector(simulation.vector(values)).records
     table = study.measurements.data.copy()
     series = study.observation.simulated(simulation.index, records)
