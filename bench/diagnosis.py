@@ -1,9 +1,10 @@
 """Twelve planted faults, and data without a fault: which cause does the diagnosis of a study name first?
 
 ``python bench/diagnosis.py faults [name ...]`` plants faults in the virtual experiment of the LGI cell, one
-at a time (without names, the twelve): in the data (clock, exchanged columns, offset, gain, stuck, filled, noise) or in the study (a fixed
+at a time: in the data (clock, exchanged columns, offset, gain, stuck, filled, noise) or in the study (a fixed
 absorptance or conductivity that is wrong, another sky, another outside convection). Each study is calibrated
-and diagnosed. Printed are the first cause, and whether it is the planted one.
+and diagnosed. Printed are the first cause, and whether it is the planted one. Without names these are the
+twelve of ``FAULTS``; those of ``OTHERS`` are named.
 ``python bench/diagnosis.py clean [first] [count]`` makes data with the model itself, with white noise and
 noise with a correlation time of 3 h, by seed, and prints the causes that are named: there should be none.
 """

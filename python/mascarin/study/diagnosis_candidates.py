@@ -1,4 +1,4 @@
-"""What the diagnosis compares beside faults of data: other values of parameters and other forms of the model."""
+"""What the diagnosis compares beside faults of data: other values of parameters, other forms of the model."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ from mascarin.study.diagnosis_model import Model, Store
 from mascarin.study.other_laws import changed, forms
 from mascarin.validation.causes import Cause, Diagnosis
 from mascarin.validation.changes import changes
-from mascarin.validation.evidence import Squares, chance
+from mascarin.validation.evidence import Squares, chance, level_chance
 from mascarin.validation.joint import Joint, Solution, Whitening
 from mascarin.validation.sensor_faults import Fault, Series, sensor_faults, white_noise
 
@@ -251,25 +251,14 @@ class _Search:
         if self.first is None:
             self.first = float(squares.before.sum())
         self.last = float(squares.before.sum())
-        tried = 30 * len(self.names)
         found: list[tuple[float, Fault, float]] = []
         seen: set[int] = set()
         for fault in faults:
             # Of the faults of one sensor only the best one counts.
             if seen & set(fault.sensors):
                 continue
-            after = problem if fault.residual is None else problem.with_residual(dict(fault.residual))
-            assert fault.solution is not None  # noqa: S101 (every fault has been fitted)
-            p = chance(
-                (problem, null, active), (after, fault.solution, active, fault.extra),
-                interval=self.model.interval, tried=tried, deviance=fault.deviance,
-            )  # fmt: skip
             whole_offset = fault.what == "offset" and fault.rows is None
-            if whole_offset:
-                # Its evidence is the stated uncertainty, not the scatter.
-                from scipy import stats
-
-                p = min(1.0, tried * float(stats.chi2.sf(max(fault.deviance, 0.0), 1)))
+            p = self._chance(problem, null, active, fault)
             residual = None if fault.residual is None else dict(fault.residual)
             gone = fault.sensors[0] if whole_offset else None
             share, of_sensor = squares.share(squares.after(extra=fault.extra, residual=residual, offset=gone))
@@ -280,6 +269,27 @@ class _Search:
             return None
         share, fault, p = max(found, key=lambda item: item[0])
         return fault, p, share, problem, null, active
+
+    def _chance(self, problem: Joint, null: Solution, active: list[int], fault: Fault) -> float:
+        """Probability of a fault by chance. [-]"""
+        from scipy import stats
+
+        assert fault.solution is not None  # noqa: S101 (every fault has been fitted)
+        tried, interval = 30 * len(self.names), self.model.interval
+        if fault.what == "offset":
+            # Whitened, an offset that begins is a pulse; one of the whole record is told by the stated
+            # uncertainty alone.
+            ratio = tried * float(stats.chi2.sf(max(fault.deviance, 0.0), 1))
+            if fault.rows is None:
+                return min(1.0, ratio)
+            s, values = fault.sensors[0], fault.solution.values[: len(active)]
+            left = problem.residual[:, s] - values @ problem.columns[active, :, s]
+            return min(1.0, max(ratio, level_chance(left, fault.rows, interval=interval)))
+        after = problem if fault.residual is None else problem.with_residual(dict(fault.residual))
+        return chance(
+            (problem, null, active), (after, fault.solution, active, fault.extra),
+            interval=interval, tried=tried, deviance=fault.deviance,
+        )  # fmt: skip
 
     def suspicious(self) -> bool:
         """Whether a sensor shows a fault that the calibrated parameters do not explain, or too much noise."""
