@@ -7,10 +7,10 @@ priors, the errors of each day. A Bayesian interval of 95 % then contains 95 % o
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
 from mascarin.calibration import CalibrationProblem, FitParameter, FitSensor
+from mascarin.calibration.day_blocks import DayGrid
 from mascarin.calibration.discrepancy import (
     CORRELATION_HOURS,
     Discrepancy,
@@ -30,6 +30,7 @@ SCALE, OFFSET = 0.15, 0.15
 HOURS = np.arange(24.0 * (DAYS + BLIND))
 SEEN = HOURS < 24.0 * DAYS
 ALIKE = alike_days(DAYS, 5.0)
+GRID = DayGrid(np.zeros(0, int), np.zeros(0, int), 1, 24, 1.0)
 
 
 def covariance(rng: np.random.Generator) -> Floats:
@@ -58,7 +59,7 @@ def slopes(rng: np.random.Generator) -> Floats:
 
 def errors(rng: np.random.Generator, sizes: Discrepancy) -> Floats:
     """Errors of all hours, shape (n, S)."""
-    grid_kernel = drift_kernel(_grid(), sizes.correlation_hours)
+    grid_kernel = drift_kernel(GRID, sizes.correlation_hours)
     repeating = hour_basis(HOURS) @ rng.normal(size=(5, SENSORS)) @ root_of(sizes.hour).T
     day = root_of(sizes.day)
     level = np.where(np.arange(DAYS + BLIND)[:, None] < DAYS, rng.normal(size=SENSORS), 0.0)
@@ -69,12 +70,6 @@ def errors(rng: np.random.Generator, sizes: Discrepancy) -> Floats:
     white = rng.normal(size=slow.shape) * np.sqrt(sizes.white)
     offset = OFFSET * rng.normal(size=SENSORS)
     return np.asarray(repeating + np.repeat(of_day, 24, axis=0) + slow + white + offset)
-
-
-def _grid():  # type: ignore[no-untyped-def]
-    from mascarin.calibration.day_blocks import DayGrid
-
-    return DayGrid(np.zeros(0, int), np.zeros(0, int), 1, 24, 1.0)
 
 
 def experiment(seed: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -98,6 +93,7 @@ def experiment(seed: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     found = joint(problem, Linear(middle, np.full((len(none), SENSORS), 20.0), slope[SEEN], none), stated)
     low, high = np.quantile(found.sample, [0.025, 0.975], axis=0)
     blind = ~SEEN
+    # The sample itself: a study widens it, because it does not know that the errors are as assumed.
     known, _ = error_columns(
         [s.name for s in problem.sensors], stated.sensors, np.zeros((int(blind.sum()), SENSORS)), 3600.0
     )
@@ -106,9 +102,8 @@ def experiment(seed: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     return (low <= z) & (z <= high), np.abs(measured[blind] - 20.0 - expected) <= half
 
 
-@pytest.mark.slow
 def test_intervals_and_bands_contain_what_they_say_over_many_experiments() -> None:
-    results = [experiment(seed) for seed in range(200)]
+    results = [experiment(seed) for seed in range(120)]
     inside = np.array([parameters for parameters, _ in results])
     held = np.array([values.mean(axis=0) for _, values in results])
     assert 0.93 <= inside.mean() <= 0.97

@@ -117,6 +117,8 @@ class Joint:
         Log density of each day given all others. [-]
     density : float
         Log density of all days. [-]
+    prior : ndarray, shape (P,)
+        Standard deviation of the prior of each position. [-]
     """
 
     z: Floats
@@ -127,6 +129,32 @@ class Joint:
     names: tuple[str, ...]
     by_day: Floats
     density: float
+    prior: Floats
+
+    def quantile(self, confidence: float) -> float:
+        """Half-width of an interval on other days, in standard deviations: Student's.
+
+        If the errors are as assumed, the quantile is that of the normal distribution. That they are is known
+        from a few days of similar weather only, one fewer than which are the degrees of freedom.
+        """
+        from scipy import stats
+
+        return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size - 1, 2)))
+
+    def widened(self, confidence: float = 0.95) -> Floats:
+        """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
+
+        Only what the data say is as doubtful as the errors; the priors are as stated.
+        """
+        from scipy import stats
+
+        factor = self.quantile(confidence) / float(stats.norm.ppf(0.5 + 0.5 * confidence))
+        count = self.sample.shape[1]
+        own = 1.0 / np.diag(self.covariance)[:count]
+        prior = np.minimum(1.0 / self.prior**2, own)
+        wider = np.sqrt(own / (prior + (own - prior) / factor**2))
+        middle = np.median(self.sample, axis=0)
+        return np.asarray(np.clip(middle + wider * (self.sample - middle), 0.0, 1.0))
 
     def predicted(self, columns: Floats, z: Floats) -> tuple[Floats, Floats]:
         """Predict the difference between measured and simulated series.
@@ -222,6 +250,7 @@ def joint(
         names,
         gaussian.left_out(data.error),
         gaussian.log_density(data.error),
+        scale[:count],
     )
 
 

@@ -108,7 +108,7 @@ def _reported(
     z = np.where(here.z < AT_BOUND, 0.0, np.where(here.z > 1.0 - AT_BOUND, 1.0, here.z))
     x = problem.values(z[None])[0]
     tail = 0.5 * (1.0 - fit.confidence)
-    low, high = np.quantile(found.sample, [tail, 1.0 - tail], axis=0)
+    low, high = np.quantile(found.widened(), [tail, 1.0 - tail], axis=0)
     covariance = found.covariance[: z.size, : z.size]
     sd = np.sqrt(np.diag(covariance))
     correlation = covariance / np.outer(sd, sd)

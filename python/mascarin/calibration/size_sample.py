@@ -105,6 +105,22 @@ def sample_sizes(data: DayData, first: Discrepancy, *, scale: Floats, limit: Flo
     Returns
     -------
     SizeSample
+
+    Examples
+    --------
+    Errors of 0.2 of every slot of 20 days, alone:
+
+    >>> from mascarin.calibration.day_blocks import DayGrid
+    >>> from mascarin.calibration.discrepancy import hour_basis
+    >>> grid = DayGrid(np.zeros(0, int), np.zeros(0, int), 20, 8, 3.0)
+    >>> basis = np.broadcast_to(hour_basis(np.arange(8) * 3.0), (20, 8, 5))
+    >>> error = 0.2 * np.random.default_rng(1).normal(size=(20, 8))
+    >>> data = DayData(grid, error, np.zeros((20, 8, 0)), basis, np.ones((20, 8), dtype=bool), np.zeros(1))
+    >>> small = 1e-4 * np.eye(1)
+    >>> first = Discrepancy(small, small, small, np.array([0.04]), np.zeros(1), 4.0)
+    >>> drawn = sample_sizes(data, first, scale=np.array([0.1]), limit=np.array([1.0]))
+    >>> bool(0.15 < np.sqrt(drawn.typical.white[0]) < 0.23)
+    True
     """
     chain = _Chain(data, first, scale, limit)
     sizes, mean, covariance = [], [], []
@@ -213,7 +229,7 @@ class _Chain:
         lower = np.linalg.cholesky(0.5 * (precision + precision.T))
         root = np.linalg.inv(lower).T
         middle = root @ (root.T @ right)
-        spread = root_of(own)
+        spread = root_of(np.asarray(own, dtype=np.float64))
 
         def days(rest: Floats) -> Floats:
             found = rest.reshape(len(rest), -1) @ one @ own
@@ -256,7 +272,8 @@ class _Chain:
         inverse = self.rng.gamma(0.5 * (_FREEDOM + 1.0), 1.0, rate.size) / rate
         count = white.shape[0] * white.shape[1]
         total = 0.5 * np.sum(white**2, axis=(0, 1)) + _FREEDOM * inverse
-        return np.minimum(total / self.rng.gamma(0.5 * (_FREEDOM + count), 1.0, rate.size), self.limit**2)
+        drawn = total / self.rng.gamma(0.5 * (_FREEDOM + count), 1.0, rate.size)
+        return np.asarray(np.minimum(drawn, self.limit**2))
 
     def _correlation(self, slow: Floats) -> float:
         """Draw the correlation time given the slow errors."""

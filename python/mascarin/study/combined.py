@@ -49,7 +49,7 @@ def estimates_of(study: Setup, found: Combination) -> Calibration:
             if parameter.path in paths and comparable(parameter.path, best.choice, form.choice, study.forms):
                 k = paths.index(parameter.path)
                 other = form.fit.problem.parameters[k]
-                samples.append(np.array([other.value(v) for v in form.joint.sample[:, k]]))
+                samples.append(np.array([other.value(v) for v in form.joint.widened()[:, k]]))
                 weights.append(weight)
         low[i], high[i] = weighted_quantiles(samples, np.array(weights), np.array([tail, 1.0 - tail]))
     method = METHOD
@@ -70,20 +70,23 @@ def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
     shape = observation.measured.shape
     mean, square, of_parameters = np.zeros(shape), np.zeros(shape), np.zeros(shape)
     effects: dict[str, Array] = {}
-    new_day = np.zeros(shape[1])
+    new_day, noise = np.zeros(shape[1]), np.zeros(shape[1])
     fitted = observation.simulated(found.forms[0].run.results.index, found.forms[0].run.results.records)
     for form, weight in found.kept:
-        about, variance, parameters, own = _predicted(study, form, hours, effects)
+        about, variance, parameters, own, white = _predicted(study, form, hours, effects)
         simulated = observation.simulated(form.run.results.index, form.run.results.records)
         there = simulated + about
         mean += weight * there
         square += weight * (variance + own + (there - fitted) ** 2)
         of_parameters += weight * parameters
         new_day += weight * own
+        noise += weight * white
     center = mean - fitted
     variance = np.maximum(square - center**2, 0.0)
     confidence = found.forms[0].fit.confidence
-    half = float(stats.norm.ppf(0.5 + 0.5 * confidence)) * np.sqrt(variance)
+    # What differs from value to value is known from many values, all else from few days.
+    shared = found.forms[0].joint.quantile(confidence) ** 2 * np.maximum(variance - noise, 0.0)
+    half = np.sqrt(shared + float(stats.norm.ppf(0.5 + 0.5 * confidence)) ** 2 * noise)
     misses = fitted + center - observation.measured
     coverage = {period: coverage_of(misses, half, use) for period, use in study.during.items()}
     return PredictionIntervals(confidence, half, np.sqrt(of_parameters), np.sqrt(new_day), coverage, center)
@@ -91,10 +94,10 @@ def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
 
 def _predicted(
     study: Setup, form: FormFit, hours: Array, effects: dict[str, Array]
-) -> tuple[Array, Array, Array, Array]:
-    """Expected measured minus simulated value, its variance, that of the parameters, and that of a new day.
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Expected measured minus simulated value, its variance, that of the parameters, of a day, of a value.
 
-    Shapes (n, S), (n, S), (n, S) and (S,); sensors that are not used have an error of their own size.
+    Shapes (n, S), (n, S), (n, S), (S,) and (S,); sensors that are not used have an error of their own size.
     """
     slope = np.moveaxis(slopes(study, form.run, form.fit), 0, -1)
     joint, count = form.joint, slope.shape[2]
@@ -114,17 +117,17 @@ def _predicted(
     known = np.concatenate([effects_of_sensors(study, simulated), further], axis=2)
     z = form.fit.problem.positions(form.fit.x)
     about, variance = np.zeros(slope.shape[:2]), np.zeros(slope.shape[:2])
-    own = np.zeros(slope.shape[1])
+    own, white = np.zeros(slope.shape[1]), np.zeros(slope.shape[1])
     parameters = np.einsum("tsp,pq,tsq->ts", slope, joint.covariance[:count, :count], slope, optimize=True)
     used = joint.effects(slope[:, columns], known[:, columns], hours)
     about[:, columns], variance[:, columns] = joint.predicted(used, z)
     # What the identification does not tell of these numbers remains as uncertain as it was.
     variance += np.maximum(np.sum(every**2, axis=2) - np.sum(further**2, axis=2), 0.0)
-    own[columns] = joint.sizes.new_day
+    own[columns], white[columns] = joint.sizes.new_day, joint.sizes.independent
     seen = study.during["identification"]
     for s in range(own.size):
         if s not in columns:
             misses = (simulated - study.observation.measured)[seen, s]
             own[s] = float(np.nanmean(misses**2)) if np.isfinite(misses).any() else np.nan
             variance[:, s] += parameters[:, s]
-    return about, variance, np.maximum(parameters, 0.0), own
+    return about, variance, np.maximum(parameters, 0.0), own, white

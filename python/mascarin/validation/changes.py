@@ -169,7 +169,9 @@ class _Search:
         """Columns that are free, their covariance, and what remains of each sensor without a fault."""
         index = np.asarray(self.active, dtype=np.int64)
         free = np.flatnonzero(self.null.free[: index.size])
-        covariance = np.linalg.pinv(self.null.information[np.ix_(free, free)], hermitian=True)
+        covariance = np.asarray(
+            np.linalg.pinv(self.null.information[np.ix_(free, free)], hermitian=True), dtype=np.float64
+        )
         return index[free], covariance, self.joint.remaining(self.null, self.active)
 
     def _after(self, s: int, change: Floats) -> _Part:
