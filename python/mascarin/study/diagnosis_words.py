@@ -59,7 +59,7 @@ def of_fault(
     subject = tuple(names[s] for s in fault.sensors)
     unit = units[fault.sensors[0]].replace("degC", "K")
     value, error, of = fault.value, fault.error, unit
-    name = subject[0]
+    name, daylight = subject[0], "daylight saving" if when else "the time zone"
     if fault.what == "swapped":
         columns = [", ".join(setup.plan.sensors[one].columns) for one in subject]
         text = (
@@ -70,10 +70,9 @@ def of_fault(
     elif fault.what == "clock":
         value, error, of = value / 60.0, error / 60.0, "min"
         side = "late" if value > 0.0 else "early"
-        what = "daylight saving" if when else "the time zone"
         text = (
             f"{name}: its series is {_size(abs(value), error, 'min')} {side}{when}, at all frequencies "
-            f"alike: check the clock or {what} of its logger"
+            f"alike: check the clock or {daylight} of its logger"
         )
     elif fault.what == "offset" and when:
         text = (
