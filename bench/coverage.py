@@ -2,21 +2,23 @@
 
 Experiments are simulated on the shipped LGI cell with a model that differs from the one that is calibrated:
 other parameters (drawn from their priors, those that are not estimated from their ranges), other forms of
-some parts of the model (any of the alternatives of the study), offsets of the sensors drawn at their stated
-uncertainty, white noise of 0.1 to 0.3 K, and errors with a correlation time of 3 h. Each is then calibrated
-by the study of the cell, with its alternatives.
+some parts of the model, offsets of the sensors drawn at their stated uncertainty, white noise of 0.1 to
+0.3 K, and errors with a correlation time of 3 h. The forms of even seeds are among the alternatives of the
+study; those of odd seeds are none of them. Each experiment is then calibrated by the study of the cell, with
+its alternatives.
 
-Run ``python bench/coverage.py [experiments] [first seed]``; the table is printed after each experiment.
+Run ``python bench/coverage.py FOLDER [experiments] [first seed]``. Each result is a file of the folder, and
+is not computed again; the table of all results there is printed after each experiment.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import sys
 import tempfile
 import time
 from collections import defaultdict
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -40,13 +42,41 @@ CORRELATED = 0.05  # K, standard deviation of the error with a correlation time 
 CORRELATION = 3.0  # h
 
 
-def truth(study: Study, rng: np.random.Generator) -> tuple[Any, dict[str, float], dict[str, str]]:
-    """Draw the building that makes the data: its form, its parameters, and which forms were chosen."""
+#: A film law and a gap law that no alternative of the study names: mixed free and forced convection.
+FILM = {"a": 3.0, "c": 4.2, "m": 0.75}
+GAP = {"kind": "power", "upward": {"b": 1.8, "n": 0.33}, "downward": {"a": 0.3, "b": 0.5, "n": 0.25}}
+UNNAMED: dict[str, dict[str, Any]] = {
+    "site.cloud": {"site.cloud": {"kind": "layer", "base": 1500.0}},
+    "gap": {"surfaces.roof.inside.convection": GAP, "surfaces.ceiling.outside.convection": GAP},
+    "melting": {"materials.energain.law": {"kind": "gaussian", "width": 0.8}},
+    "site.diffuse": {"site.diffuse": "isotropic"},
+}
+
+
+def truth(
+    study: Study, rng: np.random.Generator, named: bool
+) -> tuple[Any, dict[str, float], dict[str, str], list[str]]:
+    """Draw the building that makes the data: its parameters, the forms chosen, and what they replace."""
     forms = study.forms
-    chosen = {part: [None, *known][rng.integers(1 + len(known))] for part, known in forms.parts.items()}
-    choice = forms.of(chosen)
-    variant = study.variant_of(choice)
-    building = study.building_of(variant)
+    changes: dict[str, Any] = {}
+    chosen: dict[str, str | None]
+    if named:
+        chosen = {part: [None, *known][rng.integers(1 + len(known))] for part, known in forms.parts.items()}
+        variant = study.variant_of(forms.of(chosen))
+        building = study.building_of(variant)
+    else:
+        film = {
+            "kind": "power",
+            "upward": {**FILM, "b": 1.6, "n": 0.33},
+            "downward": {**FILM, "b": 0.6, "n": 0.25},
+        }
+        changes = {"surfaces.roof.outside.convection": film}
+        chosen, variant = {"outside convection": "power"}, None
+        for part, forms_of_part in UNNAMED.items():
+            if rng.random() < 0.5:
+                changes |= forms_of_part
+                chosen[part] = "not named"
+        building = study.building.replace(changes)
     values: dict[str, float] = {}
     known_parameters = {p.path: p for p in study.problem(variant).parameters}
     for factor in factors_of(building):
@@ -54,7 +84,9 @@ def truth(study: Study, rng: np.random.Generator) -> tuple[Any, dict[str, float]
         low, high = max(parameter.low, parameter.lower), min(parameter.high, parameter.upper)
         sd = 0.25 * (high - low)
         free = known_parameters.get(factor.path)
-        if free is not None:
+        if any(factor.path.startswith(f"{path}.") for path in changes):
+            sd = 0.1 * (high - low)
+        elif free is not None:
             low, high = free.lower, free.upper
             sd = free.prior[1] if free.prior is not None else 0.25 * (high - low)
         for _ in range(100):
@@ -62,35 +94,34 @@ def truth(study: Study, rng: np.random.Generator) -> tuple[Any, dict[str, float]
             if low <= value <= high:
                 values[factor.path] = float(value)
                 break
-    return building, values, {part: form or "as described" for part, form in chosen.items()}
+    return building, values, {part: form or "as described" for part, form in chosen.items()}, list(changes)
 
 
-def experiment(study: Study, seed: int) -> tuple[Study, dict[str, float], dict[str, str], float]:
-    """A study of simulated data, with the true parameters and forms, and the noise. [K]"""
+def experiment(study: Study, seed: int) -> tuple[Study, dict[str, float], dict[str, str], list[str], float]:
+    """A study of simulated data, the true parameters and forms, what forms replace, and the noise. [K]"""
     rng = np.random.default_rng(seed)
-    building, values, chosen = truth(study, rng)
-    simulation = study._simulate(building, study.start, study.end)
+    building, values, chosen, changed = truth(study, rng, named=seed % 2 == 0)
+    simulation = study.over_record(building)
     records = simulation.run_vector(simulation.vector(values)).records
     table = study.measurements.data.copy()
     series = study.observation.simulated(simulation.index, records)
     noise = float(rng.uniform(0.1, 0.3))
     phi = math.exp(-study.observation.interval / 3600.0 / CORRELATION)
     rows = table.index.get_indexer(study.observation.times)
-    for s, (name, sensor) in enumerate(study.plan.sensors.items()):
+    for s, sensor in enumerate(study.plan.sensors.values()):
         size = len(series)
         drift = lfilter([math.sqrt(1.0 - phi**2)], [1.0, -phi], rng.standard_normal(size + 300))[300:]
         error = OFFSET * rng.standard_normal() + noise * rng.standard_normal(size) + CORRELATED * drift
         values_now = np.full(len(table), np.nan)
         values_now[rows] = series[:, s] + error
         table[sensor.columns[0]] = values_now
-        _ = name
     measured = Measurements.from_table(table, timezone="UTC+4")
-    copy = Study.__new__(type(study))
-    copy.__setstate__({"sources": replace(study.sources, measurements=measured, quality=[])})
-    return copy, values, chosen, noise
+    return study.with_measurements(measured), values, chosen, changed, noise
 
 
-def judge(study: Study, values: dict[str, float], chosen: dict[str, str]) -> dict[str, Any]:
+def judge(
+    study: Study, values: dict[str, float], chosen: dict[str, str], replaced: list[str]
+) -> dict[str, Any]:
     """Calibrate one experiment and compare with the truth."""
     with tempfile.TemporaryDirectory() as folder, Workspace(Path(folder), study.inputs()) as workspace:
         found = ModelRuns(study, workspace, False).combination()
@@ -102,9 +133,10 @@ def judge(study: Study, values: dict[str, float], chosen: dict[str, str]) -> dic
             part
             for part, known in study.forms.parts.items()
             for form in known.values()
-            if best.get(part, "as described") != chosen[part]
+            if best.get(part, "as described") != chosen.get(part, "as described")
             and any(path.startswith(f"{place}.") for place in form.changes)
         ]
+        changed += [place for place in replaced if path.startswith(f"{place}.")]
         # A parameter of another law than the true one has no true value.
         if path in values and not changed:
             held[path] = bool(fit.low[i] <= values[path] <= fit.high[i])
@@ -113,62 +145,72 @@ def judge(study: Study, values: dict[str, float], chosen: dict[str, str]) -> dic
     for i, path in enumerate(fit.problem.paths):
         if path in held:
             scores[path] = float((values[path] - 0.5 * (fit.low[i] + fit.high[i])) / sd[i])
-    weight = sum(
-        w for f, w in zip(found.forms, found.weights, strict=True)
-        if {**dict.fromkeys(chosen, "as described"), **dict(f.choice)} == chosen
-    )  # fmt: skip
     return {
         "held": held,
         "blind": dict(zip(study.observation.names, intervals.coverage["blind"].tolist(), strict=True)),
         "half": dict(zip(study.observation.names, intervals.half_width.mean(axis=0).tolist(), strict=True)),
         "sd": [periods["blind"].sd for periods in found.forms[0].run.scores.values()],
         "rms": float(np.sqrt(np.mean(np.square(list(scores.values()))))),
-        "weight": float(weight),
         "best": best,
     }
 
 
 def main() -> None:
     """Print the table after each experiment."""
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 6
-    first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    study = Study.from_yaml(sys.argv[3] if len(sys.argv) > 3 else STUDIES["lgi"])
-    held: dict[str, list[bool]] = defaultdict(list)
-    blind: dict[str, list[float]] = defaultdict(list)
+    if len(sys.argv) < 2:
+        sys.stdout.write(__doc__ or "")
+        return
+    folder = Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    count = int(sys.argv[2]) if len(sys.argv) > 2 else 40
+    first = int(sys.argv[3]) if len(sys.argv) > 3 else 0
+    study = Study.from_yaml(STUDIES["lgi"])
     for seed in range(first, first + count):
+        path = folder / f"{seed}.json"
+        if path.exists():
+            continue
         began = time.monotonic()
         try:
-            made, values, chosen, noise = experiment(study, seed)
-            result = judge(made, values, chosen)
+            made, values, chosen, changed, noise = experiment(study, seed)
+            result = judge(made, values, chosen, changed)
         except InputError as error:
             sys.stdout.write(f"experiment {seed}: {error}\n")
             continue
-        for path, inside in result["held"].items():
-            held[path].append(inside)
-        for name, part in result["blind"].items():
-            blind[name].append(part)
-        missed = [path for path, inside in result["held"].items() if not inside]
-        inside = f"{sum(result['held'].values())} of {len(result['held'])} parameters inside"
-        parts = [round(100 * part) for part in result["blind"].values()]
-        half = [round(width, 2) for width in result["half"].values()]
+        result |= {"forms": chosen, "noise": noise, "seconds": time.monotonic() - began}
+        part = path.with_suffix(".part")
+        part.write_text(json.dumps(result))
+        part.replace(path)
+        table(folder)
+
+
+def table(folder: Path) -> None:
+    """Print what all experiments of a folder have found."""
+    held: dict[str, list[bool]] = defaultdict(list)
+    blind: dict[str, list[float]] = defaultdict(list)
+    for path in sorted(folder.glob("*.json"), key=lambda one: int(one.stem)):
+        result = json.loads(path.read_text())
+        for name, inside in result["held"].items():
+            held[name].append(inside)
+        for name, share in result["blind"].items():
+            blind[name].append(share)
+        missed = [name for name, inside in result["held"].items() if not inside]
         sys.stdout.write(
-            f"experiment {seed}: {chosen}, noise {noise:.2f} K; "
-            f"used {result['best'] or 'as described'}, "
-            f"weight of the true form {result['weight']:.2f}; {inside}, "
-            f"missed {missed}, distance over half-width "
-            f"{result['rms']:.2f} (rms); blind {parts} %, half-width {half} K, scatter "
-            f"{np.round(result['sd'], 2).tolist()} K; {time.monotonic() - began:.0f} s\n"
+            f"experiment {path.stem}: {result['forms']}, noise {result['noise']:.2f} K; used "
+            f"{result['best'] or 'as described'}; {len(result['held']) - len(missed)} of "
+            f"{len(result['held'])} parameters inside, missed {missed}; blind "
+            f"{[round(100 * share) for share in result['blind'].values()]} %, half-width "
+            f"{[round(width, 2) for width in result['half'].values()]} K; {result['seconds']:.0f} s\n"
         )
-        sys.stdout.flush()
     every = [inside for flags in held.values() for inside in flags]
     sys.stdout.write(f"\nparameters: {100 * np.mean(every):.1f} % of {len(every)}\n\n")
     sys.stdout.write("| parameter | inside | of |\n|---|---|---|\n")
-    for path, flags in sorted(held.items(), key=lambda item: np.mean(item[1])):
-        sys.stdout.write(f"| `{path}` | {100 * np.mean(flags):.0f} % | {len(flags)} |\n")
+    for name, flags in sorted(held.items(), key=lambda item: float(np.mean(item[1]))):
+        sys.stdout.write(f"| `{name}` | {100 * np.mean(flags):.0f} % | {len(flags)} |\n")
     sys.stdout.write(f"\nblind values: {100 * np.mean(list(blind.values())):.1f} %\n\n")
     sys.stdout.write("| sensor | blind values inside | worst experiment |\n|---|---|---|\n")
     for name, parts in blind.items():
         sys.stdout.write(f"| {name} | {100 * np.mean(parts):.1f} % | {100 * min(parts):.0f} % |\n")
+    sys.stdout.flush()
 
 
 if __name__ == "__main__":

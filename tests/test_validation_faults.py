@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
+from mascarin.validation.changes import changes
 from mascarin.validation.evidence import chance
 from mascarin.validation.joint import Extra, Joint, Whitening
 from mascarin.validation.sensor_faults import Fault, Series, sensor_faults, shifted, white_noise
@@ -32,7 +33,7 @@ def _noise(seed: int) -> Floats:
     return np.asarray(0.05 * drawn[0] + lfilter([0.03], [1.0, -0.9], drawn[1], axis=0))
 
 
-def _faults(measured: Floats, simulated: Floats = SIMULATED) -> tuple[list[Fault], Joint]:
+def _problem(measured: Floats, simulated: Floats = SIMULATED) -> tuple[Joint, Series]:
     offsets = np.zeros((3, N, 3))
     for s in range(3):
         offsets[s, :, s] = 1.0
@@ -43,9 +44,77 @@ def _faults(measured: Floats, simulated: Floats = SIMULATED) -> tuple[list[Fault
     plain = Joint(residual, columns, np.zeros(5), precision, free, Whitening(tuple(np.empty(0) for _ in U)))
     left = residual - np.tensordot(plain.solve(range(5)).values, columns, 1)
     joint = Joint(residual, columns, np.zeros(5), precision, free, Whitening.of(left))
-    null = joint.solve(range(5))
-    series = Series(measured, simulated, U, STEP, 450.0, ("degC",) * 3, {})
-    return sensor_faults(joint, list(range(5)), null, series), joint
+    return joint, Series(measured, simulated, U, STEP, 450.0, ("degC",) * 3, {})
+
+
+def _faults(measured: Floats, simulated: Floats = SIMULATED) -> tuple[list[Fault], Joint]:
+    joint, series = _problem(measured, simulated)
+    return sensor_faults(joint, list(range(5)), joint.solve(range(5)), series), joint
+
+
+def _changes(measured: Floats) -> tuple[list[Fault], Joint]:
+    joint, series = _problem(measured)
+    return changes(joint, list(range(5)), joint.solve(range(5)), series), joint
+
+
+@pytest.mark.parametrize("day", [3, 5, 8])
+def test_an_offset_from_some_day_on_is_found_with_its_time(day: int) -> None:
+    measured = SIMULATED + _noise(4)
+    measured[day * 96 :, 0] += 0.8
+    first, joint = _changes(measured)
+    found = first[0]
+    assert (found.what, found.sensors) == ("offset", (0,))
+    assert found.rows is not None
+    # With a stated offset either side may be the wrong one; the change and its size are the same.
+    at = found.rows[0] or found.rows[1]
+    assert abs(at - day * 96) <= 4
+    sign = 1.0 if found.rows[0] else -1.0
+    assert found.value == pytest.approx(sign * 0.8, abs=4.0 * found.error + 0.02)
+    whole = sensor_faults(joint, list(range(5)), joint.solve(range(5)), _problem(measured)[1])
+    assert max((one.deviance for one in whole), default=0.0) < found.deviance
+
+
+def test_a_clock_that_jumps_by_an_hour_is_found() -> None:
+    measured = SIMULATED + _noise(5)
+    late = shifted(SIMULATED[:, 1], 3600.0, STEP) + _noise(6)[:, 1]
+    measured[7 * 96 :, 1] = late[7 * 96 :]
+    found = _changes(measured)[0][0]
+    assert (found.what, found.sensors, found.value) == ("clock", (1,), 3600.0)
+    assert found.rows is not None
+    assert abs(found.rows[0] - 7 * 96) <= 32  # at night the series does not change
+    assert found.rows[1] == N
+
+
+def test_columns_exchanged_in_the_middle_of_the_record_are_found() -> None:
+    measured = SIMULATED + _noise(7)
+    measured[6 * 96 :, [1, 2]] = measured[6 * 96 :, [2, 1]]
+    found = _changes(measured)[0][0]
+    assert (found.what, found.sensors) == ("swapped", (1, 2))
+    assert found.rows is not None
+    assert abs(found.rows[0] - 6 * 96) <= 32
+
+
+def test_a_fault_of_the_whole_record_is_not_taken_for_a_change() -> None:
+    measured = SIMULATED + _noise(1)
+    measured[:, 0] += 1.0
+    whole, joint = _faults(measured)
+    partial = changes(joint, list(range(5)), joint.solve(range(5)), _problem(measured)[1])
+    assert whole[0].what == "offset"
+    assert max((one.deviance for one in partial), default=0.0) < whole[0].deviance
+
+
+def test_in_clean_data_no_change_is_significant() -> None:
+    for seed in range(20):
+        found, joint = _changes(SIMULATED + _noise(200 + seed))
+        null = joint.solve(range(5))
+        for fault in found:
+            assert fault.solution is not None
+            after = joint if fault.residual is None else joint.with_residual(dict(fault.residual))
+            p = chance(
+                (joint, null, range(5)), (after, fault.solution, range(5), fault.extra),
+                interval=STEP, tried=90, deviance=fault.deviance,
+            )  # fmt: skip
+            assert p > 0.01
 
 
 def test_a_clock_is_told_from_other_faults_with_its_delay() -> None:

@@ -209,9 +209,9 @@ class DayData:
 
     def gaussian(self, sizes: Discrepancy) -> DayGaussian:
         """Return the distribution of the errors; shared effects: known, repeating, level of all days."""
-        shared = [self.known, self.repeating(_root(sizes.hour))]
+        shared = [self.known, self.repeating(root_of(sizes.hour))]
         if sizes.alike:
-            rows = np.tile(_root(sizes.alike * sizes.day), (self.grid.slots, 1))
+            rows = np.tile(root_of(sizes.alike * sizes.day), (self.grid.slots, 1))
             shared.append(np.broadcast_to(rows, (self.grid.days, *rows.shape)))
         columns = np.concatenate(shared, axis=2)
         block = sizes.block(self.grid)
@@ -310,7 +310,23 @@ def _step(covariance: Floats, square: Floats, trace: Floats, prior: Floats, limi
     return np.asarray(found * np.outer(shrink, shrink))
 
 
-def _root(covariance: Floats) -> Floats:
+def root_of(covariance: Floats) -> Floats:
+    """Compute the lower root of a covariance (S, S), which may be singular. [unit]
+
+    Parameters
+    ----------
+    covariance : ndarray, shape (S, S)
+        [unit^2]
+
+    Returns
+    -------
+    ndarray, shape (S, S)
+
+    Examples
+    --------
+    >>> root_of(np.array([[4.0]])).round(6)
+    array([[2.]])
+    """
     return np.linalg.cholesky(covariance + 1e-12 * np.trace(covariance) * np.eye(len(covariance)))
 
 

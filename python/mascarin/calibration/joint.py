@@ -5,9 +5,10 @@ About the estimates of a calibration the measured series are, to first order,
     measured = simulated + J (z - z0) + errors of the sensors + errors of the model
 
 with positions z of the parameters in their ranges. All terms are normal: parameters with their priors,
-`SensorError` with the stated uncertainties, `Discrepancy` with sizes estimated from the same data. Their
-joint distribution given the measurements follows in closed form; the parameters stay within their ranges. The
-model is then linearized about the new estimates, and the step is repeated.
+`SensorError` with the stated uncertainties, `Discrepancy` with sizes that the same data tell. Given the sizes
+their joint distribution follows in closed form; the parameters stay within their ranges. The estimates are
+found with the most probable sizes: the model is linearized about better and better ones. Intervals are those
+of many sizes, drawn from their distribution.
 
 References
 ----------
@@ -33,6 +34,7 @@ from mascarin.calibration.discrepancy import (
 )
 from mascarin.calibration.problem import CalibrationProblem
 from mascarin.calibration.sensor_errors import SensorError, sensor_columns
+from mascarin.calibration.size_sample import SizeSample, sample_sizes
 from mascarin.calibration.truncated import within_bounds
 
 Floats = NDArray[np.float64]
@@ -101,14 +103,14 @@ class Joint:
     z : ndarray, shape (P,)
         Most probable positions within the ranges. [-]
     mean : ndarray, shape (q,)
-        Mean of all coefficients: positions, then errors of sensors and repeating errors in standard
-        deviations of their priors. [-]
+        Mean of all coefficients: positions [-], errors of sensors in standard deviations of their priors [-],
+        then repeating errors by function and sensor. [unit]
     covariance : ndarray, shape (q, q)
-        Of the coefficients. [-]
+        Of the coefficients, with the doubt about the sizes of the errors.
     sample : ndarray, shape (n, P)
         Sample of the positions. [-]
     sizes : Discrepancy
-        Sizes of the errors of the model.
+        Sizes of the errors of the model: the mean of every variance.
     names : tuple of str
         Of the errors of sensors.
     by_day : ndarray, shape (D,)
@@ -130,18 +132,19 @@ class Joint:
     prior: Floats
 
     def quantile(self, confidence: float) -> float:
-        """Half-width of an interval in standard deviations: Student's, one degree of freedom for each day.
+        """Half-width of an interval on other days, in standard deviations: Student's.
 
-        The sizes of the errors are estimated from a few days, within which errors are correlated.
+        If the errors are as assumed, the quantile is that of the normal distribution. That they are is known
+        from a few days of similar weather only, one fewer than which are the degrees of freedom.
         """
         from scipy import stats
 
-        return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size, 2)))
+        return float(stats.t.ppf(0.5 + 0.5 * confidence, max(self.by_day.size - 1, 2)))
 
     def widened(self, confidence: float = 0.95) -> Floats:
         """Return the sample of the positions with the spread of `quantile`, shape (n, P). [-]
 
-        Only what the data say is as doubtful as the sizes of the errors; the priors are as stated.
+        Only what the data say is as doubtful as the errors; the priors are as stated.
         """
         from scipy import stats
 
@@ -191,12 +194,10 @@ class Joint:
         -------
         ndarray, shape (n, S, q)
         """
-        root = np.linalg.cholesky(self.sizes.hour)
-        repeating = hour_basis(hours)[:, None, :, None] * root[None, :, None, :]
+        sensors = jacobian.shape[1]
+        repeating = hour_basis(hours)[:, None, :, None] * np.eye(sensors)[None, :, None, :]
         shape = (*jacobian.shape[:2], -1)
-        # The level that the days of the identification have in common says nothing of other days.
-        level = np.zeros((*jacobian.shape[:2], root.shape[0] if self.sizes.alike else 0))
-        return np.concatenate([jacobian, known, repeating.reshape(shape), level], axis=2)
+        return np.concatenate([jacobian, known, repeating.reshape(shape)], axis=2)
 
 
 def joint(
@@ -216,24 +217,36 @@ def joint(
     stated : ErrorStatement
         What is known of the errors.
     sizes : Discrepancy, optional
-        Sizes of the errors of the model; estimated when absent.
+        Sizes of the errors of the model; drawn from their distribution when absent.
 
     Returns
     -------
     Joint
     """
-    gaussian, data, mean, scale, sizes = _estimated(problem, linear, stated, sizes)
-    count = len(problem.parameters)
-    covariance = gaussian.covariance * np.outer(scale, scale)
-    sample = within_bounds(mean[:count], covariance[:count, :count], np.zeros(count), np.ones(count))
-    bounded_mean, bounded = _bounded(mean, covariance, sample)
+    gaussian, data, likely, scale, most_probable = _estimated(problem, linear, stated, sizes)
+    if sizes is None:
+        drawn = sample_sizes(data, most_probable, scale=_scale(problem), limit=stated.limit)
+    else:
+        drawn = SizeSample.known(data, sizes)
+    count, known = len(problem.parameters), data.known.shape[2]
+    kept = known + data.basis.shape[2] * data.sensors
+    # The level that the days of the identification have in common says nothing of other days.
+    mean, covariance = drawn.mean[:, :kept].copy(), drawn.covariance[:, :kept, :kept]
+    mean[:, :count] *= scale[:count]
+    mean[:, :count] += _priors(problem)[0]
+    covariance = covariance * np.outer(scale[:kept], scale[:kept])
+    sample = within_bounds(mean[:, :count], covariance[:, :count, :count], np.zeros(count), np.ones(count))
+    middle = mean.mean(axis=0)
+    away = mean - middle
+    together = covariance.mean(axis=0) + away.T @ away / len(mean)
+    bounded_mean, bounded = _bounded(middle, together, sample)
     names = (*sensor_columns(problem, stated.sensors, linear.simulated, stated.step)[1], *stated.further)
     return Joint(
-        _most_probable(gaussian, mean, scale, count),
+        _most_probable(gaussian, likely, scale, count),
         bounded_mean,
         bounded,
         sample,
-        sizes,
+        drawn.typical,
         names,
         gaussian.left_out(data.error),
         gaussian.log_density(data.error),
@@ -265,7 +278,7 @@ def _estimated(
     data = _data(problem, linear, stated, center, spread)
     if sizes is None:
         sizes = estimate_discrepancy(
-            data, scale=_scale(problem), limit=stated.limit, persistence=stated.persistence
+            data, scale=0.25 * _scale(problem), limit=stated.limit, persistence=stated.persistence
         )
     gaussian = data.gaussian(sizes)
     unit = gaussian.coefficients(data.error)
@@ -331,8 +344,8 @@ def _priors(problem: CalibrationProblem) -> tuple[Floats, Floats]:
 
 
 def _scale(problem: CalibrationProblem) -> Floats:
-    """Size about which the weak prior of each part of the error of the model is: half that of the sensor."""
-    return np.array([0.25 * float(np.sqrt(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
+    """Stated uncertainty of each sensor (S,): what is no error of the model is rarely larger. [unit]"""
+    return np.array([float(np.sqrt(np.mean(s.sigma[s.mask] ** 2))) for s in problem.sensors])
 
 
 def _most_probable(gaussian: DayGaussian, mean: Floats, scale: Floats, count: int) -> Floats:

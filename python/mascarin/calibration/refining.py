@@ -25,7 +25,7 @@ Keep = Callable[[object, Callable[[], tuple[Floats, Floats]]], tuple[Floats, Flo
 
 METHOD: Final = (
     "joint normal distribution of the parameters, the errors of the sensors and the errors of the model, "
-    "linearized at the estimates, within the ranges; sizes of the errors of the model by marginal likelihood"
+    "linearized at the estimates, within the ranges, over the sizes of the errors that the days allow"
 )
 """How the intervals are computed, for reports."""
 

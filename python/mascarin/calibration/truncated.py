@@ -24,9 +24,9 @@ def within_bounds(mean: Floats, covariance: Floats, low: Floats, high: Floats) -
 
     Parameters
     ----------
-    mean : ndarray, shape (P,)
-        Without the bounds; may be outside of them.
-    covariance : ndarray, shape (P, P)
+    mean : ndarray, shape (P,) or (K, P)
+        Without the bounds; may be outside of them. With K of them each has as many draws.
+    covariance : ndarray, shape (P, P) or (K, P, P)
         Without the bounds, positive definite.
     low, high : ndarray, shape (P,)
         Bounds.
@@ -52,26 +52,32 @@ def within_bounds(mean: Floats, covariance: Floats, low: Floats, high: Floats) -
     from scipy.special import ndtr, ndtri
 
     rng = np.random.default_rng(_SEED)
+    size = mean.shape[-1]
+    mean = np.atleast_2d(mean)
+    repeats = -(-_CHAINS // len(mean))
+    mean = np.tile(mean, (repeats, 1))
+    covariance = np.tile(covariance.reshape(-1, size, size), (repeats, 1, 1))
     precision = np.linalg.inv(covariance)
-    precision = 0.5 * (precision + precision.T)
-    own = 1.0 / np.diag(precision)
-    sd, size = np.sqrt(own), mean.size
-    root = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
-    x = np.clip(mean + rng.standard_normal((_CHAINS, size)) @ root.T, low, high)
+    precision = 0.5 * (precision + np.swapaxes(precision, 1, 2))
+    own = 1.0 / np.einsum("kii->ki", precision)
+    sd = np.sqrt(own)
+    ridge = 1e-12 * np.einsum("kii->ki", covariance)[:, :, None] * np.eye(size)
+    root = np.linalg.cholesky(covariance + ridge)
+    x = np.clip(mean + np.einsum("kij,kj->ki", root, rng.standard_normal(mean.shape)), low, high)
     kept = []
     for move in range(_BURN_IN + _KEPT):
-        uniform = rng.random((size, _CHAINS))
+        uniform = rng.random((size, len(mean)))
         for i in range(size):
-            away = (x - mean) @ precision[i] - (x[:, i] - mean[i]) * precision[i, i]
-            middle = mean[i] - own[i] * away
-            first, last = (low[i] - middle) / sd[i], (high[i] - middle) / sd[i]
+            away = np.einsum("kj,kj->k", x - mean, precision[:, i]) - (x[:, i] - mean[:, i]) / own[:, i]
+            middle = mean[:, i] - own[:, i] * away
+            first, last = (low[i] - middle) / sd[:, i], (high[i] - middle) / sd[:, i]
             # The tail in which both ends are small numbers, so that none is rounded to one.
             flip = first > 0.0
             bottom, top = np.where(flip, -last, first), np.where(flip, -first, last)
             lowest, highest = ndtr(bottom), ndtr(top)
             drawn = ndtri(np.clip(lowest + uniform[i] * (highest - lowest), 1e-300, 1.0 - 1e-16))
             drawn = np.clip(np.where(flip, -drawn, drawn), first, last)
-            x[:, i] = np.clip(middle + sd[i] * drawn, low[i], high[i])
+            x[:, i] = np.clip(middle + sd[:, i] * drawn, low[i], high[i])
         if move >= _BURN_IN and (move - _BURN_IN) % _EVERY == 0:
             kept.append(x.copy())
     return np.concatenate(kept)

@@ -84,7 +84,7 @@ def combined_intervals(study: Setup, found: Combination) -> PredictionIntervals:
     center = mean - fitted
     variance = np.maximum(square - center**2, 0.0)
     confidence = found.forms[0].fit.confidence
-    # The size of what differs from value to value is known from many values, all other sizes from few days.
+    # What differs from value to value is known from many values, all else from few days.
     shared = found.forms[0].joint.quantile(confidence) ** 2 * np.maximum(variance - noise, 0.0)
     half = np.sqrt(shared + float(stats.norm.ppf(0.5 + 0.5 * confidence)) ** 2 * noise)
     misses = fitted + center - observation.measured

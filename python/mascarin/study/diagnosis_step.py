@@ -9,8 +9,8 @@ tried first: the fault must remain with it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -19,11 +19,13 @@ import numpy as np
 from mascarin.errors import SolverError
 from mascarin.progress import reporting
 from mascarin.study import diagnosis_words as words
-from mascarin.study.corrections import Corrections
-from mascarin.study.diagnosis_model import PRIOR, Model, Store
+from mascarin.study.corrections import Corrections, Found
+from mascarin.study.diagnosis_candidates import Candidate, OtherForm, name_of
+from mascarin.study.diagnosis_model import Model, Store
 from mascarin.study.other_laws import changed, forms
 from mascarin.validation.causes import Cause, Diagnosis
-from mascarin.validation.evidence import Squares, chance
+from mascarin.validation.changes import changes
+from mascarin.validation.evidence import Squares, chance, level_chance
 from mascarin.validation.joint import Joint, Solution, Whitening
 from mascarin.validation.sensor_faults import Fault, Series, sensor_faults, white_noise
 
@@ -60,28 +62,6 @@ _ITERATIONS: Final = 6
 _FAR: Final = 0.05
 #: A series with fewer values is not diagnosed.
 _FEWEST: Final = 48
-
-
-@dataclass(frozen=True, eq=False)
-class _Form:
-    part: str
-    kind: str
-    series: Array
-
-
-@dataclass(frozen=True, eq=False)
-class _Candidate:
-    what: int | _Form
-    problem: Joint
-    active: list[int]
-    fit: Solution
-
-    @property
-    def size(self) -> float:
-        """Size of the change in standard deviations of its prior; large at the end of a range."""
-        if isinstance(self.what, _Form):
-            return 1.0
-        return abs(float(self.fit.values[-1])) / PRIOR + (0.0 if self.fit.free[-1] else 10.0)
 
 
 def diagnosis(
@@ -153,7 +133,7 @@ class _Search:
         self.measured[:, few] = np.nan
         self.u = np.array([max(setup.plan.sensors[n].uncertainty, 1e-9) / 1.96 for n in self.names])
         self.units = tuple(output.unit for output in model.simulation.outputs[: len(self.names)])
-        self.fixes = Corrections()
+        self.fixes = Corrections(len(self.measured))
         self.fine = setup.observation.measured.copy()
         self.paths = list(model.fitted)
         self.slopes = model.slopes(self.paths, vector)
@@ -260,7 +240,9 @@ class _Search:
         problem = self.joint()
         active = list(range(len(problem.columns)))
         null = problem.solve(active)
-        faults = sensor_faults(problem, active, null, self._series(near))
+        series = self._series(near)
+        faults = [*sensor_faults(problem, active, null, series), *changes(problem, active, null, series)]
+        faults.sort(key=lambda fault: -fault.deviance)
         # What is taken away is counted with the calibrated parameters alone.
         first = len(problem.columns) - len(self.names)
         adjusted = [*range(len(self.model.fitted)), *range(first, len(problem.columns))]
@@ -268,34 +250,45 @@ class _Search:
         if self.first is None:
             self.first = float(squares.before.sum())
         self.last = float(squares.before.sum())
-        tried = 30 * len(self.names)
         found: list[tuple[float, Fault, float]] = []
         seen: set[int] = set()
         for fault in faults:
             # Of the faults of one sensor only the best one counts.
             if seen & set(fault.sensors):
                 continue
-            after = problem if fault.residual is None else problem.with_residual(dict(fault.residual))
-            assert fault.solution is not None  # noqa: S101 (every fault has been fitted)
-            p = chance(
-                (problem, null, active), (after, fault.solution, active, fault.extra),
-                interval=self.model.interval, tried=tried, deviance=fault.deviance,
-            )  # fmt: skip
-            if fault.what == "offset":
-                # Its evidence is the stated uncertainty, not the scatter.
-                from scipy import stats
-
-                p = min(1.0, tried * float(stats.chi2.sf(max(fault.deviance, 0.0), 1)))
+            whole_offset = fault.what == "offset" and fault.rows is None
+            p = self._chance(problem, null, active, fault)
             residual = None if fault.residual is None else dict(fault.residual)
-            gone = fault.sensors[0] if fault.what == "offset" else None
+            gone = fault.sensors[0] if whole_offset else None
             share, of_sensor = squares.share(squares.after(extra=fault.extra, residual=residual, offset=gone))
-            if p < _LEVEL and of_sensor >= _LEAST:
+            if p < _LEVEL and of_sensor >= _LEAST and share > 0.0:
                 seen |= set(fault.sensors)
                 found.append((share, fault, p))
         if not found:
             return None
         share, fault, p = max(found, key=lambda item: item[0])
         return fault, p, share, problem, null, active
+
+    def _chance(self, problem: Joint, null: Solution, active: list[int], fault: Fault) -> float:
+        """Probability of a fault by chance. [-]"""
+        from scipy import stats
+
+        assert fault.solution is not None  # noqa: S101 (every fault has been fitted)
+        tried, interval = 30 * len(self.names), self.model.interval
+        if fault.what == "offset":
+            # Whitened, an offset that begins is a pulse; one of the whole record is told by the stated
+            # uncertainty alone.
+            ratio = tried * float(stats.chi2.sf(max(fault.deviance, 0.0), 1))
+            if fault.rows is None:
+                return min(1.0, ratio)
+            s, values = fault.sensors[0], fault.solution.values[: len(active)]
+            left = problem.residual[:, s] - values @ problem.columns[active, :, s]
+            return min(1.0, max(ratio, level_chance(left, fault.rows, interval=interval)))
+        after = problem if fault.residual is None else problem.with_residual(dict(fault.residual))
+        return chance(
+            (problem, null, active), (after, fault.solution, active, fault.extra),
+            interval=interval, tried=tried, deviance=fault.deviance,
+        )  # fmt: skip
 
     def suspicious(self) -> bool:
         """Whether a sensor shows a fault that the calibrated parameters do not explain, or too much noise."""
@@ -316,7 +309,7 @@ class _Search:
             if step is None:
                 break
             causes.append(Cause.from_dict(step["cause"]))
-            self._remove(step["what"], step["sensors"], step["value"], step["neighbour"])
+            self._remove(step)
             self.whole()
         return causes
 
@@ -326,10 +319,10 @@ class _Search:
         if best is None or not self._remains(*best):
             return None
         fault, p, share, *_ = best
-        cause = words.of_fault(self.setup, self.names, self.units, fault, p, share)
+        cause = words.of_fault(self.setup, self.names, self.units, fault, p, share, self.model.group)
         return {
             "what": fault.what, "sensors": list(fault.sensors), "value": fault.value,
-            "neighbour": fault.neighbour, "cause": cause.to_dict(),
+            "neighbour": fault.neighbour, "rows": fault.rows, "cause": cause.to_dict(),
         }  # fmt: skip
 
     def _remains(
@@ -347,26 +340,31 @@ class _Search:
         changed_problem = self._with(problem, form)
         base = changed_problem.solve(active, start=null)
         simulated = self.corrected(form.series)
-        again = sensor_faults(
-            changed_problem, active, base, replace(self._series(near=True), simulated=simulated)
-        )
+        series = replace(self._series(near=True), simulated=simulated)
+        find = sensor_faults if fault.rows is None else changes
+        again = find(changed_problem, active, base, series)
         left = [one.deviance for one in again if one.what == fault.what and one.sensors == fault.sensors]
         return bool(left) and left[0] >= _KEPT * fault.deviance
 
-    def _remove(self, what: str, sensors: Sequence[int], value: float, neighbour: str) -> None:
+    def _remove(self, fault: Mapping[str, Any]) -> None:
         """Correct what is compared for a fault."""
+        what, sensors, value = fault["what"], list(fault["sensors"]), fault["value"]
+        rows = None if fault["rows"] is None else (int(fault["rows"][0]), int(fault["rows"][1]))
+        found = Found(sensors[0], what, value, rows=rows)
         s = sensors[0]
         if what == "swapped":
             for table in (self.measured, self.fine):
-                table[:, list(sensors)] = table[:, list(sensors)[::-1]]
+                part = found.part(len(table), len(self.measured))
+                table[part, sensors] = table[part, sensors[::-1]]
             return
         simulated = self.corrected(self.model.series(self.vector))[:, s]
         if what == "place":
             # A part of the neighbour's temperature: as a column of the difference, which has no parameter.
-            other = self.model.neighbours(self.vector)[s][neighbour]
+            other = self.model.neighbours(self.vector)[s][fault["neighbour"]]
             self.measured[:, s] -= value * (other - simulated)
             return
-        self.fixes.faults.append((s, what, value, float(simulated.mean()) if what == "scale" else 0.0))
+        about = float(simulated.mean()) if what == "scale" else 0.0
+        self.fixes.faults.append(replace(found, about=about))
 
     def noise(self) -> tuple[dict[str, float], list[Cause]]:
         """White noise of each sensor, and a cause where it exceeds the stated uncertainty."""
@@ -391,21 +389,21 @@ class _Search:
                 squares += count * (sd / self.u[s]) ** 2
         return found, excess, min(1.0, squares / max(whole, 1e-300))
 
-    def _with(self, problem: Joint, form: _Form) -> Joint:
+    def _with(self, problem: Joint, form: OtherForm) -> Joint:
         shown = self.corrected(form.series)
         return problem.with_residual({s: self.measured[:, s] - shown[:, s] for s in range(len(self.names))})
 
-    def _forms(self) -> list[_Form]:
+    def _forms(self) -> list[OtherForm]:
         """Series of the model with other forms, at the present parameters."""
         building = self.model.simulation.building
         surfaces = list(building.surfaces)
         outputs = self.model.simulation.outputs[: len(self.names)]
         seen = {surfaces[o.surface] for o in outputs if o.surface is not None and o.surface < len(surfaces)}
         found = []
-        for part, kind, changes in forms(building, seen):
+        for part, kind, replaced in forms(building, seen):
             key = (part, kind)
             if key not in self._runs:
-                other = changed(building, changes)
+                other = changed(building, replaced)
                 self._runs[key] = None if other is None else self.model.other(other)
             run = self._runs[key]
             if run is None:
@@ -415,7 +413,7 @@ class _Search:
             except SolverError:
                 continue
             if np.isfinite(series).all():
-                found.append(_Form(part, kind, series))
+                found.append(OtherForm(part, kind, series))
         return found
 
     def physics(self) -> list[Cause]:
@@ -441,18 +439,18 @@ class _Search:
         first = len(problem.columns) - len(self.names)
         active = [*range(len(self.model.fitted)), *range(first, len(problem.columns))]
         active += [self.paths.index(name) for name in chosen if name in self.paths]
-        for form in [form for form in others if _name(self.paths, form) in chosen]:
+        for form in [form for form in others if name_of(self.paths, form) in chosen]:
             problem, others = self._with(problem, form), []
         null = problem.solve(active)
         squares = Squares(problem, active, self.u)
-        candidates: list[_Candidate] = []
+        candidates: list[Candidate] = []
         for k in range(first):
             if k not in active:
                 fit = problem.solve([*active, k], start=null)
-                candidates.append(_Candidate(k, problem, [*active, k], fit))
+                candidates.append(Candidate(k, problem, [*active, k], fit))
         for form in others:
             other = self._with(problem, form)
-            candidates.append(_Candidate(form, other, active, other.solve(active, start=null)))
+            candidates.append(Candidate(form, other, active, other.solve(active, start=null)))
         before = float(squares.before.sum())
         nothing = {"cause": None, "before": before, "after": before}
         if not candidates:
@@ -460,27 +458,34 @@ class _Search:
         candidates.sort(key=lambda one: one.fit.deviance)
         most = null.deviance - candidates[0].fit.deviance
         alike = [one for one in candidates if null.deviance - one.fit.deviance >= _SAME * most]
-        # Of causes that explain the same the smallest change is named.
+        # Of causes that explain the same the smallest change is named; never one with which the sum rises.
+        taken = {id(one): self._taken(squares, one) for one in alike}
+        alike = [one for one in alike if squares.share(taken[id(one)])[0] > 0.0]
+        if not alike:
+            return nothing
         best = min(alike, key=lambda one: one.size)
         gain = null.deviance - best.fit.deviance
         p = chance(
             (problem, null, active), (best.problem, best.fit, best.active, ()),
             interval=self.model.interval, tried=len(candidates), deviance=gain,
         )  # fmt: skip
-        if isinstance(best.what, _Form):
-            taken = squares.after(residual={s: best.problem.residual[:, s] for s in range(len(self.names))})
-        else:
-            taken = squares.after(column=best.what)
-        share, of_sensor = squares.share(taken)
+        after = taken[id(best)]
+        share, of_sensor = squares.share(after)
         if p >= _LEVEL or of_sensor < _LEAST:
             return nothing
-        same = [_name(self.paths, one.what) for one in alike if one is not best]
+        same = [name_of(self.paths, one.what) for one in alike if one is not best]
         cause = self._cause(best, p, share, gain, same)
-        name = _name(self.paths, best.what)
-        return {"cause": cause.to_dict(), "name": name, "before": before, "after": float(taken.sum())}
+        name = name_of(self.paths, best.what)
+        return {"cause": cause.to_dict(), "name": name, "before": before, "after": float(after.sum())}
 
-    def _cause(self, best: _Candidate, p: float, share: float, gain: float, same: Sequence[str]) -> Cause:
-        if isinstance(best.what, _Form):
+    def _taken(self, squares: Squares, one: Candidate) -> Array:
+        """Sums of squares with a candidate, shape (S,). [-]"""
+        if isinstance(one.what, OtherForm):
+            return squares.after(residual={s: one.problem.residual[:, s] for s in range(len(self.names))})
+        return squares.after(column=one.what)
+
+    def _cause(self, best: Candidate, p: float, share: float, gain: float, same: Sequence[str]) -> Cause:
+        if isinstance(best.what, OtherForm):
             return words.of_form(best.what.part, best.what.kind, p, share, gain, same)
         value, at = float(best.fit.values[-1]), best.fit.values.size - 1
         change = (value, best.fit.standard_error(at), not best.fit.free[-1])
@@ -493,7 +498,3 @@ class _Search:
         if not self.first or self.last is None:
             return 1.0
         return float(min(1.0, self.last / self.first))
-
-
-def _name(paths: Sequence[str], one: int | _Form) -> str:
-    return f"{one.part} ({one.kind})" if isinstance(one, _Form) else paths[one]

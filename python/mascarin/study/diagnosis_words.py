@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
+import pandas as pd
+
 from mascarin._io.numbers import with_interval
 from mascarin.validation.causes import WORDS, Cause
 
@@ -46,26 +48,38 @@ def of_table(setup: Setup) -> Iterator[Cause]:
 
 
 def of_fault(
-    setup: Setup, names: Sequence[str], units: Sequence[str], fault: Fault, p: float, share: float
+    setup: Setup,
+    names: Sequence[str],
+    units: Sequence[str],
+    fault: Fault,
+    p: float,
+    share: float,
+    group: int = 1,
 ) -> Cause:
-    """A fault of a sensor."""
+    """A fault of a sensor, found in means over `group` samples."""
+    when = _when(setup, fault.rows, group)
     subject = tuple(names[s] for s in fault.sensors)
     unit = units[fault.sensors[0]].replace("degC", "K")
     value, error, of = fault.value, fault.error, unit
-    name = subject[0]
+    name, daylight = subject[0], "daylight saving" if when else "the time zone"
     if fault.what == "swapped":
         columns = [", ".join(setup.plan.sensors[one].columns) for one in subject]
         text = (
-            f"{subject[0]} and {subject[1]}: the columns {columns[0]} and {columns[1]} are exchanged; each "
-            "series fits the other output"
+            f"{subject[0]} and {subject[1]}: the columns {columns[0]} and {columns[1]} are exchanged{when}; "
+            "each series fits the other output"
         )
         of = ""
     elif fault.what == "clock":
         value, error, of = value / 60.0, error / 60.0, "min"
         side = "late" if value > 0.0 else "early"
         text = (
-            f"{name}: its series is {_size(abs(value), error, 'min')} {side}, at all frequencies alike: "
-            "check the clock or the time zone of its logger"
+            f"{name}: its series is {_size(abs(value), error, 'min')} {side}{when}, at all frequencies "
+            f"alike: check the clock or {daylight} of its logger"
+        )
+    elif fault.what == "offset" and when:
+        text = (
+            f"{name}: it reads {_size(abs(value), error, unit)} too {_side(value)}{when}: check what was "
+            "changed at the sensor or its logger then"
         )
     elif fault.what == "offset":
         text = (
@@ -170,9 +184,22 @@ def _evidence(p: float, share: float) -> str:
     percent = 100.0 * share
     if percent >= 0.5:
         return f" It takes away {percent:.0f} % of the remaining sum of squares (p {shown})."
-    # Sensors are weighed by their own errors: one with a small error may improve while the sum does not fall.
-    change = "falls by less than 1 %" if percent > -0.5 else f"rises by {-percent:.0f} %"
-    return f" It improves single sensors; the remaining sum of squares over all {change} (p {shown})."
+    return (
+        " It improves single sensors; the remaining sum of squares over all falls by less than 1 % "
+        f"(p {shown})."
+    )
+
+
+def _when(setup: Setup, rows: tuple[int, int] | None, group: int) -> str:
+    """From when on, or until when; empty for the whole record."""
+    if rows is None:
+        return ""
+    times = setup.observation.times
+    zone = pd.DatetimeIndex(setup.measurements.data.index).tz
+    local = times if times.tz is None else times.tz_convert(zone)
+    if rows[0] == 0:
+        return f" until {local[min(rows[1] * group, len(local) - 1)]:%Y-%m-%d %H:%M}"
+    return f" from {local[rows[0] * group]:%Y-%m-%d %H:%M} on"
 
 
 def _size(value: float, error: float, unit: str) -> str:

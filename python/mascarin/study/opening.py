@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -185,6 +185,29 @@ def from_objects(
         "climate": climate.sha256 or _digest_of_table(climate.data),
     }
     return Inputs(checked, building, climate, read, quality, places, hashes)
+
+
+def with_measurements(inputs: Inputs, measurements: Measurements) -> Inputs:
+    """The inputs of a study with other measurements, whose quality is checked.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        Of a study.
+    measurements : Measurements
+        With the columns that its sensors name.
+
+    Returns
+    -------
+    Inputs
+    """
+    plan = inputs.plan
+    quality = measurements.quality() + filled_stretches(measurements.data, _columns(plan))
+    read = _masked(measurements, plan, quality)
+    digest = read.sha256 or _digest_of_table(read.data)
+    return replace(
+        inputs, measurements=read, quality=quality, hashes={**inputs.hashes, "measurements": digest}
+    )
 
 
 def identified(parameters: Sequence[str] | Mapping[str, Any], options: Mapping[str, Any]) -> dict[str, Any]:

@@ -186,6 +186,40 @@ class Study(Setup):
         """
         return cls(path, allow_outside=allow_outside)
 
+    def with_measurements(self, measurements: Measurements) -> Self:
+        """Make the same study of other measurements, such as simulated ones.
+
+        Parameters
+        ----------
+        measurements : Measurements
+            With the columns that the sensors name.
+
+        Returns
+        -------
+        Study
+            Checked.
+
+        Raises
+        ------
+        InputError
+            A column is missing.
+
+        Examples
+        --------
+        >>> from mascarin import Study
+        >>> from mascarin.examples import STUDIES
+        >>> from mascarin.weather import Measurements
+        >>> study = Study.from_yaml(STUDIES["lgi"])
+        >>> warmer = study.measurements.data.assign(room_air=lambda table: table["room_air"] + 1.0)
+        >>> other = study.with_measurements(Measurements.from_table(warmer))
+        >>> float((other.observation.measured - study.observation.measured)[0, 0].round(6))
+        1.0
+        """
+        other = type(self).__new__(type(self))
+        Setup.__init__(other, opening.with_measurements(self.sources, measurements))
+        check(other)
+        return other
+
     def to_yaml(self, path: str | Path | None = None) -> str:
         """Write the study as a file, which `from_yaml` reads.
 

@@ -74,6 +74,61 @@ def chance(
     return min(1.0, max(tried * ratio, float(stats.t.sf(t, used.size - 1))))
 
 
+def level_chance(errors: Floats, rows: tuple[int, int], *, interval: float) -> float:
+    """Probability that the level of errors differs by chance between a part of the record and the rest.
+
+    From means over days, whose correlation from one day to the next is accounted for: a jump that does not
+    last is no offset.
+
+    Parameters
+    ----------
+    errors : ndarray, shape (n,)
+        NaN where nothing was measured. [unit]
+    rows : tuple of int
+        First row of the part and the row after the last.
+    interval : float
+        Between the samples. [s]
+
+    Returns
+    -------
+    float
+        1 for fewer than two days on a side. [-]
+
+    Examples
+    --------
+    >>> noise = np.random.default_rng(1).normal(size=480)
+    >>> level_chance(noise + (np.arange(480) >= 240), (240, 480), interval=3600.0) < 1e-6
+    True
+    >>> level_chance(noise, (240, 480), interval=3600.0) > 0.05
+    True
+    """
+    from scipy import stats
+
+    length = max(1, round(_DAY / interval))
+    inside = (np.arange(errors.size) >= rows[0]) & (np.arange(errors.size) < rows[1])
+    means, parts = [], []
+    for part in (inside, ~inside):
+        there = errors[part]
+        day = np.arange(there.size) // length
+        known = np.isfinite(there)
+        count = np.bincount(day[known])
+        total = np.bincount(day[known], weights=there[known])
+        means.append(total[count > 0] / count[count > 0])
+        parts.append(means[-1] - means[-1].mean() if means[-1].size else means[-1])
+    size = np.array([one.size for one in means], dtype=np.float64)
+    if size.min() < 2:
+        return 1.0
+    square = sum(float(part @ part) for part in parts)
+    lagged = sum(float(part[1:] @ part[:-1]) for part in parts)
+    correlation = min(max(lagged / max(square, 1e-300), 0.0), 0.9)
+    # The mean of correlated days is worth that of fewer.
+    worth = np.maximum(size * (1.0 - correlation) / (1.0 + correlation), 1.0)
+    freedom = max(float(worth.sum()) - 2.0, 1.0)
+    spread = math.sqrt(square / max(float(size.sum()) - 2.0, 1.0) * float(np.sum(1.0 / worth)))
+    t = abs(float(means[0].mean() - means[1].mean())) / max(spread, 1e-300)
+    return 2.0 * float(stats.t.sf(t, freedom))
+
+
 class Squares:
     """Sums of squares over the stated uncertainties, before and after a cause; nothing is whitened.
 

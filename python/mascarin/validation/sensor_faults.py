@@ -25,7 +25,7 @@ Objective = Callable[[dict[int, Floats]], float]
 #: Shifts of a clock that are tried first: time zones and daylight saving are whole hours. [h]
 _HOURS: Final = (-24, -12, -10, -8, -7, -6, -5, -4, -3, -2, -1, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 24)
 #: Half-width of the interval of 95 % of a normal distribution, in standard deviations.
-_NORMAL_95: Final = 1.96
+NORMAL_95: Final = 1.96
 #: Halvings of the step of the search for a shift.
 _HALVINGS: Final = 5
 #: A shift of this size that makes the objective worse by so much on both sides is not looked for. [s], [-]
@@ -66,6 +66,8 @@ class Fault:
         Residuals of the sensors with the fault removed, if it is not a column.
     solution : Solution or None
         The fit with it.
+    rows : tuple of int or None
+        First row with it and the row after the last, if it is not in the whole record.
     """
 
     what: str
@@ -78,6 +80,7 @@ class Fault:
     extra: tuple[Extra, ...] = ()
     residual: Mapping[int, Floats] | None = None
     solution: Solution | None = None
+    rows: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +200,7 @@ def _columns(joint: Joint, active: Sequence[int], null: Solution, series: Series
         if what == "offset":
             # What the fit leaves to the offset within its stated uncertainty belongs to it as well.
             value += float(fit.values[list(active).index(offset)]) if offset in active else 0.0
-            effect, limit = abs(value), _NORMAL_95 * u
+            effect, limit = abs(value), NORMAL_95 * u
         if what in ("gain", "scale") and abs(value) < _LEAST_GAIN:
             continue
         if effect > limit:
@@ -273,8 +276,20 @@ def _refined(start: float, objective: Callable[[float], float]) -> float:
     return best
 
 
-def _swaps(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
-    """Pairs of sensors of one unit whose columns may be exchanged."""
+def pairs_alike(joint: Joint, series: Series) -> list[tuple[int, int]]:
+    """Pairs of sensors of one unit whose columns may be exchanged, those that fit best exchanged first.
+
+    Parameters
+    ----------
+    joint : Joint
+        Gives the number of values.
+    series : Series
+        Measured and simulated.
+
+    Returns
+    -------
+    list of tuple of int
+    """
     y, m = series.measured, series.simulated
     pairs = []
     for i in range(joint.sensors):
@@ -287,8 +302,14 @@ def _swaps(joint: Joint, active: Sequence[int], null: Solution, series: Series) 
             straight = float(np.mean((y - m)[both][:, [i, j]] ** 2))
             crossed = float(np.mean((y[:, [j, i]] - m[:, [i, j]])[both] ** 2))
             pairs.append((crossed / max(straight, 1e-300), i, j))
+    return [(i, j) for _, i, j in sorted(pairs)[:_MOST_PAIRS]]
+
+
+def _swaps(joint: Joint, active: Sequence[int], null: Solution, series: Series) -> list[Fault]:
+    """Pairs of sensors of one unit whose columns are exchanged."""
+    y, m = series.measured, series.simulated
     found = []
-    for _, i, j in sorted(pairs)[:_MOST_PAIRS]:
+    for i, j in pairs_alike(joint, series):
         residual = {i: y[:, j] - m[:, i], j: y[:, i] - m[:, j]}
         same = np.isfinite(y[:, i]) == np.isfinite(y[:, j])
         if not same.all():
