@@ -144,9 +144,14 @@ impl Segments {
     }
 
     /// The segment that a temperature is in; the first before, and the last after the curve.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "such numbers end at the ends"
+    )]
     #[inline(always)]
     fn segment(&self, x: f64) -> &Segment {
-        // Casts of what is no number or below zero give zero.
+        // A cast gives zero for what is below zero or no number, and the largest number for what is above it.
         let cell = ((x - self.first()) * self.density) as usize;
         let mut place = self.places[cell.min(self.places.len() - 1)];
         while place + 1 < self.all.len() && self.all[place + 1].start <= x {
