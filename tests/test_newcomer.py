@@ -249,7 +249,7 @@ def test_plots_refuse_what_are_no_axes_and_take_a_grid_of_axes() -> None:
         run.plot([])
     figure, grid = plt.subplots(1, 1, squeeze=False)
     assert run.plot(names, ax=grid) is figure  # type: ignore[arg-type]
-    assert grid[0, 0].get_ylabel() == "[degC]"
+    assert grid[0, 0].get_ylabel() == "[°C]"
     plt.close(figure)
 
 

@@ -38,13 +38,14 @@ def test_a_study_that_is_killed_after_every_few_results_ends(
     assert results.error_sources is not None
     write, left = atomic.write, 0
 
-    def counted(path: Path, content: Any) -> None:
+    def counted(path: Path, content: Any) -> Path:
         nonlocal left
-        write(path, content)
+        written = write(path, content)
         if path.name.startswith(kept.NAME) or path.suffix == ".npy":
             left -= 1
             if left == 0:
                 raise Killed
+        return written
 
     monkeypatch.setattr(atomic, "write", counted)
     starts, numbers = 0, []

@@ -68,7 +68,7 @@ def _fast(yaml: YAML, text: str) -> Node | None:
     try:
         from yaml.cyaml import CParser
         from yaml.error import YAMLError
-    except ImportError:  # PyYAML without its C library
+    except (ImportError, AttributeError):  # PyYAML without its C library, or an import that was interrupted
         return None
     try:
         return _Composer(yaml, CParser(text)).document()

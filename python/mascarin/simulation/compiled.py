@@ -157,6 +157,8 @@ class CompiledRun:
         """
         recorded = readings or self.readings
         with translated(self.dated):
+            if progress is not None:
+                progress(0, len(self.forcing))  # the time left counts from here
             report = _of_total(progress, len(self.forcing))
             raw = self.plan.simulate(vector, self.forcing, self.options(recorded), report)
         return recorded.values(raw["records"]), raw

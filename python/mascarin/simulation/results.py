@@ -386,7 +386,7 @@ class Results(Mapping[str, "xr.DataArray"]):
         >>> from mascarin.examples import box, box_climate
         >>> figure = mc.simulate(box(), box_climate(), step="1h").plot(["room.air_temperature"])
         >>> figure.axes[0].get_ylabel()
-        '[degC]'
+        '[°C]'
         """
         from mascarin.figures.series import draw  # matplotlib
 

@@ -41,6 +41,8 @@ def check(study: Setup) -> None:
         File, line and entry of the study, what was found, what was expected, what to do.
     """
     _periods(study)
+    with study.places.blame("periods"):
+        _ = study.simulation
     _errors(study)
     _working(study)
     _runs(study)
@@ -194,8 +196,6 @@ def _working(study: Setup) -> None:
 def _runs(study: Setup) -> None:
     """Compile every model and set up every calibration, so that their errors are raised now."""
     file, blame = study.plan, study.places.blame
-    with blame("periods"):
-        _ = study.simulation
     _require_validation_days(study)
     for period in ("identification", "corroboration"):
         for name in (name for name, sensor in file.sensors.items() if sensor.use):

@@ -292,7 +292,8 @@ class Study(Setup):
         residuals = kept(workspace, ("residuals", at), lambda: examined(self, fitted))
         criteria = judged(self, before, fitted)
         aims = judge(self.plan.aims, fitted.scores, where=f"{self.places.file}: aims")
-        missed = not all(verdict.passed for verdict in (*criteria["fitted"], *aims))
+        asked = [*criteria["fitted"], *aims]
+        missed = not asked or not all(verdict.passed for verdict in asked)
         sources = None
         if missed:
             sources = kept(workspace, ("sources", at), lambda: error_sources(self, fitted, fit, progress))
