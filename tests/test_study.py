@@ -331,7 +331,7 @@ def test_the_rest_is_asked_for_without_aims_or_criteria_and_of_one_sensor(
     assert list(shortfall["sd"]) == ["core"]
     assert shortfall["steps"]
     assert shortfall["every"]["sd"]["core"] < 0.5 * shortfall["sd"]["core"]
-    assert re.search(r"Table \d+ adds the parameters one by one", _left(found))
+    assert re.search(r"Table \d+\s+adds the parameters one by one", _left(found))
 
 
 def test_where_only_noise_is_left_no_parameter_is_blamed(
