@@ -21,6 +21,7 @@ from mascarin.errors import InputError, did_you_mean
 AUTO: Final = ("autosize", "autocalculate", "useweatherfile")
 _TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')
 _SUFFIXES: Final = {".idf": "idf", ".epjson": "epjson", ".json": "epjson"}
+_EXPECTED: Final = "a model of EnergyPlus, .idf or .epJSON"
 
 
 @dataclass(frozen=True)
@@ -210,7 +211,9 @@ def read(path: Path) -> Model:
     form = _SUFFIXES.get(path.suffix.casefold())
     if form is None:
         raise InputError(f"{path}: found a file '{path.suffix}'; expected .idf or .epJSON of EnergyPlus")
-    require_regular(path)
+    require_regular(path, _EXPECTED)
+    if not path.is_file():
+        raise InputError(f"{path}: found no such file; expected {_EXPECTED}. Check its folder and name")
     kit = _idfkit()
     try:
         document: Any = kit.load_idf(path, preserve_formatting=True) if form == "idf" else _epjson(kit, path)
