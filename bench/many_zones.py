@@ -1,6 +1,6 @@
 """Buildings of many rooms: processor time and memory over the number of rooms, beside EnergyPlus.
 
-    python bench/many_zones.py --weather FILE.epw --energyplus PROGRAM --write docs/speed.md
+    python bench/many_zones.py --energyplus PROGRAM --write docs/speed.md
 
 A row of N rooms, and an office of rooms on several storeys (no chain: a room touches up to five others), free
 and with ideal loads. Both programs get the same polygons, layers, laws of convection (TARP inside, DOE-2
@@ -29,6 +29,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from page import publish, table
 
+DATA = Path(os.environ.get("MASCARIN_DATA") or Path(__file__).parents[2] / "shared" / "data")
+WEATHER = DATA / "weather" / "USA_CO_Golden-NREL.724666_TMY3.epw"
 LENGTHS = (5.0, 4.0, 3.0)
 """Of a room to the east, to the north and upwards [m]."""
 SOLIDS = {
@@ -528,7 +530,7 @@ def main() -> None:
     options = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    options.add_argument("--weather", type=Path, required=True, help="EPW file of Golden, Colorado")
+    options.add_argument("--weather", type=Path, default=WEATHER, help="EPW file of Golden, Colorado")
     options.add_argument("--energyplus", type=Path)
     options.add_argument("--rooms", type=int, nargs="*", default=[2, 8, 32, 128, 512])
     options.add_argument("--days", type=int, default=365)
