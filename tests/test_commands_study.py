@@ -95,7 +95,7 @@ def test_calibrate_finds_the_wall_and_a_study_goes_on_from_there(
     }  # fmt: skip
     record = next((tmp_path / ".work").glob("evaluations-*.jsonl"))
     before = record.read_bytes()
-    code, _, _ = run(capsys, "study", str(bench.study), "-o", str(tmp_path))
+    code, _, _ = run(capsys, "study", str(bench.study), "-o", str(tmp_path), "--no-figures")
     assert code == 0
     assert record.read_bytes() == before
     study = json.loads((tmp_path / "study.json").read_text(encoding="utf-8"))

@@ -47,7 +47,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def content(folder: Path) -> dict[str, Any]:
-    assert cli.main(["study", str(folder / "study.yaml"), "-o", str(folder / "out")]) in (0, 1)
+    assert cli.main(["study", str(folder / "study.yaml"), "-o", str(folder / "out"), "--no-figures"]) in (
+        0,
+        1,
+    )
     found: dict[str, Any] = json.loads((folder / "out" / "study.json").read_text(encoding="utf-8"))
     return found
 

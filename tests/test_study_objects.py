@@ -94,7 +94,7 @@ def test_written_as_a_file_it_is_the_same_study(study: Study, results: StudyResu
     assert text == study.to_yaml() == (tmp_path / "study.yaml").read_text(encoding="utf-8")
     read = Study.from_yaml(tmp_path / "study.yaml")
     assert read.simulation.identity == study.simulation.identity
-    found = read.run(tmp_path / "out")
+    found = read.run(tmp_path / "out", figures=False)
     assert found.calibration.values == pytest.approx(results.calibration.values, rel=1e-9)  # noqa: PD011
     (tmp_path / "elsewhere").mkdir()
     read.to_yaml(tmp_path / "elsewhere" / "moved.yaml")
@@ -225,7 +225,7 @@ def test_a_windowed_building_with_heating_and_cooling_is_studied(tmp_path: Path)
         step="1h",
         identification={"starts": 1},
     )
-    results = study.run(tmp_path)
+    results = study.run(tmp_path, figures=False)
     assert results.calibration.values["materials.insulation.conductivity"] == pytest.approx(0.035, rel=0.03)  # noqa: PD011
     balance = results.to_dict()["ledger"]
     assert balance["closure"] < 1e-10

@@ -574,7 +574,7 @@ def bench(tmp_path: Path, table: Path) -> Bench:
 def refusal(bench: Bench, capsys: pytest.CaptureFixture[str]) -> str:
     """Message of a study that must be refused; no file may remain."""
     before = sorted(bench.folder.rglob("*"))
-    code = cli.main(["study", str(bench.study), "-o", str(bench.folder / "out")])
+    code = cli.main(["study", str(bench.study), "-o", str(bench.folder / "out"), "--no-figures"])
     printed = capsys.readouterr()
     assert code == 2, printed.err
     assert printed.out == ""

@@ -33,7 +33,7 @@ def test_a_study_that_is_killed_after_every_few_results_ends(
     bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole, pieces = tmp_path / "whole", tmp_path / "pieces"
-    results = Study.from_yaml(bench.study).run(whole)
+    results = Study.from_yaml(bench.study).run(whole, figures=False)
     # A criterion is missed, so that all steps are done.
     assert results.error_sources is not None
     write, left = atomic.write, 0
@@ -53,7 +53,7 @@ def test_a_study_that_is_killed_after_every_few_results_ends(
         starts, left = starts + 1, 12
         assert starts < 60
         try:
-            Study.from_yaml(bench.study).run(pieces)
+            Study.from_yaml(bench.study).run(pieces, figures=False)
         except Killed:
             numbers.append(len(list((pieces / ".work").iterdir())))
     assert starts > 2

@@ -26,6 +26,7 @@ def study(
     /,
     *,
     out: Annotated[Path, Parameter(alias="-o")],
+    figures: bool = True,
     allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> int:
@@ -42,9 +43,11 @@ def study(
         Study file (YAML), or the name of an example study: wall-bench, lgi.
     out : Path
         Folder for study.json, tables, figures, the report and intermediate results.
+    figures : bool
+        Write the figures as files, too; the report does not need them.
     """
     opened = _open(file, allow_outside)
-    results = opened.run(out, progress=True)
+    results = opened.run(out, figures=figures, progress=True)
     if as_json:
         print((out / "study.json").read_text(encoding="utf-8"), end="")
     _print_summary(opened, results, out)

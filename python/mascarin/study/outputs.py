@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 RUN: Final = "run.json"
 
 
-def write_all(findings: Findings, workspace: Workspace) -> None:
+def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True) -> None:
     """Write everything but the report into the folder of the study.
 
     Parameters
@@ -44,26 +44,35 @@ def write_all(findings: Findings, workspace: Workspace) -> None:
         The results.
     workspace : Workspace
         The folder.
+    figures : bool
+        Whether figures are written.
     """
     out = workspace.out
-    figures = out / "figures"
-    figures.mkdir(parents=True, exist_ok=True)
-
-    def once(name: str, write: Callable[[], Sequence[Path]]) -> list[Path]:
-        return written_once(workspace, (str(out), name, findings.calibration.x.tolist()), write)
-
     tables = write_tables(out / "tables", tables_of(findings))
     atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
     atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
     written = [
-        *write_figures(figures, *read_folder(out), once),
-        *_sensitivity_figures(findings, figures, once),
-        *once("days", lambda: [save(_days(findings), figures / "days.svg")]),
-        *once("fit", lambda: fit_figures(findings.calibration, findings.profiles, figures)),
+        *(_all_figures(findings, workspace) if figures else []),
         *tables,
         *(out / name for name in ("study.json", RUN, "report.html")),
     ]
     workspace.record("study", written)
+
+
+def _all_figures(findings: Findings, workspace: Workspace) -> list[Path]:
+    """Write every figure, once for the same results."""
+    folder = workspace.out / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def once(name: str, write: Callable[[], Sequence[Path]]) -> list[Path]:
+        return written_once(workspace, (str(workspace.out), name, findings.calibration.x.tolist()), write)
+
+    return [
+        *write_figures(folder, *read_folder(workspace.out), once),
+        *_sensitivity_figures(findings, folder, once),
+        *once("days", lambda: [save(_days(findings), folder / "days.svg")]),
+        *once("fit", lambda: fit_figures(findings.calibration, findings.profiles, folder)),
+    ]
 
 
 def run_facts(findings: Findings) -> dict[str, Any]:

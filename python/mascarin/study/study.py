@@ -242,7 +242,9 @@ class Study(Setup):
         """
         return study_text(self.sources) if path is None else write_study(self.sources, Path(path))
 
-    def run(self, out: str | Path | None = None, *, progress: ProgressOption = None) -> StudyResults:
+    def run(
+        self, out: str | Path | None = None, *, figures: bool = True, progress: ProgressOption = None
+    ) -> StudyResults:
         """Carry out all steps of the study.
 
         Parameters
@@ -250,6 +252,8 @@ class Study(Setup):
         out : str or Path, optional
             Folder for study.json, the tables, figures and the report, and for intermediate results: an
             interrupted study continues from them. Default: nothing is kept on disk.
+        figures : bool
+            Whether the figures are written as files, too. The report does not need them.
         progress : bool, callable or None
             True shows progress, None only in notebooks; a callable gets the number of units done and their
             total.
@@ -272,7 +276,7 @@ class Study(Setup):
                 return self._carried_out(workspace, progress)
         with Workspace(Path(out), self.inputs()) as workspace, self.keeping(workspace):
             results = self._carried_out(workspace, progress)
-            write_all(results, workspace)
+            write_all(results, workspace, figures=figures)
             report.write(workspace.out / "report.html", *read_folder(workspace.out))
             workspace.drop("sensitivity")
             workspace.drop("diagnosis")
