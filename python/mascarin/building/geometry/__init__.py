@@ -17,9 +17,10 @@ from mascarin.building.geometry.exchange import (
     log_integral,
     view_factors,
 )
+from mascarin.building.geometry.flat import TOLERANCE
 from mascarin.building.geometry.index import BoxIndex
 from mascarin.building.geometry.obstacles import InFront, in_front
-from mascarin.building.geometry.polygon import TOLERANCE, Polygon
+from mascarin.building.geometry.polygon import Polygon
 
 __all__ = [
     "CLOSURE_LIMIT",

@@ -10,8 +10,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from mascarin.building.geometry.flat import TOLERANCE
 from mascarin.building.geometry.index import BoxIndex
-from mascarin.building.geometry.polygon import TOLERANCE, Polygon
+from mascarin.building.geometry.polygon import Polygon
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]
@@ -122,29 +123,27 @@ def open_edges(polygons: Sequence[Polygon]) -> list[OpenEdge]:
         Empty if the volume is closed within :data:`TOLERANCE`.
     """
     shell = [f for f, parent in zip(polygons, parents(polygons), strict=True) if parent is None]
-    edges = [
-        (polygon.name, polygon.points[i], polygon.points[(i + 1) % len(polygon.points)])
-        for polygon in shell
-        for i in range(len(polygon.points))
-    ]
+    if not shell:
+        return []
+    names = [polygon.name for polygon in shell for _ in polygon.points]
+    starts = np.concatenate([polygon.points for polygon in shell])
+    ends = np.concatenate([np.roll(polygon.points, -1, axis=0) for polygon in shell])
     gaps = []
-    for name, start, end in edges:
-        gaps += [OpenEdge(name, _triple(a), _triple(b)) for a, b in _uncovered(start, end, edges)]
+    for name, start, end in zip(names, starts, ends, strict=True):
+        gaps += [OpenEdge(name, _triple(a), _triple(b)) for a, b in _uncovered(start, end, starts, ends)]
     return gaps
 
 
-def _uncovered(
-    start: Array, end: Array, edges: Sequence[tuple[str, Array, Array]]
-) -> list[tuple[Array, Array]]:
+def _uncovered(start: Array, end: Array, starts: Array, ends: Array) -> list[tuple[Array, Array]]:
     """Pieces of one edge that the edges on its line do not cover once in each direction."""
     length = float(np.linalg.norm(end - start))
     along = (end - start) / length
-    pieces: list[tuple[float, float, int]] = []
-    for _, a, b in edges:
-        if _off_line(a, start, along) > TOLERANCE or _off_line(b, start, along) > TOLERANCE:
-            continue
-        s, t = float((a - start) @ along), float((b - start) @ along)
-        pieces.append((min(s, t), max(s, t), 1 if t > s else -1))
+    (off_a, places_a), (off_b, places_b) = (_by_line(points, start, along) for points in (starts, ends))
+    on_line = (off_a <= TOLERANCE) & (off_b <= TOLERANCE)
+    pieces: list[tuple[float, float, int]] = [
+        (min(s, t), max(s, t), 1 if t > s else -1)
+        for s, t in zip(places_a[on_line].tolist(), places_b[on_line].tolist(), strict=True)
+    ]
     cuts = sorted({0.0, length, *(c for piece in pieces for c in piece[:2] if 0.0 < c < length)})
     open_pieces = []
     for low, high in pairwise(cuts):
@@ -269,9 +268,11 @@ def check_convex(polygons: Sequence[Polygon]) -> None:
                 )
 
 
-def _off_line(point: Array, start: Array, along: Array) -> float:
-    between = point - start
-    return float(np.linalg.norm(between - (between @ along) * along))
+def _by_line(points: Array, start: Array, along: Array) -> tuple[Array, Array]:
+    """Distances of points, shape (m, 3), from a line, and their places along it. [m]"""
+    between = points - start
+    places = between @ along
+    return np.linalg.norm(between - places[:, None] * along, axis=1), places
 
 
 def _triple(point: Array) -> tuple[float, float, float]:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.building.geometry.polygon import TOLERANCE, Polygon
+from mascarin.building.geometry.flat import TOLERANCE
+from mascarin.building.geometry.polygon import Polygon
 
 
 class BoxIndex:

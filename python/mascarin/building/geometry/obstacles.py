@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from mascarin.building.geometry.polygon import TOLERANCE, Array, Polygon
+from mascarin.building.geometry.flat import TOLERANCE
+from mascarin.building.geometry.polygon import Array, Polygon
 
 #: Height above a plane per distance from the polygon in it below which a point counts as in the plane:
 #: planes are known no better where corners are rounded [-].

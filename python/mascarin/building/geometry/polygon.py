@@ -12,17 +12,21 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
+from mascarin.building.geometry.flat import (
+    TOLERANCE,
+    cross,
+    edges,
+    inside,
+    middles_of_pieces,
+    on_outline,
+)
 from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]
-
-#: Distance below which two points, lines or planes of a building are the same [m].
-TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -70,8 +74,8 @@ class Polygon:
     def _check(self) -> None:
         if len(self.vertices) < 3:
             raise InputError(f"surface '{self.name}': {len(self.vertices)} vertices; expected at least 3")
-        edges = np.roll(self.points, -1, axis=0) - self.points
-        for number, length in enumerate(np.linalg.norm(edges, axis=1), start=1):
+        sides = np.linalg.norm(np.roll(self.points, -1, axis=0) - self.points, axis=1)
+        for number, length in enumerate(sides, start=1):
             if length < TOLERANCE:
                 following = number % len(self.vertices) + 1
                 raise InputError(
@@ -79,7 +83,7 @@ class Polygon:
                     f"expected at least {TOLERANCE} m; remove one of them"
                 )
         vector = self._vector_area
-        size = float(np.max(np.linalg.norm(edges, axis=1)))
+        size = float(np.max(sides))
         if float(np.linalg.norm(vector)) < TOLERANCE * size:
             raise InputError(
                 f"surface '{self.name}': its vertices enclose no area; expected corners once around it"
@@ -94,13 +98,13 @@ class Polygon:
         self._check_simple()
 
     def _check_simple(self) -> None:
-        flat = self.in_plane(self.points)
-        n = len(flat)
+        outline = self.outline
+        n = len(outline)
         for i in range(n):
             for j in range(i + 2, n):
                 if i == 0 and j == n - 1:
                     continue
-                if _cross_properly(flat[i], flat[(i + 1) % n], flat[j], flat[(j + 1) % n]):
+                if cross(outline[i], outline[(i + 1) % n], outline[j], outline[(j + 1) % n]):
                     raise InputError(
                         f"surface '{self.name}': edge {i + 1} crosses edge {j + 1}; "
                         "expected the corners in order around the surface"
@@ -174,12 +178,22 @@ class Polygon:
         array, shape (m, 2)
             Coordinates along the first edge and across it. [m]
         """
+        coordinates: Array = (points - self.points[0]) @ self._frame.T
+        return coordinates
+
+    @cached_property
+    def _frame(self) -> Array:
+        """Unit vectors along the first edge and across it, shape (2, 3)."""
         along = self.points[1] - self.points[0]
         along = along - (along @ self.normal) * self.normal
         along = along / np.linalg.norm(along)
-        frame = np.stack([along, np.cross(self.normal, along)])
-        flat: Array = (points - self.points[0]) @ frame.T
-        return flat
+        return np.stack([along, np.cross(self.normal, along)])
+
+    @cached_property
+    def outline(self) -> list[list[float]]:
+        """Corners in the frame of `in_plane`. [m]"""
+        corners: list[list[float]] = self.in_plane(self.points).tolist()
+        return corners
 
     def height_of(self, points: Array) -> Array:
         """Signed distances of points from the plane, positive on the side of the normal, shape (m,). [m]"""
@@ -192,15 +206,10 @@ class Polygon:
             return False
         if float(np.max(np.abs(self.height_of(other.points)))) > TOLERANCE:
             return False
-        outline = self.in_plane(self.points)
-        corners = self.in_plane(other.points)
-        if not all(_inside(outline, p) for p in corners):
+        corners = self.in_plane(other.points).tolist()
+        if not all(inside(self.outline, point) for point in corners):
             return False
-        crossing = any(
-            _cross_properly(a, b, c, d)
-            for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True)
-            for c, d in zip(corners, np.roll(corners, -1, axis=0), strict=True)
-        )
+        crossing = any(cross(a, b, c, d) for a, b in edges(self.outline) for c, d in edges(corners))
         return not crossing and other.area < self.area + TOLERANCE * self.perimeter
 
     def overlaps(self, other: Polygon) -> bool:
@@ -209,11 +218,11 @@ class Polygon:
             return False
         if self.contains(other) or other.contains(self):
             return True
-        here, there = self.in_plane(self.points), self.in_plane(other.points)
+        here, there = self.outline, self.in_plane(other.points).tolist()
         return any(
-            _inside(outline, middle) and not _on_outline(outline, middle)
+            inside(outline, middle) and not on_outline(outline, middle)
             for outline, cut in ((here, there), (there, here))
-            for middle in _pieces(cut, outline)
+            for middle in middles_of_pieces(cut, outline)
         )
 
 
@@ -229,47 +238,3 @@ def coplanar(a: Polygon, b: Polygon) -> bool:
     """Whether two polygons lie in one plane, whichever way their normals point."""
     same_plane = float(np.max(np.abs(a.height_of(b.points)))) < TOLERANCE
     return same_plane and abs(float(a.normal @ b.normal)) > 1.0 - 1e-6
-
-
-def _turn(a: Array, b: Array, c: Array) -> float:
-    """Twice the signed area of the triangle a, b, c in the plane. [m2]"""
-    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
-
-
-def _cross_properly(a: Array, b: Array, c: Array, d: Array) -> bool:
-    return _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0
-
-
-def _pieces(outline: Array, other: Array) -> list[Array]:
-    """Middles of the pieces of the edges of one polygon, cut by the lines of the edges of another."""
-    middles = []
-    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        cuts = [0.0, 1.0]
-        for c, d in zip(other, np.roll(other, -1, axis=0), strict=True):
-            before, after = _turn(c, d, a), _turn(c, d, b)
-            if before * after < 0.0:
-                cuts.append(before / (before - after))
-        middles += [a + 0.5 * (one + two) * (b - a) for one, two in pairwise(sorted(cuts))]
-    return middles
-
-
-def _on_outline(outline: Array, point: Array) -> bool:
-    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        along = b - a
-        position = min(max(float((point - a) @ along) / float(along @ along), 0.0), 1.0)
-        if float(np.linalg.norm(point - a - position * along)) < TOLERANCE:
-            return True
-    return False
-
-
-def _inside(outline: Array, point: Array) -> bool:
-    """Whether a point lies in a polygon of the plane or within the tolerance of its outline."""
-    if _on_outline(outline, point):
-        return True
-    crossings = 0
-    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        along = b - a
-        if (a[1] > point[1]) != (b[1] > point[1]):
-            x = a[0] + (point[1] - a[1]) / along[1] * along[0]
-            crossings += int(x > point[0])
-    return crossings % 2 == 1
