@@ -11,7 +11,7 @@ import hypothesis.core
 import pytest
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Browser, Page
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -55,9 +55,9 @@ def data_dir() -> Path:
     return folder
 
 
-@pytest.fixture
-def page() -> Iterator[Page]:
-    """An empty page in a headless Chromium that reaches nothing but local files."""
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """A headless Chromium. It ends with its file of tests: its event loop would be in the way of others."""
     from playwright.sync_api import sync_playwright
 
     program = os.environ.get("MASCARIN_BROWSER") or shutil.which("chromium")
@@ -67,7 +67,14 @@ def page() -> Iterator[Page]:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=flags)
         try:
-            context = browser.new_context(offline=True)
-            yield context.new_page()
+            yield browser
         finally:
             browser.close()
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """An empty page that reaches nothing but local files."""
+    context = browser.new_context(offline=True)
+    yield context.new_page()
+    context.close()

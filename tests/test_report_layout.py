@@ -25,8 +25,8 @@ OUTSIDE = """limit => [...document.querySelectorAll('table, svg, img, p, pre, fi
   .map(e => e.tagName + e.textContent.slice(0, 60))"""
 
 
-@pytest.fixture
-def page_of_many(page: Page, tmp_path: Path) -> Page:
+@pytest.fixture(scope="module")
+def report_of_many(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A report with as many parameters as the study of the LGI cell has."""
     study, series = report_example.lgi()
     first: dict[str, Any] = next(iter(study["parameters"].values()))
@@ -34,8 +34,13 @@ def page_of_many(page: Page, tmp_path: Path) -> Page:
     paths = list(study["parameters"])[:MANY]
     matrix = [[1.0 if i == k else -0.01 * (i + k) for k in range(MANY)] for i in range(MANY)]
     study["correlation"] = {"paths": paths, "matrix": matrix}
-    file = write(tmp_path / "report.html", study, series)
-    page.goto(file.as_uri())
+    return write(tmp_path_factory.mktemp("report") / "report.html", study, series)
+
+
+@pytest.fixture
+def page_of_many(page: Page, report_of_many: Path) -> Page:
+    """That report in a browser."""
+    page.goto(report_of_many.as_uri())
     page.wait_for_selector("#plot-values canvas")
     return page
 
