@@ -19,6 +19,10 @@ pub struct WallPlan {
     pub nonlinear: bool,
     /// The panes of a window.
     pub glass: Option<GlassPlan>,
+    /// Position in [`Plan::windows`](crate::building::plan::Plan::windows); none for a wall.
+    pub window: Option<usize>,
+    /// Whether its surfaces are eliminated each with its own zone, see [`thick_walls`](super::thick_walls).
+    pub thick: bool,
 }
 
 /// How a surface takes part in the solution.
@@ -87,7 +91,16 @@ impl WallPlan {
             }
             layer_cells.push((start, cell_layers.len()));
         }
-        Self { first_cell, cell_layers, link_layers, layer_cells, nonlinear, glass: None }
+        Self {
+            first_cell,
+            cell_layers,
+            link_layers,
+            layer_cells,
+            nonlinear,
+            glass: None,
+            window: None,
+            thick: false,
+        }
     }
 
     fn of_glass(glazing: &Glazing, first_cell: usize) -> Self {
@@ -99,6 +112,8 @@ impl WallPlan {
             layer_cells: Vec::new(),
             nonlinear: true,
             glass: Some(glass),
+            window: None,
+            thick: false,
         }
     }
 

@@ -14,3 +14,4 @@ pub(crate) mod solar_distribution;
 pub(crate) mod solar_geometry;
 #[cfg(test)]
 pub(crate) mod test_buildings;
+pub(crate) mod thick_walls;

@@ -78,9 +78,10 @@ pub(crate) fn outdoor_emission<S: Real>(surface: &SurfaceCoefficients<S>) -> Opt
 /// the value of a parameter.
 #[derive(Debug, Clone)]
 pub(crate) struct Parts {
-    /// Walls of constant properties.
+    /// Walls of constant properties, and those of them that are thick.
     pub(crate) linear_walls: Vec<usize>,
-    /// Those of them that do not lie in exactly one zone: no zone front eliminates them.
+    pub(crate) thick_walls: Vec<usize>,
+    /// Those of them that no zone front eliminates.
     pub(crate) shared_walls: Vec<usize>,
     /// Those of them that touch no zone.
     pub(crate) detached_walls: Vec<usize>,
@@ -92,7 +93,7 @@ pub(crate) struct Parts {
     /// Surfaces whose laws are linearised or change with the wind: all of them, and those that no zone front eliminates.
     pub(crate) surfaces: VariableSurfaces,
     pub(crate) other_surfaces: VariableSurfaces,
-    /// Surfaces at which something is linearised: convection, radiation or the wall behind.
+    /// Surfaces at which something is linearised: convection, radiation or the wall behind; and those of thick walls.
     pub(crate) linearised: Vec<SurfaceId>,
     /// Whether the heat balance of a surface of a linear wall is nonlinear.
     pub(crate) nonlinear_balances: bool,
@@ -120,11 +121,11 @@ impl VariableSurfaces {
     }
 }
 
-/// Whether a wall has constant properties and exactly one surface in a zone: the front of that zone eliminates it.
-pub(crate) fn of_one_zone(plan: &Plan, wall: usize) -> bool {
+/// Whether a wall has constant properties and exactly one surface in a zone, or is thick: the fronts of zones eliminate it.
+pub(crate) fn in_fronts(plan: &Plan, wall: usize) -> bool {
     let roles = SurfaceId::pair(wall).map(|surface| plan.surfaces[surface].role);
     let inside = roles.iter().filter(|role| matches!(role, SurfaceRole::Zone { .. })).count();
-    !plan.walls[wall].nonlinear && inside == 1
+    !plan.walls[wall].nonlinear && (inside == 1 || plan.walls[wall].thick)
 }
 
 impl Parts {
@@ -135,7 +136,8 @@ impl Parts {
         let linear = || linear_walls.iter().copied();
         let cells = nonlinear_walls.iter().map(|&wall| &plan.walls[wall]);
         let mut parts = Self {
-            shared_walls: linear().filter(|&wall| !of_one_zone(plan, wall)).collect(),
+            thick_walls: linear().filter(|&wall| plan.walls[wall].thick).collect(),
+            shared_walls: linear().filter(|&wall| !in_fronts(plan, wall)).collect(),
             detached_walls: linear()
                 .filter(|&wall| SurfaceId::pair(wall).into_iter().all(exterior))
                 .collect(),
@@ -155,12 +157,13 @@ impl Parts {
         let surfaces = &parts.surfaces;
         let linearised = |surface: &SurfaceId| {
             plan.walls[surface.wall()].nonlinear
+                || plan.walls[surface.wall()].thick
                 || surfaces.nonlinear.contains(surface)
                 || surfaces.radiant.contains(surface)
         };
         parts.linearised = plan.surfaces.ids().filter(linearised).collect();
         parts.other_surfaces =
-            parts.surfaces.filter(|surface| exterior(surface) && !of_one_zone(plan, surface.wall()));
+            parts.surfaces.filter(|surface| exterior(surface) && !in_fronts(plan, surface.wall()));
         parts
     }
 

@@ -8,6 +8,9 @@
 //! In a building of few zones the other surfaces of walls of constant properties come before the surfaces of nonlinear walls
 //! and the airs: they need not be eliminated again where only these change. In a building of many zones that would couple all
 //! airs with each other. Of both orders, the one with less work is taken.
+//!
+//! Where it is less work still, the surfaces of thick walls between zones ([`thick_walls`](super::thick_walls)) are eliminated with their own zone, as if
+//! they did not meet.
 
 use std::collections::BTreeSet;
 
@@ -22,17 +25,36 @@ pub(crate) struct Order {
     pub(crate) own_rows: usize,
     pub(crate) pattern: Pattern,
     pub(crate) constant_rows: usize,
+    /// Walls whose surfaces are eliminated as if they did not meet.
+    pub(crate) thick: Vec<bool>,
 }
 
-/// Finds the unknowns and numbers them in the order of elimination.
+/// Finds the unknowns and numbers them in the order of elimination. Thick walls are treated as such where it is less work, or
+/// always.
 pub(crate) fn number_unknowns(
     description: &Description,
     walls: &[WallPlan],
+    (thick, always): (Vec<bool>, bool),
 ) -> (Vec<SurfacePlan>, Vec<ZonePlan>, Order) {
     let (mut surfaces, mut zones) = find_unknowns(description);
-    let groups = groups(walls, &surfaces, &zones);
-    let neighbours = neighbours(description, &surfaces, &zones);
-    let (position, order) = order(&neighbours, &groups);
+    // Positions and order, if the work on the coupled system and on the fronts is not more than allowed; and that work.
+    let arrange = |thick: Vec<bool>, most_work: usize| {
+        let groups = groups(walls, &surfaces, &zones, &thick);
+        let neighbours = neighbours(description, &surfaces, &zones, &thick);
+        let of_fronts = work_of_fronts(&zones, &groups);
+        let (elimination, groups) = order(&neighbours, &groups, most_work.saturating_sub(of_fronts))?;
+        let work = elimination.work() + of_fronts;
+        let (position, order) = Order::new(elimination, &groups, thick);
+        Some((position, order, work))
+    };
+    let none = vec![false; walls.len()];
+    let apart = if always || thick.contains(&true) { arrange(thick, usize::MAX) } else { None };
+    // Where surfaces of a wall do not meet, a zone is solved once more.
+    let again: usize = zones.iter().map(|zone| (zone.surfaces.len() + 2).pow(2)).sum();
+    let most_work = apart.as_ref().map_or(usize::MAX, |(_, _, work)| work + again);
+    let found = if always { None } else { arrange(none, most_work) }.or(apart);
+    #[allow(clippy::expect_used, reason = "one of both is followed to its end")]
+    let (position, order, _) = found.expect("an order");
     for surface in &mut surfaces {
         if let SurfaceRole::Zone { row, .. } = &mut surface.role {
             *row = position[*row];
@@ -48,22 +70,41 @@ pub(crate) fn number_unknowns(
 /// Eliminations of the surfaces of constant walls for one of the rest, at least: most balances change from stage to stage.
 const SHARE_OF_CONSTANT: usize = 4;
 
-/// Positions of the unknowns in the order with less work, and that order.
-fn order(neighbours: &[BTreeSet<usize>], groups: &[(usize, usize)]) -> (Vec<usize>, Order) {
+/// Multiplications of the elimination of the zones' own surfaces.
+fn work_of_fronts(zones: &[ZonePlan], groups: &[(usize, usize)]) -> usize {
+    let of_zone = |zone: &ZonePlan| -> usize {
+        let own = zone.surface_rows.iter().filter(|&&row| groups[row].0 == OWN).count();
+        let row = zone.surfaces.len() + 2;
+        // Of the symmetric part one half.
+        (0..own).map(|k| (row - k).pow(2) / 2).sum()
+    };
+    zones.iter().map(of_zone).sum()
+}
+
+/// The order with less work and its groups; none where both take more work than allowed.
+fn order(
+    neighbours: &[BTreeSet<usize>],
+    groups: &[(usize, usize)],
+    most_work: usize,
+) -> Option<(Elimination, Vec<(usize, usize)>)> {
     let merged = |&group: &(usize, usize)| if group.0 == CONSTANT { (CHANGING, 0) } else { group };
     let all_changing: Vec<_> = groups.iter().map(merged).collect();
-    let together = minimum_degree(neighbours.to_vec(), &all_changing, usize::MAX);
+    let together = minimum_degree(neighbours.to_vec(), &all_changing, most_work);
+    let ended = |elimination: &Elimination| elimination.later.len() == groups.len();
     // In a large building the other order couples nearly everything: it is not followed further than this one's work.
-    let apart = minimum_degree(neighbours.to_vec(), groups, together.work());
-    if apart.later.len() < groups.len() {
-        return Order::new(together, &all_changing);
+    let apart = minimum_degree(neighbours.to_vec(), groups, together.work().min(most_work));
+    if ended(&apart) {
+        Some((apart, groups.to_vec()))
+    } else if ended(&together) {
+        Some((together, all_changing))
+    } else {
+        None
     }
-    Order::new(apart, groups)
 }
 
 impl Order {
     /// An order that was found for these groups, after the positions of the unknowns.
-    fn new(elimination: Elimination, groups: &[(usize, usize)]) -> (Vec<usize>, Self) {
+    fn new(elimination: Elimination, groups: &[(usize, usize)], thick: Vec<bool>) -> (Vec<usize>, Self) {
         let in_group = |wanted: usize| groups.iter().filter(|(group, _)| *group == wanted).count();
         let (own_rows, constant_rows) = (in_group(OWN), in_group(CONSTANT));
         let Elimination { position, later, .. } = elimination;
@@ -73,7 +114,7 @@ impl Order {
             rows
         };
         let later: Vec<Vec<usize>> = later.into_iter().skip(own_rows).map(of_row).collect();
-        (position, Self { own_rows, pattern: Pattern::new(&later), constant_rows })
+        (position, Self { own_rows, pattern: Pattern::new(&later), constant_rows, thick })
     }
 }
 
@@ -106,15 +147,21 @@ fn find_unknowns(description: &Description) -> (Vec<SurfacePlan>, Vec<ZonePlan>)
     (surfaces, zones)
 }
 
-/// Group of the surfaces of constant walls that exchange heat with their own zone only.
+/// Group of the surfaces of constant walls that exchange heat with their own zone only; those of thick walls come last in
+/// their zone.
 const OWN: usize = 0;
 /// Group of the other surfaces of constant walls.
 const CONSTANT: usize = 1;
 /// Group of the surfaces of nonlinear walls and of the air of zones.
 const CHANGING: usize = 2;
 
-/// Group of each unknown, and the zone of those of the first group.
-fn groups(walls: &[WallPlan], surfaces: &[SurfacePlan], zones: &[ZonePlan]) -> Vec<(usize, usize)> {
+/// Group of each unknown, and the place among the groups of the first kind.
+fn groups(
+    walls: &[WallPlan],
+    surfaces: &[SurfacePlan],
+    zones: &[ZonePlan],
+    thick: &[bool],
+) -> Vec<(usize, usize)> {
     let unknowns = zones.iter().map(|zone| zone.surfaces.len() + 1).sum();
     let mut groups = vec![(CHANGING, 0); unknowns];
     for pair in surfaces.chunks_exact(2) {
@@ -123,7 +170,11 @@ fn groups(walls: &[WallPlan], surfaces: &[SurfacePlan], zones: &[ZonePlan]) -> V
             if let SurfaceRole::Zone { zone, row } = surface.role
                 && !walls[surface.wall].nonlinear
             {
-                groups[row] = if between_zones { (CONSTANT, 0) } else { (OWN, zone) };
+                groups[row] = match (between_zones, thick[surface.wall]) {
+                    (false, _) => (OWN, 2 * zone),
+                    (true, true) => (OWN, 2 * zone + 1),
+                    (true, false) => (CONSTANT, 0),
+                };
             }
         }
     }
@@ -135,6 +186,7 @@ fn neighbours(
     description: &Description,
     surfaces: &[SurfacePlan],
     zones: &[ZonePlan],
+    thick: &[bool],
 ) -> Vec<BTreeSet<usize>> {
     let row = |surface: SurfaceId| match surfaces[surface.index()].role {
         SurfaceRole::Zone { row, .. } => Some(row),
@@ -155,7 +207,7 @@ fn neighbours(
             }
         }
     }
-    for wall in 0..description.surfaces.len() {
+    for wall in (0..description.surfaces.len()).filter(|&wall| !thick[wall]) {
         if let (Some(a), Some(b)) = (row(SurfaceId::outside(wall)), row(SurfaceId::inside(wall))) {
             couple(a, b);
         }

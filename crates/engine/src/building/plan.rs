@@ -6,6 +6,7 @@ use super::order::{Order, number_unknowns};
 use super::passages::Passage;
 use super::pattern::Pattern;
 use super::solar_geometry::SolarGeometry;
+use super::thick_walls;
 use crate::error::EngineError;
 use crate::input::check::check;
 use crate::input::description::{Description, Side, Zone};
@@ -48,6 +49,16 @@ impl Plan {
     /// # Errors
     /// [`EngineError::Description`] when references or required parts are missing.
     pub fn new(description: Description) -> Result<Self, EngineError> {
+        Self::compile(description, thick_walls::LEAST_DEPTH, false)
+    }
+
+    /// The same with all walls of some depth treated as thick.
+    #[cfg(test)]
+    pub(crate) fn with_thick_walls(description: Description, least_depth: f64) -> Result<Self, EngineError> {
+        Self::compile(description, least_depth, true)
+    }
+
+    fn compile(description: Description, least_depth: f64, always: bool) -> Result<Self, EngineError> {
         check(&description)?;
         let mut first_cell = 0;
         let mut walls = Vec::with_capacity(description.surfaces.len());
@@ -56,11 +67,18 @@ impl Plan {
             first_cell += wall.cell_layers.len();
             walls.push(wall);
         }
-        let (surfaces, mut zones, order) = number_unknowns(&description, &walls);
-        let Order { own_rows, pattern, constant_rows } = order;
+        let thick = thick_walls::find(&description, &walls, least_depth);
+        let (surfaces, mut zones, order) = number_unknowns(&description, &walls, (thick, always));
+        let Order { own_rows, pattern, constant_rows, thick } = order;
+        for (wall, thick) in walls.iter_mut().zip(thick) {
+            wall.thick = thick;
+        }
         let conditioned = |zone: &Zone| zone.heating.is_some() || zone.cooling.is_some();
         let ideal_loads = (0..zones.len()).filter(|&zone| conditioned(&description.zones[zone])).collect();
         let windows: Vec<usize> = (0..walls.len()).filter(|&w| walls[w].glass.is_some()).collect();
+        for (position, &window) in windows.iter().enumerate() {
+            walls[window].window = Some(position);
+        }
         for zone in &mut zones {
             let place = |surface: SurfaceId| zone.surfaces.iter().position(|&other| other == surface);
             let sides =

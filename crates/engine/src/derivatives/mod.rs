@@ -18,3 +18,6 @@ mod reverse;
 
 pub use forward::{Jacobian, jacobian};
 pub use reverse::Trajectory;
+
+#[cfg(test)]
+mod thick_wall_tests;

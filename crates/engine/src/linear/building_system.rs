@@ -12,11 +12,12 @@ use crate::linear::coupled::CoupledSystem;
 use crate::linear::laws::{LinearisedLaws, StageInputs};
 use crate::linear::step_maps::StepMaps;
 use crate::linear::surface_balance::{ExteriorBalance, ExteriorSurfaces, SurfaceLaws, solve_pair};
+use crate::linear::thick_walls::ThickWalls;
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::{Response, WallSystem};
 use crate::linear::zone_front::{Elimination, ZoneFronts};
 use crate::number::line::Line;
-use crate::number::real::Real;
+use crate::number::real::{Mask, Real};
 use crate::weather::conditions::Conditions;
 
 /// The linear system of a stage, with its factors.
@@ -38,6 +39,7 @@ pub(crate) struct BuildingSystem<'a, S> {
     pub(crate) inverses: Vec<S>,
     pub(crate) coupled: CoupledSystem<'a, S>,
     pub(crate) zone_fronts: ZoneFronts<S>,
+    pub(crate) thick_walls: ThickWalls<S>,
 }
 
 impl<'a, S: Real> BuildingSystem<'a, S> {
@@ -56,6 +58,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             inverses: vec![S::zero(); count],
             coupled: CoupledSystem::new(&plan.pattern, plan.own_rows, plan.constant_rows),
             zone_fronts: ZoneFronts::new(plan, coefficients, &laws.surfaces),
+            thick_walls: ThickWalls::new(model),
         }
     }
 
@@ -73,6 +76,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             }
             self.step_maps.factor(&self.walls);
             self.zone_fronts.set_responses(&self.responses);
+            self.thick_walls.set_responses(&self.responses);
             self.factored_length = length;
         }
         new
@@ -110,10 +114,9 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         w: usize,
         enthalpy: &[S],
     ) {
-        let mut windows = model.plan.windows.iter().zip(&conditions.sun.windows);
-        let condensed = match windows.find(|(window, _)| **window == w) {
+        let condensed = match model.plan.walls[w].window {
             // Solar radiation absorbed in the panes.
-            Some((_, sun)) => self.walls[w].condense_heated(enthalpy, &sun.cells),
+            Some(window) => self.walls[w].condense_heated(enthalpy, &conditions.sun.windows[window].cells),
             None => self.walls[w].condense(enthalpy),
         };
         (self.sources[w], self.responses[w]) = (condensed.source, condensed.response);
@@ -129,8 +132,9 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         solution: &mut Unknowns<S>,
     ) {
         let model = inputs.model;
-        if model.parts.nonlinear_balances {
-            self.assemble_linear(inputs, true, Some(iterate));
+        let again = model.parts.nonlinear_balances || !self.thick_walls.is_empty();
+        if again {
+            self.assemble_linear(inputs, !model.parts.balances_stay(), Some(iterate));
         }
         self.assemble_nonlinear(inputs);
         self.coupled.solve_rest();
@@ -138,9 +142,51 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         for &w in &model.parts.nonlinear_walls {
             self.resolve_wall(model, w, solution);
         }
-        if model.parts.nonlinear_balances {
+        if again {
             self.resolve_linear_walls(model, solution);
         }
+    }
+
+    /// Adds what the surfaces of thick walls have changed since the iterate. Returns what had been lacking [W/m2].
+    #[inline(always)]
+    pub(crate) fn couple_thick_walls(
+        &mut self,
+        model: &Model<'_, S>,
+        iterate: &Unknowns<S>,
+        solution: &mut Unknowns<S>,
+    ) -> S {
+        if self.thick_walls.is_empty() {
+            return S::zero();
+        }
+        let lacked = self.thick_walls.heat_since(iterate, solution);
+        let (mut lacking, mut round) = (lacked, S::zero());
+        loop {
+            let lanes = self.thick_walls.lacks(lacking, lacked, round);
+            if !lanes.any() {
+                break;
+            }
+            self.thick_walls.keep_heat(lanes);
+            let mut heat = core::mem::take(&mut self.thick_walls.heat);
+            self.solve_without_thick_walls(&mut heat);
+            for (unknown, &change) in self.coupled.right.iter_mut().zip(&heat) {
+                *unknown += change;
+            }
+            self.thick_walls.heat = heat;
+            lacking = self.thick_walls.heat_of_change();
+            round += S::one();
+        }
+        if S::zero().lt(round).any() {
+            self.resolve_airs(model, solution);
+            for &w in &model.parts.nonlinear_walls {
+                self.resolve_wall(model, w, solution);
+            }
+            self.zone_fronts.write(&self.coupled.right, &mut solution.surfaces);
+            for &w in &model.parts.shared_walls {
+                let surfaces = self.resolve_surfaces(model, w);
+                solution.surfaces.set_pair(w, surfaces);
+            }
+        }
+        lacked
     }
 
     /// Solves for the unknowns that [`Self::solve`] does not compute, and copies laws and exterior surfaces of the zone fronts to
@@ -152,7 +198,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         laws: &mut BySurface<SurfaceLaws<S>>,
         solution: &mut Unknowns<S>,
     ) -> S::Mask {
-        if !model.parts.nonlinear_balances {
+        if !model.parts.nonlinear_balances && self.thick_walls.is_empty() {
             self.resolve_linear_walls(model, solution);
         }
         if !model.parts.balances_stay() {
@@ -397,6 +443,15 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
     /// Solves the coupled system and the zone fronts for another right-hand side, with the factors already computed.
     #[inline(always)]
     pub(crate) fn solve_again(&self, right: &mut [S]) {
+        self.solve_without_thick_walls(right);
+        if !self.thick_walls.is_empty() {
+            self.thick_walls.complete(right, |right| self.solve_without_thick_walls(right));
+        }
+    }
+
+    /// The same without what the surfaces of thick walls add to each other: nearly the solution.
+    #[inline(always)]
+    pub(crate) fn solve_without_thick_walls(&self, right: &mut [S]) {
         self.zone_fronts.forward(right);
         self.coupled.solve_again(right);
         self.zone_fronts.back(right);

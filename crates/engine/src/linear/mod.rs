@@ -19,6 +19,7 @@ pub(crate) mod product;
 pub(crate) mod stage_matrix;
 pub(crate) mod step_maps;
 pub(crate) mod surface_balance;
+pub(crate) mod thick_walls;
 pub(crate) mod tridiagonal;
 pub(crate) mod unknowns;
 pub(crate) mod wall;

@@ -157,9 +157,13 @@ impl<'a> StageMatrix<'a> {
         for (zone, &air) in self.model.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
-        self.system.zone_fronts.forward_values(block);
-        self.system.coupled.solve_values(block);
-        self.system.zone_fronts.back_values(block);
+        let solve = |block: &mut [R]| {
+            self.system.zone_fronts.forward_values(block);
+            self.system.coupled.solve_values(block);
+            self.system.zone_fronts.back_values(block);
+        };
+        solve(block);
+        self.system.thick_walls.complete_values(block, false, solve);
         for (zone, air) in self.model.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }
@@ -216,9 +220,13 @@ impl<'a> StageMatrix<'a> {
         for (zone, &air) in self.model.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
-        self.system.zone_fronts.back_transposed(block);
-        self.system.coupled.solve_transposed(block);
-        self.system.zone_fronts.forward_transposed(block);
+        let solve = |block: &mut [f64]| {
+            self.system.zone_fronts.back_transposed(block);
+            self.system.coupled.solve_transposed(block);
+            self.system.zone_fronts.forward_transposed(block);
+        };
+        solve(block);
+        self.system.thick_walls.complete_values(block, true, solve);
         for (zone, air) in self.model.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }

@@ -5,6 +5,7 @@
 
 use crate::building::coefficients::Matter;
 use crate::building::model::Model;
+use crate::linear::thick_walls::ThickWalls;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
 use crate::physics::pcm::PcmMemory;
@@ -37,6 +38,7 @@ impl<S: Real> StageSolver<'_, S> {
             let places = [&outer, &self.solution];
             let moved = self.distance(model, &outer);
             if moved.lt(enough).any()
+                && ThickWalls::accepts(self.lacked).any()
                 && self.nonlinear.accepts_with_all_evaluated(stage, change, &self.system, places).any()
             {
                 self.counters.nested += 1;

@@ -8,6 +8,7 @@ use crate::building::model::Model;
 use crate::error::EngineError;
 use crate::linear::building_system::BuildingSystem;
 use crate::linear::laws::StageInputs;
+use crate::linear::thick_walls::ThickWalls;
 use crate::linear::unknowns::Unknowns;
 use crate::number::real::{Mask, Real};
 use crate::step::control::RunControl;
@@ -64,6 +65,8 @@ pub(crate) struct StageSolver<'a, S: Real> {
     /// Lanes whose iteration failed: their numbers mean nothing any more.
     pub(crate) failed: S::Mask,
     pub(crate) counters: Counters<S>,
+    /// What the last linear solve lacked of the heat through thick walls [W/m2].
+    pub(super) lacked: S,
     /// Where the caller can stop it.
     pub(crate) control: Option<&'a RunControl>,
 }
@@ -89,6 +92,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
                 largest_change: S::zero(),
                 largest_residual: None,
             },
+            lacked: S::zero(),
             control: None,
         }
     }
@@ -140,6 +144,7 @@ impl<'a, S: Real> StageSolver<'a, S> {
         }
         linearisation.linearise_surfaces(model, conditions, iterate, false);
         system.solve(&inputs(stage, linearisation, start), iterate, solution);
+        self.lacked = system.couple_thick_walls(model, iterate, solution);
     }
 
     /// Newton's iteration. A lane that has converged, or was not active from the start, keeps its iterate: later solves
@@ -210,13 +215,14 @@ impl<'a, S: Real> StageSolver<'a, S> {
         if iteration < PATIENCE {
             return small;
         }
-        small | change.lt(S::constant(TOLERANCE))
+        small | (change.lt(S::constant(TOLERANCE)) & ThickWalls::accepts(self.lacked))
     }
 
     /// Where what the tangents leave out at the solution is accepted, see [`NonlinearLaws::accepts`].
     #[inline(always)]
     pub(super) fn small_remainder(&self, stage: &Stage<'_, S>, change: S) -> S::Mask {
-        self.nonlinear.accepts(stage, change, &self.system, [&self.iterate, &self.solution])
+        let coupled = ThickWalls::accepts(self.lacked);
+        coupled & self.nonlinear.accepts(stage, change, &self.system, [&self.iterate, &self.solution])
     }
 
     /// Notes the last change of an accepted stage.

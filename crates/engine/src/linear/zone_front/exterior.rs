@@ -22,7 +22,7 @@ pub(super) struct Exterior<S> {
     /// Areas of the walls [m2].
     pub(super) wall_area: Vec<S>,
     pub(super) emissivity: Vec<S>,
-    /// Whether a surface is at an imposed temperature.
+    /// Whether a surface is at an imposed temperature, those of thick walls included.
     pub(super) fixed: Vec<bool>,
     /// Responses of the walls. By the temperature of the interior surface: the heat from it that stays in the wall, and with an
     /// imposed temperature behind it all that leaves it [W/K]; heat into the exterior surface [W/(m2 K)]. By that of the exterior
@@ -42,7 +42,8 @@ pub(super) struct Exterior<S> {
 impl<S: Real> Exterior<S> {
     /// The exterior surfaces of a front, with their constant laws.
     pub(super) fn new(numbers: &Coefficients<S>, laws: &BySurface<SurfaceLaws<S>>, layout: &Layout) -> Self {
-        let surfaces: Vec<SurfaceId> = layout.walls.iter().map(|surface| surface.opposite()).collect();
+        let opposite = layout.walls.iter().map(|surface| surface.opposite());
+        let surfaces: Vec<SurfaceId> = opposite.take(layout.exterior).collect();
         let of = |surface: SurfaceId| &numbers.surfaces[surface];
         let mut laws = Laws::new(&surfaces, layout.stride, laws);
         laws.sort(
@@ -59,6 +60,10 @@ impl<S: Real> Exterior<S> {
                 (numbers.walls[surface.wall()].area, of(surface).emissivity);
             let imposed = matches!(of(surface).boundary, Boundary::Imposed(_));
             all.fixed.push(imposed && of(surface).convection.is_none());
+        }
+        for (area, surface) in all.wall_area.iter_mut().zip(&layout.walls).skip(layout.exterior) {
+            *area = numbers.walls[surface.wall()].area;
+            all.fixed.push(true);
         }
         all
     }
@@ -114,15 +119,25 @@ impl<S: Real> Exterior<S> {
         interior_heat: &mut [S],
     ) {
         self.laws.set_wind(conditions);
-        for (i, interior) in layout.walls.iter().enumerate() {
+        for ((heat, &area), interior) in interior_heat.iter_mut().zip(&self.wall_area).zip(&layout.walls) {
+            *heat += area * sources[interior.wall()][interior.side()];
+        }
+        for (i, interior) in layout.walls.iter().enumerate().take(layout.exterior) {
             let at = &conditions.surfaces[interior.opposite()];
             let source = sources[interior.wall()];
-            interior_heat[i] += self.wall_area[i] * source[interior.side()];
             self.heat[i] = source[interior.opposite().side()] + (at.solar + at.longwave);
             self.laws.air[i] = at.temperature;
             if self.fixed[i] {
                 self.imposed[i] = at.temperature;
             }
+        }
+    }
+
+    /// Holds the other surfaces of thick walls at the temperatures of an iterate.
+    #[inline(always)]
+    pub(super) fn hold_thick(&mut self, layout: &Layout, temperatures: &[S]) {
+        for (imposed, surface) in self.imposed.iter_mut().zip(&layout.walls).skip(layout.exterior) {
+            *imposed = temperatures[surface.opposite().index()];
         }
     }
 

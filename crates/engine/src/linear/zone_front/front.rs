@@ -12,7 +12,7 @@ use super::eliminate::Factors;
 use super::equations::Equations;
 use super::exterior::Exterior;
 use super::laws::Laws;
-use super::layout::{Layout, places};
+use super::layout::{Layout, air_places, places};
 
 /// The front of a zone.
 #[derive(Debug, Clone)]
@@ -65,13 +65,16 @@ impl<S: Real> ZoneFront<S> {
         let surfaces: Vec<SurfaceId> = order.iter().map(|&i| of_plan.surfaces[i]).collect();
         let retained = order[eliminated..].iter().map(|&i| of_plan.surface_rows[i]);
         let retained_rows: Vec<usize> = retained.chain([of_plan.air_row]).collect();
+        let places = places(&plan.pattern, plan.own_rows, &retained_rows);
         let layout = Layout {
             surfaces: surfaces.len(),
             eliminated,
             stride: (surfaces.len() + 2).next_multiple_of(S::CHUNK),
             first_row: order.first().map_or(0, |&i| of_plan.surface_rows[i]),
-            places: places(&plan.pattern, plan.own_rows, &retained_rows),
+            air_places: air_places(&places, retained_rows.len()),
+            places,
             retained_rows,
+            exterior: surfaces[..eliminated].iter().filter(|s| !plan.walls[s.wall()].thick).count(),
             walls: surfaces[..eliminated].to_vec(),
         };
         let exterior = Exterior::new(numbers, laws, &layout);

@@ -34,6 +34,7 @@ impl<S: Real> ChunkTask<S> for Eliminate<'_, S> {
     fn run<V: Chunk<S>>(self) {
         for (zone, front) in self.zone_fronts.iter_mut().enumerate() {
             if let Some(iterate) = self.iterate {
+                front.exterior.hold_thick(&front.layout, &iterate.surfaces);
                 if front.laws.convection_is_nonlinear() {
                     front.laws.air.fill(iterate.air[zone]);
                 }
@@ -72,6 +73,23 @@ impl<S: Real> ChunkTask<S> for Solve<'_, S> {
     fn run<V: Chunk<S>>(self) {
         for front in self.zone_fronts {
             front.solve::<V>(self.constant, self.unknowns, self.surfaces);
+        }
+    }
+}
+
+/// All surfaces from those that the fronts eliminated.
+pub(super) struct Write<'r, S: Real> {
+    pub(super) zone_fronts: &'r mut [ZoneFront<S>],
+    pub(super) unknowns: &'r [S],
+    pub(super) surfaces: &'r mut [S],
+}
+
+impl<S: Real> ChunkTask<S> for Write<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Chunk<S>>(self) {
+        for front in self.zone_fronts {
+            front.write::<V>(self.unknowns, self.surfaces);
         }
     }
 }
@@ -138,6 +156,15 @@ impl<S: Real> ZoneFronts<S> {
         );
     }
 
+    /// Surfaces of the building from a solution of all unknowns that was found with the factors.
+    #[inline(never)]
+    pub(crate) fn write(&mut self, unknowns: &[S], surfaces: &mut [S]) {
+        S::vectorised(
+            #[inline(always)]
+            || S::in_chunks(Write { zone_fronts: &mut self.zone_fronts, unknowns, surfaces }),
+        );
+    }
+
     /// Eliminates the surfaces of the fronts from another right-hand side.
     #[inline(never)]
     pub(crate) fn forward(&self, right: &mut [S]) {
@@ -180,7 +207,7 @@ impl<S: Real> ZoneFronts<S> {
     #[inline(never)]
     pub(crate) fn write_exterior_surfaces(&self, surfaces: &mut [ExteriorSurfaces<S>], inverses: &mut [S]) {
         for front in &self.zone_fronts {
-            for (i, interior) in front.layout.walls.iter().enumerate() {
+            for (i, interior) in front.layout.walls.iter().enumerate().take(front.layout.exterior) {
                 let (line, inverse) = front.exterior.line_at(i);
                 surfaces[interior.wall()] = ExteriorSurfaces::One { side: interior.opposite().side(), line };
                 inverses[interior.wall()] = inverse;

@@ -17,8 +17,12 @@ pub(super) struct Layout {
     pub(super) retained_rows: Vec<usize>,
     /// Places of their entries in the coupled matrix, row by row; none where two of them do not meet.
     pub(super) places: Vec<Option<usize>>,
-    /// The eliminated surfaces.
+    /// Places of the entries of each retained row in the column of the air, and of the air in its column.
+    pub(super) air_places: Vec<[usize; 2]>,
+    /// The eliminated surfaces, those of thick walls last.
     pub(super) walls: Vec<SurfaceId>,
+    /// Number of eliminated surfaces whose wall is not thick: its other surface is exterior.
+    pub(super) exterior: usize,
 }
 
 impl Layout {
@@ -34,6 +38,13 @@ impl Layout {
 pub(super) fn places(pattern: &Pattern, own_rows: usize, rows: &[usize]) -> Vec<Option<usize>> {
     let entries = rows.iter().flat_map(|&row| rows.iter().map(move |&column| (row, column)));
     entries.map(|(row, column)| pattern.place(row - own_rows, column - own_rows)).collect()
+}
+
+/// Places of the entries between each of some retained rows and the last of them, from [`places`]: they all meet the air.
+pub(super) fn air_places(places: &[Option<usize>], count: usize) -> Vec<[usize; 2]> {
+    let air = count - 1;
+    let pair = |i: usize| Some([places[i * count + air]?, places[air * count + i]?]);
+    (0..count).filter_map(pair).collect()
 }
 
 /// What is to be eliminated.

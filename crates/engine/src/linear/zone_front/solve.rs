@@ -83,9 +83,14 @@ impl<S: Real> ZoneFront<S> {
                 }
                 right = right - entry * emission[0][j];
             }
-            coupled.add(row, air_row, self.entry(i, surfaces));
+            let [to_air_place, from_air_place] = self.layout.air_places[i - eliminated];
+            coupled.add_at(to_air_place, self.entry(i, surfaces));
             if i < surfaces {
-                coupled.couple(row, air_row, self.equations.to_air[i]);
+                let to_air = self.equations.to_air[i];
+                coupled.add_diagonal(row, to_air);
+                coupled.add_diagonal(air_row, to_air);
+                coupled.add_at(to_air_place, -to_air);
+                coupled.add_at(from_air_place, -to_air);
                 right += self.equations.right[i];
             }
             if !constant {
@@ -154,6 +159,14 @@ impl<S: Real> ZoneFront<S> {
         }
     }
 
+    /// Takes the eliminated surfaces from a solution of all unknowns.
+    #[inline(always)]
+    pub(super) fn write<V: Chunk<S>>(&mut self, unknowns: &[S], surfaces: &mut [S]) {
+        let Layout { eliminated, first_row, .. } = self.layout;
+        self.equations.right[..eliminated].copy_from_slice(&unknowns[first_row..first_row + eliminated]);
+        self.write_surfaces::<V>(surfaces);
+    }
+
     /// Writes the eliminated surfaces and the exterior surfaces of their walls to the surfaces of the building.
     #[inline(always)]
     fn write_surfaces<V: Chunk<S>>(&mut self, surfaces: &mut [S]) {
@@ -162,8 +175,12 @@ impl<S: Real> ZoneFront<S> {
             let exterior: V = self.exterior.temperatures(part!(interior, start), start);
             exterior.store(&mut self.scratch[start..start + S::CHUNK]);
         }
-        for ((&surface, &interior), &exterior) in self.layout.walls.iter().zip(interior).zip(&self.scratch) {
+        let (walls, thick) = self.layout.walls.split_at(self.layout.exterior);
+        for ((&surface, &interior), &exterior) in walls.iter().zip(interior).zip(&self.scratch) {
             (surfaces[surface.index()], surfaces[surface.opposite().index()]) = (interior, exterior);
+        }
+        for (&surface, &interior) in thick.iter().zip(&interior[walls.len()..]) {
+            surfaces[surface.index()] = interior;
         }
     }
 

@@ -6,7 +6,7 @@ use super::exterior::Exterior;
 use super::front::ZoneFront;
 use super::fronts::{Eliminate, Solve};
 use super::laws::Laws;
-use super::layout::{Elimination, Layout, places};
+use super::layout::{Elimination, Layout, air_places, places};
 use crate::building::ids::SurfaceId;
 use crate::building::pattern::Pattern;
 use crate::linear::coupled::CoupledSystem;
@@ -26,17 +26,17 @@ const WARMTH: f64 = 30.0;
 fn front<S: Real>(surfaces: usize, eliminated: usize, nonlinear: bool) -> ZoneFront<S> {
     let mut numbers = Numbers::new(7 + 31 * surfaces as u64 + eliminated as u64);
     let ids: Vec<_> = (0..surfaces).map(SurfaceId::inside).collect();
+    let retained_rows: Vec<usize> = (eliminated..=surfaces).collect();
+    let places = places(&pattern(retained_rows.len()), eliminated, &retained_rows);
     let layout = Layout {
         surfaces,
         eliminated,
         stride: (surfaces + 2).next_multiple_of(S::CHUNK),
         first_row: 0,
-        places: places(
-            &pattern(surfaces + 1 - eliminated),
-            eliminated,
-            &(eliminated..=surfaces).collect::<Vec<_>>(),
-        ),
-        retained_rows: (eliminated..=surfaces).collect(),
+        air_places: air_places(&places, retained_rows.len()),
+        places,
+        retained_rows,
+        exterior: eliminated,
         walls: ids[..eliminated].to_vec(),
     };
     let stride = layout.stride;
