@@ -65,6 +65,65 @@ def test_a_zone_held_at_a_column_needs_its_losses() -> None:
         assert power == pytest.approx(UA * measured, rel=1e-5)
 
 
+@pytest.mark.parametrize("share", [0.3, 0.6])
+def test_a_radiative_share_of_an_ideal_load(share: float) -> None:
+    """The wall gets its part at once: Q = UA T + the part that goes out through the wall.
+
+    ``(1 - r) Q = h (T - Ts)`` and ``r Q + h (T - Ts) = k Ts`` in W/m2, with the wall and its outer film k.
+    """
+    building = box({"room": {"infiltration": 0, "held": {"temperature": 20, "radiative": share}}})
+    level = np.ones(len(hours(4)))
+    results = simulate(
+        building, dark(0 * level), step="15min", outputs=["room.net_load", "room.air_temperature"]
+    )
+    k = 1 / (0.1 / 0.04 + 1 / 20)
+    expected = 30 * 20 / ((1 - share) / 4 + 1 / k)
+    assert last(results, "room.air_temperature") == pytest.approx(20, abs=1e-9)
+    assert last(results, "room.net_load") == pytest.approx(expected, rel=1e-6)
+    assert results.energy.closure < 1e-12
+
+
+def test_heating_radiates_and_cooling_does_not() -> None:
+    """Outdoors warm, then cold: each load has its own share."""
+    plants = {"heating": {"setpoint": 20, "radiative": 0.5}, "cooling": {"setpoint": 20.001}}
+    building = box({"room": {"infiltration": 0} | plants, "other": {"infiltration": 0, "held": 20}})
+    level = np.ones(len(hours(4)))
+    k = 1 / (0.1 / 0.04 + 1 / 20)
+    for outdoor, expected in ((0.0, 600 / (0.5 / 4 + 1 / k)), (40.0, -30 * U * 19.999)):
+        results = simulate(building, dark(outdoor * level), step="15min", outputs=["room.net_load"])
+        assert last(results, "room.net_load") == pytest.approx(expected, rel=1e-5)
+
+
+def test_a_column_with_a_schedule() -> None:
+    """A measured power is an input in the first two days only, then the room is held."""
+    phases = {
+        "driven": {
+            "kind": "fraction",
+            "seasons": [
+                {"until": "01-02", "days": {"all": [{"at": "00:00", "value": 1}]}},
+                {"until": "12-31", "days": {"all": [{"at": "00:00", "value": 0}]}},
+            ],
+        },
+        "held": {
+            "kind": "fraction",
+            "seasons": [
+                {"until": "01-02", "days": {"all": [{"at": "00:00", "value": 0}]}},
+                {"until": "12-31", "days": {"all": [{"at": "00:00", "value": 1}]}},
+            ],
+        },
+    }
+    heater = {"column": "P", "schedule": "driven"}
+    zone = {"infiltration": 0, "gains": {"heater": heater}, "held": {"column": "T_room", "when": "held"}}
+    level = np.ones(len(hours(4)))
+    climate = dark(0 * level, P=100 * level, T_room=18 * level)
+    building = box({"room": zone}, schedules=phases)
+    results = simulate(building, climate, step="15min", end="2001-01-05", outputs=["room.net_load"])
+    assert results.energy.into["gains"] == pytest.approx(100 * 2 * 86400, rel=1e-9)
+    before = results["room.net_load"].sel(time=slice("2001-01-01", "2001-01-03 00:00"))
+    assert float(abs(before).max()) == 0.0
+    assert last(results, "room.net_load") == pytest.approx(30 * U * 18, rel=1e-4)
+
+
 def test_a_boundary_is_the_mean_of_several_columns() -> None:
     walls = {
         "wall_room": {

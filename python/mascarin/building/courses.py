@@ -31,6 +31,8 @@ class ColumnCourse:
         Names of the columns; their mean is used.
     unit : str
         Unit of the columns.
+    schedule : str or None
+        Schedule of the fraction that multiplies them, such as a phase of an experiment; None: always all.
 
     Examples
     --------
@@ -41,12 +43,14 @@ class ColumnCourse:
     kind: CourseKind
     columns: tuple[str, ...]
     unit: str
+    schedule: str | None = None
 
     @property
     def name(self) -> str:
-        """The columns and their unit."""
+        """The columns, their unit and their schedule."""
         mean = "mean of " if len(self.columns) > 1 else ""
-        return f"{mean}{' and '.join(self.columns)} [{self.unit}]"
+        scheduled = f", schedule {self.schedule}" if self.schedule is not None else ""
+        return f"{mean}{' and '.join(self.columns)} [{self.unit}]{scheduled}"
 
     @property
     def scale(self) -> float:

@@ -13,7 +13,7 @@ from mascarin.building.part import Part
 
 
 class Driven(Part):
-    """A power or a flow: a number that a schedule may multiply, or a measured column."""
+    """A power or a flow: a number or a measured column, which a schedule may multiply."""
 
     #: Key of the number, and what a column holds.
     NUMBER: ClassVar[str] = ""
@@ -36,10 +36,6 @@ class Driven(Part):
                 if key in self.model_fields_set and getattr(self, key) is not None:
                     raise problem(f"'{key}' without a column", "none", f"Remove '{key}:'.")
             return self
-        if getattr(self, "schedule", None) is not None:
-            raise problem(
-                "column and schedule", "one of them", "A column holds all values: remove the schedule."
-            )
         if self.factor is None:
             quantity = quantity_of(type(self).model_fields["factor"])
             self._fill(factor=Number(1.0, source=Remark("as measured"), derived=True, quantity=quantity))
@@ -54,7 +50,8 @@ class Driven(Part):
         """Course of the column; None where there is a number."""
         if self.column is None:
             return None
-        return ColumnCourse(self.KIND, (self.column,), str(getattr(self, "unit", None) or self._usual_unit()))
+        unit = str(getattr(self, "unit", None) or self._usual_unit())
+        return ColumnCourse(self.KIND, (self.column,), unit, getattr(self, "schedule", None))
 
     @classmethod
     def _usual_unit(cls) -> str:

@@ -31,6 +31,7 @@ Kind = Literal[
     "sensor",
     "heating_load",
     "cooling_load",
+    "net_load",
     "air_changes",
     "incident_solar",
     "transmitted_solar",
@@ -65,7 +66,8 @@ class Output:
     mean radiant temperature; the globe temperature is that of a black globe of 0.15 m between the two.
 
     Heating and cooling loads are ideal loads, neither below 0, as means over the step that ends at the
-    record. Air changes include infiltration, ventilation, openings and the outdoor air of ventilation units.
+    record; the net load is heating less cooling. Air changes include infiltration, ventilation, openings and
+    the outdoor air of ventilation units.
 
     Solar radiation is the mean over the step that ends at the record: incident on a surface or window after
     shading [W/m2], transmitted by a window or by all windows of a zone, and lost by a zone through its
@@ -137,6 +139,8 @@ def outputs(building: Description) -> list[Output]:
         for which in zone.loads:
             kind: Kind = "heating_load" if which == "heating" else "cooling_load"
             found.append(Output(f"{name}.{kind}", "W", kind, zone=index))
+        if zone.loads:
+            found.append(Output(f"{name}.net_load", "W", "net_load", zone=index))
         found.append(Output(f"{name}.air_changes", "1/h", "air_changes", zone=index))
     lit = _lit_zones(building)
     for index, name in enumerate(building.surfaces):

@@ -106,7 +106,7 @@ class Ventilation(Part):
 
 
 class IdealLoads(Part):
-    """Ideal heating or cooling: it acts on the air temperature alone, without losses and without delay.
+    """Ideal heating or cooling: it holds the air temperature, without losses and without delay.
 
     Examples
     --------
@@ -119,6 +119,7 @@ class IdealLoads(Part):
         description="Set point of the air temperature: a number, or {schedule: name}"
     )
     capacity: q.Capacity | None = None
+    radiative: q.LoadRadiative | None = None
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the available fraction of the capacity; none: always 1"
     )
@@ -199,17 +200,35 @@ ZoneSun = Annotated[
 ]
 
 
+#: Sources of a set point beside a number.
+_SET_POINT = ("schedule", "column")
+
+
+def _plant_of(held: Any) -> Any:
+    """Heating, or cooling, of a zone that is held: ``when`` is the schedule of both."""
+    if not isinstance(held, Mapping):
+        return {"setpoint": held}
+    plant = {"setpoint": {key: value for key, value in held.items() if key not in ("when", "radiative")}}
+    if "radiative" in held:
+        plant["radiative"] = held["radiative"]
+    if "when" in held:
+        plant["schedule"] = held["when"]
+    return plant
+
+
 def _or_held(schema: dict[str, Any]) -> None:
     """Allow ``held``, the short form of heating and cooling with one set point, in the JSON Schema."""
+    words = {key: {"type": "string"} for key in (*_SET_POINT, "when")}
+    numbers = {key: {"type": ["number", "object"]} for key in ("temperature", "radiative")}
     schema["properties"]["held"] = {
-        "description": "Heating and cooling with this set point",
+        "description": "Heating and cooling with this set point, where a schedule 'when' says so; part of it "
+        "may be radiative",
         "anyOf": [
             {"type": "number"},
             {
                 "type": "object",
-                "properties": {key: {"type": "string"} for key in ("schedule", "column")},
+                "properties": words | numbers,
                 "minProperties": 1,
-                "maxProperties": 1,
                 "additionalProperties": False,
             },
         ],
@@ -285,7 +304,7 @@ class Zone(Part):
                 "A zone that is held has both at one set point.",
             )
         rest = {key: value for key, value in raw.items() if key != "held"}
-        return rest | {key: {"setpoint": raw["held"]} for key in ("heating", "cooling")}
+        return rest | {key: _plant_of(raw["held"]) for key in ("heating", "cooling")}
 
     @property
     def loads(self) -> dict[str, IdealLoads]:

@@ -13,7 +13,11 @@ __all__ = ["FOLDER", "STUDIES", "SyntheticWall", "box", "box_climate", "locate",
 
 FOLDER: Final = Path(__file__).parent
 #: Example studies by name.
-STUDIES: Final = {"wall-bench": FOLDER / "wall_bench" / "study.yaml", "lgi": FOLDER / "lgi" / "study.yaml"}
+STUDIES: Final = {
+    "wall-bench": FOLDER / "wall_bench" / "study.yaml",
+    "lgi": FOLDER / "lgi" / "study.yaml",
+    "twin-house": FOLDER / "twin_house" / "study.yaml",
+}
 
 
 def locate(name: str) -> Path:

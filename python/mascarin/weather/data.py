@@ -59,6 +59,13 @@ FILES: Final = (
         "/tutorials/resources/tuto_data_SA.csv",
     ),
     DataFile(
+        "twinhouse/twinhouse_O5_exp1.csv",
+        "814f6756eb567b2277cd2ec3529cc1978996f71c963dc7172669e199b40cb69c",
+        "Twin House O5 at Holzkirchen (Germany), August and September 2013, 10 min; Fraunhofer IBP, "
+        "doi:10.15129/8a86bbbb-7be8-4a87-be76-0372985ea228, carried by open-ideas/IDEAS (BSD-3-Clause), as "
+        "one table",
+    ),
+    DataFile(
         "weather/gillot_2023_meteo_france.csv",
         "4bc1d1e3dace763a92590536ecc5c39e27362187139d58153eaea5a360b56f8c",
         "Gillot airport (Reunion Island), hourly, 2023; Meteo-France open data",

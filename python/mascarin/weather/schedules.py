@@ -76,7 +76,7 @@ def scheduled(
 
     A fraction, power or flow is the mean over the step, the same in all stages, so that the heat is right
     where a switch is inside a step. A temperature is the value at the time of the stage; at a jump, the value
-    before it.
+    before it. A column with a schedule is the product of both means.
 
     Parameters
     ----------
@@ -123,15 +123,20 @@ def scheduled(
     """
     steps = Steps.over(climate.grid.zone, start, end, step_seconds, scheme)
     out = np.empty((*steps.stage.shape, len(schedules)))
-    for place, (name, schedule) in enumerate(schedules.items()):
-        if schedule.columns:
-            values = _measured(climate, measurements, name, schedule, steps)
-        else:
+
+    def values_of(name: str) -> Array:
+        course = schedules[name]
+        if not course.columns:
             # Only a schedule has no columns.
-            pieces = pieces_of(cast("Schedule", schedule), timezone, steps.first, steps.last)
-            means = schedule.kind == "fraction"
-            values = pieces.means(steps.edges)[:, None] if means else pieces.before(steps.stage)
-        out[..., place] = values
+            pieces = pieces_of(cast("Schedule", course), timezone, steps.first, steps.last)
+            means = course.kind == "fraction"
+            return pieces.means(steps.edges)[:, None] if means else pieces.before(steps.stage)
+        values = _measured(climate, measurements, name, course, steps)
+        fraction = getattr(course, "schedule", None)
+        return values if fraction is None else np.asarray(values * values_of(fraction))
+
+    for place, name in enumerate(schedules):
+        out[..., place] = values_of(name)
     return out
 
 

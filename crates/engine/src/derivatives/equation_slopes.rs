@@ -330,7 +330,7 @@ impl<S: Real> Sink<S> for EquationSlopes<'_, S> {
     #[inline(always)]
     fn release(&mut self, node: Node, size: S, heat: S, origin: Origin<S>) {
         self.size_carries = match (node, origin) {
-            (_, Origin::RadiantGains { .. }) => true,
+            (_, Origin::RadiantGains { .. }) | (Node::Surface(_), Origin::IdealLoad) => true,
             (Node::Surface(surface), _) => self.carries.area[surface.wall()],
             (Node::Cell(_) | Node::Air(_), _) => false,
         };

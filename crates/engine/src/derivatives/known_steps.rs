@@ -162,7 +162,13 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
                     // Heat capacities at the solution of the first stage, not of this one.
                     matrices[first].stored_for_next_stage(rows, place.ratio);
                 }
-                rows[first_air + zone] += 1.0;
+                let numbers = &stepper.model.coefficients.zones[zone];
+                let radiated =
+                    numbers.radiated_part(stepper.ideal_load(zone)).map_or(0.0, |part| part.lane(0));
+                rows[first_air + zone] += 1.0 - radiated;
+                for (&surface, &share) in plan.zones[zone].surfaces.iter().zip(&numbers.radiant_shares) {
+                    rows[plan.n_cells + surface.index()] += radiated * share.lane(0);
+                }
                 matrix.solve_values(rows, scratch);
             }
             stepper.set_response(p, &rows[first_air..]);

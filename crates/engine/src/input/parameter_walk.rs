@@ -186,7 +186,7 @@ walk!(ZoneSun by variant {
 walk!(SunShares { faces, lost } plain {});
 walk!(Gain { power, radiative } plain { name, schedule });
 walk!(Ventilation { air_changes, flow } plain { name, schedule });
-walk!(IdealLoad { setpoint, capacity } plain { schedule });
+walk!(IdealLoad { setpoint, capacity, radiative } plain { schedule });
 walk!(SetPoint by variant {
     Constant { temperature } plain {},
     Scheduled {} plain { channel },

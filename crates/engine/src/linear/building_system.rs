@@ -99,7 +99,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         } else {
             self.step_maps.second_sources(&mut self.sources);
         }
-        self.zone_fronts.begin_stage(inputs.conditions, &self.sources);
+        self.zone_fronts.begin_stage(inputs, &self.sources);
         if !parts.nonlinear_balances {
             self.assemble_linear(inputs, matrix, Some(iterate));
         }
@@ -301,7 +301,8 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
         self.coupled.add_diagonal(air, storage + entering.slope);
         self.coupled.right[air] +=
             storage * inputs.air[zone] + entering.offset + entering.slope * inputs.conditions.outdoor_air;
-        self.coupled.right[air] += inputs.conditions.zones[zone].convective + inputs.load[zone];
+        let [load, _] = numbers.load_parts(inputs.load[zone]);
+        self.coupled.right[air] += inputs.conditions.zones[zone].convective + load;
         if let Some(&sun) = inputs.conditions.sun.to_air.get(zone) {
             self.coupled.right[air] += sun;
         }

@@ -47,6 +47,8 @@ impl<S: Real> Gain<S> {
 pub struct Thermostat<S> {
     set_point: SetPoint<S>,
     capacity: Option<S>,
+    /// Part that is radiated [-]; none: all of it goes to the air.
+    pub(crate) radiative: Option<S>,
     schedule: Schedule,
 }
 
@@ -70,7 +72,8 @@ impl<S: Real> Thermostat<S> {
             description::SetPoint::Scheduled { channel } => SetPoint::Scheduled(CLIMATE_CHANNELS + channel),
         };
         let capacity = ideal_load.capacity.map(|id| values.get(id));
-        Self { set_point, capacity, schedule: Schedule::new(ideal_load.schedule) }
+        let radiative = ideal_load.radiative.map(|id| values.get(id));
+        Self { set_point, capacity, radiative, schedule: Schedule::new(ideal_load.schedule) }
     }
 
     /// Set point [degC] and capacity [W] in a forcing row.

@@ -78,6 +78,11 @@ pub enum Output {
         /// Index of the zone.
         zone: usize,
     },
+    /// Ideal heating less ideal cooling of a zone, mean over the step [W].
+    NetLoad {
+        /// Index of the zone.
+        zone: usize,
+    },
     /// Ideal cooling of a zone, mean over the step [W].
     CoolingLoad {
         /// Index of the zone.
@@ -158,6 +163,7 @@ impl Output {
             Self::AirTemperature { zone }
             | Self::MeanRadiantTemperature { zone }
             | Self::HeatingLoad { zone }
+            | Self::NetLoad { zone }
             | Self::CoolingLoad { zone }
             | Self::AirChanges { zone }
             | Self::ZoneTransmittedSolar { zone }
@@ -201,6 +207,7 @@ impl Output {
             Self::AirTemperature { zone } => state.air[zone],
             Self::MeanRadiantTemperature { zone } => mean_radiant(plan, stepper, state, zone),
             Self::HeatingLoad { zone } => state.load[zone].max(S::zero()),
+            Self::NetLoad { zone } => state.load[zone],
             Self::CoolingLoad { zone } => (-state.load[zone]).max(S::zero()),
             Self::AirChanges { zone } => stepper.air_changes(zone, state.air[zone]),
             Self::FaceTemperature { surface, side } => state.surfaces[SurfaceId::new(surface, side)],

@@ -203,6 +203,12 @@ impl<S: Real> Stepper<'_, S> {
         self.ideal_loads.finds_responses(0, all)
     }
 
+    /// The ideal load of a zone [W].
+    #[inline(always)]
+    pub(crate) fn ideal_load(&self, zone: usize) -> S {
+        self.solver.start.load[zone]
+    }
+
     /// Sets the response of the airs at the end of the step to an ideal load [K/W].
     #[inline(always)]
     pub(crate) fn set_response(&mut self, ideal_load: usize, airs: &[f64]) {

@@ -48,7 +48,12 @@ fn row(rooms: usize, flow: f64) -> Row {
         let temperature = set_point.map(|at| b.number("setpoint", at));
         let capacity = (room + 1 == rooms).then(|| b.number("capacity", CAPACITY));
         let setpoint = temperature.map(|temperature| SetPoint::Constant { temperature });
-        loads.push(setpoint.map(|setpoint| IdealLoad { setpoint, capacity, schedule: None }));
+        loads.push(setpoint.map(|setpoint| IdealLoad {
+            setpoint,
+            capacity,
+            radiative: None,
+            schedule: None,
+        }));
     }
     let flow_number = b.number("flow", flow);
     let air = [1.2, AIR / 1.2].map(|value| b.number("air", value));

@@ -40,7 +40,7 @@ fn agree(slopes: &[[f64; 2]], place: &str) {
 fn heated(mut d: Description) -> Plan {
     d.channels = vec!["set_point".to_owned()];
     let setpoint = SetPoint::Scheduled { channel: 0 };
-    d.zones[0].heating = Some(IdealLoad { setpoint, capacity: None, schedule: None });
+    d.zones[0].heating = Some(IdealLoad { setpoint, capacity: None, radiative: None, schedule: None });
     Plan::new(d).unwrap()
 }
 

@@ -20,6 +20,16 @@ Radiative = Annotated[
     Number,
     Quantity("-", "Radiative fraction of the heat", Within(0.2, "range in handbooks"), FRACTION),
 ]
+LoadRadiative = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Part of an ideal load that surfaces get by radiation; none: all of it goes to the air",
+        Within(0.2, "range in handbooks"),
+        # A load that gives nothing to the air does not hold it.
+        Limits(at_least=0.0, at_most=0.95),
+    ),
+]
 SetPoint = Annotated[
     Number,
     Quantity(

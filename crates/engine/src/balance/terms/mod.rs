@@ -5,7 +5,7 @@
 //!
 //! - cell: storage, conduction to its neighbours, sun absorbed in panes;
 //! - surface: conduction into its wall, convection, emission and exchange of long-wave radiation, absorbed sun, radiant
-//!   gains; or an imposed temperature in place of a balance; an adiabatic surface has only what is left;
+//!   gains and radiated ideal loads; or an imposed temperature in place of a balance; an adiabatic surface has only what is left;
 //! - zone air: storage, convection from surfaces, infiltration, ventilation and openings, air paths and doors, fans, thermal
 //!   bridges, convective gains, sun, ideal load.
 //!
@@ -432,7 +432,16 @@ impl<S: Real> Balances<'_, S> {
     #[inline(always)]
     pub(crate) fn ideal_loads(&self, sink: &mut impl Sink<S>) {
         for &zone in &self.model.plan.ideal_loads {
-            sink.release(Node::Air(zone), S::one(), self.load[zone], Origin::IdealLoad);
+            let numbers = &self.model.coefficients.zones[zone];
+            let [convective, radiant] = numbers.load_parts(self.load[zone]);
+            sink.release(Node::Air(zone), S::one(), convective, Origin::IdealLoad);
+            if numbers.radiated_loads.is_none() {
+                continue;
+            }
+            let surfaces = &self.model.plan.zones[zone].surfaces;
+            for (&surface, &share) in surfaces.iter().zip(&numbers.radiant_shares) {
+                sink.release(Node::Surface(surface), share, radiant, Origin::IdealLoad);
+            }
         }
     }
 }

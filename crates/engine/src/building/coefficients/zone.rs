@@ -43,6 +43,8 @@ pub struct ZoneCoefficients<S> {
     pub ventilation: Vec<AirFlow<S>>,
     /// Openings to outdoors.
     pub openings: Vec<Opening<S>>,
+    /// Parts of ideal heating and of ideal cooling that are radiated to the surfaces [-]; none: all goes to the air.
+    pub radiated_loads: Option<[S; 2]>,
     /// Ideal heating.
     pub heating: Option<Thermostat<S>>,
     /// Ideal cooling.
@@ -89,13 +91,20 @@ impl<S: Real> ZoneCoefficients<S> {
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
         let ventilation = definition.ventilation.iter();
         let thermostat = |ideal_load| Thermostat::new(ideal_load, values);
+        let plants = [&definition.heating, &definition.cooling].map(|plant| plant.as_ref().map(thermostat));
+        let radiative = plants.each_ref().map(|plant| plant.as_ref().and_then(|plant| plant.radiative));
+        let [heating, cooling] = plants;
         Self {
+            radiated_loads: radiative
+                .iter()
+                .any(Option::is_some)
+                .then(|| radiative.map(|part| part.unwrap_or_else(S::zero))),
             gains: definition.gains.iter().map(|gain| Gain::new(gain, values)).collect(),
             radiant_shares: radiant_shares(&areas, exchanging.then_some(&emissivities)),
             ventilation: ventilation.map(|flow| AirFlow::new(flow, values, heat, air_capacity)).collect(),
             openings: openings.map(|opening| Opening::new(opening, values, heat)).collect(),
-            heating: definition.heating.as_ref().map(thermostat),
-            cooling: definition.cooling.as_ref().map(thermostat),
+            heating,
+            cooling,
             capacity: air_capacity * values.get(definition.capacity_factor),
             air_capacity,
             infiltration,
@@ -111,6 +120,21 @@ impl<S: Real> ZoneCoefficients<S> {
                 || direct_exchange_areas(&areas, &view_weights(plan, index, &areas)),
             ),
             areas,
+        }
+    }
+
+    /// Part of an ideal load that is radiated to the surfaces [-]; none where loads act on the air alone.
+    #[inline(always)]
+    pub(crate) fn radiated_part(&self, load: S) -> Option<S> {
+        self.radiated_loads.map(|[heating, cooling]| S::select(load.lt(S::zero()), cooling, heating))
+    }
+
+    /// What an ideal load gives to the air and to the surfaces [W].
+    #[inline(always)]
+    pub(crate) fn load_parts(&self, load: S) -> [S; 2] {
+        match self.radiated_part(load) {
+            Some(part) => [load * (S::one() - part), load * part],
+            None => [load, S::zero()],
         }
     }
 }

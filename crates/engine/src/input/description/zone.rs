@@ -181,6 +181,9 @@ pub struct IdealLoad {
     /// Largest heat that it supplies or removes [W]. None: unlimited.
     #[serde(default)]
     pub capacity: Option<ParamId>,
+    /// Part that goes to the surfaces of the zone by radiation [-]. None: all of it goes to the air.
+    #[serde(default)]
+    pub radiative: Option<ParamId>,
     /// Index into [`Description::channels`](super::Description::channels): fraction of the capacity that is available [-]. None: always all of it.
     #[serde(default)]
     pub schedule: Option<usize>,

@@ -4,11 +4,11 @@ use crate::building::coefficients::Coefficients;
 use crate::building::ids::BySurface;
 use crate::building::plan::Plan;
 use crate::linear::coupled::CoupledSystem;
+use crate::linear::laws::StageInputs;
 use crate::linear::surface_balance::{ExteriorSurfaces, SurfaceLaws};
 use crate::linear::unknowns::Unknowns;
 use crate::linear::wall::Response;
 use crate::number::real::{Chunk, ChunkTask, Real};
-use crate::weather::conditions::Conditions;
 
 use super::front::ZoneFront;
 use super::layout::Elimination;
@@ -108,14 +108,19 @@ impl<S: Real> ZoneFronts<S> {
         }
     }
 
-    /// Reads what drives a stage: conditions, and heat from the walls at surfaces of 0 degC [W/m2].
+    /// Reads what drives a stage: conditions, ideal loads, and heat from the walls at surfaces of 0 degC [W/m2].
     #[inline(never)]
-    pub(crate) fn begin_stage(&mut self, conditions: &Conditions<S>, sources: &[[S; 2]]) {
+    pub(crate) fn begin_stage(&mut self, inputs: &StageInputs<'_, S>, sources: &[[S; 2]]) {
+        let (conditions, zones) = (inputs.conditions, &inputs.model.coefficients.zones);
         S::vectorised(
             #[inline(always)]
             || {
-                for (front, zone) in self.zone_fronts.iter_mut().zip(&conditions.zones) {
-                    front.begin(conditions, zone.radiant, sources);
+                for (z, front) in self.zone_fronts.iter_mut().enumerate() {
+                    let mut radiant = conditions.zones[z].radiant;
+                    if zones[z].radiated_loads.is_some() {
+                        radiant += zones[z].load_parts(inputs.load[z])[1];
+                    }
+                    front.begin(conditions, radiant, sources);
                 }
             },
         );

@@ -59,7 +59,9 @@ impl<S: Real> IdealLoads<S> {
         let nothing = Limits { set_points: [S::zero(); 2], most: [S::zero(); 2] };
         let kept = if count == 0 { 0 } else { stages };
         // Numbers with derivatives take the responses: slopes of loads follow from them without iteration.
-        let direct = S::DERIVATIVES || count == 1;
+        // Airs are held by heat to them; loads that are partly radiated need the responses as well.
+        let radiated = model.coefficients.zones.iter().any(|zone| zone.radiated_loads.is_some());
+        let direct = S::DERIVATIVES || count == 1 || radiated;
         let few = if direct { count } else { 0 };
         Self {
             zones: zones.clone(),
@@ -249,11 +251,11 @@ impl<S: Real> IdealLoads<S> {
         &mut self,
         model: &Model<'_, S>,
         system: &BuildingSystem<'_, S>,
-        stage: usize,
+        (stage, loads): (usize, &[S]),
         length_and_ratio: (f64, f64),
     ) {
         for (response, &zone) in self.responses.iter_mut().zip(&self.zones) {
-            response.find(model, system, zone, stage, length_and_ratio);
+            response.find(model, system, (zone, loads[zone]), stage, length_and_ratio);
         }
     }
 
@@ -270,7 +272,7 @@ impl<S: Real> IdealLoads<S> {
             held.complete(model, system, (&self.zones, air), &mut self.correction);
             return;
         }
-        self.respond_last(model, system);
+        self.respond_last(model, system, loads);
         self.complete_by_responses(air, loads, &mut system.coupled.right);
     }
 
@@ -307,9 +309,9 @@ impl<S: Real> IdealLoads<S> {
 
     /// Response of the airs at the end of the step to a watt of each load in the last stage only.
     #[inline(always)]
-    fn respond_last(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>) {
+    fn respond_last(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, loads: &[S]) {
         for (response, &zone) in self.responses.iter_mut().zip(&self.zones) {
-            response.find_last(model, system, zone);
+            response.find_last(model, system, (zone, loads[zone]));
         }
     }
 }

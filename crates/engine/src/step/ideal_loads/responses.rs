@@ -35,25 +35,31 @@ impl<S: Real> Response<S> {
         }
     }
 
-    /// One watt into the air of a zone.
+    /// One watt of a load, of the sign of the present one, into the air of a zone and onto its surfaces.
     #[inline(always)]
-    fn set_unit(&mut self, model: &Model<'_, S>, zone: usize) {
+    fn set_unit(&mut self, model: &Model<'_, S>, (zone, load): (usize, S)) {
         self.right.fill(S::zero());
-        self.right[model.plan.zones[zone].air_row] = S::one();
+        let (plan, numbers) = (&model.plan.zones[zone], &model.coefficients.zones[zone]);
+        self.right[plan.air_row] = S::one();
+        let Some(radiated) = numbers.radiated_part(load) else { return };
+        self.right[plan.air_row] = S::one() - radiated;
+        for (&surface, &share) in plan.surfaces.iter().zip(&numbers.radiant_shares) {
+            self.right[model.plan.row(surface)] = share * radiated;
+        }
     }
 
-    /// Response of the stage just solved, of a length [s], to the load of a zone; `ratio` as in
-    /// [`Tableau`](crate::step::scheme::Tableau).
+    /// Response of the stage just solved, of a length [s], to the load of a zone, of which the present value [W] tells
+    /// whether it heats or cools; `ratio` as in [`Tableau`](crate::step::scheme::Tableau).
     #[inline(always)]
     pub(super) fn find(
         &mut self,
         model: &Model<'_, S>,
         system: &BuildingSystem<'_, S>,
-        zone: usize,
+        of_zone: (usize, S),
         stage: usize,
         (length, ratio): (f64, f64),
     ) {
-        self.set_unit(model, zone);
+        self.set_unit(model, of_zone);
         if stage > 0 {
             self.carry_over(model, system, length, ratio);
         } else {
@@ -65,8 +71,13 @@ impl<S: Real> Response<S> {
 
     /// Response of the airs at the end of the step to a load in the last stage only.
     #[inline(always)]
-    pub(super) fn find_last(&mut self, model: &Model<'_, S>, system: &BuildingSystem<'_, S>, zone: usize) {
-        self.set_unit(model, zone);
+    pub(super) fn find_last(
+        &mut self,
+        model: &Model<'_, S>,
+        system: &BuildingSystem<'_, S>,
+        of_zone: (usize, S),
+    ) {
+        self.set_unit(model, of_zone);
         system.solve_again(&mut self.right);
         let last = self.stages.len() - 1;
         for (air, plan) in self.stages[last].air.iter_mut().zip(&model.plan.zones) {

@@ -203,7 +203,8 @@ impl<S: Real> Stepper<'_, S> {
                 accepted = accepted & solver.small_remainder(&stage, moved);
             }
             if responds {
-                ideal_loads.respond(model, &solver.system, index, (length_of_stage, tableau.ratio));
+                let loads = (index, &solver.start.load[..]);
+                ideal_loads.respond(model, &solver.system, loads, (length_of_stage, tableau.ratio));
             }
             ideal_loads.keep(index, &mut solver.iterate, &solver.solution);
             if self.residuals.is_some() {

@@ -20,6 +20,7 @@ pub fn ideal_load(description: &mut Description, path: &str, set_point: f64, cap
             temperature: number(description, &format!("{path}.setpoint"), set_point),
         },
         capacity: Some(number(description, &format!("{path}.capacity"), capacity)),
+        radiative: None,
         schedule: None,
     }
 }

@@ -43,7 +43,7 @@ pub fn sharp(width: f64, thickness: f64, nodes: usize, heated: bool) -> Descript
     let mut d = b.describe();
     if heated {
         let setpoint = SetPoint::Scheduled { channel: set_point };
-        d.zones[0].heating = Some(IdealLoad { setpoint, capacity: None, schedule: None });
+        d.zones[0].heating = Some(IdealLoad { setpoint, capacity: None, radiative: None, schedule: None });
     }
     d
 }

@@ -733,7 +733,7 @@ impl Maker<'_> {
         } else {
             None
         };
-        IdealLoad { setpoint, capacity, schedule: self.random.chance(0.3).then_some(SCHEDULE) }
+        IdealLoad { setpoint, capacity, radiative: None, schedule: self.random.chance(0.3).then_some(SCHEDULE) }
     }
 }
 
