@@ -26,7 +26,7 @@ mod run;
 mod step;
 mod weather;
 
-pub use balance::ledger;
+pub use balance::{ledger, vapour};
 pub use building::{coefficients, plan};
 pub use input::values as parameters;
 pub use input::{description, forcing};

@@ -7,6 +7,7 @@ use mascarin_engine::ledger::Flow;
 use mascarin_engine::march::{Run, Watch, march};
 use mascarin_engine::plan::Plan as EnginePlan;
 use mascarin_engine::ratings::window_ratings;
+use mascarin_engine::vapour::VapourFlow;
 use mascarin_engine::{batch, state_space};
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
@@ -206,6 +207,14 @@ pub fn describe_run<'py>(
     result.set_item("stored", run.ledger.stored)?;
     result.set_item("turnover", run.ledger.total_exchanged)?;
     result.set_item("closure", run.ledger.closure())?;
+    let vapour = PyDict::new(py);
+    for flow in VapourFlow::ALL {
+        vapour.set_item(flow.name(), run.ledger.vapour.into[flow as usize])?;
+    }
+    vapour.set_item("stored", run.ledger.vapour.stored)?;
+    vapour.set_item("exchanged", run.ledger.vapour.total_exchanged)?;
+    vapour.set_item("closure", run.ledger.vapour.closure())?;
+    result.set_item("vapour", vapour)?;
     result.set_item("cycles", run.cycles)?;
     result.set_item("settled", run.warm_up_change)?;
     result.set_item("iterations", run.counters.iterations)?;

@@ -33,6 +33,14 @@ from mascarin.building.glazing import (
     PaneGlazing,
     SimpleGlazing,
 )
+from mascarin.building.humidity import (
+    CoolingCoil,
+    Humidistat,
+    Humidity,
+    SurfaceHumidity,
+    VapourGain,
+    ZoneHumidity,
+)
 from mascarin.building.leakage import LeakageFactor, LeakageStackWind
 from mascarin.building.material import PhaseChangeMaterial, Resistance, Solid
 from mascarin.building.number import Number
@@ -72,6 +80,7 @@ from mascarin.building.site import (
     Site,
     Wind,
 )
+from mascarin.building.sorption import LinearSorption, Published, TabulatedSorption
 from mascarin.building.surface import Construction, Exposure, Ground, Layer, Sensor, Side, Surface
 from mascarin.building.tables import json_schema, parameter_table
 from mascarin.building.ventilation import UnitFlow, VentilationUnit
@@ -104,6 +113,7 @@ __all__ = [
     "CloudLayer",
     "Constant",
     "Construction",
+    "CoolingCoil",
     "DiffuseOptics",
     "Doe2",
     "Door",
@@ -123,6 +133,8 @@ __all__ = [
     "GivenSun",
     "Ground",
     "GumbelLaw",
+    "Humidistat",
+    "Humidity",
     "Hysteresis",
     "IdealLoads",
     "Infiltration",
@@ -131,6 +143,7 @@ __all__ = [
     "LeakageFactor",
     "LeakageStackWind",
     "LinearLaw",
+    "LinearSorption",
     "LinearWind",
     "MartinBerdahlSky",
     "Measured",
@@ -147,6 +160,7 @@ __all__ = [
     "PhaseChangeMaterial",
     "Power",
     "PowerLaw",
+    "Published",
     "Resistance",
     "Sensor",
     "SetPoint",
@@ -158,7 +172,9 @@ __all__ = [
     "Solid",
     "SunShares",
     "Surface",
+    "SurfaceHumidity",
     "TableLaw",
+    "TabulatedSorption",
     "TanhLaw",
     "Tarp",
     "TemperatureDays",
@@ -168,6 +184,7 @@ __all__ = [
     "TracedSun",
     "TriangleLaw",
     "UnitFlow",
+    "VapourGain",
     "Ventilation",
     "VentilationUnit",
     "Wind",
@@ -176,6 +193,7 @@ __all__ = [
     "WindowOutside",
     "WindowRating",
     "Zone",
+    "ZoneHumidity",
     "check",
     "json_schema",
     "load",

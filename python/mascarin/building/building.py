@@ -15,7 +15,7 @@ from mascarin._io.listing import Listing
 from mascarin.building import outputs as results
 from mascarin.building import summary
 from mascarin.building.checks import check, seconds_of
-from mascarin.building.derived import derive_surfaces, derive_windows, derive_zones
+from mascarin.building.derived import DERIVED
 from mascarin.building.description import Description
 from mascarin.building.engine_input import EngineDescription, describe
 from mascarin.building.explaining import explained
@@ -91,9 +91,8 @@ class Building(Description):
         with known_names(data):
             building = handler(data)
         insist(*faults(building))
-        building._fill(surfaces=derive_surfaces(building.surfaces, building.site.latitude))
-        building._fill(windows=derive_windows(building.windows, building.surfaces))
-        building._fill(zones=derive_zones(building.zones, building.surfaces, building.site.latitude))
+        for section, derive in DERIVED.items():
+            building._fill(**{section: derive(building)})
         insist(*(tie_faults(building, parameters(building)) if building.ties else ()))
         return building
 

@@ -9,6 +9,7 @@ from mascarin.building.air import density, heat_capacity
 from mascarin.building.description import Description
 from mascarin.building.driven import Driven
 from mascarin.building.glazing import Glazing, SimpleGlazing
+from mascarin.building.humidity_rules import humidity_lines
 from mascarin.building.inactive import sides as every_side
 from mascarin.building.leaves import leaves
 from mascarin.building.material import PhaseChangeMaterial
@@ -68,6 +69,7 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
         *_windows(building),
         *_constructions(building, mesh),
         *_winds(building),
+        *humidity_lines(building),
         *_melting(building),
         *(f"shading: {words}" for words in [in_words(building)] if words),
         *(f"warning: {text}" for text in warnings(building, mesh, step_seconds)),

@@ -36,6 +36,20 @@ def schedule_uses(building: Description) -> Iterator[Use]:
             if part.schedule is not None:
                 yield part.schedule, (section, name, "schedule"), "fraction"
     yield from _of_units(building)
+    yield from _of_humidity(building)
+
+
+def _of_humidity(building: Description) -> Iterator[Use]:
+    if building.humidity is None:
+        return
+    for name, zone in building.humidity.zones.items():
+        at = ("humidity", "zones", name)
+        for key, gain in zone.gains.items():
+            if gain.schedule is not None:
+                yield gain.schedule, (*at, "gains", key, "schedule"), "fraction"
+        for which, plant in zone.plants.items():
+            if plant.schedule is not None:
+                yield plant.schedule, (*at, which, "schedule"), "fraction"
 
 
 def _of_units(building: Description) -> Iterator[Use]:
@@ -79,6 +93,10 @@ def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[
                 temperature_course(unit.temperature.column),
                 ("ventilation_units", name, "temperature", "column"),
             )
+    for name, vapour in (building.humidity.zones if building.humidity is not None else {}).items():
+        for key, source in vapour.gains.items():
+            if source.course is not None:
+                yield source.course, ("humidity", "zones", name, "gains", key, "column")
 
 
 def courses(building: Description) -> dict[str, Schedule | ColumnCourse]:

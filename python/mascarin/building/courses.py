@@ -6,15 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
-CourseKind = Literal["temperature", "power", "flow"]
+CourseKind = Literal["temperature", "power", "flow", "vapour"]
 
 #: Units that a column may have, by what it means: the factor to the unit of the engine.
 POWER_UNITS: Final[Mapping[str, float]] = {"W": 1.0, "kW": 1000.0}
 FLOW_UNITS: Final[Mapping[str, float]] = {"m3/s": 1.0, "m3/h": 1.0 / 3600.0, "L/s": 1e-3}
+VAPOUR_UNITS: Final[Mapping[str, float]] = {"kg/s": 1.0, "kg/h": 1.0 / 3600.0, "g/h": 1e-3 / 3600.0}
 _UNITS: Final[Mapping[str, Mapping[str, float]]] = {
     "temperature": {"degC": 1.0},
     "power": POWER_UNITS,
     "flow": FLOW_UNITS,
+    "vapour": VAPOUR_UNITS,
 }
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
 
 from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
+from mascarin.building.humidity import with_all_zones
 from mascarin.building.number import Number, Remark
 from mascarin.building.part import Location, derived_number, fault, insist, refuse
 from mascarin.building.surface import Ground, Side, Surface
@@ -15,6 +16,7 @@ from mascarin.building.zone import Zone
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
+    from mascarin.building.description import Description
     from mascarin.building.geometry import Polygon
     from mascarin.building.window import Shade, Vertices
 
@@ -273,3 +275,12 @@ def _sentence(error: InputError) -> tuple[str, str, str]:
     found, _, rest = str(error).partition("; expected ")
     expected, _, advice = rest.partition("; ")
     return found, expected or "a valid geometry", f"{advice[:1].upper()}{advice[1:]}." if advice else ""
+
+
+#: Sections that are completed when a building is made, in this order.
+DERIVED: Final[Mapping[str, Callable[[Description], object]]] = {
+    "surfaces": lambda building: derive_surfaces(building.surfaces, building.site.latitude),
+    "windows": lambda building: derive_windows(building.windows, building.surfaces),
+    "zones": lambda building: derive_zones(building.zones, building.surfaces, building.site.latitude),
+    "humidity": lambda building: with_all_zones(building.humidity, building.zones),
+}

@@ -8,6 +8,7 @@ from typing import Literal
 from pydantic import Field
 
 from mascarin.building.glazing import Glazing
+from mascarin.building.humidity import Humidity
 from mascarin.building.material import Material
 from mascarin.building.names import Name
 from mascarin.building.part import Part
@@ -35,6 +36,7 @@ class Description(Part):
     ventilation_units: dict[Name, VentilationUnit] = Field(
         default_factory=dict, description="Mechanical ventilation, by name"
     )
+    humidity: Humidity | None = Field(None, description="Humidity of the air; none: air without vapour")
     openings: dict[Name, Opening] = Field(
         default_factory=dict, description="Openings between zones and outdoors, by name"
     )

@@ -42,6 +42,14 @@ Kind = Literal[
     "net_longwave",
     "convection",
     "sky_temperature",
+    "humidity_ratio",
+    "relative_humidity",
+    "dew_point",
+    "wet_bulb",
+    "latent_cooling",
+    "latent_heating",
+    "surface_humidity",
+    "condensation",
 ]
 
 _ZONE_KINDS: tuple[Kind, ...] = (
@@ -49,6 +57,23 @@ _ZONE_KINDS: tuple[Kind, ...] = (
     "mean_radiant_temperature",
     "operative_temperature",
     "globe_temperature",
+)
+#: Humidities of the air of a zone, and their units.
+_HUMIDITIES: dict[Kind, str] = {
+    "humidity_ratio": "kg/kg",
+    "relative_humidity": "-",
+    "dew_point": "degC",
+    "wet_bulb": "degC",
+}
+#: Ends of the names of outputs that a building has only with humidity.
+_DAMP = (
+    *_HUMIDITIES,
+    "latent_cooling_load",
+    "latent_heating_load",
+    "inside_relative_humidity",
+    "outside_relative_humidity",
+    "inside_condensation",
+    "outside_condensation",
 )
 #: Units of means over the interval that ends at the time of the record.
 _MEANS = ("W", "W/m2")
@@ -74,6 +99,11 @@ class Output:
     windows [W]; absorbed by a side of a surface, or by all panes of a window [W/m2]. The solar transmittance
     of a window is what it transmits over what is incident on its glass, 0 without sun. A window between two
     zones transmits into the zone of its inside, less what it transmits the other way.
+
+    In a building with humidity, the relative humidity at a side is that of the air of the zone at the
+    temperature of the surface; condensation is 1 where the surface is colder than the dew point, else 0. The
+    latent loads are what ideal drying takes away and ideal humidifying adds, neither below 0, as means over
+    the step.
 
     The long-wave radiation that a side gains from its surroundings [W/m2] and its convective heat transfer
     coefficient [W/(m2 K)] are those at the time of the record.
@@ -142,17 +172,43 @@ def outputs(building: Description) -> list[Output]:
         if zone.loads:
             found.append(Output(f"{name}.net_load", "W", "net_load", zone=index))
         found.append(Output(f"{name}.air_changes", "1/h", "air_changes", zone=index))
+        found += _of_humidity(building, index, name)
     lit = _lit_zones(building)
     for index, name in enumerate(building.surfaces):
         found += _of_surface(building, index, name)
         if building.surfaces[name].outside.outdoors:
             found.append(Output(f"{name}.incident_solar", "W/m2", "incident_solar", surface=index))
         found += _of_sides(building, index, name, lit)
+        found += _of_damp_sides(building, index, name, name)
     found += _of_windows(building)
     found.append(Output("sky_temperature", "degC", "sky_temperature"))
     for index, name in enumerate(building.sensors):
         found.append(Output(f"{name}.temperature", "degC", "sensor", sensor=index))
     return found
+
+
+def _of_humidity(building: Description, index: int, name: str) -> Iterator[Output]:
+    """Humidity of a zone and the latent loads of its ideal plants."""
+    if building.humidity is None:
+        return
+    for kind, unit in _HUMIDITIES.items():
+        yield Output(f"{name}.{kind}", unit, kind, zone=index)
+    zone = building.humidity.zones.get(name)
+    if zone is not None and zone.drying is not None:
+        yield Output(f"{name}.latent_cooling_load", "W", "latent_cooling", zone=index)
+    if zone is not None and zone.humidifying is not None:
+        yield Output(f"{name}.latent_heating_load", "W", "latent_heating", zone=index)
+
+
+def _of_damp_sides(building: Description, index: int, name: str, surface: str) -> Iterator[Output]:
+    """Humidity at the sides of a surface, or of a window in it, that face zones."""
+    if building.humidity is None:
+        return
+    for number, (word, side) in enumerate(zip(_SIDES, building.surfaces[surface].sides, strict=True)):
+        if side.zone is not None:
+            make = partial(Output, surface=index, side=number)
+            yield make(f"{name}.{word}_relative_humidity", "-", "surface_humidity")
+            yield make(f"{name}.{word}_condensation", "-", "condensation")
 
 
 def _lit_zones(building: Description) -> set[str | None]:
@@ -180,6 +236,7 @@ def _of_windows(building: Description) -> Iterator[Output]:
             if exchanged[side]:
                 yield Output(f"{name}.{word}_longwave", "W/m2", "net_longwave", surface=index, side=side)
             yield Output(f"{name}.{word}_convection", "W/(m2 K)", "convection", surface=index, side=side)
+        yield from _of_damp_sides(building, index, name, window.surface)
     lit = _lit_zones(building)
     for index, name in enumerate(building.zones):
         if name in lit:
@@ -192,11 +249,16 @@ def named(building: Description, names: Iterable[str]) -> list[Output]:
     known: dict[str, Output] = {}
     for output in reversed(outputs(building)):
         known.update(dict.fromkeys((*output.aliases, output.name), output))
-    return [_known(known, name) for name in names]
+    return [_known(known, name, damp=building.humidity is not None) for name in names]
 
 
-def _known(known: Mapping[str, Output], name: str) -> Output:
+def _known(known: Mapping[str, Output], name: str, *, damp: bool) -> Output:
     if name not in known:
+        if not damp and str(name).partition(".")[2] in _DAMP:
+            raise InputError(
+                f"{name}: found a building without 'humidity:', expected one with it. Add 'humidity: {{}}' "
+                "to the building: the air of its zones then has a vapour balance"
+            )
         owner, _, what = str(name).partition(".")
         own = [one for one in known if one.partition(".")[0] == owner]
         near = [one for one in own if what and what in one.partition(".")[2]]

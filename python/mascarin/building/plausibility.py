@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from mascarin.building.derived import drawn_areas, enclosure
 from mascarin.building.description import Description
 from mascarin.building.geometry import volume as enclosed_volume
+from mascarin.building.humidity_rules import humidity_warnings
 from mascarin.building.material import PhaseChangeMaterial, Resistance
 from mascarin.building.mesh import Mesh
 from mascarin.building.phase_change_rules import unordered_slopes
@@ -41,6 +42,7 @@ def warnings(building: Description, mesh: Mesh, step_seconds: float) -> Iterator
     yield from _implausible_enclosures(building)
     yield from _implausible_areas(building)
     yield from _unshaded(building)
+    yield from humidity_warnings(building)
 
 
 def _implausible_materials(building: Description) -> Iterator[str]:

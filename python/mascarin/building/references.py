@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from mascarin.building.convection import SOURCES
 from mascarin.building.glazing import SOURCES as GLASS
 from mascarin.building.glazing import FilledGap, SimpleGlazing, TwoSides
+from mascarin.building.humidity import EMPD, PSYCHROMETRICS
 from mascarin.building.inactive import has_height, sides, without_effect
 from mascarin.building.leakage import BASIC_MODEL, ISO_13789, LeakageFactor, LeakageStackWind
 from mascarin.building.leaves import leaves
@@ -17,6 +18,7 @@ from mascarin.building.number import Number, Remark
 from mascarin.building.phase_change import FractionsLaw, TableLaw
 from mascarin.building.self_shading import obstructions
 from mascarin.building.site import ASHRAE_WIND, CLARK, MARTIN
+from mascarin.building.vapour_sides import vapour_sides
 from mascarin.building.ventilation import RECOVERY_SOURCE
 from mascarin.building.zone import ASHRAE_OPENING, BROWN_SOLVASON, TracedSun
 from mascarin.building.zone_surfaces import closed
@@ -111,6 +113,10 @@ def _of_methods(building: Description) -> Iterator[str]:
     yield from _of_air(building)
     if any(zone.loads for zone in building.zones.values()):
         yield _IDEAL_LOADS
+    if building.humidity is not None:
+        yield PSYCHROMETRICS
+        if any(side.takes_up for side in vapour_sides(building)):
+            yield EMPD
     yield from _of_glazings(building)
     traced = any(isinstance(zone.sun, TracedSun) for zone in building.zones.values())
     if building.shades or traced or obstructions(building):

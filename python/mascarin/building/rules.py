@@ -11,6 +11,7 @@ from mascarin.building.air_rules import air_faults
 from mascarin.building.convection import Doe2, Measured, Mowitt, Tarp
 from mascarin.building.course_uses import schedule_uses
 from mascarin.building.derived import shade_outlines
+from mascarin.building.humidity_rules import humidity_faults
 from mascarin.building.material import Resistance
 from mascarin.building.part import Location, fault
 from mascarin.building.schedule import DAYS, Piece
@@ -48,6 +49,7 @@ def faults(building: Description) -> Faults:
     yield from _schedules_suit_their_use(building)
     yield from _set_points_apart(building)
     yield from air_faults(building)
+    yield from humidity_faults(building)
     yield from windows_lie_in_walls(building)
     yield from _sun_can_be_absorbed(building)
     yield from _shades_can_act(building)

@@ -273,10 +273,16 @@ def _require_numbers(forcing: Array, channels: Sequence[str], building: Building
     """Channels that the engine reads must hold numbers; some may be absent."""
     names = (*CHANNELS, *channels)
     absent = {"pressure"} | (set() if building.site.sky.kind == "measured" else {"infrared"})
-    if building.site.sky.kind in ("offset", "measured"):
+    if building.site.sky.kind in ("offset", "measured") and building.humidity is None:
         absent.add("dew_point")
     bad = [bool(np.isnan(forcing[..., k]).any()) for k in range(len(names))]
     missing = [name for name, empty in zip(names, bad, strict=True) if empty and name not in absent]
+    if "dew_point" in missing and building.humidity is not None:
+        raise InputError(
+            "climate: found no dew point or relative humidity of the outdoor air, expected one of them: the "
+            "building has a section 'humidity:'. Give the column (dew_point or relative_humidity), or remove "
+            "'humidity:' from the building"
+        )
     if missing:
         raise InputError(
             f"climate: no values for {', '.join(missing)}, which this building needs (sky model "

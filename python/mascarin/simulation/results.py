@@ -14,6 +14,7 @@ from mascarin.simulation.energy import EnergyLedger
 from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.spacing import means, state_means
+from mascarin.simulation.vapour import VapourLedger
 from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import parse_timezone
 
@@ -60,6 +61,8 @@ class Results(Mapping[str, "xr.DataArray"]):
     warnings : tuple of str
         An energy balance that does not close; phase-change layers that neither melted nor froze; a time step
         that is too long.
+    vapour : VapourLedger or None
+        The vapour balance of a building with humidity.
 
     Examples
     --------
@@ -78,6 +81,7 @@ class Results(Mapping[str, "xr.DataArray"]):
     energy: EnergyLedger
     provenance: Provenance
     warnings: tuple[str, ...] = ()
+    vapour: VapourLedger | None = None
 
     # --- a mapping ----------------------------------------------------------------------------------------
 
@@ -133,6 +137,7 @@ class Results(Mapping[str, "xr.DataArray"]):
             and self.records.shape == other.records.shape
             and self.records.tobytes() == other.records.tobytes()
             and self.energy == other.energy
+            and self.vapour == other.vapour
             and self.provenance.to_dict() == other.provenance.to_dict()
             and self.warnings == other.warnings
         )
@@ -282,6 +287,7 @@ class Results(Mapping[str, "xr.DataArray"]):
             "timezone": str(self.index.tz),
             "provenance": json.dumps(self.provenance.to_dict()),
             "energy": json.dumps(self.energy.to_dict()),
+            **({} if self.vapour is None else {"vapour": json.dumps(self.vapour.to_dict())}),
             "warnings": json.dumps(list(self.warnings)),
             "outputs": json.dumps([asdict(output) for output in self.outputs]),
         }
@@ -351,6 +357,11 @@ class Results(Mapping[str, "xr.DataArray"]):
                 energy=EnergyLedger.from_dict(json.loads(data.attrs["energy"])),
                 provenance=Provenance.from_dict(json.loads(data.attrs["provenance"])),
                 warnings=tuple(json.loads(data.attrs["warnings"])),
+                vapour=(
+                    VapourLedger.from_dict(json.loads(data.attrs["vapour"]))
+                    if "vapour" in data.attrs
+                    else None
+                ),
             )
         except (OSError, KeyError, ValueError, TypeError) as error:
             raise InputError(

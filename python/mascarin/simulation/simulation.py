@@ -19,6 +19,7 @@ from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.readings import Readings
 from mascarin.simulation.results import Results
 from mascarin.simulation.slopes import gradient_of, labelled_slopes
+from mascarin.simulation.vapour import VapourLedger
 from mascarin.simulation.vectors import VectorRuns
 from mascarin.weather import CHANNELS, summary
 from mascarin.weather.times import epoch_seconds, seconds_of
@@ -291,7 +292,9 @@ class Simulation(VectorRuns):
         records, raw = self.compiled.run(vector, Readings.of([*self.outputs, *watched]), progress=progress)
         records, seen = np.split(records, [len(self.outputs)], axis=1)
         energy = EnergyLedger.read(raw)
+        vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
         warnings = [*energy.warnings(), *unmelted.warnings(self.building, seen)]
+        warnings += vapour.warnings() if vapour is not None else []
         if self.scheme == "sdirk2":
             warnings += coarse.warnings(self.building, self.outputs, records, self.step_seconds)
         return Results(
@@ -313,6 +316,7 @@ class Simulation(VectorRuns):
                 reversals=int(raw["reversals"]),
             ),
             warnings=tuple(warnings),
+            vapour=vapour,
         )
 
     # --- times, weather, identity -------------------------------------------------------------------------

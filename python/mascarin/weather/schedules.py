@@ -193,6 +193,7 @@ _LIMITS: Final = {
     "temperature": TEMPERATURES,
     "power": (-1e7, 1e7),
     "flow": (0.0, 1000.0),
+    "vapour": (0.0, 10.0),
 }
 
 

@@ -1,5 +1,6 @@
 //! The energy ledger: heat that entered the building by flow, heat stored, and the energy-balance residual.
 
+use crate::balance::vapour::VapourLedger;
 use crate::number::real::Real;
 
 /// Flows by which heat enters a building.
@@ -145,6 +146,8 @@ pub struct Ledger<S> {
     pub imbalance: S,
     /// Heat that counts as nothing [J], see [`Self::closure`].
     pub nothing: S,
+    /// Vapour of the run [kg]; nothing in a building without vapour balances.
+    pub vapour: VapourLedger<S>,
 }
 
 /// Part of the heat content of a building that counts as nothing in a step [-]. Stored heat is a difference of contents, which are
@@ -162,6 +165,7 @@ impl<S: Real> Ledger<S> {
             total_exchanged: zero,
             imbalance: zero,
             nothing: zero,
+            vapour: VapourLedger::new(),
         }
     }
 
@@ -190,6 +194,14 @@ impl<S: Real> Ledger<S> {
         let at_rest = self.total_exchanged.lt(self.nothing) & self.imbalance.lt(self.nothing);
         let scale = self.total_exchanged.max(self.nothing).max(S::constant(f64::MIN_POSITIVE));
         S::select(at_rest, S::zero(), self.imbalance / scale)
+    }
+}
+
+impl<S: Real> Ledger<S> {
+    /// The larger of the relative residuals of the balances of heat and of vapour [-].
+    #[must_use]
+    pub fn worst_closure(&self) -> S {
+        self.closure().max(self.vapour.closure())
     }
 }
 

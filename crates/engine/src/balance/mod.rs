@@ -3,3 +3,4 @@
 pub mod flow_index;
 pub mod ledger;
 pub(crate) mod terms;
+pub mod vapour;

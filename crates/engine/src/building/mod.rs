@@ -3,6 +3,7 @@
 pub(crate) mod cell;
 pub mod coefficients;
 pub mod glazing;
+pub(crate) mod humidity;
 pub mod ids;
 pub(crate) mod layout;
 pub mod model;

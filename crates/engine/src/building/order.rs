@@ -118,6 +118,18 @@ impl Order {
     }
 }
 
+/// Order of elimination of zones that exchange vapour by air: position of each zone, and the pattern of the matrix.
+pub(crate) fn number_zones(count: usize, pairs: &[[usize; 2]]) -> (Vec<usize>, Pattern) {
+    let mut neighbours = vec![BTreeSet::new(); count];
+    for &[a, b] in pairs {
+        neighbours[a].insert(b);
+        neighbours[b].insert(a);
+    }
+    let groups = vec![(CHANGING, 0); count];
+    let (position, order) = Order::new(minimum_degree(neighbours, &groups, usize::MAX), &groups);
+    (position, order.pattern)
+}
+
 /// The unknowns in the order of the description: the surfaces in contact with zones, then the air of each zone.
 fn find_unknowns(description: &Description) -> (Vec<SurfacePlan>, Vec<ZonePlan>) {
     let mut zones: Vec<ZonePlan> = description

@@ -1,5 +1,6 @@
 //! The building compiled to flat arrays and indices: everything that does not depend on a parameter's value.
 
+use super::humidity::HumidityPlan;
 use super::ids::{BySurface, SurfaceId};
 pub use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
 use super::order::{Order, number_unknowns};
@@ -31,6 +32,8 @@ pub struct Plan {
     pub passages: Vec<Passage>,
     /// Geometry of sun and shade.
     pub solar_geometry: SolarGeometry,
+    /// Vapour balance of the zones.
+    pub(crate) humidity: Option<HumidityPlan>,
     /// Number of finite volumes in all walls.
     pub n_cells: usize,
     /// Number of the first rows of the coupled system: surfaces of walls of constant properties whose other surface is in no
@@ -87,7 +90,9 @@ impl Plan {
         }
         let passages = Passage::all(&windows, &zones);
         let solar_geometry = SolarGeometry::new(&description, &windows, &zones);
+        let humidity = HumidityPlan::new(&description);
         Ok(Self {
+            humidity,
             description,
             walls,
             surfaces: surfaces.into(),

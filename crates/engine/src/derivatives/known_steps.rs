@@ -107,6 +107,9 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
                         }
                         self.stepper.conditions_of_stage(weather, step, place.stage);
                         self.stage(state, place, known);
+                        if round == rounds {
+                            self.stepper.note_vapour(place.stage);
+                        }
                     }
                     if round < rounds {
                         self.respond(dt);
@@ -114,6 +117,8 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
                     }
                 }
                 self.stepper.end_known_step(state);
+                self.stepper.begin_vapour();
+                self.stepper.advance_vapour(state, dt, &mut Ledger::new());
             },
         );
     }

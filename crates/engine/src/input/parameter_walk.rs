@@ -6,10 +6,11 @@
 use core::fmt::{Display, Write};
 
 use super::description::{
-    AirPath, Angular, Clouds, Construction, Convection, Description, DirectedFlow, Door, Facing, FrameShare,
-    Gain, Gap, Glazing, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening,
-    OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
-    SunShares, Surface, ThermalBridge, UnitFlow, Ventilation, VentilationUnit, WindProfile, Zone,
+    AirPath, Angular, Buffer, Clouds, Construction, Convection, Depth, Description, DirectedFlow, Door,
+    Drying, Facing, FrameShare, Gain, Gap, Glazing, Humidity, HumidityControl, HumiditySetPoint, IdealLoad,
+    Infiltration, Layer, Leakage, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
+    ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, Sorption, SunShares, Surface,
+    ThermalBridge, UnitFlow, VapourGain, Ventilation, VentilationUnit, WindProfile, Zone, ZoneHumidity,
     ZoneLongwave, ZoneSun,
 };
 
@@ -103,7 +104,7 @@ macro_rules! walk {
 }
 
 walk!(Description { site, materials, constructions, zones, air_paths, directed_flows, doors, ventilation_units,
-    thermal_bridges, openings, surfaces, sensors }
+    thermal_bridges, openings, surfaces, sensors, humidity }
     plain { parameters, shades, channels });
 
 walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse });
@@ -230,3 +231,25 @@ walk!(Convection by variant {
 });
 walk!(PowerLaw { a, b, n, c, m } plain {});
 walk!(Sensor { depth } plain { name, surface });
+
+walk!(Humidity { initial, lewis, zones, buffers, recoveries } plain {});
+walk!(ZoneHumidity { storage, gains, drying, humidifying } plain {});
+walk!(VapourGain { power, rate } plain { name, schedule });
+walk!(Drying by variant {
+    Controlled { control } plain {},
+    Coil { sensible_heat_ratio, temperature } plain {},
+});
+walk!(HumidityControl { setpoint, capacity } plain { schedule });
+walk!(HumiditySetPoint by variant {
+    Relative { humidity } plain {},
+    Ratio { ratio } plain {},
+});
+walk!(Buffer { sorption, resistance_factor, thickness, coating, depth, deep } plain { surface, side });
+walk!(Sorption by variant {
+    Linear { capacity } plain {},
+    Table { factor } plain { humidities, contents },
+});
+walk!(Depth by variant {
+    Given { depth } plain {},
+    Period { period } plain {},
+});

@@ -52,6 +52,12 @@ impl<S: Real> Door<S> {
     }
 }
 
+/// Heat that the air through a door carries per degree at a temperature difference `d` [W/K].
+#[inline(always)]
+pub(crate) fn conductance<S: Real>(whole: S, d: S) -> S {
+    whole * d.smooth_abs(ROUND_OFF).sqrt()
+}
+
 /// Heat that a door carries at a temperature difference `d`: `whole sqrt(|d|) d` [W].
 #[inline(always)]
 pub(crate) fn heat<S: Real>(whole: S, d: S) -> S {

@@ -99,6 +99,12 @@ impl<S: Real> Unit<S> {
     #[inline(always)]
     pub(crate) fn recovery(&self, row: &[f64]) -> S {
         let Supplied::Outdoor(Some(effectiveness)) = self.supplied else { return S::zero() };
+        self.recovery_with(effectiveness, row)
+    }
+
+    /// The same with an effectiveness [-]: by it `effectiveness C_min` is exchanged between all extracted and all supplied air.
+    #[inline(always)]
+    pub(crate) fn recovery_with(&self, effectiveness: S, row: &[f64]) -> S {
         let sum = |flows: &[ZoneFlow<S>]| flows.iter().fold(S::zero(), |sum, flow| sum + flow.at(row));
         let (supply, exhaust) = (sum(&self.supply), sum(&self.exhaust));
         effectiveness * supply.min(exhaust) / (supply * exhaust).max(S::constant(LEAST))

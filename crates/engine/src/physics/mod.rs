@@ -10,5 +10,7 @@ pub mod longwave;
 pub mod mechanical_air;
 pub mod optics;
 pub mod pcm;
+pub mod psychrometrics;
 pub mod solar;
+pub mod sorption;
 pub mod window_gaps;

@@ -23,7 +23,7 @@ const FEW: usize = 3;
 pub struct Ensemble {
     /// Members x rows x outputs; NaN for a member that failed.
     pub records: Vec<f64>,
-    /// Relative energy-balance residual of each member [-]; NaN for one that failed.
+    /// Relative residual of the energy balance of each member, or of its vapour balance if that is larger [-]; NaN for one that failed.
     pub closure: Vec<f64>,
     /// Members that failed, with the reason.
     pub failures: Vec<(usize, EngineError)>,
@@ -109,7 +109,7 @@ impl LaneTask for Pack<'_, '_> {
             .map(|p| pack(core::array::from_fn(|lane| self.numbers[lane.min(self.members - 1) * width + p])))
             .collect();
         let run = march_in(self.plan, &lanes, self.weather, self.options, self.control)?;
-        let closure = run.ledger.closure();
+        let closure = run.ledger.worst_closure();
         let of = |member| (run.records.iter().map(|r| r.lane(member)).collect(), closure.lane(member));
         Ok((0..self.members).map(|member| (!run.failed.lane(member)).then(|| of(member))).collect())
     }
@@ -140,7 +140,8 @@ fn run_pack(
     for (member, result) in results.into_iter().enumerate() {
         let alone = || {
             let numbers = &numbers[member * width..(member + 1) * width];
-            march_in(plan, numbers, weather, options, control).map(|run| (run.records, run.ledger.closure()))
+            march_in(plan, numbers, weather, options, control)
+                .map(|run| (run.records, run.ledger.worst_closure()))
         };
         match result.map_or_else(alone, Ok) {
             Ok((records, closure)) => {

@@ -4,9 +4,10 @@ use serde::Deserialize;
 
 use crate::building::coefficients::{Matter, WallCoefficients};
 use crate::building::ids::SurfaceId;
-use crate::building::plan::Plan;
+use crate::building::plan::{Plan, SurfaceRole};
 use crate::error::EngineError;
 use crate::number::real::Real;
+use crate::physics::psychrometrics::{dew_point, relative_humidity, wet_bulb};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
@@ -139,6 +140,50 @@ pub enum Output {
         /// 0 outside, 1 inside.
         side: usize,
     },
+    /// Humidity ratio of the air of a zone [kg/kg].
+    HumidityRatio {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Relative humidity of the air of a zone [-].
+    RelativeHumidity {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Dew point of the air of a zone [degC].
+    DewPoint {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Wet-bulb temperature of the air of a zone [degC].
+    WetBulb {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Latent heat that ideal drying takes away, mean over the step [W].
+    LatentCooling {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Latent heat that ideal humidifying adds, mean over the step [W].
+    LatentHeating {
+        /// Index of the zone.
+        zone: usize,
+    },
+    /// Relative humidity of the air of a zone at the temperature of a surface in it [-].
+    SurfaceHumidity {
+        /// Index of the wall or window.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
+    /// 1 where a surface in a zone is colder than the dew point of its air, else 0 [-].
+    Condensation {
+        /// Index of the wall or window.
+        surface: usize,
+        /// 0 outside, 1 inside.
+        side: usize,
+    },
     /// Temperature of the sky as a black body [degC].
     SkyTemperature,
     /// Temperature at a sensor [degC].
@@ -168,6 +213,18 @@ impl Output {
             | Self::AirChanges { zone }
             | Self::ZoneTransmittedSolar { zone }
             | Self::ZoneLostSolar { zone } => zone < plan.zones.len(),
+            Self::HumidityRatio { zone }
+            | Self::RelativeHumidity { zone }
+            | Self::DewPoint { zone }
+            | Self::WetBulb { zone }
+            | Self::LatentCooling { zone }
+            | Self::LatentHeating { zone } => plan.humidity.is_some() && zone < plan.zones.len(),
+            Self::SurfaceHumidity { surface, side } | Self::Condensation { surface, side } => {
+                plan.humidity.is_some()
+                    && surface < plan.walls.len()
+                    && side < 2
+                    && matches!(plan.surfaces[SurfaceId::new(surface, side)].role, SurfaceRole::Zone { .. })
+            }
             Self::IncidentSolar { surface } => surface < plan.walls.len(),
             Self::TransmittedSolar { surface } | Self::SolarTransmittance { surface } => {
                 plan.windows.contains(&surface)
@@ -239,6 +296,21 @@ impl Output {
             Self::AbsorbedSolar { surface, side } => stepper.weather.absorbed(SurfaceId::new(surface, side)),
             Self::NetLongwave { surface, side } => stepper.net_longwave(state, SurfaceId::new(surface, side)),
             Self::Convection { surface, side } => stepper.convection(state, SurfaceId::new(surface, side)),
+            Self::HumidityRatio { zone } => state.vapour[zone],
+            Self::RelativeHumidity { zone } => {
+                relative_humidity(state.air[zone], state.vapour[zone], stepper.pressure())
+            }
+            Self::DewPoint { zone } => dew_point(state.vapour[zone], stepper.pressure()),
+            Self::WetBulb { zone } => wet_bulb(state.air[zone], state.vapour[zone], stepper.pressure()),
+            Self::LatentCooling { zone } => stepper.latent(zone, false),
+            Self::LatentHeating { zone } => stepper.latent(zone, true),
+            Self::SurfaceHumidity { surface, side } => {
+                stepper.surface_humidity(state, SurfaceId::new(surface, side))
+            }
+            Self::Condensation { surface, side } => {
+                let humidity = stepper.surface_humidity(state, SurfaceId::new(surface, side));
+                S::select(S::one().lt(humidity), S::one(), S::zero())
+            }
             Self::SkyTemperature => stepper.sky_temperature(),
             Self::Sensor { sensor } => {
                 let surface = plan.description.sensors[sensor].surface;

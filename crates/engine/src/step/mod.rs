@@ -3,6 +3,7 @@
 mod accept;
 pub mod control;
 mod energy;
+pub(crate) mod film;
 mod guess;
 mod halving;
 pub(crate) mod history;
@@ -23,6 +24,7 @@ pub(crate) mod stage_solutions;
 mod stage_weather;
 pub mod state;
 pub(crate) mod stepper;
+pub(crate) mod vapour;
 
 pub use newton::Counters;
 pub use scheme::Scheme;

@@ -3,6 +3,8 @@
 use crate::building::ids::SurfaceId;
 use crate::building::layout::SurfaceRole;
 use crate::number::real::Real;
+use crate::physics::psychrometrics::relative_humidity;
+use crate::step::film::film;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
@@ -47,19 +49,27 @@ impl<S: Real> Stepper<'_, S> {
 
     /// Convective heat transfer coefficient of a surface in the weather of the last stage [W/(m2 K)].
     pub(crate) fn convection(&self, state: &State<S>, surface: SurfaceId) -> S {
-        /// Smaller temperature differences count as this [K].
-        const LEAST: f64 = 1e-3;
-        let Some(law) = self.model.convection(surface) else { return S::zero() };
-        let at = &self.weather.conditions.surfaces[surface];
         let air = match self.model.plan.surfaces[surface].role {
             SurfaceRole::Zone { zone, .. } => state.air[zone],
-            SurfaceRole::Exterior => at.temperature,
+            SurfaceRole::Exterior => self.weather.conditions.surfaces[surface].temperature,
         };
-        let difference = state.surfaces[surface] - air;
-        let least = S::constant(LEAST);
-        let difference = S::select(difference.abs().lt(least), least, difference);
-        law.flux(difference, &at.forced).flux / difference
-            * self.model.coefficients.surfaces[surface].area_factor
+        film(&self.model, &self.weather.conditions, surface, state.surfaces[surface], air)
+    }
+
+    /// Pressure of the air in the weather of the last stage [Pa]; zero in a building without vapour balances.
+    pub(crate) fn pressure(&self) -> S {
+        self.weather.conditions.humidity.as_ref().map_or_else(S::zero, |humidity| humidity.pressure)
+    }
+
+    /// Latent heat that ideal drying takes away or ideal humidifying adds, mean over the step [W].
+    pub(crate) fn latent(&self, zone: usize, humidifying: bool) -> S {
+        self.vapour.as_ref().map_or_else(S::zero, |vapour| vapour.latent(zone, humidifying))
+    }
+
+    /// Relative humidity of the air of a zone at the temperature of a surface in it [-]; zero in no zone.
+    pub(crate) fn surface_humidity(&self, state: &State<S>, surface: SurfaceId) -> S {
+        let SurfaceRole::Zone { zone, .. } = self.model.plan.surfaces[surface].role else { return S::zero() };
+        relative_humidity(state.surfaces[surface], state.vapour[zone], self.pressure())
     }
 
     /// Temperature of the sky at the end of the last stage [degC].

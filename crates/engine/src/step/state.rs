@@ -1,6 +1,7 @@
 //! What passes from step to step, and what a run starts from.
 
 use crate::building::coefficients::Matter;
+use crate::building::coefficients::humidity::VapourSurface;
 use crate::building::ids::BySurface;
 use crate::building::model::Model;
 use crate::building::plan::Plan;
@@ -8,6 +9,7 @@ use crate::error::EngineError;
 use crate::linear::unknowns::Temperatures;
 use crate::number::real::Real;
 use crate::physics::pcm::{PcmMemory, REMEMBERED};
+use crate::physics::psychrometrics::{humidity_ratio, saturation_pressure};
 
 /// Temperatures that a run starts from [degC], the same for all members; phase-change materials have been heated to them.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +56,11 @@ impl Initial {
     }
 }
 
+/// A change of a humidity ratio counts as this change of a temperature, by the latent heat over the specific heat of air [K].
+const AS_KELVIN: f64 = 2500.0;
+/// A relative change of a moisture content counts as this change of a temperature [K]: with 0.01 K, a content is periodic within 0.1 %.
+const CONTENT_AS_KELVIN: f64 = 10.0;
+
 /// Everything that passes from step to step.
 #[derive(Debug, Clone)]
 pub struct State<S> {
@@ -69,6 +76,9 @@ pub struct State<S> {
     pub air: Vec<S>,
     /// Ideal load of each zone, mean over the step that ended here [W]; cooling is negative.
     pub load: Vec<S>,
+    /// Humidity ratio of each zone [kg/kg], then the moisture contents of the first and the second layer of each surface that takes up
+    /// vapour [kg/m2]; empty in a building without vapour balances.
+    pub vapour: Vec<S>,
 }
 
 impl<S: Real> State<S> {
@@ -89,6 +99,7 @@ impl<S: Real> State<S> {
             memory: cells.iter().map(|&cell| PcmMemory::new(S::zero(), cell)).collect(),
             enthalpy: vec![S::zero(); plan.n_cells],
             load: vec![S::zero(); plan.zones.len()],
+            vapour: vapour_at(model, &air),
             cells,
             surfaces: surfaces.into(),
             air,
@@ -142,7 +153,7 @@ impl<S: Real> State<S> {
 
     /// All its numbers, one after the other.
     pub(crate) fn write(&self, numbers: &mut Vec<S>) {
-        for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load] {
+        for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load, &self.vapour] {
             numbers.extend_from_slice(values);
         }
         for memory in &self.memory {
@@ -153,8 +164,8 @@ impl<S: Real> State<S> {
     /// Changes each number by one of others, in the order of [`Self::write`].
     #[inline(always)]
     pub(crate) fn read<T: Copy>(&mut self, mut numbers: &[T], mut change: impl FnMut(&mut S, T)) {
-        let Self { cells, enthalpy, memory, surfaces, air, load } = self;
-        for values in [&mut cells[..], enthalpy, surfaces, air, load] {
+        let Self { cells, enthalpy, memory, surfaces, air, load, vapour } = self;
+        for values in [&mut cells[..], enthalpy, surfaces, air, load, vapour] {
             let (own, rest) = numbers.split_at(values.len());
             numbers = rest;
             for (mine, &theirs) in values.iter_mut().zip(own) {
@@ -170,7 +181,7 @@ impl<S: Real> State<S> {
     /// Passes each number with one of others to a function, in the order of [`Self::write`].
     #[inline(always)]
     pub(crate) fn zip_with<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
-        for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load] {
+        for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load, &self.vapour] {
             let (own, rest) = numbers.split_at(values.len());
             numbers = rest;
             for (&mine, &theirs) in values.iter().zip(own) {
@@ -192,12 +203,13 @@ impl<S: Real> State<S> {
         self.surfaces.copy_from_slice(&other.surfaces);
         self.air.copy_from_slice(&other.air);
         self.load.copy_from_slice(&other.load);
+        self.vapour.copy_from_slice(&other.vapour);
         self.memory.copy_from_slice(&other.memory);
     }
 
     /// How many numbers it has.
     pub(crate) fn count(&self) -> usize {
-        let plain = [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load];
+        let plain = [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load, &self.vapour];
         plain.into_iter().map(<[S]>::len).sum::<usize>() + REMEMBERED * self.memory.len()
     }
 
@@ -209,6 +221,7 @@ impl<S: Real> State<S> {
             (&mut self.surfaces, &other.surfaces),
             (&mut self.air, &other.air),
             (&mut self.load, &other.load),
+            (&mut self.vapour, &other.vapour),
         ];
         for (mine, theirs) in plain {
             for (mine, &theirs) in mine.iter_mut().zip(theirs) {
@@ -228,17 +241,41 @@ impl<S: Real> State<S> {
         blend(mask, &mut self.surfaces, &other.surfaces);
         blend(mask, &mut self.air, &other.air);
         blend(mask, &mut self.load, &other.load);
+        blend(mask, &mut self.vapour, &other.vapour);
         for (a, b) in self.memory.iter_mut().zip(&other.memory) {
             a.take(mask, b);
         }
     }
 
-    /// Largest change of a cell or an air against another state [K].
+    /// Largest change of a cell or an air against another state [K]; of humidity, see [`AS_KELVIN`] and [`CONTENT_AS_KELVIN`].
     #[inline(always)]
     pub fn distance(&self, other: &Self) -> S {
         let pairs = self.cells.iter().zip(&other.cells).chain(self.air.iter().zip(&other.air));
-        pairs.fold(S::zero(), |largest, (a, b)| largest.max((*a - *b).abs()))
+        let mut largest = pairs.fold(S::zero(), |largest, (a, b)| largest.max((*a - *b).abs()));
+        let zones = self.air.len();
+        for (k, (&a, &b)) in self.vapour.iter().zip(&other.vapour).enumerate() {
+            let change = (a - b).abs();
+            let as_kelvin = if k < zones {
+                change.scale(AS_KELVIN)
+            } else {
+                change.scale(CONTENT_AS_KELVIN) / a.abs().max(S::constant(f64::MIN_POSITIVE))
+            };
+            largest = largest.max(as_kelvin);
+        }
+        largest
     }
+}
+
+/// Humidity ratios and moisture contents at the relative humidity that the building starts from, with airs at temperatures [degC].
+fn vapour_at<S: Real>(model: &Model<'_, S>, air: &[S]) -> Vec<S> {
+    let Some(humidity) = &model.coefficients.humidity else { return Vec::new() };
+    let ratio = |&air: &S| humidity_ratio(humidity.initial * saturation_pressure(air), humidity.pressure);
+    let content = |surface: &VapourSurface<S>| {
+        let layers = &surface.layers;
+        let content = layers.isotherm.content(humidity.initial);
+        [layers.depths[0] * content, if layers.two { layers.depths[1] * content } else { S::zero() }]
+    };
+    air.iter().map(ratio).chain(humidity.surfaces.iter().flat_map(content)).collect()
 }
 
 /// Copies `theirs` where the mask is true.

@@ -21,6 +21,7 @@ use crate::step::stage::Stage;
 use crate::step::stage_solutions::StageSolutions;
 use crate::step::stage_weather::StageWeather;
 use crate::step::state::{Initial, State};
+use crate::step::vapour::VapourBalances;
 use crate::weather::conditions::{Instant, Weather};
 
 /// Effective length of the stage that brings surfaces into balance [s]: too short for anything to be stored.
@@ -38,6 +39,8 @@ pub struct Stepper<'a, S: Real> {
     pub(crate) ideal_loads: IdealLoads<S>,
     pub(crate) parts: StepParts<S>,
     pub(crate) known: StageSolutions<S>,
+    /// Present only in a building with vapour balances.
+    pub(crate) vapour: Option<Box<VapourBalances<'a, S>>>,
     /// Present only where residuals are evaluated.
     pub(super) residuals: Option<Box<StageResiduals<S>>>,
 }
@@ -55,6 +58,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             ideal_loads: IdealLoads::new(&model, &solver.solution, tableau.weights.len()),
             solver,
             guess: Guess::none(),
+            vapour: VapourBalances::new(&model, tableau.weights.len()).map(Box::new),
             parts: StepParts::new(plan.zones.len()),
             known: StageSolutions::nothing(),
             residuals: None,
@@ -112,6 +116,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
                 self.weather.average_instant(&self.model);
+                self.begin_vapour();
                 Ok(())
             },
         )
@@ -160,6 +165,7 @@ impl<'a, S: Real> Stepper<'a, S> {
         ledger: &mut Ledger<S>,
     ) -> Result<(), EngineError> {
         self.parts.count_from(self.solver.counters.iterations);
+        self.begin_vapour();
         S::vectorised(
             #[inline(always)]
             || {
@@ -224,6 +230,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             self.step_without_loads(state, weather, part, length)?
         };
         self.accept(state, &energy, ledger);
+        self.advance_vapour(state, length, ledger);
         Ok(())
     }
 
@@ -245,6 +252,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             self.weather.set_stage(&self.model, weather, tableau, part, stage);
             let all = Search::Whole(S::Mask::splat(true));
             self.solve_stage(state, tableau.diagonal * length, (part.step, stage + 1), all)?;
+            self.note_vapour(stage);
             self.add_heat(weight * length, &mut energy);
         }
         Ok(energy)

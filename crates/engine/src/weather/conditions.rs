@@ -1,6 +1,7 @@
 //! What acts on the building at one instant: on each surface, zone, window and air path.
 
 use crate::building::coefficients::{Boundary, BridgeEnd, Coefficients};
+use crate::building::humidity::HumidityPlan;
 use crate::building::ids::BySurface;
 use crate::building::plan::Plan;
 use crate::input::forcing::channel;
@@ -8,6 +9,7 @@ use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::convection::SurfaceConvection;
 use crate::physics::longwave::sky_emission;
+use crate::weather::humidity::HumidityConditions;
 use crate::weather::index::WeatherIndex;
 pub use crate::weather::instant::{Instant, Weather};
 use crate::weather::mechanical_air::MechanicalConditions;
@@ -29,6 +31,8 @@ pub struct Conditions<S: Real> {
     pub doors: Vec<S>,
     /// Flows that fans drive.
     pub mechanical_air: MechanicalConditions<S>,
+    /// Humidity, in a building with vapour balances.
+    pub(crate) humidity: Option<HumidityConditions<S>>,
     /// Temperature at the other end of each thermal bridge; none where that is a zone [degC].
     pub bridges: Vec<Option<S>>,
     /// Outdoor air [degC].
@@ -58,6 +62,9 @@ impl<S: Real> Conditions<S> {
             paths: vec![zero; coefficients.paths.len()],
             doors: vec![zero; coefficients.doors.len()],
             mechanical_air: MechanicalConditions::new(&coefficients.mechanical_air, plan.zones.len()),
+            humidity: coefficients.humidity.as_ref().map(|humidity| {
+                HumidityConditions::new(humidity, plan.humidity.as_ref().map_or(0, HumidityPlan::recovered))
+            }),
             bridges: coefficients
                 .bridges
                 .iter()
@@ -93,6 +100,9 @@ impl<S: Real> Conditions<S> {
             *at = rate(a, b);
         }
         self.mechanical_air.interpolate(&first.mechanical_air, &second.mechanical_air, fraction);
+        if let (Some(at), Some(a), Some(b)) = (&mut self.humidity, &first.humidity, &second.humidity) {
+            at.interpolate(a, b, fraction);
+        }
         for (at, (&a, &b)) in self.bridges.iter_mut().zip(first.bridges.iter().zip(&second.bridges)) {
             *at = a.zip(b).map(|(a, b)| line(a, b));
         }
@@ -164,6 +174,9 @@ impl<S: Real> Conditions<S> {
         }
         if !coefficients.mechanical_air.is_empty() {
             self.mechanical_air.update(&coefficients.mechanical_air, now.row, self.outdoor_air);
+        }
+        if let (Some(at), Some(humidity)) = (&mut self.humidity, &coefficients.humidity) {
+            at.update(humidity, &coefficients.mechanical_air.units, now.row);
         }
         for (at, bridge) in self.bridges.iter_mut().zip(&coefficients.bridges) {
             *at = match &bridge.to {

@@ -21,6 +21,8 @@ pub struct ZoneBalance<S> {
     pub supplied: S,
     /// What leaves to outdoors, less what heat recovery brings back [W/K].
     pub leaving: S,
+    /// What leaves to outdoors [W/K].
+    pub outward: S,
     /// Outdoor air that enters, supplied or by leaks [W/K].
     pub fresh: S,
     /// Supplied, from other zones, to other zones, extracted, and recovered from it for other zones or itself [W/K].
@@ -37,6 +39,7 @@ impl<S: Real> ZoneBalance<S> {
         Self {
             supplied: zero,
             leaving: zero,
+            outward: zero,
             fresh: zero,
             supply: zero,
             from_zones: zero,
@@ -49,7 +52,8 @@ impl<S: Real> ZoneBalance<S> {
     /// Balances the flows, once all are added up.
     fn balance(&mut self) {
         let surplus = self.supply + self.from_zones - self.to_zones;
-        self.leaving = self.exhaust.max(surplus) - self.recovered;
+        self.outward = self.exhaust.max(surplus);
+        self.leaving = self.outward - self.recovered;
         self.fresh = self.supply + (self.exhaust - surplus).max(S::zero());
     }
 
@@ -77,6 +81,7 @@ impl<S: Real> MechanicalConditions<S> {
         for (at, (a, b)) in self.zones.iter_mut().zip(first.zones.iter().zip(&second.zones)) {
             at.supplied = line(a.supplied, b.supplied);
             at.leaving = rate(a.leaving, b.leaving);
+            at.outward = rate(a.outward, b.outward);
             at.fresh = rate(a.fresh, b.fresh);
         }
     }

@@ -1,6 +1,7 @@
 //! The conditions that act on a building at an instant: forcing evaluated at its surfaces, zones and windows.
 
 pub mod conditions;
+pub(crate) mod humidity;
 pub mod index;
 pub(crate) mod instant;
 pub(crate) mod mechanical_air;

@@ -20,6 +20,7 @@ from mascarin.building.engine_input.air import (
     describe_unit,
 )
 from mascarin.building.engine_input.channels import channels
+from mascarin.building.engine_input.humidity import describe_humidity
 from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners, each, fields_of
 from mascarin.building.engine_input.materials import describe_construction, describe_material
 from mascarin.building.engine_input.surfaces import describe_sensor, describe_surface
@@ -113,6 +114,7 @@ def describe(
             ],
         ),
         "sensors": each(building.sensors, "sensors", ids, partial(describe_sensor, building)),
+        "humidity": describe_humidity(building, places, ids),
         "shades": [corners(shade.vertices) for shade in building.shades.values()],
         "channels": columns,
     }

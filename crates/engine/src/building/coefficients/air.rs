@@ -19,10 +19,14 @@ pub(crate) fn heat_capacity<S: Real>(plan: &Plan, values: &Values<'_, S>, densit
     }
 }
 
-/// Density of dry air [kg/m3] at an altitude [m]: pressure of the standard atmosphere (ICAO Doc 7488) at 15 degC.
+/// Density of dry air [kg/m3] at an altitude [m], at 15 degC.
 fn density_at<S: Real>(altitude: S) -> S {
-    let pressure = (S::one() - altitude.scale(2.255_77e-5)).powf(S::constant(5.255_88)).scale(101_325.0);
-    pressure.scale(1.0 / (AIR_GAS_CONSTANT * 288.15))
+    pressure_at(altitude).scale(1.0 / (AIR_GAS_CONSTANT * 288.15))
+}
+
+/// Pressure [Pa] of the standard atmosphere (ICAO Doc 7488) at an altitude [m].
+pub(crate) fn pressure_at<S: Real>(altitude: S) -> S {
+    (S::one() - altitude.scale(2.255_77e-5)).powf(S::constant(5.255_88)).scale(101_325.0)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 pub(crate) mod air;
 pub(crate) mod bridge;
+pub(crate) mod humidity;
 pub(crate) mod mechanical_air;
 pub(crate) mod passing;
 pub(crate) mod surface;
@@ -9,6 +10,7 @@ pub(crate) mod wall;
 pub(crate) mod zone;
 
 pub use self::bridge::{Bridge, BridgeEnd};
+pub use self::humidity::HumidityCoefficients;
 pub use self::mechanical_air::MechanicalAir;
 pub use self::passing::Passing;
 pub use self::surface::{Boundary, Imposed, Outdoors, SurfaceCoefficients};
@@ -46,6 +48,8 @@ pub struct Coefficients<S> {
     pub ground_reflectance: S,
     /// Effect of clouds on the sky's emission.
     pub clouds: CloudEffect<S>,
+    /// Vapour balance of the zones.
+    pub humidity: Option<HumidityCoefficients<S>>,
     /// Depth of each sensor from the outside surface [m].
     pub sensor_depths: Vec<S>,
 }
@@ -66,7 +70,9 @@ impl<S: Real> Coefficients<S> {
             .collect();
         let passing = Passing::new(plan, &walls, &zones);
         let paths = description.air_paths.iter().map(|path| Path::new(path, &values, heat)).collect();
+        let humidity = HumidityCoefficients::new(plan, &values, &walls, &zones);
         Self {
+            humidity,
             walls,
             surfaces,
             zones,

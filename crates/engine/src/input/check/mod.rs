@@ -8,6 +8,7 @@
 
 mod air;
 mod construction;
+mod humidity;
 mod numbers;
 mod surface;
 #[cfg(test)]
@@ -63,6 +64,9 @@ pub(crate) fn check(description: &Description) -> Checked {
         zone::check_air_path(description, path)?;
     }
     air::check_air(description)?;
+    if let Some(humidity) = &description.humidity {
+        humidity::check_humidity(description, humidity)?;
+    }
     for opening in &description.openings {
         zone::check_opening(description, opening)?;
     }

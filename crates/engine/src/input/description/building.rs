@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::air_flow::{AirPath, DirectedFlow, Door, Opening, VentilationUnit};
 use super::bridge::ThermalBridge;
 use super::construction::Construction;
+use super::humidity::Humidity;
 use super::material::Material;
 use super::parameter::Parameter;
 use super::site::Site;
@@ -48,6 +49,9 @@ pub struct Description {
     /// Sensors inside walls.
     #[serde(default)]
     pub sensors: Vec<Sensor>,
+    /// Vapour balance of the zones. None: air without vapour.
+    #[serde(default)]
+    pub humidity: Option<Humidity>,
     /// Corners of opaque thin polygons outdoors that shade [m].
     #[serde(default)]
     pub shades: Vec<Vec<[f64; 3]>>,

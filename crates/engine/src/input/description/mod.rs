@@ -15,6 +15,7 @@ mod building;
 mod construction;
 mod convection;
 mod glazing;
+mod humidity;
 mod material;
 mod parameter;
 mod phase_change;
@@ -28,6 +29,9 @@ pub use building::Description;
 pub use construction::{Construction, Layer};
 pub use convection::{Convection, PowerLaw};
 pub use glazing::{Angular, Gap, Gas, Glazing, Pane, PaneOptics};
+pub use humidity::{
+    Buffer, Depth, Drying, Humidity, HumidityControl, HumiditySetPoint, Sorption, VapourGain, ZoneHumidity,
+};
 pub use material::Material;
 pub use parameter::{ParamId, Parameter};
 pub use phase_change::{HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail};

@@ -5,7 +5,7 @@ use core::ops::Range;
 use crate::building::coefficients::ZoneCoefficients;
 use crate::building::model::Model;
 use crate::linear::building_system::BuildingSystem;
-use crate::linear::unknowns::Unknowns;
+use crate::linear::unknowns::{Temperatures, Unknowns};
 use crate::number::line::Line;
 use crate::number::real::{Mask, Real};
 use crate::step::ideal_loads::held_airs::HeldAirs;
@@ -177,6 +177,12 @@ impl<S: Real> IdealLoads<S> {
             self.responses_known = self.needed;
         }
         finds
+    }
+
+    /// The solution of the first stage of the step.
+    #[inline(always)]
+    pub(crate) fn first_stage(&self) -> Temperatures<'_, S> {
+        self.solved[0].view()
     }
 
     /// Keeps the iterate about which a stage was linearised (by exchange, the other is overwritten later) and its solution.

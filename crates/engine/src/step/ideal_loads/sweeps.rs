@@ -88,6 +88,7 @@ impl<S: Real> Stepper<'_, S> {
             } else {
                 self.solver.accept_change(change);
                 self.close(state, &mut energy, length);
+                self.note_vapour_of_loads();
                 return Ok(energy);
             }
         }

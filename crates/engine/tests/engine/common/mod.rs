@@ -82,6 +82,7 @@ impl Builder {
             openings: Vec::new(),
             surfaces: Vec::new(),
             sensors: Vec::new(),
+            humidity: None,
             shades: Vec::new(),
             channels: Vec::new(),
         };

@@ -1,0 +1,184 @@
+//! Coefficients of the vapour balances of the zones.
+
+use super::air;
+use super::wall::WallCoefficients;
+use super::zone::ZoneCoefficients;
+use crate::building::ids::SurfaceId;
+use crate::building::plan::{Plan, SurfaceRole};
+use crate::input::description::{Drying, HumidityControl, HumiditySetPoint, ZoneHumidity};
+use crate::input::forcing::{Schedule, scheduled};
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::constants::AIR_SPECIFIC_HEAT;
+use crate::physics::psychrometrics::LATENT_HEAT;
+use crate::physics::sorption::VapourLayers;
+
+/// Vapour that an ideal plant takes away or adds where no capacity is given [kg/s]: more than any building needs.
+const UNLIMITED: f64 = 1e6;
+
+/// Vapour in the zones of a building.
+#[derive(Debug, Clone)]
+pub struct HumidityCoefficients<S> {
+    /// Relative humidity at the start [-].
+    pub initial: S,
+    /// Heat over vapour transfer coefficient of surfaces [J/(m3 K)].
+    pub heat_over_vapour: S,
+    /// Mass flow of air of a flow of heat capacity [kg K/J]: one over its specific heat.
+    pub mass: S,
+    /// Pressure of the air where the weather gives none [Pa].
+    pub pressure: S,
+    /// Zones.
+    pub zones: Vec<VapourZone<S>>,
+    /// Surfaces that take up vapour.
+    pub surfaces: Vec<VapourSurface<S>>,
+    /// Effectiveness of the recovery of vapour, for each ventilation unit.
+    pub recoveries: Vec<Option<S>>,
+}
+
+/// Vapour in the air of a zone.
+#[derive(Debug, Clone)]
+pub struct VapourZone<S> {
+    /// Dry air, contents included [kg].
+    pub air: S,
+    gains: Vec<Source<S>>,
+    /// Ideal drying.
+    pub drying: Option<Dryer<S>>,
+    /// Ideal humidifying.
+    pub humidifying: Option<Control<S>>,
+}
+
+/// A source of vapour.
+#[derive(Debug, Clone)]
+struct Source<S> {
+    /// [kg/s].
+    whole: S,
+    schedule: Schedule,
+}
+
+/// Ideal drying.
+#[derive(Debug, Clone)]
+pub enum Dryer<S> {
+    /// Down to a set point.
+    Controlled(Control<S>),
+    /// By a coil that cools the air.
+    Coil {
+        /// Vapour taken away per heat [kg/J].
+        per_heat: S,
+        /// Temperature of the coil [degC].
+        temperature: S,
+    },
+}
+
+/// A set point and a capacity.
+#[derive(Debug, Clone)]
+pub struct Control<S> {
+    target: SetHumidity<S>,
+    capacity: S,
+    schedule: Schedule,
+}
+
+/// A set point of humidity.
+#[derive(Debug, Clone, Copy)]
+pub enum SetHumidity<S> {
+    /// Relative humidity [-].
+    Relative(S),
+    /// [kg/kg].
+    Ratio(S),
+}
+
+/// A surface that takes up vapour.
+#[derive(Debug, Clone)]
+pub struct VapourSurface<S> {
+    pub(crate) surface: SurfaceId,
+    pub(crate) zone: usize,
+    pub(crate) area: S,
+    pub(crate) layers: VapourLayers<S>,
+}
+
+impl<S: Real> HumidityCoefficients<S> {
+    /// Evaluates the vapour balances at a parameter vector; none where the building has none.
+    pub(crate) fn new(
+        plan: &Plan,
+        values: &Values<'_, S>,
+        walls: &[WallCoefficients<S>],
+        zones: &[ZoneCoefficients<S>],
+    ) -> Option<Self> {
+        let humidity = plan.description.humidity.as_ref()?;
+        let site = &plan.description.site;
+        let pressure = air::pressure_at(values.get(site.altitude));
+        let specific_heat = values.get_or(site.air_specific_heat, AIR_SPECIFIC_HEAT);
+        let heat = air::heat_capacity(plan, values, air::density(plan, values));
+        let mass = S::one() / specific_heat;
+        let of_zone = |(zone, numbers): (&ZoneHumidity, &ZoneCoefficients<S>)| {
+            VapourZone::new(zone, values, numbers.air_capacity * mass)
+        };
+        let surfaces = humidity.buffers.iter().filter_map(|buffer| {
+            let surface = SurfaceId::new(buffer.surface, buffer.side);
+            let SurfaceRole::Zone { zone, .. } = plan.surfaces[surface].role else { return None };
+            let layers = VapourLayers::new(buffer, values, pressure);
+            Some(VapourSurface { surface, zone, area: walls[buffer.surface].area, layers })
+        });
+        Some(Self {
+            initial: values.get(humidity.initial),
+            heat_over_vapour: values.get(humidity.lewis) * heat,
+            mass,
+            pressure,
+            zones: humidity.zones.iter().zip(zones).map(of_zone).collect(),
+            surfaces: surfaces.collect(),
+            recoveries: humidity.recoveries.iter().map(|id| id.map(|id| values.get(id))).collect(),
+        })
+    }
+}
+
+impl<S: Real> VapourZone<S> {
+    /// `air`: dry air of the zone [kg].
+    fn new(zone: &ZoneHumidity, values: &Values<'_, S>, air: S) -> Self {
+        let gains = zone.gains.iter().map(|gain| Source {
+            whole: values.get_or(gain.rate, 0.0) + values.get_or(gain.power, 0.0).scale(1.0 / LATENT_HEAT),
+            schedule: Schedule::new(gain.schedule),
+        });
+        let drying = zone.drying.as_ref().map(|drying| match drying {
+            Drying::Controlled { control } => Dryer::Controlled(Control::new(control, values)),
+            Drying::Coil { sensible_heat_ratio, temperature } => {
+                let ratio = values.get(*sensible_heat_ratio);
+                Dryer::Coil {
+                    per_heat: (S::one() - ratio) / ratio.scale(LATENT_HEAT),
+                    temperature: values.get(*temperature),
+                }
+            }
+        });
+        Self {
+            air: air * values.get(zone.storage),
+            gains: gains.collect(),
+            drying,
+            humidifying: zone.humidifying.as_ref().map(|control| Control::new(control, values)),
+        }
+    }
+
+    /// Vapour from all sources in a forcing row [kg/s].
+    #[inline(always)]
+    pub(crate) fn gain(&self, row: &[f64]) -> S {
+        self.gains.iter().fold(S::zero(), |sum, gain| sum + scheduled(gain.whole, gain.schedule, row))
+    }
+}
+
+impl<S: Real> Control<S> {
+    fn new(control: &HumidityControl, values: &Values<'_, S>) -> Self {
+        let target = match control.setpoint {
+            HumiditySetPoint::Relative { humidity } => SetHumidity::Relative(values.get(humidity)),
+            HumiditySetPoint::Ratio { ratio } => SetHumidity::Ratio(values.get(ratio)),
+        };
+        let given = |id| values.get(id).scale(1.0 / LATENT_HEAT);
+        Self {
+            target,
+            capacity: control.capacity.map_or_else(|| S::constant(UNLIMITED), given),
+            schedule: Schedule::new(control.schedule),
+        }
+    }
+
+    /// Set point and capacity [kg/s] in a forcing row.
+    #[inline(always)]
+    pub(crate) fn at(&self, row: &[f64]) -> (SetHumidity<S>, S) {
+        (self.target, scheduled(self.capacity, self.schedule, row))
+    }
+}

@@ -1,0 +1,170 @@
+//! Moist air: saturation pressure, humidity ratio, relative humidity, dew point, wet-bulb temperature.
+//!
+//! Sources: ASHRAE Handbook of Fundamentals 2017, ch. 1: eqs. 5 and 6 (saturation pressure over ice and water, after Hyland &
+//! Wexler 1983, ASHRAE Trans. 89(2A), 500-519), 20 (humidity ratio), 33 and 35 (wet-bulb temperature). Air is an ideal gas.
+
+use crate::number::real::Real;
+use crate::physics::constants::KELVIN;
+
+/// Ratio of the molar masses of water and dry air [-] (ASHRAE 2017, ch. 1, eq. 20).
+pub const MASS_RATIO: f64 = 0.621_945;
+/// Gas constant of vapour [J/(kg K)] (ASHRAE 2017, ch. 1: 8314.472/18.015268).
+pub const VAPOUR_GAS_CONSTANT: f64 = 461.524;
+/// Latent heat of vapour in the air of rooms [J/kg]: the heat of vapour at 24 degC less that of the water that leaves a coil at
+/// 10 degC (ASHRAE Handbook of Fundamentals 2017, ch. 18, eq. 11: 3010 W for 1 m3/s of 1.204 kg/m3 and 1 kg/kg per thousand).
+pub const LATENT_HEAT: f64 = 2.5e6;
+
+/// Triple point of water [K]: ice below it.
+const TRIPLE_POINT: f64 = 273.16;
+/// Pressures of vapour below this have no dew point of use [Pa].
+const LEAST_PRESSURE: f64 = 0.1;
+/// Newton's iterations from the first guess of a dew point, which is right within 0.5 K, and from the air temperature for a
+/// wet-bulb temperature.
+const DEW_POINT_ITERATIONS: usize = 4;
+const WET_BULB_ITERATIONS: usize = 10;
+
+/// `c0/T + c1 + c2 T + c3 T^2 + c4 T^3 + c5 T^4 + c6 ln T` over ice and over water (eqs. 5 and 6).
+const ICE: [f64; 7] = [
+    -5.674_535_9e3,
+    6.392_524_7,
+    -9.677_843_0e-3,
+    6.221_570_1e-7,
+    2.074_782_5e-9,
+    -9.484_024_0e-13,
+    4.163_501_9,
+];
+const WATER: [f64; 7] =
+    [-5.800_220_6e3, 1.391_499_3, -4.864_023_9e-2, 4.176_476_8e-5, -1.445_209_3e-8, 0.0, 6.545_967_3];
+
+/// Logarithm of the saturation pressure [ln Pa] and its slope [1/K] at a temperature [K].
+#[inline(always)]
+fn log_saturation<S: Real>(kelvin: S) -> (S, S) {
+    let frozen = kelvin.lt(S::constant(TRIPLE_POINT));
+    let c: [S; 7] = core::array::from_fn(|k| S::select(frozen, S::constant(ICE[k]), S::constant(WATER[k])));
+    let inverse = S::one() / kelvin;
+    let value = c[0] * inverse
+        + c[1]
+        + kelvin * (c[2] + kelvin * (c[3] + kelvin * (c[4] + kelvin * c[5])))
+        + c[6] * kelvin.ln();
+    let slope = inverse * (c[6] - c[0] * inverse)
+        + c[2]
+        + kelvin * (c[3].scale(2.0) + kelvin * (c[4].scale(3.0) + kelvin * c[5].scale(4.0)));
+    (value, slope)
+}
+
+/// Saturation pressure of vapour at a temperature [degC]: over ice below the triple point [Pa].
+#[inline(always)]
+pub fn saturation_pressure<S: Real>(temperature: S) -> S {
+    log_saturation(temperature + S::constant(KELVIN)).0.exp()
+}
+
+/// Humidity ratio at a vapour pressure and a pressure of the air [Pa]: [kg/kg]. Vapour is at most half of the air.
+#[inline(always)]
+pub fn humidity_ratio<S: Real>(vapour: S, pressure: S) -> S {
+    let dry = (pressure - vapour).max(pressure.scale(0.5));
+    vapour.scale(MASS_RATIO) / dry
+}
+
+/// Vapour pressure at a humidity ratio [kg/kg], and its slope [Pa].
+#[inline(always)]
+pub fn vapour_pressure<S: Real>(ratio: S, pressure: S) -> (S, S) {
+    let inverse = S::one() / (ratio + S::constant(MASS_RATIO));
+    (pressure * ratio * inverse, pressure.scale(MASS_RATIO) * inverse * inverse)
+}
+
+/// Relative humidity at a temperature [degC], a humidity ratio [kg/kg] and a pressure [Pa]: [-].
+#[inline(always)]
+pub fn relative_humidity<S: Real>(temperature: S, ratio: S, pressure: S) -> S {
+    vapour_pressure(ratio, pressure).0 / saturation_pressure(temperature)
+}
+
+/// Dew point at a humidity ratio [kg/kg] and a pressure [Pa]: [degC]; below 0.01 degC the frost point.
+pub fn dew_point<S: Real>(ratio: S, pressure: S) -> S {
+    let log = vapour_pressure(ratio, pressure).0.max(S::constant(LEAST_PRESSURE)).ln();
+    // Magnus' formula as the first guess (Sonntag 1990).
+    let above = log - S::constant(611.2_f64).ln();
+    let mut kelvin = above.scale(243.12) / (S::constant(17.62) - above) + S::constant(KELVIN);
+    for _ in 0..DEW_POINT_ITERATIONS {
+        let (at, slope) = log_saturation(kelvin);
+        kelvin = kelvin - (at - log) / slope;
+    }
+    kelvin - S::constant(KELVIN)
+}
+
+/// Wet-bulb temperature at a temperature [degC], a humidity ratio [kg/kg] and a pressure [Pa]: [degC].
+pub fn wet_bulb<S: Real>(temperature: S, ratio: S, pressure: S) -> S {
+    let mut wet = temperature;
+    for _ in 0..WET_BULB_ITERATIONS {
+        let (log, slope) = log_saturation(wet + S::constant(KELVIN));
+        let saturated = log.exp();
+        let ratio_at = humidity_ratio(saturated, pressure);
+        // w_s = m p/(P - p), so dw_s/dt = w_s P/(P - p) (ln p)'.
+        let rise = ratio_at * pressure / (pressure - saturated).max(pressure.scale(0.5)) * slope;
+        // Heats of water and ice [kJ/kg] (eqs. 33, 35): evaporation at 0 degC, its slope, and the heat of what evaporates.
+        let frozen = wet.lt(S::zero());
+        let of = |ice: f64, water: f64| S::select(frozen, S::constant(ice), S::constant(water));
+        let (heat, fall, liquid) = (of(2830.0, 2501.0), of(0.24, 2.326), of(2.1, 4.186));
+        let missing = ratio_at * (heat - fall * wet)
+            - (temperature - wet).scale(1.006)
+            - ratio * (heat + temperature.scale(1.86) - liquid * wet);
+        let by_wet = rise * (heat - fall * wet) - ratio_at * fall + S::constant(1.006) + ratio * liquid;
+        wet = wet - missing / by_wet;
+    }
+    wet
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As psychrolib 2.5.0 gives them, which has the same equations.
+    #[test]
+    fn saturation_pressures_of_psychrolib() {
+        for (temperature, expected) in [
+            (-20.0, 103.260_377_6),
+            (0.01, 611.657_024_4),
+            (10.0, 1227.995_275_4),
+            (25.0, 3169.216_470_1),
+            (40.0, 7383.460_009_0),
+        ] {
+            let found = saturation_pressure(temperature);
+            assert!((found / expected - 1.0).abs() < 1e-9, "{temperature}: {found}, expected {expected}");
+        }
+    }
+
+    /// 25 degC and 50 %, -5 degC and 60 % at 101 325 Pa by psychrolib 2.5.0, whose wet-bulb temperatures are within 1 mK.
+    #[test]
+    fn states_of_moist_air() {
+        let pressure = 101_325.0;
+        for (temperature, humidity, [ratio, dew, wet]) in [
+            (25.0, 0.5, [0.009_881_043_7, 13.863_973_3, 17.889_43]),
+            (-5.0, 0.6, [0.001_483_174_4, -10.845_082_4, -6.790_56]),
+            (35.0, 0.9, [0.032_725_701_0, 33.108_332_9, 33.457_02]),
+        ] {
+            let found = humidity_ratio(humidity * saturation_pressure(temperature), pressure);
+            assert!((found / ratio - 1.0).abs() < 1e-8, "{found}");
+            assert!((relative_humidity(temperature, found, pressure) - humidity).abs() < 1e-14);
+            assert!((dew_point(found, pressure) - dew).abs() < 1e-6, "{}", dew_point(found, pressure));
+            let at = wet_bulb(temperature, found, pressure);
+            assert!((at - wet).abs() < 1e-3, "{at}");
+        }
+    }
+
+    /// The dew point of saturated air, and its wet-bulb temperature, are its temperature.
+    #[test]
+    fn saturated_air() {
+        for temperature in [-30.0, -5.0, 3.0, 20.0, 45.0] {
+            let ratio = humidity_ratio(saturation_pressure(temperature), 95_000.0);
+            assert!((dew_point(ratio, 95_000.0) - temperature).abs() < 1e-9, "{temperature}");
+            assert!((wet_bulb(temperature, ratio, 95_000.0) - temperature).abs() < 1e-9, "{temperature}");
+        }
+    }
+
+    /// Slope of the vapour pressure against a difference.
+    #[test]
+    fn slope_of_the_vapour_pressure() {
+        let at = |ratio: f64| vapour_pressure(ratio, 101_325.0);
+        let difference = (at(0.0121).0 - at(0.0119).0) / 0.0002;
+        assert!((at(0.012).1 / difference - 1.0).abs() < 1e-6);
+    }
+}

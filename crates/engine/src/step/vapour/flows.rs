@@ -1,0 +1,141 @@
+//! What the heat balances of a stage leave for the vapour balances: flows of air, temperatures and heat transfer coefficients.
+
+use crate::building::coefficients::HumidityCoefficients;
+use crate::building::model::Model;
+use crate::linear::unknowns::Temperatures;
+use crate::number::real::Real;
+use crate::physics::constants::KELVIN;
+use crate::physics::doors;
+use crate::physics::psychrometrics::{VAPOUR_GAS_CONSTANT, saturation_pressure};
+use crate::physics::sorption::VapourLayers;
+use crate::step::film::film;
+use crate::step::vapour::VapourBalances;
+use crate::weather::conditions::Conditions;
+use crate::weather::humidity::Plant;
+
+/// Smaller heat transfer coefficients count as this [W/(m2 K)].
+const LEAST_FILM: f64 = 1e-6;
+
+/// The flows of a stage.
+#[derive(Debug, Clone)]
+pub(super) struct StageFlows<S> {
+    /// Pressure of the air [Pa], and humidity ratio of the outdoor air [kg/kg].
+    pub(super) pressure: S,
+    pub(super) outdoor: S,
+    pub(super) zones: Vec<ZoneFlows<S>>,
+    /// Of each of the plan's `carries` [kg/s].
+    pub(super) carried: Vec<S>,
+    pub(super) surfaces: Vec<SurfaceFlows<S>>,
+}
+
+/// The flows of a zone.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ZoneFlows<S> {
+    /// Air that leaves to outdoors, less that whose vapour is recovered [kg/s].
+    pub(super) outward: S,
+    /// Vapour from sources [kg/s].
+    pub(super) gain: S,
+    /// Saturation pressure at the temperature of the air [Pa].
+    pub(super) saturated: S,
+    pub(super) drying: Plant<S>,
+    pub(super) humidifying: Plant<S>,
+}
+
+/// How vapour reaches a surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SurfaceFlows<S> {
+    /// From the air to the middle of the first layer, and from there to that of the second [kg/(m2 s Pa)].
+    pub(super) to_layer: S,
+    pub(super) between: S,
+    /// Saturation pressure at the temperature of the surface [Pa].
+    pub(super) saturated: S,
+}
+
+impl<S: Real> StageFlows<S> {
+    /// Zeros.
+    pub(super) fn new(humidity: &HumidityCoefficients<S>, carries: usize) -> Self {
+        let zero = S::zero();
+        let none = Plant { target: zero, relative: false, capacity: zero };
+        let zone = ZoneFlows { outward: zero, gain: zero, saturated: zero, drying: none, humidifying: none };
+        let surface = SurfaceFlows { to_layer: zero, between: zero, saturated: zero };
+        Self {
+            pressure: humidity.pressure,
+            outdoor: zero,
+            zones: vec![zone; humidity.zones.len()],
+            carried: vec![zero; carries],
+            surfaces: vec![surface; humidity.surfaces.len()],
+        }
+    }
+}
+
+impl<S: Real> VapourBalances<'_, S> {
+    /// Notes the flows of a stage, in its conditions and at its temperatures.
+    #[inline(always)]
+    pub(crate) fn note(
+        &mut self,
+        model: &Model<'_, S>,
+        conditions: &Conditions<S>,
+        at: Temperatures<'_, S>,
+        stage: usize,
+    ) {
+        let (Some(humidity), Some(now)) = (&model.coefficients.humidity, &conditions.humidity) else {
+            return;
+        };
+        let flows = &mut self.flows[stage];
+        (flows.pressure, flows.outdoor) = (now.pressure, now.outdoor);
+        for (z, (zone, now)) in flows.zones.iter_mut().zip(&now.zones).enumerate() {
+            let numbers = &model.coefficients.zones[z];
+            let changes =
+                conditions.zones[z].air_changes(numbers, conditions.wind, conditions.outdoor_air, at.air[z]);
+            let mut heat = changes.scale(1.0 / 3600.0) * numbers.air_capacity;
+            if let Some(fans) = conditions.mechanical_air.zones.get(z) {
+                heat += fans.outward;
+            }
+            zone.outward = heat * humidity.mass;
+            zone.gain = now.gain;
+            (zone.drying, zone.humidifying) = (now.drying, now.humidifying);
+            zone.saturated = saturation_pressure(at.air[z]);
+        }
+        let mut places = flows.carried.iter_mut();
+        let mut put = |heat: S| {
+            if let Some(place) = places.next() {
+                *place = heat * humidity.mass;
+            }
+        };
+        for &path in &conditions.paths {
+            put(path);
+            put(path);
+        }
+        for (door, &whole) in model.coefficients.doors.iter().zip(&conditions.doors) {
+            let [a, b] = door.between;
+            let heat = doors::conductance(whole, at.air[a] - at.air[b]);
+            put(heat);
+            put(heat);
+        }
+        for &directed in
+            &conditions.mechanical_air.carried[..model.coefficients.mechanical_air.directed.len()]
+        {
+            put(directed);
+        }
+        for &recovered in &now.recovered {
+            put(recovered);
+        }
+        // Air whose vapour is recovered does not take it outdoors.
+        let first = self.plan.carries.len() - now.recovered.len();
+        for (&[from, _], &carried) in self.plan.carries[first..].iter().zip(&flows.carried[first..]) {
+            flows.zones[from].outward = flows.zones[from].outward - carried;
+        }
+        for (place, surface) in flows.surfaces.iter_mut().zip(&humidity.surfaces) {
+            let (temperature, air) = (at.surfaces[surface.surface], at.air[surface.zone]);
+            let heat =
+                film(model, conditions, surface.surface, temperature, air).max(S::constant(LEAST_FILM));
+            let of_air =
+                (air + S::constant(KELVIN)).scale(VAPOUR_GAS_CONSTANT) * humidity.heat_over_vapour / heat;
+            let permeability = VapourLayers::relative_permeability(temperature);
+            let layers = &surface.layers;
+            place.to_layer = S::one() / (of_air + layers.to_surface / permeability);
+            place.between = if layers.two { permeability / layers.between } else { S::zero() };
+            place.saturated = saturation_pressure(temperature);
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! What takes vapour away from the air of a zone: ideal drying and humidifying, and saturation.
+//!
+//! What is taken away never falls with the humidity ratio: minus the capacity of humidifying below its set point, nothing between
+//! the set points, the capacity of drying above its set point, and whatever is too much at saturation.
+
+use crate::building::coefficients::humidity::{Dryer, VapourZone};
+use crate::number::real::{Mask, Real};
+use crate::physics::psychrometrics::{humidity_ratio, saturation_pressure};
+use crate::weather::humidity::Plant;
+
+use super::flows::ZoneFlows;
+
+/// What a zone does in a solution: its humidity ratio is held at a value [kg/kg], or a value is taken away [kg/s].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mode<S: Real> {
+    pub(super) held: S::Mask,
+    pub(super) value: S,
+}
+
+impl<S: Real> Mode<S> {
+    /// Nothing is taken away.
+    pub(super) fn idle() -> Self {
+        Self { held: S::Mask::splat(false), value: S::zero() }
+    }
+
+    #[inline(always)]
+    pub(super) fn differs(&self, other: &Self) -> S::Mask {
+        let kind = (self.held & !other.held) | (!self.held & other.held);
+        kind | self.value.lt(other.value) | other.value.lt(self.value)
+    }
+}
+
+/// Set points [kg/kg] and capacities [kg/s].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits<S> {
+    humidify: S,
+    most_added: S,
+    dry: S,
+    most_dried: S,
+    saturated: S,
+}
+
+impl<S: Real> Limits<S> {
+    /// Zeros.
+    pub(super) fn none() -> Self {
+        let zero = S::zero();
+        Self { humidify: zero, most_added: zero, dry: zero, most_dried: zero, saturated: zero }
+    }
+
+    /// In a stage, with the ideal load of the zone [W].
+    #[inline(always)]
+    pub(super) fn new(zone: &VapourZone<S>, flows: &ZoneFlows<S>, pressure: S, load: S) -> Self {
+        let saturated = humidity_ratio(flows.saturated, pressure);
+        let target = |plant: &Plant<S>| {
+            if plant.relative {
+                humidity_ratio(plant.target * flows.saturated, pressure)
+            } else {
+                plant.target
+            }
+        };
+        let (dry, most_dried) = match &zone.drying {
+            None => (saturated, S::zero()),
+            Some(Dryer::Controlled(_)) => (target(&flows.drying).min(saturated), flows.drying.capacity),
+            Some(Dryer::Coil { per_heat, temperature }) => {
+                let at_coil = humidity_ratio(saturation_pressure(*temperature), pressure);
+                (at_coil.min(saturated), *per_heat * (-load).max(S::zero()))
+            }
+        };
+        let (humidify, most_added) = match &zone.humidifying {
+            None => (S::zero(), S::zero()),
+            Some(_) => (target(&flows.humidifying).min(dry), flows.humidifying.capacity),
+        };
+        Self { humidify, most_added, dry, most_dried, saturated }
+    }
+
+    /// The mode of a zone from a humidity ratio and what was taken away: the point of the law on the line
+    /// `removed + slope ratio = constant` through both.
+    #[inline(always)]
+    pub(super) fn mode(&self, ratio: S, removed: S, slope: S) -> Mode<S> {
+        let sum = removed + slope * ratio;
+        let [humidify, dry, saturated] = [self.humidify, self.dry, self.saturated].map(|at| slope * at);
+        let held = |value: S| (S::Mask::splat(true), value);
+        let fixed = |value: S| (S::Mask::splat(false), value);
+        let mut mode = (S::Mask::splat(true), self.saturated);
+        let parts = [
+            (saturated + self.most_dried, fixed(self.most_dried)),
+            (dry + self.most_dried, held(self.dry)),
+            (dry, fixed(S::zero())),
+            (humidify, held(self.humidify)),
+            (humidify - self.most_added, fixed(-self.most_added)),
+        ];
+        for (below, (is_held, value)) in parts {
+            let here = sum.lt(below);
+            mode = ((here & is_held) | (!here & mode.0), S::select(here, value, mode.1));
+        }
+        Mode { held: mode.0, value: mode.1 }
+    }
+
+    /// What is taken away by drying and by condensation, and what is added [kg/s].
+    #[inline(always)]
+    pub(super) fn shares(&self, removed: S) -> [S; 3] {
+        let away = removed.max(S::zero());
+        let dried = away.min(self.most_dried);
+        [dried, away - dried, (-removed).max(S::zero())]
+    }
+}

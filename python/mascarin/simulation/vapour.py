@@ -1,0 +1,109 @@
+"""The vapour balance of a run of a building with humidity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Self
+
+from mascarin.simulation.energy import CLOSED
+
+VAPOUR_FLOWS: Final = ("outdoor_air", "interzone", "gains", "humidifying", "drying", "condensation")
+"""Flows of vapour into the zones; drying and condensation take vapour away and are negative."""
+
+
+@dataclass(frozen=True)
+class VapourLedger:
+    """Vapour by flow over a run, the vapour stored in air and surfaces, and how well they balance.
+
+    Parameters
+    ----------
+    into : mapping of str to float
+        Net vapour into the zones by flow. [kg]
+    stored : float
+        Rise of the vapour stored in the air and behind surfaces. [kg]
+    exchanged : float
+        Sum of the magnitudes of all flows. [kg]
+    relative_residual : float
+        Sum over steps of |stored - into|, over all vapour exchanged. [-]
+
+    Examples
+    --------
+    >>> import mascarin as mc
+    >>> from mascarin.examples import box, box_climate
+    >>> damp = box().replace({"humidity": {"zones": {"room": {"gains": {"people": {"power": 100}}}}}})
+    >>> ledger = mc.simulate(damp, box_climate(), step="1h").vapour
+    >>> ledger.into["gains"] > 0.0 and ledger.closes
+    True
+    """
+
+    into: Mapping[str, float]
+    stored: float
+    exchanged: float
+    relative_residual: float
+
+    @property
+    def closes(self) -> bool:
+        """Whether the vapour stored is the vapour that flowed in: a residual of 1e-10 at most."""
+        return self.relative_residual <= CLOSED
+
+    def warnings(self) -> list[str]:
+        """One line where the vapour balance does not close, and one where saturated air lost vapour."""
+        found = []
+        if not self.closes:
+            found.append(
+                "the vapour balance does not close: the vapour stored and the vapour that flowed in differ "
+                f"by {self.relative_residual:.1e} of all vapour exchanged, expected {CLOSED:g} at most. "
+                "Humidities may be wrong by as much or more: take a shorter step"
+            )
+        lost = -self.into["condensation"]
+        if lost > 0.01 * self.exchanged:
+            found.append(
+                f"the air of zones was saturated: {lost:.3g} kg of vapour condensed, "
+                f"{100 * lost / self.exchanged:.0f} % of all vapour exchanged. It is taken away, and its "
+                "heat is not given to the room. Check the sources of vapour and the ventilation"
+            )
+        return found
+
+    @classmethod
+    def read(cls, raw: Mapping[str, Any]) -> Self:
+        """Make one from the values that the engine returns.
+
+        Parameters
+        ----------
+        raw : mapping
+            Vapour by flow, ``stored``, ``exchanged`` [kg] and ``closure`` [-].
+        """
+        into = {flow: float(raw[flow]) for flow in VAPOUR_FLOWS}
+        return cls(into, float(raw["stored"]), float(raw["exchanged"]), float(raw["closure"]))
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Self:
+        """Make one from the values of `to_dict`.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            The values.
+        """
+        into = {flow: float(values[f"{flow}_kg"]) for flow in VAPOUR_FLOWS}
+        numbers = (values[key] for key in ("stored_kg", "exchanged_kg", "closure"))
+        return cls(into, *(float(number) for number in numbers))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers for JSON."""
+        into = {f"{flow}_kg": value for flow, value in self.into.items()}
+        return {
+            "closure": self.relative_residual,
+            "stored_kg": self.stored,
+            "exchanged_kg": self.exchanged,
+            **into,
+        }
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def __str__(self) -> str:
+        lines = [f"{flow:<14}{value:>12.4f} kg" for flow, value in self.into.items()]
+        residual = f"relative residual of the vapour balance {self.relative_residual:.1e}"
+        return "\n".join([*lines, f"{'stored':<14}{self.stored:>12.4f} kg", residual])
