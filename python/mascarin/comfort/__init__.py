@@ -7,6 +7,7 @@ window. No index is extrapolated: outside its validity a value is NaN, and the t
 
 from __future__ import annotations
 
+from mascarin.comfort.assessment import Comfort, assess
 from mascarin.comfort.conditions import Conditions, operative_temperature
 from mascarin.comfort.evaluation import Discomfort, Evaluation, discomfort
 from mascarin.comfort.indices import INDICES, Index, index_named
@@ -15,12 +16,14 @@ from mascarin.comfort.surroundings import Surroundings
 
 __all__ = [
     "INDICES",
+    "Comfort",
     "ComfortSettings",
     "Conditions",
     "Discomfort",
     "Evaluation",
     "Index",
     "Surroundings",
+    "assess",
     "discomfort",
     "index_named",
     "operative_temperature",

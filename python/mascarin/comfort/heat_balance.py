@@ -100,7 +100,7 @@ def standard_effective_temperature(here: Conditions, limits: Limits) -> Evaluati
     # The two-node model counts the motion of the body by itself: the air speed is that in the room.
     found = _called(
         "set_tmp", "set", tdb=inputs["air"], tr=inputs["radiant"], v=inputs["speed"], rh=inputs["humidity"],
-        met=here.metabolic_rate, clo=here.clothing, position="sitting",
+        met=here.metabolic_rate, clo=here.clothing,
     )  # fmt: skip
     return _limited(found, _SET, inputs, limits)
 

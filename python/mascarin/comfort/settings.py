@@ -152,7 +152,7 @@ class ComfortSettings(Part):
             clock = np.asarray(times.hour * 60 + times.minute, dtype=np.float64)
             there = np.any([_between(clock, *pair) for pair in self.hours], axis=0)
         if self.days != "all":
-            weekend = np.asarray(times.dayofweek) >= 5
+            weekend = np.asarray(times.day_of_week) >= 5
             there &= weekend if self.days == "weekends" else ~weekend
         return np.where(there, weights, 0.0)
 
