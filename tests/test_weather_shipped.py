@@ -55,15 +55,13 @@ def test_morphing_gives_the_changes_that_were_asked_for(tampa: mc.Climate) -> No
     month = np.asarray(before.index.month)  # type: ignore[attr-defined]
     shift = (after["air_temperature"] - before["air_temperature"]).groupby(month).mean()
     np.testing.assert_allclose(shift, [1.0 + 0.1 * m for m in range(12)], atol=1e-9)
-    day = np.arange(8760) // 24
 
     def ranges(data: np.ndarray) -> np.ndarray:
         cells = data.reshape(365, 24)
-        return cells.max(axis=1) - cells.min(axis=1)
+        return np.asarray(cells.max(axis=1) - cells.min(axis=1))
 
     wider = ranges(after["air_temperature"].to_numpy()) - ranges(before["air_temperature"].to_numpy())
     july = month[::24] == 7
-    assert len(day) == 8760
     assert wider[july].mean() == pytest.approx(2.0)  # 3 K at the maximum less 1 K at the minimum
     np.testing.assert_allclose(after["global_horizontal"], 1.05 * before["global_horizontal"])
     np.testing.assert_allclose(after["wind_speed"], 0.9 * before["wind_speed"])

@@ -62,9 +62,10 @@ def weather(
         raise InputError(f"--epw: found '{epw}'; expected a file ending in .epw")
     from mascarin.weather import MonthlyChanges, morphed, overview, write_epw
 
+    changes = None if morph is None else MonthlyChanges.read(morph)
     climate = _checked(file)
-    if morph is not None:
-        climate = morphed(climate, MonthlyChanges.read(morph))
+    if changes is not None:
+        climate = morphed(climate, changes)
     found = overview(climate, heating_base=heating_base, cooling_base=cooling_base)
     result = _result(climate, found)
     with writing(epw):

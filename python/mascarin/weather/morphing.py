@@ -231,7 +231,9 @@ def morphed(climate: Climate, changes: MonthlyChanges | Mapping[str, Monthly]) -
         warmed["wind_speed"] = data["wind_speed"].to_numpy(dtype=np.float64) * speed
     for name, values in warmed.items():
         if name in closing:
-            closing[name] = _closed(name, closing[name], data, values)
+            # A typical year ends with the value that it starts with.
+            last = _closed(name, closing[name], data, values)
+            closing[name] = float(values[0]) if record.grid.periodic else last
         data[name] = values
     note = f"{record.file}: changed by months (Belcher et al. 2005): {_in_words(changes)}."
     return Climate(
