@@ -53,7 +53,6 @@ def test_plot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         (("--kind", "salt"), "salt hydrate"),
         (("--melting", "22-28"), "expected LOW..HIGH"),
         (("--melting", "28..22"), "lower end first"),
-        (("--plot", "x.svg"), "narrow the search"),
         (("RT25HC", "--plot", "x.doc"), "--plot: found 'x.doc'; expected a file ending in .svg"),
     ],
 )

@@ -5,6 +5,7 @@ from collections import defaultdict
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mascarin.errors import InputError
@@ -144,4 +145,12 @@ def test_plot() -> None:
     labels = [str(line.get_label()) for line in figure.axes[0].lines]
     assert labels == ["RT25HC, heating", "RT25HC, cooling", "Energain, tanh law, half-width 1 K"]
     with pytest.raises(InputError, match="1 to 8 products"):
-        plot(list(products().values()))
+        plot(list(products().values()), ax=figure.axes)
+
+
+def test_plot_of_every_product_has_a_panel_for_each() -> None:
+    figure = plot(list(products().values()))
+    shown = {axes.get_title(): axes for axes in figure.axes if axes.get_visible()}
+    assert set(shown) == set(products())
+    heated = shown["RT25HC"].lines[0].get_ydata()
+    assert float(np.ptp(heated)) > 198.9  # the latent heat and some sensible heat [kJ/kg]

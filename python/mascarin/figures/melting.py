@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from mascarin._io.units import bracketed, shown
 from mascarin.figures import colors
@@ -12,6 +12,10 @@ from mascarin.figures.series import axes_for
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+#: Panels beside each other.
+_ACROSS: Final = 6
 
 
 class Curve(NamedTuple):
@@ -90,4 +94,44 @@ def draw(curves: Sequence[Curve], ax: Axes | Sequence[Axes] | None = None) -> Fi
         axes.legend(frameon=False, fontsize="small")
     figure = above.get_figure(root=True)
     assert figure is not None  # noqa: S101 (axes always have a figure)
+    return figure
+
+
+def panels(groups: Mapping[str, Sequence[Curve]]) -> Figure:
+    """Draw the enthalpy of many materials, each in a panel of its own, with the same scale upwards.
+
+    Parameters
+    ----------
+    groups : mapping of str to sequence of Curve
+        Title of the panel -> curves of the material.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A new figure.
+
+    Examples
+    --------
+    >>> wax = Curve("wax, heating", 0, "-", [20, 30], [0, 2e5], [25], [2e4])
+    >>> [axes.get_title() for axes in panels({"wax": [wax]}).axes if axes.get_visible()]
+    ['wax']
+    """
+    import numpy as np
+    from matplotlib.figure import Figure
+
+    across = min(_ACROSS, len(groups))
+    rows = -(-len(groups) // across)
+    figure = Figure(figsize=(2.2 * across, 1.9 * rows + 0.5), layout="constrained")
+    cells = figure.subplots(rows, across, squeeze=False, sharey=True).ravel()
+    for cell in cells[len(groups) :]:
+        cell.set_visible(False)
+    for cell, (title, curves) in zip(cells, groups.items(), strict=False):
+        for number, one in enumerate(curves):
+            color = colors.look(number).color
+            cell.plot(one.temperature, np.asarray(one.enthalpy) / 1000.0, color=color, ls=one.style, lw=1.1)
+        cell.set_title(title, fontsize="small")
+        cell.tick_params(labelsize="x-small")
+        cell.grid(alpha=0.3)
+    figure.supxlabel("temperature [°C]", fontsize="small")
+    figure.supylabel("enthalpy [kJ/kg]: heating (line), cooling (dashed)", fontsize="small")
     return figure

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST: Final = 8
-"""Largest number of products in one plot."""
+"""Largest number of products on the same axes; more have a panel each."""
 
 _STYLES: Final = {"heating": "-", "cooling": "--"}
 
@@ -22,10 +22,12 @@ _STYLES: Final = {"heating": "-", "cooling": "--"}
 def plot(chosen: Sequence[Product], ax: Sequence[Axes] | None = None) -> Figure:
     """Draw the curves of some products: enthalpy above, apparent specific heat below.
 
+    More than `MOST` products have a panel each, with the enthalpy alone.
+
     Parameters
     ----------
     chosen : sequence of Product
-        At most `MOST`.
+        Any number; at most `MOST` where axes are given.
     ax : sequence of two matplotlib.axes.Axes, optional
         Where to draw; a new figure when absent.
 
@@ -37,9 +39,11 @@ def plot(chosen: Sequence[Product], ax: Sequence[Axes] | None = None) -> Figure:
     Raises
     ------
     InputError
-        There are too many products, or none of them has a curve.
+        There are too many products for the given axes, or none of them has a curve.
     """
     drawn = [one for one in chosen if any(enthalpy_curves(one))]
+    if len(drawn) > MOST and ax is None:
+        return melting.panels({one.name: list(_curves([one])) for one in drawn})
     if not drawn or len(drawn) > MOST:
         names = ", ".join(one.name for one in chosen[:MOST]) or "nothing"
         found = f"{len(drawn)} products with curves" if drawn else f"no curve of {names}"
