@@ -26,6 +26,7 @@ ORDER = [
     {"examples"},
     {"report"},
     {"study"},
+    {"design"},
     {"genopt"},
     {"commands", "cli"},
 ]

@@ -121,14 +121,6 @@ class Choices:
         rows = [[option.label for option in self.options(design)] for design in designs]
         return {choice.name: [row[k] for row in rows] for k, choice in enumerate(self.all)}
 
-    def values(self, designs: Sequence[Design]) -> dict[str, list[float]]:
-        """The numbers that each design has chosen, NaN where an option is none."""
-        rows = [[option.value for option in self.options(design)] for design in designs]
-        return {
-            choice.name: [math.nan if row[k] is None else float(row[k]) for row in rows]
-            for k, choice in enumerate(self.all)
-        }
-
     def samples(self, building: Building, designs: Sequence[Design]) -> dict[str, list[Any]]:
         """Columns of an ensemble: parameters and parts by path, a row for each design.
 
@@ -141,7 +133,9 @@ class Choices:
         columns: dict[str, list[Any]] = {}
         for path in parts:
             own = _at(plain, path)
-            columns[path] = [next((o.parts[path] for o in options if path in o.parts), own) for options in rows]
+            columns[path] = [
+                next((o.parts[path] for o in options if path in o.parts), own) for options in rows
+            ]
         for path in numbers:
             base = building.parameter(path).value
             columns[path] = [
@@ -221,11 +215,14 @@ def _is_plain(building: Building, path: str, value: Any) -> bool:
 def _numbers(name: str, variable: Variable, building: Building, places: Places) -> Choice:
     given = [variable.path] if isinstance(variable.path, str) else list(variable.path or ())
     with places.blame("variables", name, "path"):
-        known = [building.parameter(path) for path in expanded(building, [_in_layers(building, p) for p in given])]
+        known = [
+            building.parameter(path) for path in expanded(building, [_in_layers(building, p) for p in given])
+        ]
         for parameter in known:
             if parameter.structural:
                 raise InputError(
-                    f"{parameter.path} changes the shape of the building; expected a number that may vary in a "
+                    f"{parameter.path} changes the shape of the building; expected a number that may vary "
+                    f"in a "
                     "run. Write variants: instead, such as {short: {PATH: 1}, long: {PATH: 2}}"
                 )
     bounds = variable.range
@@ -235,23 +232,28 @@ def _numbers(name: str, variable: Variable, building: Building, places: Places) 
             for value in values:
                 if not parameter.lower <= value <= parameter.upper:
                     raise InputError(
-                        f"found {value:g} {parameter.unit} for {parameter.path}, expected {parameter.lower:g} to "
+                        f"found {value:g} {parameter.unit} for {parameter.path}, expected "
+                        f"{parameter.lower:g} to "
                         f"{parameter.upper:g} {parameter.unit}, which is possible there; check its unit"
                     )
     paths = tuple(parameter.path for parameter in known)
-    return Choice(
-        name, known[0].unit, tuple(number_option(value, paths) for value in values), paths, bounds
-    )
+    return Choice(name, known[0].unit, tuple(number_option(value, paths) for value in values), paths, bounds)
 
 
 def _in_layers(building: Building, path: str) -> str:
     """A path of a layer must be that of a layer of its construction; the error names those that there are."""
     parts = path.split(".")
-    if parts[0] == "constructions" and len(parts) > 3 and parts[1] in building.constructions and "*" not in path:
+    if (
+        parts[0] == "constructions"
+        and len(parts) > 3
+        and parts[1] in building.constructions
+        and "*" not in path
+    ):
         names = [str(layer.name) for layer in building.constructions[parts[1]].layers]
         if parts[2] == "layers" and parts[3] not in names:
             raise InputError(
-                f"found layer '{parts[3]}', but construction '{parts[1]}' has the layers {', '.join(names)} from "
+                f"found layer '{parts[3]}', but construction '{parts[1]}' has the layers "
+                f"{', '.join(names)} from "
                 "outside to inside; expected one of them. Correct the path, or add the layer to the building"
             )
     return path
@@ -267,7 +269,11 @@ def _products(name: str, variable: Variable, building: Building, places: Places,
                 f"{', '.join(those) or 'there is none'}"
             )
     with places.blame("variables", name, "products"):
-        chosen = list(products().values()) if variable.products == "all" else [product(p) for p in variable.products]
+        chosen = (
+            list(products().values())
+            if variable.products == "all"
+            else [product(p) for p in variable.products]
+        )
     if variable.melting is not None:
         low, high = variable.melting
         chosen = [one for one in chosen if low <= (one.melting_temperature or math.nan) <= high]
@@ -283,13 +289,14 @@ def _products(name: str, variable: Variable, building: Building, places: Places,
 
 
 def _require_apart(found: Sequence[Choice], building: Building, places: Places, faults: Faults) -> None:
-    """Two variables may not set the same; a number inside a part that is replaced must be in every variant."""
+    """Refuse two variables of the same number, and a number that a variant leaves out."""
     for one, other in itertools.combinations(found, 2):
         for a, b in itertools.product(_touched(one), _touched(other)):
             if a == b:
                 with places.noting(faults, "variables", other.name):
                     raise InputError(
-                        f"sets {b}, which variable '{one.name}' sets too; expected each in one variable. Join them "
+                        f"sets {b}, which variable '{one.name}' sets too; expected each in one variable. "
+                        f"Join them "
                         "in one variable with variants"
                     )
     for one, other in itertools.permutations(found, 2):

@@ -57,7 +57,7 @@ class Period(Part):
 
 
 class Variable(Part):
-    """What the designer chooses: numbers at a path, products of a material, or variants of the description."""
+    """What the designer chooses: numbers, products of a material, or variants of the description."""
 
     path: str | tuple[str, ...] | None = Field(
         None, description="Path of a number, or several that get the same value; * stands for any name"
@@ -75,7 +75,8 @@ class Variable(Part):
         None, description="Only products that melt between these temperatures [degC]"
     )
     variants: dict[Label, dict[str, Any]] = Field(
-        default_factory=dict, description="Name -> path -> value: parts of the description; {} is as described"
+        default_factory=dict,
+        description="Name -> path -> value: parts of the description; {} is as described",
     )
 
     @model_validator(mode="after")
@@ -142,6 +143,13 @@ class DesignFile(Part):
     variables: dict[Label, Variable] = Field(min_length=1, description="Name -> what is chosen")
     objectives: dict[Label, Objective] = Field(min_length=1, description="Name -> what is good")
     rank_by: str | None = Field(None, description="Objective of the ranking; by default the first")
+    negligible: float = Field(
+        0.005,
+        ge=0.0,
+        lt=1.0,
+        description="Part of the best value below which a difference is called a tie, as errors of the "
+        "model are larger [-]",
+    )
     reference: dict[str, Any] = Field(
         default_factory=dict, description="Path -> value of the design that all are compared with"
     )
@@ -153,18 +161,34 @@ class DesignFile(Part):
         for section in ("variables", "objectives"):
             for name in getattr(self, section):
                 if name in TAKEN:
-                    insist(fault((section, name), f"'{name}'", "a name that no column of the tables has",
-                                 "Rename it."))  # fmt: skip
+                    insist(
+                        fault(
+                            (section, name),
+                            f"'{name}'",
+                            "a name that no column of the tables has",
+                            "Rename it.",
+                        )
+                    )
         both = set(self.variables) & set(self.objectives)
         if both:
             name = sorted(both)[0]
-            insist(fault(("objectives", name), f"'{name}' also under variables", "different names", "Rename it."))
-        for place, chosen in ((("rank_by",), [self.rank_by] if self.rank_by else []),
-                              (("search", "objectives"), list(self.search.objectives))):  # fmt: skip
+            insist(
+                fault(("objectives", name), f"'{name}' also under variables", "different names", "Rename it.")
+            )
+        for place, chosen in (
+            (("rank_by",), [self.rank_by] if self.rank_by else []),
+            (("search", "objectives"), list(self.search.objectives)),
+        ):
             for name in chosen:
                 if name not in self.objectives:
-                    insist(fault(place, f"'{name}'", f"one of the objectives {', '.join(self.objectives)}",
-                                 "Correct the name."))  # fmt: skip
+                    insist(
+                        fault(
+                            place,
+                            f"'{name}'",
+                            f"one of the objectives {', '.join(self.objectives)}",
+                            "Correct the name.",
+                        )
+                    )
         return self
 
     @property

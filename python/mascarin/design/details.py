@@ -39,7 +39,8 @@ class Detail:
     outdoors : ndarray, shape (24,)
         Mean outdoor temperature. [degC]
     gains : mapping of str to ndarray, each of shape (24,)
-        Mean heat that the zone of interest gains at each hour: by the air that is exchanged with outdoors, and through
+        Mean heat that the zone of interest gains at each hour: by the air that is exchanged with outdoors,
+        and through
         each surface. [W]
     fractions : mapping of str to ndarray, each of shape (2, days)
         Smallest and largest liquid fraction of each layer on each day. [-]
@@ -101,20 +102,20 @@ def detail(inputs: DesignInputs, site: Site, design: Design | None, label: str) 
     middles = simulation.index[1:].tz_localize(None).to_numpy() - np.timedelta64(int(seconds * 500), "ms")
     hour = ((middles - middles.astype("datetime64[D]")) / np.timedelta64(1, "h")).astype(np.int64)
     gains = {
-        "air from outdoors": float(building.zones[zones[0]].volume)
+        "air from outdoors": _volume(building, zones[0])
         / 3600.0
         * air.heat_capacity(building.site)
         * series[f"{zones[0]}.air_changes"]
         * (outdoors - series[f"{zones[0]}.air_temperature"])
     }
     for surface, side, sign in faces:
-        area = float(building.surfaces[surface].area)
+        area = float(building.surfaces[surface].area or 0.0)
         gains[surface] = sign * area * series[f"{surface}.{side}_flux"]
     dates = middles.astype("datetime64[D]")
     return Detail(
         climate=site.name,
         label=label,
-        hours=np.arange(24) + 0.5,
+        hours=np.arange(24, dtype=np.float64) + 0.5,
         temperature={zone: _by_hour(series[f"{zone}.operative_temperature"], hour) for zone in zones},
         outdoors=_by_hour(outdoors, hour),
         gains={name: _by_hour(values, hour) for name, values in gains.items()},
@@ -126,7 +127,7 @@ def detail(inputs: DesignInputs, site: Site, design: Design | None, label: str) 
 
 
 def zones_of(inputs: DesignInputs) -> list[str]:
-    """Zones of the objectives, that of the ranking first; the first zone of the building where none names one."""
+    """Zones of the objectives, that of the ranking first; else the first of the building."""
     names = [inputs.file.ranked_by, *inputs.file.objectives]
     found = [zone for name in names for zone in getattr(inputs.objective(name), "zones", ())]
     return list(dict.fromkeys(found)) or [next(iter(inputs.building.zones))]
@@ -142,9 +143,7 @@ def layers_of(building: Building) -> list[str]:
     ]
 
 
-def _building(
-    inputs: DesignInputs, site: Site, design: Design | None
-) -> tuple[Building, dict[str, float]]:
+def _building(inputs: DesignInputs, site: Site, design: Design | None) -> tuple[Building, dict[str, float]]:
     """Building and parameters of a design."""
     if design is None:
         return (site.building.replace(inputs.file.reference) if inputs.file.reference else site.building), {}
@@ -152,6 +151,11 @@ def _building(
     parts = {path: part for option in options for path, part in option.parts.items()}
     numbers = {path: value for option in options for path, value in option.numbers.items()}
     return (site.building.replace(parts) if parts else site.building), numbers
+
+
+def _volume(building: Building, zone: str) -> float:
+    """Volume of a zone, which every building has when it is checked. [m3]"""
+    return float(building.zones[zone].volume or 0.0)
 
 
 def _varies(building: Building, path: str) -> bool:
@@ -185,9 +189,11 @@ def _by_day(values: Array, dates: Any) -> Array:
 
 
 def grouped_gains(found: Detail, layers: Sequence[str]) -> dict[str, Array]:
-    """Heat gains of the zone in three groups: through surfaces with a phase-change layer, others, and air. [W]"""
+    """Heat gains of the zone: through surfaces with a phase-change layer, others, and by air. [W]"""
     with_pcm = {layer.partition(".")[0] for layer in layers}
-    rest = [values for name, values in found.gains.items() if name not in with_pcm and name != "air from outdoors"]
+    rest = [
+        values for name, values in found.gains.items() if name not in with_pcm and name != "air from outdoors"
+    ]
     own = [values for name, values in found.gains.items() if name in with_pcm]
     none = np.zeros(24)
     return {

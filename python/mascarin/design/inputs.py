@@ -162,12 +162,16 @@ def _site(name: str, file: DesignFile, building: Building, beside: Beside, place
         first, last = period(climate, None, None)
         if start < first or end > last:
             raise InputError(
-                f"found the period {start:%Y-%m-%d} to {end:%Y-%m-%d}, expected one inside of the weather file, "
-                f"{first:%Y-%m-%d} to {last:%Y-%m-%d}. A summer over the turn of the year is two periods: take "
+                f"found the period {start:%Y-%m-%d} to {end:%Y-%m-%d}, expected one inside of the weather "
+                f"file, "
+                f"{first:%Y-%m-%d} to {last:%Y-%m-%d}. A summer over the turn of the year is two periods: "
+                f"take "
                 "the part after it, such as start: 01-01"
             )
     place = climate.site
-    words = f"{place.name or name} ({place.latitude:.2f}, {place.longitude:.2f})" if place is not None else name
+    words = (
+        f"{place.name or name} ({place.latitude:.2f}, {place.longitude:.2f})" if place is not None else name
+    )
     return Site(name, words, climate, start, end, moved, file_hash(weather))
 
 
@@ -201,8 +205,10 @@ def _require_wind(climate: Climate, building: Building) -> None:
     wind = np.asarray(columns["wind_speed"], dtype=np.float64) if "wind_speed" in columns else np.zeros(1)
     if driven and not np.nanmax(wind, initial=0.0) > 0.0:
         raise InputError(
-            f"found no wind in the weather file, expected wind speeds, by which air flows through {driven[0]}. "
-            "Choose another file, or set the wind coefficient of these openings to 0, so that only buoyancy acts"
+            f"found no wind in the weather file, expected wind speeds, by which air flows through "
+            f"{driven[0]}. "
+            "Choose another file, or set the wind coefficient of these openings to 0, so that only "
+            "buoyancy acts"
         )
 
 
@@ -223,12 +229,17 @@ def _uncertain(
             for path in expanded(building, [given]):
                 parameter = building.parameter(path)
                 if parameter.structural:
-                    raise InputError(f"{path} changes the shape of the building; expected a number that may vary")
+                    raise InputError(
+                        f"{path} changes the shape of the building; expected a number that may vary"
+                    )
                 if any(_overlap(path, one) for one in chosen):
-                    raise InputError(f"{path} is one of the variables, or in a part that they replace; remove it")
+                    raise InputError(
+                        f"{path} is one of the variables, or in a part that they replace; remove it"
+                    )
                 if not parameter.low < parameter.high:
                     raise InputError(
-                        f"{path} has no range; expected one in the building, such as {{value: {parameter.value:g}, "
+                        f"{path} has no range; expected one in the building, such as "
+                        f"{{value: {parameter.value:g}, "
                         "range: [low, high]}"
                     )
                 found.append(parameter.path)
@@ -270,7 +281,8 @@ def _check_search(file: DesignFile, choices: Choices, places: Places, faults: Fa
         fixed = [choice.name for choice in choices.all if choice.range is None]
         if file.search.method == "cma" and (fixed or len(choices.all) < 2):
             raise InputError(
-                f"found method: cma with {', '.join(fixed) or 'one variable'}; expected two or more variables with "
+                f"found method: cma with {', '.join(fixed) or 'one variable'}; expected two or more "
+                f"variables with "
                 "range:, as it chooses numbers only. Take method: swarm"
             )
         if file.search.method == "nsga2" and len(file.search.objectives or file.objectives) < 2:

@@ -125,7 +125,8 @@ def _latent_heat(building: Building, material: str) -> float:
     known = None if name is None else product(name).number("latent_heat")
     if known is None:
         raise InputError(
-            f"material '{material}': found no latent heat beside its table; expected latent_heat: [J/kg], which "
+            f"material '{material}': found no latent heat beside its table; expected latent_heat: [J/kg], "
+            f"which "
             "says how much of the table is melting"
         )
     return float(known)

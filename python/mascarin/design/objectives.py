@@ -79,11 +79,12 @@ class _Limited(_OfZones):
     above: float | None = Field(None, description="Operative temperature above which it is too hot [degC]")
     below: float | None = Field(None, description="Operative temperature below which it is too cold [degC]")
     hours: Hours | None = Field(
-        None, description='First and last hour of the day that counts, such as ["22:00", "06:00"]; all if none'
+        None,
+        description='First and last hour of the day that counts, such as ["22:00", "06:00"]; all if none',
     )
     air_speed: float = Field(
         0.0,
-        description="Air speed of fans that occupants control: 0, 0.6, 0.9 or 1.2 m/s; raises the limit `above` "
+        description="Air speed of fans that occupants control: 0, 0.6, 0.9 or 1.2 m/s; raises `above` "
         "by 0, 1.2, 1.8 or 2.2 K (EN 16798-1:2019, table B.4) [m/s]",
     )
 
@@ -105,11 +106,12 @@ class _Limited(_OfZones):
         if self.above is not None and self.air_speed and self.above < 25.0:
             insist(
                 fault(
-                    ("air_speed",), f"above: {self.above:g} degC",
+                    ("air_speed",),
+                    f"above: {self.above:g} degC",
                     "a limit above 25 degC: only there does the standard count the air speed",
                     "Remove air_speed, or raise the limit.",
                 )
-            )  # fmt: skip
+            )
         if limit is not None and not 0.0 <= limit <= 60.0:
             insist(fault((), f"a limit of {limit:g} degC", "0 to 60 degC", "Give it in degC."))
         return self
@@ -117,7 +119,9 @@ class _Limited(_OfZones):
     @property
     def limit(self) -> float:
         """The limit with the effect of the air speed. [degC]"""
-        return float(self.below if self.above is None else self.above + AIR_SPEED[self.air_speed])
+        if self.above is not None:
+            return self.above + AIR_SPEED[self.air_speed]
+        return float(self.below or 0.0)
 
     @property
     def words(self) -> str:
@@ -125,7 +129,9 @@ class _Limited(_OfZones):
         side = "above" if self.above is not None else "below"
         when = "" if self.hours is None else f", {self.hours[0]} to {self.hours[1]}"
         fans = f" ({self.above:g} and {AIR_SPEED[self.air_speed]:g} K for fans)" if self.air_speed else ""
-        return f"operative temperature {side} {self.limit:g} degC{fans}{when}, mean of {', '.join(self.zones)}"
+        return (
+            f"operative temperature {side} {self.limit:g} degC{fans}{when}, mean of {', '.join(self.zones)}"
+        )
 
     def _beyond(self, *, weighted: bool) -> Measures:
         return {
@@ -189,9 +195,11 @@ class PeakTemperature(_OfZones):
 class _Cooled(_OfZones):
     zones: tuple[str, ...] = Field(min_length=1, description="Zones; the value is the sum over them")
     setpoint: float | None = Field(
-        None, ge=10.0, le=40.0,
+        None,
+        ge=10.0,
+        le=40.0,
         description="Set point of ideal cooling of these zones; none: as described in the building [degC]",
-    )  # fmt: skip
+    )
     set: dict[str, Any] = Field(
         default_factory=dict,
         description="Path -> value of the cooled building only, such as closed windows",
@@ -210,7 +218,8 @@ class _Cooled(_OfZones):
         for zone in self.zones:
             if building.zones[zone].cooling is None:
                 raise InputError(
-                    f"found no cooling in zone '{zone}'; expected ideal cooling, whose energy is counted. Add "
+                    f"found no cooling in zone '{zone}'; expected ideal cooling, whose energy is counted. "
+                    f"Add "
                     "setpoint: here, such as setpoint: 26, or cooling: in the building"
                 )
 
@@ -281,7 +290,7 @@ class LatentUse(_OfLayer):
 
     def measures(self) -> Measures:
         """The fraction that melts in a day."""
-        return {"melted": Melted(*self.outputs())}
+        return {"melted": Melted(self.outputs()[0])}
 
     def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
         """Latent heat of a square metre times the fraction that melts."""
@@ -306,7 +315,7 @@ class Cycles(_OfLayer):
 
     def measures(self) -> Measures:
         """The days."""
-        return {"days": CycleDays(*self.outputs(), self.change)}
+        return {"days": CycleDays(self.outputs()[0], self.change)}
 
 
 class Mass(Wanted):
@@ -332,7 +341,7 @@ class Mass(Wanted):
 
     def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
         """Density times thickness times area."""
-        return np.sum([facts.mass(layer) for layer in self.layers], axis=0)
+        return np.asarray(np.sum([facts.mass(layer) for layer in self.layers], axis=0), dtype=np.float64)
 
 
 class Cost(Wanted):
@@ -451,7 +460,8 @@ def require_layer(building: Building, layer: str, *, melts: bool) -> None:
     surface, _, name = layer.partition(".")
     if surface not in building.surfaces or not name:
         raise InputError(
-            f"found '{layer}', expected SURFACE.LAYER with one of the surfaces {', '.join(building.surfaces)}. "
+            f"found '{layer}', expected SURFACE.LAYER with one of the surfaces "
+            f"{', '.join(building.surfaces)}. "
             f"{did_you_mean(surface, building.surfaces)}".rstrip()
         )
     construction = building.surfaces[surface].construction
@@ -459,11 +469,14 @@ def require_layer(building: Building, layer: str, *, melts: bool) -> None:
     if name not in found:
         raise InputError(
             f"found '{layer}', but construction '{construction}' of this surface has the layers "
-            f"{', '.join(map(str, found))}; expected one of them. {did_you_mean(name, list(map(str, found)))}".rstrip()
+            f"{', '.join(map(str, found))}; expected one of them. "
+            f"{did_you_mean(name, list(map(str, found)))}".rstrip()
         )
     material = building.materials[found[name].material]
     if melts and material.kind != "pcm":
-        raise InputError(f"found '{layer}' of kind '{material.kind}', expected a phase-change material (kind: pcm)")
+        raise InputError(
+            f"found '{layer}' of kind '{material.kind}', expected a phase-change material (kind: pcm)"
+        )
     if material.kind == "resistance":
         raise InputError(f"found '{layer}', a resistance without mass, expected a layer with a density")
 

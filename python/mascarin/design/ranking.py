@@ -1,8 +1,9 @@
 """Ranking of designs over samples of what is uncertain, and which of them cannot be told apart.
 
-All designs have the same samples, so that they are compared in pairs: what a sample changes in all designs alike does not
-count. Two designs are tied where the interval of their mean difference contains 0. The intervals hold for all pairs with
-the best design at once (Bonferroni).
+All designs have the same samples, so that they are compared in pairs: what a sample changes in all designs
+alike does not count. Two designs are tied where the interval of their mean difference contains 0, or a
+difference that is called negligible. The intervals hold for all pairs with the best design at once
+(Bonferroni).
 
 References
 ----------
@@ -50,7 +51,8 @@ class Ranking:
 
     Examples
     --------
-    >>> found = ranked(np.array([[1.0, 2.0, 3.0, 4.0], [1.5, 2.4, 3.6, 4.5], [0.9, 2.1, 3.0, 4.0]]), least=True)
+    >>> values = np.array([[1.0, 2.0, 3.0, 4.0], [1.5, 2.4, 3.6, 4.5], [0.9, 2.1, 3.0, 4.0]])
+    >>> found = ranked(values, least=True)
     >>> found.order.tolist(), found.tied.tolist()
     ([0, 2, 1], [True, False, True])
     """
@@ -74,7 +76,7 @@ class Ranking:
         return table.iloc[self.order].rename_axis("design").reset_index()
 
 
-def ranked(values: Array, *, least: bool) -> Ranking:
+def ranked(values: Array, *, least: bool, negligible: float = 0.0) -> Ranking:
     """Rank designs by their means over samples.
 
     Parameters
@@ -84,6 +86,8 @@ def ranked(values: Array, *, least: bool) -> Ranking:
         [unit of the objective]
     least : bool
         Whether small values are good.
+    negligible : float
+        Part of the best mean below which a difference is called a tie. [-]
 
     Returns
     -------
@@ -119,7 +123,7 @@ def ranked(values: Array, *, least: bool) -> Ranking:
         difference=difference,
         low=difference - half,
         high=difference + half,
-        tied=worse - half <= rounding,
+        tied=worse - half <= max(rounding, negligible * abs(float(mean[best]))),
         better=better,
         samples=count,
     )
@@ -138,7 +142,7 @@ def pareto(costs: Array) -> npt.NDArray[np.bool_]:
     >>> pareto(np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 3.0]])).tolist()
     [True, True, False]
     """
-    found = np.isfinite(costs).all(axis=1)
+    found: npt.NDArray[np.bool_] = np.asarray(np.isfinite(costs).all(axis=1))
     for k in np.flatnonzero(found):
         others = costs[found]
         no_worse = (others <= costs[k]).all(axis=1)

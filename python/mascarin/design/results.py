@@ -1,4 +1,4 @@
-"""Results of a design study: tables of all designs, the ranking of the best, and how well they are told apart."""
+"""Results of a design study: tables of all designs, and the ranking of the best."""
 
 from __future__ import annotations
 
@@ -82,6 +82,14 @@ class DesignResults:
         values = self.values(objective, climate)
         return values if self.inputs.objective(objective).least else -values
 
+    def verdict(self, ranking: Ranking, k: int) -> str:
+        """Whether a compared design differs from the best one, in words."""
+        if k == ranking.order[0]:
+            return "best"
+        if ranking.tied[k]:
+            return "tied with the best"
+        return "different" if ranking.samples > 1 else "different as described"
+
     def winners(self, climate: str = ALL) -> list[int]:
         """The best design and those tied with it, in the order of their means."""
         ranking = self.rankings[climate]
@@ -94,7 +102,9 @@ class DesignResults:
         labels = pd.DataFrame(self.inputs.choices.labels(self.designs))
         chosen = labels.iloc[self.nominal["design"].to_numpy()].reset_index(drop=True)
         kept = self.nominal.drop(columns=["sample"]).reset_index(drop=True)
-        return pd.concat([kept[["climate", "design"]], chosen, kept.drop(columns=["climate", "design"])], axis=1)
+        return pd.concat(
+            [kept[["climate", "design"]], chosen, kept.drop(columns=["climate", "design"])], axis=1
+        )
 
     def ranking_table(self) -> pd.DataFrame:
         """The compared designs in order, by climate, with differences from the best and ties."""
@@ -129,11 +139,18 @@ class DesignResults:
         }
         for climate, ranking in self.rankings.items():
             found["ranking"][climate] = [
-                {"design": self.best[k], "chosen": self.label(self.best[k]), "mean": float(ranking.mean[k]),
-                 "spread": float(ranking.spread[k]), "low": float(ranking.low[k]), "high": float(ranking.high[k]),
-                 "tied": bool(ranking.tied[k])}
+                {
+                    "design": self.best[k],
+                    "chosen": self.label(self.best[k]),
+                    "mean": float(ranking.mean[k]),
+                    "spread": float(ranking.spread[k]),
+                    "low": float(ranking.low[k]),
+                    "high": float(ranking.high[k]),
+                    "tied": bool(ranking.tied[k]),
+                    "verdict": self.verdict(ranking, int(k)),
+                }
                 for k in ranking.order
-            ]  # fmt: skip
+            ]
         found["reference"] = {climate: dict(values) for climate, values in self.reference.items()}
         return found
 
@@ -164,12 +181,13 @@ class DesignResults:
 
 
 def by_climate(table: pd.DataFrame, objective: str, designs: int) -> dict[str, Array]:
-    """An objective by climate and its mean over all climates, each of shape (designs, samples) or (designs,)."""
+    """An objective by climate, and its mean over them: (designs, samples), or (designs,) without."""
     found: dict[str, Array] = {}
     for climate, part in table.groupby("climate", sort=False):
         values = part[objective].to_numpy(dtype=np.float64)
-        values = np.where(part["failure"].notna().to_numpy(), np.nan, values).reshape(designs, -1)
-        found[str(climate)] = values[:, 0] if values.shape[1] == 1 else values
+        failed = part["failure"].notna().to_numpy()
+        rows = np.where(failed, np.nan, values).reshape(designs, -1)
+        found[str(climate)] = rows[:, 0] if rows.shape[1] == 1 else rows
     found[ALL] = np.mean(list(found.values()), axis=0)
     return found
 
@@ -197,7 +215,8 @@ def shortlist(nominal: pd.DataFrame, objective: str, designs: int, count: int, *
     if not orders[0]:
         reason = nominal["failure"].dropna()
         raise SolverError(
-            f"all {designs} designs failed in at least one climate; the first: {next(iter(reason), 'no number')}"
+            f"all {designs} designs failed in at least one climate; the first: "
+            f"{next(iter(reason), 'no number')}"
         )
     # The best three of each climate are compared too.
     chosen = dict.fromkeys(orders[0][:count])
@@ -206,8 +225,12 @@ def shortlist(nominal: pd.DataFrame, objective: str, designs: int, count: int, *
     return [int(k) for k in chosen]
 
 
-def rank_all(sampled: pd.DataFrame, objective: str, designs: int, *, least: bool) -> dict[str, Ranking]:
+def rank_all(
+    sampled: pd.DataFrame, objective: str, designs: int, *, least: bool, negligible: float
+) -> dict[str, Ranking]:
     """Rankings over the samples, of all climates together and of each."""
     values = by_climate(sampled, objective, designs)
     names = [ALL, *[name for name in values if name != ALL]]
-    return {name: ranked(values[name].reshape(designs, -1), least=least) for name in names}
+    return {
+        name: ranked(values[name].reshape(designs, -1), least=least, negligible=negligible) for name in names
+    }

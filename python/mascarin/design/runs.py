@@ -121,13 +121,18 @@ class Runs:
         facts = facts_of(self.inputs.building, columns, labels)
         tables = []
         for site in self.inputs.sites:
-            table = pd.DataFrame({"climate": site.name, "design": np.repeat(np.arange(len(designs)), repeats),
-                                  "sample": np.tile(np.arange(repeats), len(designs))})  # fmt: skip
+            table = pd.DataFrame(
+                {
+                    "climate": site.name,
+                    "design": np.repeat(np.arange(len(designs)), repeats),
+                    "sample": np.tile(np.arange(repeats), len(designs)),
+                }
+            )
             tables.append(self._of_site(site, columns, facts, table, only))
         return pd.concat(tables, ignore_index=True)
 
     def reference(self) -> pd.DataFrame:
-        """Objectives of the reference, a row for each climate; NaN for what it does not have, such as a layer."""
+        """Objectives of the reference by climate; NaN for those of what it does not have."""
         import pandas as pd
 
         rows = []
@@ -150,10 +155,15 @@ class Runs:
         series = None
         if outputs:
             simulation = Simulation(
-                building, site.climate, outputs=list(dict.fromkeys(outputs)), start=site.start, end=site.end,
-                step=self.inputs.file.step, scheme=self.inputs.file.scheme,
-            )  # fmt: skip
-            records, _, _ = simulation.ensemble(simulation.values[None, :])
+                building,
+                site.climate,
+                outputs=list(dict.fromkeys(outputs)),
+                start=site.start,
+                end=site.end,
+                step=self.inputs.file.step,
+                scheme=self.inputs.file.scheme,
+            )
+            records, _, _ = simulation.ensemble(simulation.vector({})[None, :])
             series = dataset(simulation.outputs, simulation.index, records)
         facts = LayerFacts([building], {}, {choice.name: ["reference"] for choice in self.inputs.choices.all})
         found = dict.fromkeys(mode.objectives, float("nan"))
@@ -229,24 +239,35 @@ class Runs:
         self.report(self.done, max(self.expected, self.done))
         table = store.to_dataframe()
         found: dict[str, Any] = {name: table[name].to_numpy(dtype=np.float64) for name in functions}
-        return found | {"closure": table["closure"].to_numpy(), "failure": list(table["failure"].where(
-            table["failure"].notna(), None))}  # fmt: skip
+        return found | {
+            "closure": table["closure"].to_numpy(),
+            "failure": list(table["failure"].where(table["failure"].notna(), None)),
+        }
 
     def _folder(
         self, site: Site, functions: Mapping[str, object], columns: Mapping[str, Any], mode: Mode
     ) -> Path:
         """Folder of a store, named by all that its values depend on."""
-        key = [site.name, site.hash, str(site.start), str(site.end), repr(sorted(functions.items())),
-               self.inputs.file.step, self.inputs.file.scheme, json.dumps(mode.changes, sort_keys=True, default=str),
-               json.dumps(site.building.to_dict(), sort_keys=True, default=str),
-               json.dumps(dict(columns), sort_keys=True, default=str), repr(self.inputs.choices.ranges())]  # fmt: skip
+        key = [
+            site.name,
+            site.hash,
+            str(site.start),
+            str(site.end),
+            repr(sorted(functions.items())),
+            self.inputs.file.step,
+            self.inputs.file.scheme,
+            json.dumps(mode.changes, sort_keys=True, default=str),
+            json.dumps(site.building.to_dict(), sort_keys=True, default=str),
+            json.dumps(dict(columns), sort_keys=True, default=str),
+            repr(self.inputs.choices.ranges()),
+        ]
         name = f"{site.name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
         self.used.add(name)
         return self.out / FOLDER / name
 
 
 def modes(objectives: Mapping[str, Objective], only: Sequence[str] | None = None) -> list[Mode]:
-    """Objectives by the changes of the building that they need; those that need no run come with the first."""
+    """Objectives by the changes of the building that they need."""
     found: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
     for name, objective in objectives.items():
         if only is None or name in only:

@@ -1,6 +1,7 @@
 """Designs chosen by a search: the optimizers of this package for one objective, NSGA-II for several.
 
-Every search asks for designs in generations and depends on nothing but their objectives and its seed. A search that was
+Every search asks for designs in generations and depends on nothing but their objectives and its seed. A
+search that was
 interrupted is made again from the beginning; its finished generations are read from their stores.
 
 References
@@ -125,7 +126,9 @@ def _nsga2(choices: Choices, plan: Search, evaluate: Callable[[Sequence[Design]]
         ) from error
     names = [f"x{k}" for k in range(len(choices.all))]
     variables = {
-        name: Real(bounds=choice.range) if choice.range is not None else Choice(options=range(len(choice.options)))
+        name: Real(bounds=choice.range)
+        if choice.range is not None
+        else Choice(options=range(len(choice.options)))
         for name, choice in zip(names, choices.all, strict=True)
     }
     count = len(plan.objectives)

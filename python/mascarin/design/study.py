@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mascarin._io.locks import writing_into
-from mascarin.design.choices import Choices
+from mascarin.design.choices import Choice, Choices
 from mascarin.design.inputs import DesignInputs
 from mascarin.design.results import ALL, DesignResults, by_climate, rank_all, shortlist
 from mascarin.design.runs import Runs, runs_per_design
@@ -56,11 +56,13 @@ def run_design(
 
     out = Path(out)
     with writing_into(out), reporting(progress, "members") as report:
-        runs = Runs(inputs, out, workers, report, expected=_expected(inputs))
+        runs = Runs(inputs, out, workers, report, expected=planned_runs(inputs)["runs"])
         designs, nominal = _designs(inputs, runs)
         name = inputs.file.ranked_by
         least = inputs.objective(name).least
-        count = inputs.file.uncertainty.designs if inputs.file.uncertainty is not None else min(8, len(designs))
+        count = (
+            inputs.file.uncertainty.designs if inputs.file.uncertainty is not None else min(8, len(designs))
+        )
         best = shortlist(nominal, name, len(designs), count, least=least)
         sampled = _sampled(inputs, runs, [designs[k] for k in best])
         results = DesignResults(
@@ -69,7 +71,7 @@ def run_design(
             nominal=nominal,
             best=best,
             sampled=sampled,
-            rankings=rank_all(sampled, name, len(best), least=least),
+            rankings=rank_all(sampled, name, len(best), least=least, negligible=inputs.file.negligible),
             reference=_reference(inputs, runs),
         )
         results.write(out)
@@ -78,15 +80,36 @@ def run_design(
     return results
 
 
-def _expected(inputs: DesignInputs) -> int:
-    """Members of the whole study, or the most that a search may run."""
-    plan = inputs.file.search
+def planned_runs(inputs: DesignInputs) -> dict[str, Any]:
+    """What a study runs, or at most runs where it searches.
+
+    Parameters
+    ----------
+    inputs : DesignInputs
+        The study.
+
+    Returns
+    -------
+    dict
+        Options of each variable, designs, climates, compared designs, samples and runs.
+    """
+    plan, uncertain = inputs.file.search, inputs.file.uncertainty
     count = len(inputs.choices.grid()) if plan.method == "grid" else plan.evaluations
-    extra = 0
-    if inputs.file.uncertainty is not None:
-        compared = min(inputs.file.uncertainty.designs, count)
-        extra = compared * inputs.file.uncertainty.samples
-    return (count + extra) * runs_per_design(inputs)
+    compared = min(8 if uncertain is None else uncertain.designs, count)
+    samples = 1 if uncertain is None else uncertain.samples
+    return {
+        "variables": {choice.name: _options(choice) for choice in inputs.choices.all},
+        "designs": count,
+        "climates": [site.name for site in inputs.sites],
+        "compared": compared,
+        "samples": samples,
+        "uncertain": len(inputs.uncertain),
+        "runs": (count + compared * samples) * runs_per_design(inputs),
+    }
+
+
+def _options(choice: Choice) -> str:
+    return f"{len(choice.options)}" + (" in a grid, any in a search" if choice.range is not None else "")
 
 
 def _designs(inputs: DesignInputs, runs: Runs) -> tuple[list[Design], pd.DataFrame]:
@@ -98,7 +121,9 @@ def _designs(inputs: DesignInputs, runs: Runs) -> tuple[list[Design], pd.DataFra
         designs = inputs.choices.grid()
         return designs, runs.values(designs)
     known: dict[Design, pd.DataFrame] = {}
-    names = list(plan.objectives or inputs.file.objectives) if plan.method == "nsga2" else [inputs.file.ranked_by]
+    names = (
+        list(plan.objectives or inputs.file.objectives) if plan.method == "nsga2" else [inputs.file.ranked_by]
+    )
 
     def costs(asked: Sequence[Design]) -> Any:
         new = _by_structure(inputs.choices, [one for one in dict.fromkeys(asked) if one not in known])
@@ -151,5 +176,3 @@ def _reference(inputs: DesignInputs, runs: Runs) -> dict[str, dict[str, float]]:
         str(row["climate"]): {name: float(row[name]) for name in inputs.file.objectives if name in row}
         for _, row in table.iterrows()
     }
-
-
