@@ -18,6 +18,7 @@ ORDER = [
     {"materials"},
     {"building"},
     {"weather"},
+    {"comfort"},
     {"simulation", "convert"},
     {"ensemble"},
     {"sensitivity", "optimization", "validation"},

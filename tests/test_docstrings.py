@@ -18,8 +18,8 @@ from numpydoc.validate import validate
 import mascarin
 
 PACKAGES = [
-    "building", "calibration", "ensemble", "materials", "optimization", "sensitivity", "simulation",
-    "validation", "weather",
+    "building", "calibration", "comfort", "ensemble", "materials", "optimization", "sensitivity",
+    "simulation", "validation", "weather",
 ]  # fmt: skip
 
 #: Checks of numpydoc: no docstring, no summary, parameters that are missing, unknown, in another

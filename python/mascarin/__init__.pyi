@@ -1,5 +1,6 @@
 from . import building as building
 from . import calibration as calibration
+from . import comfort as comfort
 from . import ensemble as ensemble
 from . import materials as materials
 from . import optimization as optimization

@@ -75,6 +75,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "mascarin.commands.materials:dsc",
             "Make a phase-change material from a DSC measurement.",
         ),
+        Command("weather", "mascarin.commands.weather:weather", "Show and check a weather file."),
         Command("cite", "mascarin.commands.building:cite", "List the sources of numbers and methods."),
     ),
     "Run": (

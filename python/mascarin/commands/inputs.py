@@ -91,7 +91,7 @@ def seconds(text: str) -> float:
 
 
 def read_weather(file: Path) -> Climate:
-    """Read a weather file; the ending of its name gives its format.
+    """Read a weather file, whose name gives its format, or a climate that comes with Mascarin.
 
     Raises
     ------
@@ -99,7 +99,10 @@ def read_weather(file: Path) -> Climate:
         If it is neither EPW nor TMY3, or damaged.
     """
     from mascarin.weather import Climate
+    from mascarin.weather.shipped import PREFIX
 
+    if str(file).startswith(PREFIX):
+        return Climate.from_epw(file)
     match file.suffix.lower():
         case ".epw":
             return Climate.from_epw(file)
@@ -108,5 +111,5 @@ def read_weather(file: Path) -> Climate:
         case suffix:
             raise InputError(
                 f"--weather: found '{file}', a file ending in '{suffix}'; expected .epw, .csv (TMY3, or "
-                "another table with --column), .parquet (with --column) or .yaml"
+                "another table with --column), .parquet (with --column), .yaml or shipped:NAME"
             )

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from mascarin.building import Output
+    from mascarin.comfort import Comfort, ComfortSettings
+    from mascarin.weather import Climate
 
     Array = npt.NDArray[np.float64]
 
@@ -394,6 +396,52 @@ class Results(Mapping[str, "xr.DataArray"]):
         positions = [self._position(name) for name in chosen]
         series = [(self.outputs[p].name, self.outputs[p].unit, self.records[:, p]) for p in positions]
         return draw(series, self.index, ax)
+
+    def comfort(
+        self,
+        zone: str | None = None,
+        climate: Climate | None = None,
+        settings: ComfortSettings | None = None,
+        **keys: Any,
+    ) -> Comfort:
+        """Assess the thermal comfort in a zone.
+
+        Parameters
+        ----------
+        zone : str, optional
+            The zone. Default: the only one whose temperatures were recorded.
+        climate : Climate, optional
+            The weather of the run, for adaptive comfort and for ``humidity="outdoor"``.
+        settings : ComfortSettings, optional
+            How comfort is assessed; else give its keys: index, category, band, humidity, air_speed, ...
+        **keys : object
+            Keys of `mascarin.comfort.ComfortSettings`.
+
+        Returns
+        -------
+        Comfort
+            Hours and degree-hours of discomfort, tables and figures.
+
+        Raises
+        ------
+        InputError
+            A series that is needed was not recorded, or something that the index needs is not known.
+
+        Examples
+        --------
+        >>> import mascarin as mc
+        >>> from mascarin.examples import box, box_climate
+        >>> run = mc.simulate(box(), box_climate(), step="1h", outputs=["room.operative_temperature"])
+        >>> run.comfort(index="operative", band=[18, 28]).zone
+        'room'
+        """
+        from mascarin.comfort import ComfortSettings
+        from mascarin.simulation.comfort import comfort_of
+
+        chosen = ComfortSettings(**keys) if settings is None else settings
+        columns = {output.name: self.records[:, k] for k, output in enumerate(self.outputs)}
+        units = {output.name: output.unit for output in self.outputs}
+        return comfort_of(columns, units, self.index, zone, climate, chosen)
 
     # --- in words -----------------------------------------------------------------------------------------
 

@@ -99,7 +99,7 @@ def with_shared_table(data: Any) -> Any:
 class ClimateSource(Part):
     """Source of the weather data; exactly one kind."""
 
-    epw: str | None = Field(None, description="EPW file")
+    epw: str | None = Field(None, description="EPW file, or shipped:NAME of a climate of Mascarin")
     tmy: str | None = Field(None, description="TMY3 file")
     measured: MeasuredWeather | None = Field(None, description="A measured table")
 

@@ -16,6 +16,7 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.study.locations import Faults, Places
 from mascarin.weather import Climate, Measurements
 from mascarin.weather.data import FOLDER, cache_folder, data_file
+from mascarin.weather.shipped import PREFIX
 from mascarin.weather.table import read_table
 
 if TYPE_CHECKING:
@@ -112,7 +113,8 @@ def open_climate(source: ClimateSource, beside: Beside, building: Building, plac
     """
     if source.epw is not None:
         with places.blame("climate", "epw"):
-            return Climate.from_epw(find(source.epw, beside))
+            shipped = source.epw.startswith(PREFIX)
+            return Climate.from_epw(source.epw if shipped else find(source.epw, beside))
     if source.tmy is not None:
         with places.blame("climate", "tmy"):
             return Climate.from_tmy(find(source.tmy, beside))

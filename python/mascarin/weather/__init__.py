@@ -21,8 +21,12 @@ from __future__ import annotations
 from mascarin.weather.channels import CHANNELS, COEFFICIENTS, IRRADIANCES, RADIATION, TEMPERATURES, UNITS
 from mascarin.weather.climate import Climate
 from mascarin.weather.columns import Column
+from mascarin.weather.epw_writing import write_epw
 from mascarin.weather.measurements import Measurements
+from mascarin.weather.morphing import MonthlyChanges, morphed
+from mascarin.weather.overview import Overview, overview
 from mascarin.weather.schedules import scheduled
+from mascarin.weather.shipped import SHIPPED, ShippedClimate
 from mascarin.weather.site import Place
 from mascarin.weather.steps import STAGES
 from mascarin.weather.summary import summary
@@ -33,16 +37,23 @@ __all__ = [
     "COEFFICIENTS",
     "IRRADIANCES",
     "RADIATION",
+    "SHIPPED",
     "STAGES",
     "TEMPERATURES",
     "UNITS",
     "Climate",
     "Column",
     "Measurements",
+    "MonthlyChanges",
+    "Overview",
     "Place",
+    "ShippedClimate",
+    "morphed",
+    "overview",
     "parse_timezone",
     "scheduled",
     "summary",
+    "write_epw",
 ]
 
 

@@ -21,6 +21,7 @@ from mascarin.weather.pvlib_frames import PvlibStamps, record_of_pvlib
 from mascarin.weather.quality import Stretch, find
 from mascarin.weather.readers import read_epw, read_tmy3
 from mascarin.weather.record import WeatherRecord
+from mascarin.weather.shipped import PREFIX, found
 from mascarin.weather.site import Place, SiteLike
 from mascarin.weather.steps import Steps
 from mascarin.weather.sun_check import check_clock
@@ -75,7 +76,7 @@ class Climate(RecordView[WeatherRecord]):
         Parameters
         ----------
         path : str or Path
-            The file; hourly, one year.
+            The file; hourly, one year; or ``shipped:NAME`` of a climate that comes with Mascarin.
         typical : bool, optional
             True: a typical year, which represents any year and is repeated at its end. False: the calendar
             year in the file. Default: True where the months of the file come from different years.
@@ -115,7 +116,12 @@ class Climate(RecordView[WeatherRecord]):
         (170.0, 'UTC+1', 8760)
         """
         require_type("path", path, (str, Path), "the path of an EPW file")
-        return cls(record_of_year(read_epw(Path(path)), typical, year, elsewhere))
+        return cls(record_of_year(read_epw(found(path)), typical, year, elsewhere))
+
+    @classmethod
+    def shipped(cls, name: str, *, elsewhere: bool = False) -> Climate:
+        """A climate that comes with Mascarin, such as ``tampa``: `mascarin weather` lists them."""
+        return cls.from_epw(f"{PREFIX}{name}", elsewhere=elsewhere)
 
     @classmethod
     def from_tmy(
@@ -384,18 +390,6 @@ class Climate(RecordView[WeatherRecord]):
         ------
         InputError
             There is no such column, or no length can be read.
-
-        Examples
-        --------
-        >>> import pandas as pd
-        >>> index = pd.date_range("2024-06-01", periods=4, freq="1h", tz="UTC")
-        >>> climate = Climate.from_table(
-        ...     pd.DataFrame({"T": [12.0, None, 14.0, 16.0]}, index=index),
-        ...     columns={"air_temperature": "T"},
-        ...     absent=["radiation", "dew_point", "wind_speed", "wind_direction"],
-        ... )
-        >>> climate.fill_gaps("1h").to_dataframe()["air_temperature"].tolist()
-        [12.0, 13.0, 14.0, 16.0]
         """
         return Climate(filled(self.record, longest, columns, hold_end=True))
 

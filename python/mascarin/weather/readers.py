@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -15,6 +16,7 @@ import numpy as np
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.files import file_hash
+from mascarin.weather.shipped import COMPRESSED, content
 from mascarin.weather.timezones import fixed_zone, zone_name
 
 _HEADER = 8
@@ -111,16 +113,17 @@ def read_epw(path: Path) -> Year:
     InputError
         Header or rows are broken; the line is named.
     """
-    digest = file_hash(path)
-    text = path.read_text(encoding="utf-8-sig", errors="replace")
-    where = path.name
-    lines = text.splitlines()
+    file_hash(path)  # refuses what is no file
+    raw = content(path)
+    digest = hashlib.sha256(raw).hexdigest()
+    where = path.name.removesuffix(COMPRESSED)
+    lines = raw.decode("utf-8-sig", errors="replace").splitlines()
     years, table = _read_epw_rows(lines, where)
     values = {}
-    for (channel, _, factor, limit), raw in zip(_EPW, table.T, strict=True):
+    for (channel, _, factor, limit), column in zip(_EPW, table.T, strict=True):
         # Many files write 0 where no infrared was known.
-        unknown = (raw >= limit) | ((raw <= 0.0) & (channel == "infrared"))
-        values[channel] = np.where(unknown, np.nan, raw * factor)
+        unknown = (column >= limit) | ((column <= 0.0) & (channel == "infrared"))
+        values[channel] = np.where(unknown, np.nan, column * factor)
     head = [field.strip() for field in lines[0].split(",")]
     latitude, longitude, hours, altitude = (float(field) for field in head[6:10])
     name = ", ".join(part for part in (head[1], head[3]) if part)
