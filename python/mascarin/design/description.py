@@ -28,7 +28,7 @@ Paths = Name | tuple[str, ...]
 class ClimateFile(Part):
     """Weather of one place, and the period that is simulated there."""
 
-    epw: str | None = Field(None, description="EPW file")
+    epw: str | None = Field(None, description="EPW file, or shipped:NAME of a climate of Mascarin")
     tmy: str | None = Field(None, description="TMY3 file")
     start: Time | None = Field(
         None, description="Start: 12-01 or 2023-12-01, local time; by default that of `period`"

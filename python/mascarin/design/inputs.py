@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+import pandas as pd
 
 from mascarin.building import Building, load, yaml_document
 from mascarin.building.ties import expanded
+from mascarin.comfort import Surroundings
 from mascarin.design.choices import Choices, read_choices
 from mascarin.design.description import FILE_KEYS, DesignFile
+from mascarin.design.objectives import Comfort
 from mascarin.errors import InputError
 from mascarin.simulation.compiling import period
 from mascarin.study.inputs import Beside, find
 from mascarin.study.locations import Faults, Places
 from mascarin.weather import Climate
 from mascarin.weather.files import file_hash
+from mascarin.weather.shipped import PREFIX, found
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from mascarin.design.description import ClimateFile
     from mascarin.design.objectives import Objective
 
@@ -138,6 +140,7 @@ def read_design(path: str | Path, *, allow_outside: bool = False) -> DesignInput
     _check_objectives(file, building, choices, places, faults)
     with places.noting(faults, "reference"):
         building.replace(file.reference)
+    _check_validity(file, sites, places, faults)
     _check_search(file, choices, places, faults)
     faults.raise_all(path)
     return DesignInputs(file, path, building, tuple(sites), choices, uncertain)
@@ -152,7 +155,8 @@ def in_mode(building: Building, objective: Objective) -> Building:
 def _site(name: str, file: DesignFile, building: Building, beside: Beside, places: Places) -> Site:
     given = file.climates[name]
     with places.blame("climates", name, "epw" if given.epw is not None else "tmy"):
-        weather = find(str(given.epw or given.tmy), beside)
+        text = str(given.epw or given.tmy)
+        weather = found(text) if text.startswith(PREFIX) else find(text, beside)
         climate = Climate.from_epw(weather) if given.epw is not None else Climate.from_tmy(weather)
     with places.blame("climates", name, "set"):
         moved = building.replace({**_place(climate), **given.set})
@@ -223,7 +227,7 @@ def _uncertain(
     if file.uncertainty is None:
         return ()
     chosen = [path for choice in choices.all for o in choice.options for path in (*o.numbers, *o.parts)]
-    found: list[str] = []
+    paths: list[str] = []
     for number, given in enumerate(file.uncertainty.parameters):
         with places.noting(faults, "uncertainty", "parameters", number):
             for path in expanded(building, [given]):
@@ -242,8 +246,8 @@ def _uncertain(
                         f"{{value: {parameter.value:g}, "
                         "range: [low, high]}"
                     )
-                found.append(parameter.path)
-    return tuple(dict.fromkeys(found))
+                paths.append(parameter.path)
+    return tuple(dict.fromkeys(paths))
 
 
 def _overlap(path: str, chosen: str) -> bool:
@@ -272,6 +276,27 @@ def _check_objectives(
                 wrong = [label for label in labels if label not in known[variable]]
                 if wrong:
                     raise InputError(f"found '{wrong[0]}', expected one of {', '.join(known[variable])}")
+
+
+def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, faults: Faults) -> None:
+    """Refuse a comfort index that has no value in most of the period, even in a room of 26 degC."""
+    for name, objective in file.objectives.items():
+        if not isinstance(objective, Comfort):
+            continue
+        for site in sites:
+            with places.noting(faults, "objectives", name, "comfort"):
+                times = pd.date_range(site.start, site.end, freq="1h")
+                hours = objective.comfort.occupied(times)
+                room = np.full(len(times), 26.0)
+                around = Surroundings.of(site.climate, times)
+                tried = objective.comfort.discomfort(room, room, hours, around)
+                if float(tried.undefined_hours) > 0.5 * float(hours.sum()):
+                    raise InputError(
+                        f"found no value of {objective.comfort.index} in "
+                        f"{float(tried.undefined_hours):.0f} of {float(hours.sum()):.0f} h in climate '{site.name}', even in a room of 26 degC "
+                        f"({'; '.join(map(str, tried.reasons))}); expected conditions inside its "
+                        "validity. Choose another index, or kind: degree_hours with a limit"
+                    )
 
 
 def _check_search(file: DesignFile, choices: Choices, places: Places, faults: Faults) -> None:

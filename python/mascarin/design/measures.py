@@ -6,14 +6,20 @@ are states or means at the end of a step; the first record is the state at the s
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mascarin.comfort import Surroundings
+
 if TYPE_CHECKING:
     import numpy.typing as npt
     import xarray as xr
+
+    from mascarin.comfort import ComfortSettings
+    from mascarin.comfort.evaluation import Discomfort
+    from mascarin.weather import Climate
 
     Array = npt.NDArray[np.float64]
     Mask = npt.NDArray[np.bool_]
@@ -151,6 +157,52 @@ class DaysInBin:
         """Value for each member. [d]"""
         place = np.minimum((daily_change(run, self.output) * BINS).astype(np.int64), BINS - 1)
         return np.asarray((place == self.number).sum(axis=1), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Assessed:
+    """Degree-hours of discomfort by an index, or the hours in which it has no value; mean over some zones.
+
+    Parameters
+    ----------
+    zones : tuple of str
+        The zones.
+    key : str
+        ``degrees`` or ``undefined``.
+    side : str
+        ``hot``, ``cold`` or ``both``.
+    settings : ComfortSettings
+        Index, limits and person.
+    climate : Climate
+        The weather.
+    """
+
+    zones: tuple[str, ...]
+    key: str
+    side: str
+    settings: ComfortSettings
+    climate: Climate = field(repr=False, compare=False)
+
+    def __call__(self, run: xr.Dataset) -> Array:
+        """Value for each member. [unit of the index x h] or [h]"""
+        import pandas as pd
+
+        times = pd.DatetimeIndex(run["time"].to_numpy(), tz="UTC").tz_convert(self.climate.grid.zone)
+        around = Surroundings.of(self.climate, times)
+        hours = self.settings.occupied(times)
+        total = np.zeros(run.sizes["member"])
+        for zone in self.zones:
+            air, radiant = (
+                run[f"{zone}.{kind}"].to_numpy() for kind in ("air_temperature", "mean_radiant_temperature")
+            )
+            found = self.settings.discomfort(air, radiant, hours, around)
+            total += found.undefined_hours if self.key == "undefined" else self._degrees(found)
+        return np.asarray(total / len(self.zones), dtype=np.float64)
+
+    def _degrees(self, found: Discomfort) -> Array:
+        if self.side == "both":
+            return found.degree_hours
+        return found.hot_degree_hours if self.side == "hot" else found.cold_degree_hours
 
 
 def daily_change(run: xr.Dataset, output: str) -> Array:

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from mascarin.building.part import Part, Shorthand, fault, insist
-from mascarin.design.measures import Beyond, CycleDays, Heat, Highest, Melted, PeakLoad
+from mascarin.comfort import ComfortSettings
+from mascarin.design.measures import Assessed, Beyond, CycleDays, Heat, Highest, Melted, PeakLoad
 from mascarin.ensemble import Statistic
 from mascarin.errors import InputError, did_you_mean
 from mascarin.study.field_types import Hours
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.design.layers import LayerFacts
+    from mascarin.weather import Climate
 
     Array = npt.NDArray[np.float64]
     Measures = dict[str, Callable[[Any], Any]]
@@ -47,8 +49,8 @@ class Wanted(Part):
     def check(self, building: Building) -> None:
         """Refuse what the building, with its changes, does not have."""
 
-    def measures(self) -> Measures:
-        """What is kept of each run, by name; empty where no run is needed."""
+    def measures(self, climate: Climate) -> Measures:
+        """What is kept of each run in a climate, by name; empty where no run is needed."""
         return {}
 
     def outputs(self) -> tuple[str, ...]:
@@ -57,7 +59,7 @@ class Wanted(Part):
 
     def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
         """The objective of each member, shape (members,), from what was kept and from its layers."""
-        return np.asarray(kept[next(iter(self.measures()))], dtype=np.float64)
+        return np.asarray(next(iter(kept.values())), dtype=np.float64)
 
 
 class _OfZones(Wanted):
@@ -151,7 +153,7 @@ class DegreeHours(_Limited):
         """Unit of the value."""
         return "K h"
 
-    def measures(self) -> Measures:
+    def measures(self, climate: Climate) -> Measures:
         """Degree-hours."""
         return self._beyond(weighted=True)
 
@@ -166,9 +168,52 @@ class DiscomfortHours(_Limited):
         """Unit of the value."""
         return "h"
 
-    def measures(self) -> Measures:
+    def measures(self, climate: Climate) -> Measures:
         """Hours."""
         return self._beyond(weighted=False)
+
+
+class Comfort(_OfZones):
+    """Degree-hours outside of the limits of a comfort index."""
+
+    kind: Literal["comfort"] = "comfort"
+    comfort: ComfortSettings = Field(description="Index with its limits, as in `comfort:` of a study")
+    side: Literal["both", "hot", "cold"] = Field("both", description="Which discomfort counts")
+
+    @model_validator(mode="after")
+    def _dry(self) -> Self:
+        if self.comfort.humidity == "simulated":
+            insist(
+                fault(
+                    ("comfort", "humidity"), "simulated", "a number in percent, or outdoor",
+                    "Designs keep no humidity: give a relative humidity, such as 70.",
+                )
+            )  # fmt: skip
+        return self
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return self.comfort.index_used.excess_unit
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return (
+            f"{self.comfort.index_used.title}, limits {self.comfort.limits}, mean of {', '.join(self.zones)}"
+        )
+
+    def outputs(self) -> tuple[str, ...]:
+        """Temperatures of the air and of the surfaces."""
+        kinds = ("air_temperature", "mean_radiant_temperature")
+        return tuple(f"{zone}.{kind}" for zone in self.zones for kind in kinds)
+
+    def measures(self, climate: Climate) -> Measures:
+        """Degree-hours, and hours in which the index has no value."""
+        return {
+            key: Assessed(self.zones, key, self.side, self.comfort, climate)
+            for key in ("degrees", "undefined")
+        }
 
 
 class PeakTemperature(_OfZones):
@@ -187,7 +232,7 @@ class PeakTemperature(_OfZones):
         """What it is."""
         return f"highest operative temperature of {', '.join(self.zones)}"
 
-    def measures(self) -> Measures:
+    def measures(self, climate: Climate) -> Measures:
         """The highest value."""
         return {"peak": Highest(self.outputs(), span_of(self.hours))}
 
@@ -240,7 +285,7 @@ class CoolingEnergy(_Cooled):
         """Unit of the value."""
         return "kWh"
 
-    def measures(self) -> Measures:
+    def measures(self, climate: Climate) -> Measures:
         """The energy."""
         return {"cooling": Heat(self.outputs())}
 
@@ -255,7 +300,7 @@ class PeakCooling(_Cooled):
         """Unit of the value."""
         return "W"
 
-    def measures(self) -> Measures:
+    def measures(self, climate: Climate) -> Measures:
         """The load."""
         return {"load": PeakLoad(self.outputs())}
 
@@ -288,7 +333,7 @@ class LatentUse(_OfLayer):
         """What it is."""
         return f"latent heat taken up in a day by {self.layer}"
 
-    def measures(self) -> Measures:
+    def measures(self, climate: Climate) -> Measures:
         """The fraction that melts in a day."""
         return {"melted": Melted(self.outputs()[0])}
 
@@ -313,7 +358,7 @@ class Cycles(_OfLayer):
         """What it is."""
         return f"days on which the liquid fraction of {self.layer} changes by {self.change:g} or more"
 
-    def measures(self) -> Measures:
+    def measures(self, climate: Climate) -> Measures:
         """The days."""
         return {"days": CycleDays(self.outputs()[0], self.change)}
 
@@ -411,7 +456,7 @@ class Plain(Wanted):
         """The output."""
         return (self._read().output,)
 
-    def measures(self) -> Measures:
+    def measures(self, climate: Climate) -> Measures:
         """The statistic."""
         return {"statistic": self._read()}
 
@@ -420,6 +465,7 @@ Objective = Annotated[
     Annotated[
         DegreeHours
         | DiscomfortHours
+        | Comfort
         | PeakTemperature
         | CoolingEnergy
         | PeakCooling

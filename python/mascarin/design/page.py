@@ -17,6 +17,7 @@ from mascarin.design import charts
 from mascarin.design.details import REFERENCE, detail, grouped_gains, layers_of, zones_of
 from mascarin.design.measures import BINS
 from mascarin.design.results import ALL
+from mascarin.design.runs import UNDEFINED
 from mascarin.report import text
 from mascarin.report.html import palette
 
@@ -141,6 +142,13 @@ def _verdict(results: DesignResults) -> list[str]:
         )
     tied = [results.best[k] for k in order[1:] if ranking.tied[k]]
     said.append(_ties(results, ranking, tied))
+    for column in [key for key in results.nominal.columns if key.endswith(UNDEFINED)]:
+        worst = float(results.nominal[column].max())
+        if worst > 0.0:
+            said.append(
+                f"The index of “{column.removesuffix(UNDEFINED)}” has no value in up to "
+                f"{text.significant(worst)} h of a run, outside its validity; these hours do not count."
+            )
     firsts = {results.best[one.order[0]] for climate, one in results.rankings.items() if climate != ALL}
     if len(firsts) > 1:
         said.append("No single design is first in all climates; the table below gives the first of each.")

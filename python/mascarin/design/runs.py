@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 #: Folder of the stores.
 FOLDER: Final = "runs"
+#: Ending of a column of hours in which an index has no value.
+UNDEFINED: Final = ", hours without a value"
 #: Members from which several processes are quicker than the threads of one.
 _MANY: Final = 200
 
@@ -169,7 +171,7 @@ class Runs:
         found = dict.fromkeys(mode.objectives, float("nan"))
         for name in possible:
             objective = self.inputs.objective(name)
-            kept = {key: np.asarray(one(series)) for key, one in objective.measures().items()}
+            kept = {key: np.asarray(one(series)) for key, one in objective.measures(site.climate).items()}
             found[name] = float(objective.value(kept, facts)[0])
         return found
 
@@ -195,8 +197,10 @@ class Runs:
             kept = self._kept(site, building, columns, mode)
             for name in mode.objectives:
                 objective = self.inputs.objective(name)
-                own = {key: kept[f"{name}: {key}"] for key in objective.measures()}
+                own = {key: kept[f"{name}: {key}"] for key in objective.measures(site.climate)}
                 table[name] = np.asarray(objective.value(own, facts), dtype=np.float64)
+                if "undefined" in own:
+                    table[f"{name}{UNDEFINED}"] = own["undefined"]
             for key in [key for key in kept if key.startswith("bin ")]:
                 table[key] = kept[key]
             if kept:
@@ -213,7 +217,7 @@ class Runs:
         outputs: dict[str, None] = {}
         for name in mode.objectives:
             objective = self.inputs.objective(name)
-            functions |= {f"{name}: {key}": one for key, one in objective.measures().items()}
+            functions |= {f"{name}: {key}": one for key, one in objective.measures(site.climate).items()}
             outputs |= dict.fromkeys(objective.outputs())
         if not functions:
             return {}
@@ -282,7 +286,7 @@ def runs_per_design(inputs: DesignInputs, only: Sequence[str] | None = None) -> 
     needed = [
         mode
         for mode in modes(inputs.file.objectives, only)
-        if any(inputs.objective(name).measures() for name in mode.objectives)
+        if any(inputs.objective(name).outputs() for name in mode.objectives)
     ]
     return len(needed) * len(inputs.sites)
 
