@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from mascarin.design.description import DesignFile, Variable
     from mascarin.study.locations import Faults, Places
 
+#: Thickest layer of a phase-change material. [m]
+MOST_PHASE_CHANGE: Final = 0.2
 #: A design: for each variable the number of its option, or a value where the variable is a range.
 Design = tuple[float, ...]
 
@@ -236,8 +238,24 @@ def _numbers(name: str, variable: Variable, building: Building, places: Places) 
                         f"{parameter.lower:g} to "
                         f"{parameter.upper:g} {parameter.unit}, which is possible there; check its unit"
                     )
+        for parameter in known:
+            _require_thin(building, parameter.path, max(values))
     paths = tuple(parameter.path for parameter in known)
     return Choice(name, known[0].unit, tuple(number_option(value, paths) for value in values), paths, bounds)
+
+
+def _require_thin(building: Building, path: str, value: float) -> None:
+    """Refuse a phase-change layer that no construction of a building has room for."""
+    parts = path.split(".")
+    if parts[0] != "constructions" or parts[-1] != "thickness" or value <= MOST_PHASE_CHANGE:
+        return
+    layers = building.constructions[parts[1]].layers
+    material = next((one.material for one in layers if one.name == parts[3]), None)
+    if material is not None and building.materials[material].kind == "pcm":
+        raise InputError(
+            f"found {value:g} m for {path}, expected at most {MOST_PHASE_CHANGE:g} m of a phase-change "
+            "material, which is what a construction has room for; check its unit: 10 mm is 0.01"
+        )
 
 
 def _in_layers(building: Building, path: str) -> str:

@@ -293,7 +293,8 @@ def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, fau
                 if float(tried.undefined_hours) > 0.5 * float(hours.sum()):
                     raise InputError(
                         f"found no value of {objective.comfort.index} in "
-                        f"{float(tried.undefined_hours):.0f} of {float(hours.sum()):.0f} h in climate '{site.name}', even in a room of 26 degC "
+                        f"{float(tried.undefined_hours):.0f} of {float(hours.sum()):.0f} h in climate "
+                        f"'{site.name}', even in a room of 26 degC "
                         f"({'; '.join(map(str, tried.reasons))}); expected conditions inside its "
                         "validity. Choose another index, or kind: degree_hours with a limit"
                     )

@@ -228,7 +228,7 @@ class Runs:
             self._folder(site, functions, columns, mode),
             building,
             site.climate,
-            columns,
+            one_each(columns),
             outputs=list(outputs),
             objectives=functions,
             start=site.start,
@@ -295,13 +295,27 @@ def facts_of(
     building: Building, columns: Mapping[str, Sequence[Any]], labels: Mapping[str, Sequence[str]]
 ) -> LayerFacts:
     """Layers of the members of an ensemble."""
-    members = read_members(building, columns)
+    members = read_members(building, one_each(columns))
     buildings: list[Building] = [building] * members.count
     for structure, rows in members.groups() if members.structures else ():
         changed = building.replace(structure)
         for row in rows:
             buildings[row] = changed
     return LayerFacts(buildings, members.numbers, labels)
+
+
+def one_each(columns: Mapping[str, Sequence[Any]]) -> dict[str, Any]:
+    """Columns in which a part, such as a list of layers, is one value and not a row of a table."""
+    found: dict[str, Any] = {}
+    for path, column in columns.items():
+        if any(isinstance(value, list | dict) or value is None for value in column):
+            found[path] = np.empty(len(column), dtype=object)
+            found[path][:] = [None] * len(column)
+            for k, value in enumerate(column):
+                found[path][k] = value
+        else:
+            found[path] = column
+    return found
 
 
 def _workers(count: int) -> int | None:
