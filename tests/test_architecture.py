@@ -27,6 +27,7 @@ ORDER = [
     {"examples"},
     {"report"},
     {"study"},
+    {"design"},
     {"genopt"},
     {"commands", "cli"},
 ]

@@ -81,6 +81,9 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
     "Run": (
         Command("run", "mascarin.commands.run:run", "Simulate a building with a weather file."),
         Command("sweep", "mascarin.commands.sweep:sweep", "Simulate a building with many parameter values."),
+        Command(
+            "design", "mascarin.commands.design:design", "Compare designs: which product, how much, where."
+        ),
     ),
     "Compare with measurements": (
         Command("study", "mascarin.commands.study:study", "Run a whole study: compare, calibrate, validate."),

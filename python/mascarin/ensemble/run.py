@@ -157,6 +157,7 @@ def sweep_into(
     objectives: Mapping[str, Objective] | None = None,
     workers: int | Executor | None = None,
     seed: int | None = None,
+    ranges: Mapping[str, tuple[float, float]] | None = None,
 ) -> Store:
     """Run an ensemble into a folder; called again after it was stopped, it continues.
 
@@ -173,6 +174,9 @@ def sweep_into(
         As in `sweep`.
     seed : int, optional
         Seed that the samples were drawn with, for the manifest.
+    ranges : mapping of str to tuple of float, optional
+        Wider ranges than those of the samples, by path. Stores with the same ranges have the same mesh, so
+        that their members can be compared. [unit of each]
 
     Returns
     -------
@@ -206,7 +210,7 @@ def sweep_into(
         parameters=parameters, outputs=outputs, start=start, end=end, step=step, scheme=scheme,
         initial=initial, first_period=first_period, measurements=measurements,
     )  # fmt: skip
-    inputs, found = _prepared(building, climate, samples, options, objectives)
+    inputs, found = _prepared(building, climate, samples, options, objectives, ranges)
     folder = Path(store)
     Store.require_usable(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -229,6 +233,7 @@ def _prepared(
     samples: Mapping[str, npt.ArrayLike] | pd.DataFrame,
     options: RunOptions,
     objectives: Mapping[str, Objective] | None,
+    ranges: Mapping[str, tuple[float, float]] | None = None,
 ) -> tuple[EnsembleInputs, Members]:
     """What the members have in common, with its hash, and the members.
 
@@ -253,7 +258,7 @@ def _prepared(
         building=building,
         climate=climate,
         options=replace(options, parameters=None),
-        ranges=members.ranges,
+        ranges=_joined(members.ranges, ranges or {}),
         objectives=functions,
         identity="",
     )
@@ -263,6 +268,17 @@ def _prepared(
     whole = hashlib.sha256(inputs.compiled(_first_structure(members)).identity.encode())
     whole.update(repr([sorted(inputs.ranges.items()), list(inputs.objectives)]).encode())
     return replace(inputs, identity=whole.hexdigest()), members
+
+
+def _joined(
+    ranges: Mapping[str, tuple[float, float]], wider: Mapping[str, tuple[float, float]]
+) -> dict[str, tuple[float, float]]:
+    """Ranges that contain both."""
+    found = {path: tuple(bounds) for path, bounds in ranges.items()}
+    for path, (low, high) in wider.items():
+        own = found.get(path, (low, high))
+        found[path] = (min(low, own[0]), max(high, own[1]))
+    return {path: (low, high) for path, (low, high) in found.items()}
 
 
 def _require_room(inputs: EnsembleInputs, members: Members) -> None:

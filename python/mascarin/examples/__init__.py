@@ -9,7 +9,17 @@ from mascarin.errors import InputError, did_you_mean
 from mascarin.examples.small import box, box_climate
 from mascarin.examples.synthetic import SyntheticWall, synthetic_wall
 
-__all__ = ["FOLDER", "STUDIES", "SyntheticWall", "box", "box_climate", "locate", "synthetic_wall"]
+__all__ = [
+    "DESIGNS",
+    "FOLDER",
+    "STUDIES",
+    "SyntheticWall",
+    "box",
+    "box_climate",
+    "locate",
+    "locate_design",
+    "synthetic_wall",
+]
 
 FOLDER: Final = Path(__file__).parent
 #: Example studies by name.
@@ -18,6 +28,9 @@ STUDIES: Final = {
     "lgi": FOLDER / "lgi" / "study.yaml",
     "twin-house": FOLDER / "twin_house" / "study.yaml",
 }
+
+#: Example design studies by name.
+DESIGNS: Final = {"reunion-house": FOLDER / "reunion_house" / "design.yaml"}
 
 
 def locate(name: str) -> Path:
@@ -54,6 +67,43 @@ def locate(name: str) -> Path:
     raise InputError(
         f"{name}: found no study file, expected a YAML file or one of {', '.join(STUDIES)}. "
         f"{did_you_mean(name, STUDIES)}".rstrip()
+    )
+
+
+def locate_design(name: str) -> Path:
+    """Find a design file, or an example by its name.
+
+    Parameters
+    ----------
+    name : str
+        Path of a file or of a folder with ``design.yaml``, or a key of `DESIGNS`.
+
+    Returns
+    -------
+    Path
+        The design file.
+
+    Raises
+    ------
+    InputError
+        There is no such file and no such example.
+
+    Examples
+    --------
+    >>> from mascarin.examples import locate_design
+    >>> locate_design("reunion-house").name
+    'design.yaml'
+    """
+    path = Path(name)
+    if path.is_file():
+        return path
+    if name in DESIGNS:
+        return DESIGNS[name]
+    if path.is_dir() and (path / "design.yaml").is_file():
+        return path / "design.yaml"
+    raise InputError(
+        f"{name}: found no design file, expected a YAML file or one of {', '.join(DESIGNS)}. "
+        f"{did_you_mean(name, DESIGNS)}".rstrip()
     )
 
 

@@ -1,0 +1,315 @@
+"""The inputs of a design study, read from its files, with everything checked before the first run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pandas as pd
+
+from mascarin.building import Building, load, yaml_document
+from mascarin.building.ties import expanded
+from mascarin.comfort import Surroundings
+from mascarin.design.choices import Choices, read_choices
+from mascarin.design.description import FILE_KEYS, DesignFile
+from mascarin.design.objectives import Comfort
+from mascarin.errors import InputError
+from mascarin.simulation.compiling import period
+from mascarin.study.inputs import Beside, find
+from mascarin.study.locations import Faults, Places
+from mascarin.weather import Climate
+from mascarin.weather.files import file_hash
+from mascarin.weather.shipped import PREFIX, found
+
+if TYPE_CHECKING:
+    from mascarin.design.description import ClimateFile
+    from mascarin.design.objectives import Objective
+
+#: A date without a year is one of the year that the weather file has.
+_MONTH_AND_DAY: Final = re.compile(r"\d{1,2}-\d{1,2}(?:[T ].*)?")
+
+
+@dataclass(frozen=True)
+class Site:
+    """A climate of the study: weather, period, and the building at that place.
+
+    Attributes
+    ----------
+    name, words : str
+        Name, and the place in words.
+    climate : Climate
+        The weather.
+    start, end : pandas.Timestamp
+        The period, local time.
+    building : Building
+        The building at this place.
+    hash : str
+        SHA-256 of the weather file.
+    """
+
+    name: str
+    words: str
+    climate: Climate
+    start: pd.Timestamp
+    end: pd.Timestamp
+    building: Building
+    hash: str
+
+    @property
+    def days(self) -> float:
+        """Length of the period. [d]"""
+        return float((self.end - self.start).total_seconds()) / 86400.0
+
+
+@dataclass(frozen=True)
+class DesignInputs:
+    """A design study, read and checked.
+
+    Attributes
+    ----------
+    file : DesignFile
+        What is done.
+    path : Path
+        The design file.
+    building : Building
+        The building that all designs begin with.
+    sites : tuple of Site
+        The climates.
+    choices : Choices
+        The variables.
+    uncertain : tuple of str
+        Paths of the uncertain parameters.
+    """
+
+    file: DesignFile
+    path: Path
+    building: Building
+    sites: tuple[Site, ...]
+    choices: Choices
+    uncertain: tuple[str, ...]
+
+    def objective(self, name: str) -> Objective:
+        """An objective by its name."""
+        return self.file.objectives[name]
+
+
+def read_design(path: str | Path, *, allow_outside: bool = False) -> DesignInputs:
+    """Read a design file and what it names, and check all of it.
+
+    Parameters
+    ----------
+    path : str or Path
+        The design file.
+    allow_outside : bool
+        Whether it may name files outside its folder and the data folder.
+
+    Returns
+    -------
+    DesignInputs
+        The study.
+
+    Raises
+    ------
+    InputError
+        A file, name or value cannot be used; all that were found are in the text, with file and line.
+
+    Examples
+    --------
+    >>> read_design("nowhere.yaml")
+    Traceback (most recent call last):
+    mascarin.errors.InputError: nowhere.yaml: cannot be read ...
+    """
+    path = Path(path)
+    file = yaml_document.read(path, DesignFile, "a design study", file_keys=FILE_KEYS)
+    places, faults, beside = Places(path), Faults(), Beside(path.parent, allow_outside)
+    with places.blame("building"):
+        described = load(find(file.building, beside))
+    with places.blame("set"):
+        building = described.replace(file.set) if file.set else described
+    choices = read_choices(file, building, places, faults)
+    faults.raise_all(path)
+    uncertain = _uncertain(file, building, choices, places, faults)
+    sites = []
+    for name in file.climates:
+        with faults.kept():
+            sites.append(_site(name, file, building, beside, places))
+    _check_objectives(file, building, choices, places, faults)
+    with places.noting(faults, "reference"):
+        building.replace(file.reference)
+    _check_validity(file, sites, places, faults)
+    _check_search(file, choices, places, faults)
+    faults.raise_all(path)
+    return DesignInputs(file, path, building, tuple(sites), choices, uncertain)
+
+
+def in_mode(building: Building, objective: Objective) -> Building:
+    """The building as an objective needs it, such as with ideal cooling."""
+    changes = objective.changes()
+    return building.replace(changes) if changes else building
+
+
+def _site(name: str, file: DesignFile, building: Building, beside: Beside, places: Places) -> Site:
+    given = file.climates[name]
+    with places.blame("climates", name, "epw" if given.epw is not None else "tmy"):
+        text = str(given.epw or given.tmy)
+        weather = found(text) if text.startswith(PREFIX) else find(text, beside)
+        climate = Climate.from_epw(weather) if given.epw is not None else Climate.from_tmy(weather)
+    with places.blame("climates", name, "set"):
+        moved = building.replace({**_place(climate), **given.set})
+    with places.blame("climates", name):
+        _require_wind(climate, moved)
+        start, end = period(climate, *_dates(file, given, climate))
+        first, last = period(climate, None, None)
+        if start < first or end > last:
+            raise InputError(
+                f"found the period {start:%Y-%m-%d} to {end:%Y-%m-%d}, expected one inside of the weather "
+                f"file, "
+                f"{first:%Y-%m-%d} to {last:%Y-%m-%d}. A summer over the turn of the year is two periods: "
+                f"take "
+                "the part after it, such as start: 01-01"
+            )
+    place = climate.site
+    words = (
+        f"{place.name or name} ({place.latitude:.2f}, {place.longitude:.2f})" if place is not None else name
+    )
+    return Site(name, words, climate, start, end, moved, file_hash(weather))
+
+
+def _dates(file: DesignFile, given: ClimateFile, climate: Climate) -> Iterator[str | None]:
+    year = period(climate, None, None)[0].year
+    for key in ("start", "end"):
+        text = getattr(given, key) or (getattr(file.period, key) if file.period is not None else None)
+        yield f"{year}-{text}" if text is not None and _MONTH_AND_DAY.fullmatch(text) else text
+
+
+def _place(climate: Climate) -> dict[str, Any]:
+    """The place of the weather, to which the building is moved."""
+    place = climate.site
+    if place is None:
+        return {}
+    return {
+        "site.latitude": place.latitude,
+        "site.longitude": place.longitude,
+        "site.altitude": place.altitude,
+        "site.timezone": climate.timezone,
+    }
+
+
+def _require_wind(climate: Climate, building: Building) -> None:
+    """Refuse weather without wind where wind drives a flow of air."""
+    driven = [
+        f"openings.{name}" for name, one in building.openings.items() if float(one.wind_coefficient) > 0.0
+    ]
+    driven += [f"zones.{name}.infiltration" for name, zone in building.zones.items() if _by_wind(zone)]
+    columns = climate.record.data
+    wind = np.asarray(columns["wind_speed"], dtype=np.float64) if "wind_speed" in columns else np.zeros(1)
+    if driven and not np.nanmax(wind, initial=0.0) > 0.0:
+        raise InputError(
+            f"found no wind in the weather file, expected wind speeds, by which air flows through "
+            f"{driven[0]}. "
+            "Choose another file, or set the wind coefficient of these openings to 0, so that only "
+            "buoyancy acts"
+        )
+
+
+def _by_wind(zone: Any) -> bool:
+    leaks = zone.infiltration
+    return float(leaks.wind) > 0.0 or getattr(leaks.blower_door, "kind", "") == "stack_wind"
+
+
+def _uncertain(
+    file: DesignFile, building: Building, choices: Choices, places: Places, faults: Faults
+) -> tuple[str, ...]:
+    if file.uncertainty is None:
+        return ()
+    chosen = [path for choice in choices.all for o in choice.options for path in (*o.numbers, *o.parts)]
+    paths: list[str] = []
+    for number, given in enumerate(file.uncertainty.parameters):
+        with places.noting(faults, "uncertainty", "parameters", number):
+            for path in expanded(building, [given]):
+                parameter = building.parameter(path)
+                if parameter.structural:
+                    raise InputError(
+                        f"{path} changes the shape of the building; expected a number that may vary"
+                    )
+                if any(_overlap(path, one) for one in chosen):
+                    raise InputError(
+                        f"{path} is one of the variables, or in a part that they replace; remove it"
+                    )
+                if not parameter.low < parameter.high:
+                    raise InputError(
+                        f"{path} has no range; expected one in the building, such as "
+                        f"{{value: {parameter.value:g}, "
+                        "range: [low, high]}"
+                    )
+                paths.append(parameter.path)
+    return tuple(dict.fromkeys(paths))
+
+
+def _overlap(path: str, chosen: str) -> bool:
+    # A product replaces all numbers of its material.
+    part = chosen.removesuffix(".product")
+    return path == part or path.startswith(f"{part}.")
+
+
+def _check_objectives(
+    file: DesignFile, building: Building, choices: Choices, places: Places, faults: Faults
+) -> None:
+    variants = list(choices.structures())
+    for name, objective in file.objectives.items():
+        with places.noting(faults, "objectives", name):
+            changed = in_mode(building, objective)
+            objective.check(changed)
+            # A variant may leave out what an objective needs; one of each structure is compiled later.
+            for parts in variants if len(variants) <= 12 else ():
+                objective.check(in_mode(building.replace(parts), objective))
+        prices: Mapping[str, Mapping[str, float]] = getattr(objective, "choices", {})
+        for variable, labels in prices.items():
+            with places.noting(faults, "objectives", name, "choices", variable):
+                known = {choice.name: [o.label for o in choice.options] for choice in choices.all}
+                if variable not in known:
+                    raise InputError(f"found '{variable}', expected one of the variables {', '.join(known)}")
+                wrong = [label for label in labels if label not in known[variable]]
+                if wrong:
+                    raise InputError(f"found '{wrong[0]}', expected one of {', '.join(known[variable])}")
+
+
+def _check_validity(file: DesignFile, sites: Sequence[Site], places: Places, faults: Faults) -> None:
+    """Refuse a comfort index that has no value in most of the period, even in a room of 26 degC."""
+    for name, objective in file.objectives.items():
+        if not isinstance(objective, Comfort):
+            continue
+        for site in sites:
+            with places.noting(faults, "objectives", name, "comfort"):
+                times = pd.date_range(site.start, site.end, freq="1h")
+                hours = objective.comfort.occupied(times)
+                room = np.full(len(times), 26.0)
+                around = Surroundings.of(site.climate, times)
+                tried = objective.comfort.discomfort(room, room, hours, around)
+                if float(tried.undefined_hours) > 0.5 * float(hours.sum()):
+                    raise InputError(
+                        f"found no value of {objective.comfort.index} in "
+                        f"{float(tried.undefined_hours):.0f} of {float(hours.sum()):.0f} h in climate "
+                        f"'{site.name}', even in a room of 26 degC "
+                        f"({'; '.join(map(str, tried.reasons))}); expected conditions inside its "
+                        "validity. Choose another index, or kind: degree_hours with a limit"
+                    )
+
+
+def _check_search(file: DesignFile, choices: Choices, places: Places, faults: Faults) -> None:
+    with places.noting(faults, "search"):
+        if file.search.method == "grid":
+            choices.grid()
+        fixed = [choice.name for choice in choices.all if choice.range is None]
+        if file.search.method == "cma" and (fixed or len(choices.all) < 2):
+            raise InputError(
+                f"found method: cma with {', '.join(fixed) or 'one variable'}; expected two or more "
+                f"variables with "
+                "range:, as it chooses numbers only. Take method: swarm"
+            )
+        if file.search.method == "nsga2" and len(file.search.objectives or file.objectives) < 2:
+            raise InputError("found one objective, expected two or more for nsga2. Take method: swarm")

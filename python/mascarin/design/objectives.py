@@ -1,0 +1,535 @@
+"""What makes a design good: each objective says which run it needs, what is kept of it, and its value."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from mascarin.building.part import Part, Shorthand, fault, insist
+from mascarin.comfort import ComfortSettings
+from mascarin.design.measures import Assessed, Beyond, CycleDays, Heat, Highest, Melted, PeakLoad
+from mascarin.ensemble import Statistic
+from mascarin.errors import InputError, did_you_mean
+from mascarin.study.field_types import Hours
+
+if TYPE_CHECKING:
+    from typing import Self
+
+    import numpy.typing as npt
+
+    from mascarin.building import Building
+    from mascarin.design.layers import LayerFacts
+    from mascarin.weather import Climate
+
+    Array = npt.NDArray[np.float64]
+    Measures = dict[str, Callable[[Any], Any]]
+
+#: Higher indoor limits of EN 16798-1:2019, table B.4, by the air speed that occupants control. [m/s] -> [K]
+AIR_SPEED: Final[dict[float, float]] = {0.0: 0.0, 0.6: 1.2, 0.9: 1.8, 1.2: 2.2}
+
+
+class Wanted(Part):
+    """Base of the objectives."""
+
+    #: Whether small values are good.
+    least: ClassVar[bool] = True
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        raise NotImplementedError
+
+    def changes(self) -> dict[str, Any]:
+        """What is replaced in the building for the runs of this objective."""
+        return {}
+
+    def check(self, building: Building) -> None:
+        """Refuse what the building, with its changes, does not have."""
+
+    def measures(self, climate: Climate) -> Measures:
+        """What is kept of each run in a climate, by name; empty where no run is needed."""
+        return {}
+
+    def outputs(self) -> tuple[str, ...]:
+        """Outputs that the measures read."""
+        return ()
+
+    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+        """The objective of each member, shape (members,), from what was kept and from its layers."""
+        return np.asarray(next(iter(kept.values())), dtype=np.float64)
+
+
+class _OfZones(Wanted):
+    zones: tuple[str, ...] = Field(min_length=1, description="Zones; the value is the mean over them")
+
+    _ENDING: ClassVar = "operative_temperature"
+
+    def outputs(self) -> tuple[str, ...]:
+        """One output for each zone."""
+        return tuple(f"{zone}.{self._ENDING}" for zone in self.zones)
+
+    def check(self, building: Building) -> None:
+        """Refuse a zone that the building does not have."""
+        for zone in self.zones:
+            require_zone(building, zone)
+
+
+class _Limited(_OfZones):
+    above: float | None = Field(None, description="Operative temperature above which it is too hot [degC]")
+    below: float | None = Field(None, description="Operative temperature below which it is too cold [degC]")
+    hours: Hours | None = Field(
+        None,
+        description='First and last hour of the day that counts, such as ["22:00", "06:00"]; all if none',
+    )
+    air_speed: float = Field(
+        0.0,
+        description="Air speed of fans that occupants control: 0, 0.6, 0.9 or 1.2 m/s; raises `above` "
+        "by 0, 1.2, 1.8 or 2.2 K (EN 16798-1:2019, table B.4) [m/s]",
+    )
+
+    @model_validator(mode="after")
+    def _one_limit(self) -> Self:
+        if (self.above is None) == (self.below is None):
+            found = "no limit" if self.above is None else "above and below"
+            insist(fault((), found, "one of above, below [degC]", "Write an objective for each."))
+        if self.air_speed not in AIR_SPEED:
+            insist(
+                fault(
+                    ("air_speed",),
+                    f"{self.air_speed:g} m/s",
+                    "0, 0.6, 0.9 or 1.2 m/s: the standard has no other value, and none between them",
+                    "Choose one of them.",
+                )
+            )
+        limit = self.above if self.above is not None else self.below
+        if self.above is not None and self.air_speed and self.above < 25.0:
+            insist(
+                fault(
+                    ("air_speed",),
+                    f"above: {self.above:g} degC",
+                    "a limit above 25 degC: only there does the standard count the air speed",
+                    "Remove air_speed, or raise the limit.",
+                )
+            )
+        if limit is not None and not 0.0 <= limit <= 60.0:
+            insist(fault((), f"a limit of {limit:g} degC", "0 to 60 degC", "Give it in degC."))
+        return self
+
+    @property
+    def limit(self) -> float:
+        """The limit with the effect of the air speed. [degC]"""
+        if self.above is not None:
+            return self.above + AIR_SPEED[self.air_speed]
+        return float(self.below or 0.0)
+
+    @property
+    def words(self) -> str:
+        """The limit in words."""
+        side = "above" if self.above is not None else "below"
+        when = "" if self.hours is None else f", {self.hours[0]} to {self.hours[1]}"
+        fans = f" ({self.above:g} and {AIR_SPEED[self.air_speed]:g} K for fans)" if self.air_speed else ""
+        return (
+            f"operative temperature {side} {self.limit:g} degC{fans}{when}, mean of {', '.join(self.zones)}"
+        )
+
+    def _beyond(self, *, weighted: bool) -> Measures:
+        return {
+            "beyond": Beyond(
+                self.outputs(), self.limit, self.above is not None, span_of(self.hours), weighted
+            )
+        }
+
+
+class DegreeHours(_Limited):
+    """Degree-hours of discomfort: how long and by how much a limit is exceeded."""
+
+    kind: Literal["degree_hours"] = "degree_hours"
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "K h"
+
+    def measures(self, climate: Climate) -> Measures:
+        """Degree-hours."""
+        return self._beyond(weighted=True)
+
+
+class DiscomfortHours(_Limited):
+    """Hours of discomfort: how long a limit is exceeded."""
+
+    kind: Literal["hours"] = "hours"
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "h"
+
+    def measures(self, climate: Climate) -> Measures:
+        """Hours."""
+        return self._beyond(weighted=False)
+
+
+class Comfort(_OfZones):
+    """Degree-hours outside of the limits of a comfort index."""
+
+    kind: Literal["comfort"] = "comfort"
+    comfort: ComfortSettings = Field(description="Index with its limits, as in `comfort:` of a study")
+    side: Literal["both", "hot", "cold"] = Field("both", description="Which discomfort counts")
+
+    @model_validator(mode="after")
+    def _dry(self) -> Self:
+        if self.comfort.humidity == "simulated":
+            insist(
+                fault(
+                    ("comfort", "humidity"), "simulated", "a number in percent, or outdoor",
+                    "Designs keep no humidity: give a relative humidity, such as 70.",
+                )
+            )  # fmt: skip
+        return self
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return self.comfort.index_used.excess_unit
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return (
+            f"{self.comfort.index_used.title}, limits {self.comfort.limits}, mean of {', '.join(self.zones)}"
+        )
+
+    def outputs(self) -> tuple[str, ...]:
+        """Temperatures of the air and of the surfaces."""
+        kinds = ("air_temperature", "mean_radiant_temperature")
+        return tuple(f"{zone}.{kind}" for zone in self.zones for kind in kinds)
+
+    def measures(self, climate: Climate) -> Measures:
+        """Degree-hours, and hours in which the index has no value."""
+        return {
+            key: Assessed(self.zones, key, self.side, self.comfort, climate)
+            for key in ("degrees", "undefined")
+        }
+
+
+class PeakTemperature(_OfZones):
+    """Highest operative temperature of some zones."""
+
+    kind: Literal["peak_temperature"] = "peak_temperature"
+    hours: Hours | None = Field(None, description="First and last hour of the day that counts")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "degC"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"highest operative temperature of {', '.join(self.zones)}"
+
+    def measures(self, climate: Climate) -> Measures:
+        """The highest value."""
+        return {"peak": Highest(self.outputs(), span_of(self.hours))}
+
+
+class _Cooled(_OfZones):
+    zones: tuple[str, ...] = Field(min_length=1, description="Zones; the value is the sum over them")
+    setpoint: float | None = Field(
+        None,
+        ge=10.0,
+        le=40.0,
+        description="Set point of ideal cooling of these zones; none: as described in the building [degC]",
+    )
+    set: dict[str, Any] = Field(
+        default_factory=dict,
+        description="Path -> value of the cooled building only, such as closed windows",
+    )
+
+    _ENDING: ClassVar = "cooling_load"
+
+    def changes(self) -> dict[str, Any]:
+        """Ideal cooling, and what goes with it."""
+        cooled = {f"zones.{zone}.cooling": {"setpoint": self.setpoint} for zone in self.zones}
+        return {**(cooled if self.setpoint is not None else {}), **self.set}
+
+    def check(self, building: Building) -> None:
+        """Refuse a zone without cooling."""
+        super().check(building)
+        for zone in self.zones:
+            if building.zones[zone].cooling is None:
+                raise InputError(
+                    f"found no cooling in zone '{zone}'; expected ideal cooling, whose energy is counted. "
+                    f"Add "
+                    "setpoint: here, such as setpoint: 26, or cooling: in the building"
+                )
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        at = "" if self.setpoint is None else f" at {self.setpoint:g} degC"
+        return f"sensible ideal cooling of {', '.join(self.zones)}{at}"
+
+
+class CoolingEnergy(_Cooled):
+    """Energy of ideal cooling over the period."""
+
+    kind: Literal["cooling_energy"] = "cooling_energy"
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "kWh"
+
+    def measures(self, climate: Climate) -> Measures:
+        """The energy."""
+        return {"cooling": Heat(self.outputs())}
+
+
+class PeakCooling(_Cooled):
+    """Largest load of ideal cooling, mean over an hour, all zones together."""
+
+    kind: Literal["peak_cooling"] = "peak_cooling"
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "W"
+
+    def measures(self, climate: Climate) -> Measures:
+        """The load."""
+        return {"load": PeakLoad(self.outputs())}
+
+
+class _OfLayer(Wanted):
+    layer: str = Field(description="Phase-change layer: SURFACE.LAYER, such as ceiling.pcm")
+    least: ClassVar[bool] = False
+
+    def outputs(self) -> tuple[str, ...]:
+        """The liquid fraction."""
+        return (f"{self.layer}_liquid_fraction",)
+
+    def check(self, building: Building) -> None:
+        """Refuse a layer that is not there or does not melt."""
+        require_layer(building, self.layer, melts=True)
+
+
+class LatentUse(_OfLayer):
+    """Latent heat that a layer takes up in a day, as the mean over the days."""
+
+    kind: Literal["latent_use"] = "latent_use"
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "Wh/(m2 d)"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"latent heat taken up in a day by {self.layer}"
+
+    def measures(self, climate: Climate) -> Measures:
+        """The fraction that melts in a day."""
+        return {"melted": Melted(self.outputs()[0])}
+
+    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+        """Latent heat of a square metre times the fraction that melts."""
+        return np.asarray(kept["melted"] * facts.latent(self.layer) / 3600.0, dtype=np.float64)
+
+
+class Cycles(_OfLayer):
+    """Days on which a layer really cycles: its liquid fraction changes by at least so much."""
+
+    kind: Literal["cycle_days"] = "cycle_days"
+    change: float = Field(0.5, gt=0.0, le=1.0, description="Least change of the liquid fraction in a day [-]")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "d"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"days on which the liquid fraction of {self.layer} changes by {self.change:g} or more"
+
+    def measures(self, climate: Climate) -> Measures:
+        """The days."""
+        return {"days": CycleDays(self.outputs()[0], self.change)}
+
+
+class Mass(Wanted):
+    """Mass of some layers."""
+
+    kind: Literal["mass"] = "mass"
+    layers: tuple[str, ...] = Field(min_length=1, description="SURFACE.LAYER of each")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "kg"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"mass of {', '.join(self.layers)}"
+
+    def check(self, building: Building) -> None:
+        """Refuse a layer that is not there or has no mass."""
+        for layer in self.layers:
+            require_layer(building, layer, melts=False)
+
+    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+        """Density times thickness times area."""
+        return np.asarray(np.sum([facts.mass(layer) for layer in self.layers], axis=0), dtype=np.float64)
+
+
+class Cost(Wanted):
+    """Cost, of prices that you give."""
+
+    kind: Literal["cost"] = "cost"
+    currency: str = Field("EUR", description="Currency of all prices")
+    per_kg: dict[str, float] = Field(default_factory=dict, description="SURFACE.LAYER -> price of a kilogram")
+    products: dict[str, float] = Field(
+        default_factory=dict, description="Product -> price of a kilogram, instead of that of the layer"
+    )
+    choices: dict[str, dict[str, float]] = Field(
+        default_factory=dict, description="Variable -> variant or value as text -> price"
+    )
+    fixed: float = Field(0.0, description="What every design costs")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return self.currency
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return "cost of the prices that were given"
+
+    def check(self, building: Building) -> None:
+        """Refuse a layer that is not there or has no mass."""
+        for layer in self.per_kg:
+            require_layer(building, layer, melts=False)
+
+    def value(self, kept: Mapping[str, Array], facts: LayerFacts) -> Array:
+        """Prices of the layers and of the choices."""
+        total = np.full(facts.count, self.fixed)
+        for layer, price in self.per_kg.items():
+            prices = [self.products.get(product or "", price) for product in facts.products(layer)]
+            total = total + facts.mass(layer) * np.asarray(prices)
+        for variable, prices_of in self.choices.items():
+            total = total + np.array([prices_of.get(one, 0.0) for one in facts.chosen(variable)])
+        return np.asarray(total, dtype=np.float64)
+
+
+class Plain(Wanted):
+    """A statistic of one output, as in ``mascarin sweep``: ``max:room.air_temperature``; small is good."""
+
+    kind: Literal["statistic"] = "statistic"
+    statistic: str = Field(description="min:, mean:, max:, sd:, above:LIMIT: or below:LIMIT: and an output")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value."""
+        return "h" if self._read().kind in ("above", "below") else "unit of the output"
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return self.statistic
+
+    def _read(self) -> Statistic:
+        return Statistic.read(self.statistic)
+
+    def check(self, building: Building) -> None:
+        """Refuse an output that the building does not have."""
+        building.output(self._read().output)
+
+    def outputs(self) -> tuple[str, ...]:
+        """The output."""
+        return (self._read().output,)
+
+    def measures(self, climate: Climate) -> Measures:
+        """The statistic."""
+        return {"statistic": self._read()}
+
+
+Objective = Annotated[
+    Annotated[
+        DegreeHours
+        | DiscomfortHours
+        | Comfort
+        | PeakTemperature
+        | CoolingEnergy
+        | PeakCooling
+        | LatentUse
+        | Cycles
+        | Mass
+        | Cost
+        | Plain,
+        Field(discriminator="kind"),
+    ],
+    Shorthand(word="statistic", kind="statistic"),
+]
+
+
+def require_zone(building: Building, zone: str) -> None:
+    """Refuse a zone that the building does not have.
+
+    Raises
+    ------
+    InputError
+        Naming the zones.
+    """
+    if zone not in building.zones:
+        raise InputError(
+            f"found the zone '{zone}', expected one of {', '.join(building.zones)}. "
+            f"{did_you_mean(zone, building.zones)}".rstrip()
+        )
+
+
+def require_layer(building: Building, layer: str, *, melts: bool) -> None:
+    """Refuse a layer that is not there, and one that does not melt where this is needed.
+
+    Raises
+    ------
+    InputError
+        Naming surfaces or layers.
+    """
+    surface, _, name = layer.partition(".")
+    if surface not in building.surfaces or not name:
+        raise InputError(
+            f"found '{layer}', expected SURFACE.LAYER with one of the surfaces "
+            f"{', '.join(building.surfaces)}. "
+            f"{did_you_mean(surface, building.surfaces)}".rstrip()
+        )
+    construction = building.surfaces[surface].construction
+    found = {one.name: one for one in building.constructions[construction].layers}
+    if name not in found:
+        raise InputError(
+            f"found '{layer}', but construction '{construction}' of this surface has the layers "
+            f"{', '.join(map(str, found))}; expected one of them. "
+            f"{did_you_mean(name, list(map(str, found)))}".rstrip()
+        )
+    material = building.materials[found[name].material]
+    if melts and material.kind != "pcm":
+        raise InputError(
+            f"found '{layer}' of kind '{material.kind}', expected a phase-change material (kind: pcm)"
+        )
+    if material.kind == "resistance":
+        raise InputError(f"found '{layer}', a resistance without mass, expected a layer with a density")
+
+
+def span_of(hours: Hours | None) -> tuple[float, float] | None:
+    """Hours of the day as numbers. [h]"""
+    if hours is None:
+        return None
+    first, last = ((int(a) + int(b) / 60.0) for a, b in (one.split(":") for one in hours))
+    return first, last
