@@ -202,7 +202,7 @@ ZoneSun = Annotated[
 def _or_held(schema: dict[str, Any]) -> None:
     """Allow ``held``, the short form of heating and cooling with one set point, in the JSON Schema."""
     schema["properties"]["held"] = {
-        "description": "Heating and cooling with this set point",
+        "description": "Heating and cooling with this set point [degC]",
         "anyOf": [
             {"type": "number"},
             {

@@ -1,0 +1,10 @@
+"""
+Melting curves
+==============
+
+test
+"""
+
+import matplotlib.pyplot as plt
+
+plt.plot([1, 2])
