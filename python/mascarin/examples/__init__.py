@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Final
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.examples.clear import clear_days
 from mascarin.examples.small import box, box_climate
 from mascarin.examples.synthetic import SyntheticWall, synthetic_wall
 
-__all__ = ["FOLDER", "STUDIES", "SyntheticWall", "box", "box_climate", "locate", "synthetic_wall"]
+__all__ = ["FOLDER", "STUDIES", "SyntheticWall", "box", "box_climate", "clear_days", "locate", "synthetic_wall"]
 
 FOLDER: Final = Path(__file__).parent
 #: Example studies by name.
