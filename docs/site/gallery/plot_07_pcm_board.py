@@ -2,7 +2,7 @@
 A phase-change board in a room
 ==============================
 
-A light room with plain boards, and the same room with boards that melt about 26 °C. The board takes heat
+A light room with plain boards, and the same room with boards that melt about 23.5 °C. The board takes heat
 in the afternoon and gives it back at night.
 """
 
@@ -42,7 +42,7 @@ melting = b.PhaseChangeMaterial(
     conductivity=(0.22, 0.18),
     specific_heat=(3134, 2833),
     latent_heat=71000,
-    melting_temperature=26,
+    melting_temperature=23.5,
     law=b.TanhLaw(width=1),
 )
 with_pcm = plain.replace({"materials.board": melting})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sitepages import api, assemble, commands, keys, outputs
+from sitepages import api, assemble, commands, keys, laws, outputs
 from sitepages.snippets import Snippets
 
 _INDEX = """# Reference
@@ -15,6 +15,7 @@ Made from the code when this site is built, so that it is complete and agrees wi
 - [Keys of a study](studies.md#keys): the same for study files.
 - [Outputs](outputs.md): every series that a run can record.
 - [Commands](commands.md): every command with its options and exit codes.
+- [Laws](laws.md): every physical law with its equation, source and range.
 - [Python](api/index.md): public classes and functions.
 """
 
@@ -32,6 +33,7 @@ def write(source: Path) -> None:
         "building-keys": keys.page(Snippets(assemble.DOCS)),
         "outputs": outputs.page(),
         "commands": commands.page(),
+        "laws": laws.page(),
         **api.pages(),
     }
     assemble.assemble(source)
@@ -43,6 +45,6 @@ def write(source: Path) -> None:
         source,
         {
             "Examples": ("gallery/index", []),
-            "Reference": ("reference", ["building-keys", "outputs", "commands", "api/index"]),
+            "Reference": ("reference", ["building-keys", "outputs", "commands", "laws", "api/index"]),
         },
     )

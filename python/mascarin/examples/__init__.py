@@ -10,7 +10,16 @@ from mascarin.examples.clear import clear_days
 from mascarin.examples.small import box, box_climate
 from mascarin.examples.synthetic import SyntheticWall, synthetic_wall
 
-__all__ = ["FOLDER", "STUDIES", "SyntheticWall", "box", "box_climate", "clear_days", "locate", "synthetic_wall"]
+__all__ = [
+    "FOLDER",
+    "STUDIES",
+    "SyntheticWall",
+    "box",
+    "box_climate",
+    "clear_days",
+    "locate",
+    "synthetic_wall",
+]
 
 FOLDER: Final = Path(__file__).parent
 #: Example studies by name.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -63,9 +64,11 @@ def clear_days(
 
     zone = parse_timezone(timezone)
     times = pd.date_range(start, periods=24 * days, freq="1h", tz=zone)
-    frame = Location(latitude, longitude, altitude=altitude).get_clearsky(
-        times, model="ineichen", linke_turbidity=3.0
-    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # pvlib calls functions that newer versions of pandas deprecate
+        frame = Location(latitude, longitude, altitude=altitude).get_clearsky(
+            times, model="ineichen", linke_turbidity=3.0
+        )
     frame["temp_air"] = mean + swing * np.sin(2.0 * np.pi * (times.hour.to_numpy() - 9.0) / 24.0)
     frame["relative_humidity"] = 60.0
     frame["wind_speed"] = wind
