@@ -5,6 +5,8 @@
 #   make coverage     build, run the Python tests, print the lines that no test reaches
 #   make test-lowest  run the Python tests with the lowest versions that pyproject.toml declares
 #   make fuzz   build, run the long campaign of random and mutated inputs; FUZZ="--inputs 100000" for more of them
+#   make docs   build, make the documentation site without a network: target/site/html; warnings are errors
+#   make docs-links   ask the other sites that the pages link to
 #   make bench  build, measure, and write the tables of docs/speed.md; make bench ENERGYPLUS=path with its peer
 #
 # They need Python 3.11 or later, cargo and make, and nothing else.
@@ -33,7 +35,7 @@ export PYO3_PYTHON := $(CURDIR)/$(PY)
 
 FUZZ_CALLS ?= 20000
 
-.PHONY: help demo test coverage test-lowest bench fuzz build check-tools check-rust check-python pytest
+.PHONY: help demo test coverage test-lowest bench fuzz docs docs-links build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:
 
 help:
@@ -41,6 +43,7 @@ help:
 	@echo "make test   build, run formatting, lints, types and every test"
 	@echo "make coverage     build, run the Python tests, print the lines that no test reaches"
 	@echo "make test-lowest  run the Python tests with the lowest versions that pyproject.toml declares"
+	@echo "make docs   build, make the documentation site: target/site/html"
 	@echo "make bench  build, measure, and write the tables of docs/speed.md;" \
 		"make bench ENERGYPLUS=path with its peer"
 
@@ -61,6 +64,13 @@ test-lowest: $(BUILT)
 	@chmod +x $(LOWEST)/bin/mascarin
 	@# Old versions call functions that newer ones of other packages deprecate.
 	PATH="$(CURDIR)/$(LOWEST)/bin:$$PATH" PYTHONPATH=$(CURDIR)/python $(LOWEST)/bin/python -m pytest --numprocesses=auto --dist=loadfile -W ignore::DeprecationWarning
+
+docs: $(BUILT)
+	$(PY) docs/site/build.py target/site
+	@echo "target/site/html/index.html"
+
+docs-links: $(BUILT)
+	$(PY) docs/site/build.py target/site --links
 
 # ENERGYPLUS is the program of version 25.2 (bench/energyplus.py says where to get it). Leave the machine alone meanwhile.
 bench: $(BUILT) $(HYPERFINE)

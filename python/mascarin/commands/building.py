@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def schema() -> None:
     """Print the JSON Schema of a building description.
 
-    With this file an editor can complete and check building files.
+    With this file an editor can complete and check building files. The same as a page for readers, with
+    examples, is "Keys of a building" in the reference of the documentation.
     """
     from mascarin.building import json_schema
 
@@ -113,8 +114,9 @@ def parameters(
 def outputs(building: Path, /, *patterns: str, settings: Settings = None, as_json: AsJson = False) -> None:
     """List every output of a building.
 
-    Each with its name, unit, other names, and whether a run records it without --output. The names are those
-    of 'mascarin run --output' and of the sensors of a study.
+    Each with its name, unit, other names, and whether a run records it without --output; with --json also
+    what it means. The names are those of 'mascarin run --output' and of the sensors of a study. All kinds of
+    outputs are listed under "Outputs" in the reference of the documentation.
 
     Parameters
     ----------
@@ -123,6 +125,7 @@ def outputs(building: Path, /, *patterns: str, settings: Settings = None, as_jso
     patterns : str
         Only outputs that fit these patterns, such as "roof.*" or "*_temperature".
     """
+    from mascarin.building.output_kinds import meaning
     from mascarin.simulation.compiling import chosen_outputs
 
     described = read_building(building, settings)
@@ -134,6 +137,7 @@ def outputs(building: Path, /, *patterns: str, settings: Settings = None, as_jso
             "aliases": list(output.aliases),
             "mean": output.mean,
             "default": output.name in usual,
+            "meaning": meaning(output),
         }
         for output in described.outputs()
     ]

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from mascarin.errors import InputError, did_you_mean
+from mascarin.examples.clear import clear_days
 from mascarin.examples.small import box, box_climate
 from mascarin.examples.synthetic import SyntheticWall, synthetic_wall
 
@@ -16,6 +17,7 @@ __all__ = [
     "SyntheticWall",
     "box",
     "box_climate",
+    "clear_days",
     "locate",
     "locate_design",
     "synthetic_wall",

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 __all__ = [
+    "USUAL",
     "changed_parameters",
     "chosen_outputs",
     "forcing_of",
@@ -57,7 +58,8 @@ __all__ = [
 REPEATED_WITHIN: Final = 0.01
 #: Repetitions after which the first period counts as not converged.
 MAX_REPETITIONS: Final = 1000
-_USUAL: Final = ("air_temperature", "face_temperature", "interface_temperature", "sensor", "liquid_fraction")
+#: Kinds of outputs that a run records where none are named.
+USUAL: Final = ("air_temperature", "face_temperature", "interface_temperature", "sensor", "liquid_fraction")
 
 
 def require_inputs(building: object, climate: object, measurements: object = None) -> None:
@@ -170,7 +172,7 @@ def chosen_outputs(building: Building, names: Sequence[str] | None) -> list[Outp
     """Outputs by name, or the usual ones."""
     if names is not None:
         return named(building, names)
-    return [output for output in building.outputs() if output.kind in _USUAL]
+    return [output for output in building.outputs() if output.kind in USUAL]
 
 
 def forcing_of(

@@ -80,8 +80,8 @@ class EnergyLedger:
     turnover : float
         Total heat exchanged: sum of the magnitudes of all flows. [J]
     relative_residual : float
-        Relative energy-balance residual: sum over steps of |stored - into|, over the total heat exchanged.
-        [-]
+        Relative energy-balance residual: sum over steps of ``|stored - into|``, over the total heat
+        exchanged. [-]
 
     Examples
     --------

@@ -68,7 +68,7 @@ PowerConstant = Annotated[
     Number,
     Quantity(
         "W/(m2 K)",
-        "Constant part a of a + b |dT|^n + c V^m",
+        "Constant part a of a + b abs(dT)^n + c V^m",
         Span(0, 5, "still air between plates"),
         NOT_NEGATIVE,
     ),
@@ -77,7 +77,7 @@ PowerBuoyant = Annotated[
     Number,
     Quantity(
         "W/(m2 K^(n+1))",
-        "Coefficient b of a + b |dT|^n + c V^m",
+        "Coefficient b of a + b abs(dT)^n + c V^m",
         Span(0, 3, "stable air to an upward plume; published values are 0.5 to 2.3"),
         NOT_NEGATIVE,
     ),
@@ -86,7 +86,7 @@ PowerExponent = Annotated[
     Number,
     Quantity(
         "-",
-        "Exponent n of a + b |dT|^n + c V^m",
+        "Exponent n of a + b abs(dT)^n + c V^m",
         Span(0.2, 0.4, "stable layers 1/5, laminar 1/4, turbulent 1/3"),
         Limits(at_least=0, at_most=2),
     ),
@@ -95,7 +95,7 @@ PowerForced = Annotated[
     Number,
     Quantity(
         "W/(m2 K (m/s)^m)",
-        "Coefficient c of a + b |dT|^n + c V^m",
+        "Coefficient c of a + b abs(dT)^n + c V^m",
         Span(0, 6, "sheltered to exposed"),
         NOT_NEGATIVE,
     ),
@@ -104,7 +104,7 @@ PowerWindExponent = Annotated[
     Number,
     Quantity(
         "-",
-        "Exponent m of a + b |dT|^n + c V^m",
+        "Exponent m of a + b abs(dT)^n + c V^m",
         Span(0.5, 1.0, "laminar 1/2, turbulent 0.8, linear fits 1"),
         Limits(at_least=0, at_most=2),
     ),

@@ -1,0 +1,41 @@
+"""Build the documentation site without a network: ``python docs/site/build.py OUT``.
+
+Pages are assembled and generated below ``OUT/source``, and Sphinx makes ``OUT/html`` from them. Every
+warning is an error. With ``--links`` the addresses of other sites are asked instead.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE)]
+
+
+def main() -> int:
+    """Build."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("out", type=Path, help="folder of the site")
+    parser.add_argument("--links", action="store_true", help="check the addresses of other sites")
+    parser.add_argument("--dry", action="store_true", help="leave out running the examples and notebooks")
+    parser.add_argument("--jobs", default="auto", help="processes")
+    options = parser.parse_args()
+    os.environ.setdefault("MPLBACKEND", "agg")
+    from sphinx.cmd.build import build_main
+
+    from sitepages import generated
+
+    out = options.out.resolve()
+    generated.write(out / "source")
+    builder = "linkcheck" if options.links else "html"
+    words = ["-b", builder, "-W", "--keep-going", "-q", "-j", options.jobs, "-c", str(HERE)]
+    if options.dry or options.links:
+        words += ["-D", "nb_execution_mode=off", "-D", "plot_gallery=0"]
+    return int(build_main([*words, "-d", str(out / "doctrees"), str(out / "source"), str(out / builder)]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
