@@ -16,6 +16,7 @@ from mascarin.figures.files import save
 from mascarin.report.figure_files import Once, write_figures
 from mascarin.report.folder import read_folder
 from mascarin.sensitivity.files import save_all
+from mascarin.study.comfort_step import comfort_figures, comfort_table, rated
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
 from mascarin.study.kept import written_once
@@ -52,13 +53,16 @@ def write_all(findings: Findings, workspace: Workspace) -> None:
     def once(name: str, write: Callable[[], Sequence[Path]]) -> list[Path]:
         return written_once(workspace, (str(out), name, findings.calibration.x.tolist()), write)
 
-    tables = write_tables(out / "tables", tables_of(findings))
+    comfort = rated(findings)
+    of_comfort = {"comfort": comfort_table(comfort)} if comfort else {}
+    tables = write_tables(out / "tables", {**tables_of(findings), **of_comfort})
     atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
     atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
     written = [
         *write_figures(figures, *read_folder(out), once),
         *_sensitivity_figures(findings, figures, once),
         *once("days", lambda: [save(_days(findings), figures / "days.svg")]),
+        *comfort_figures(comfort, figures),
         *once("fit", lambda: fit_figures(findings.calibration, findings.profiles, figures)),
         *tables,
         *(out / name for name in ("study.json", RUN, "report.html")),
