@@ -20,8 +20,8 @@ from mascarin.weather.moisture import humidity_ratio, relative_humidity, saturat
 NAN = float("nan")
 OUTPUTS = ["room.air_temperature", "room.mean_radiant_temperature"]
 
-# ISO 7730:2005, table D.1, without its line 7, which neither the program of its annex D nor other programs
-# repeat (FedericoTartarini/validation-data-comfort-models, MIT, leaves it out too):
+# ISO 7730:2005, table D.1, without its line 7, whose value could not be checked
+# (FedericoTartarini/validation-data-comfort-models, MIT, leaves it out too):
 # air and radiant temperature, air speed, relative humidity, met, clo, PMV, PPD.
 ISO_7730 = np.array(
     [

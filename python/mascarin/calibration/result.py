@@ -281,7 +281,10 @@ class Calibration:
             Counts (bins,) and edges (bins + 1,).
         """
         costs = np.array([m.cost for m in self.minima if math.isfinite(m.cost)])
-        counts, edges = np.histogram(costs, bins=bins)
+        # Equal costs differ by rounding, which cannot be divided into bins.
+        low, high = float(np.min(costs)), float(np.max(costs))
+        least = 1e-9 * max(abs(low), abs(high)) or 1e-9
+        counts, edges = np.histogram(costs, bins=bins, range=(low, max(high, low + least)))
         return counts.astype(np.int64), edges.astype(np.float64)
 
     def plot(self, kind: PlotKind = "estimates", *, ax: Axes | None = None) -> Axes:

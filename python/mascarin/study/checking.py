@@ -9,6 +9,7 @@ import numpy as np
 
 from mascarin.calibration.building_calibration import CONSTANT, MOST_CONSTANT
 from mascarin.errors import InputError
+from mascarin.study.comfort_step import require_rooms
 from mascarin.study.periods import overlap
 from mascarin.validation.observation import require_comparable
 from mascarin.weather.times import seconds_of
@@ -44,6 +45,7 @@ def check(study: Setup) -> None:
     with study.places.blame("periods"):
         _ = study.simulation
     _errors(study)
+    require_rooms(study)
     _working(study)
     _runs(study)
     _plausible(study)

@@ -11,6 +11,7 @@ from mascarin.building.names import Name
 from mascarin.building.part import Part, fault, insist
 from mascarin.calibration.rules import WITH_SQUARES, SlopesName
 from mascarin.calibration.rules import MethodName as FitMethod
+from mascarin.comfort import ComfortSettings
 from mascarin.sensitivity.factors import DistributionName
 from mascarin.sensitivity.methods import MethodName
 from mascarin.study.data_sources import ClimateSource, Table, with_shared_table
@@ -376,6 +377,10 @@ class StudyPlan(Part):
         None, description="Numbers of a publication, shown beside the results"
     )
     variants: dict[str, Variant] = Field(default_factory=dict, description="Other choices of model")
+    comfort: dict[Name, ComfortSettings] = Field(
+        default_factory=dict,
+        description="Zone -> how its comfort is rated, before and after the calibration over the record",
+    )
     alternatives: dict[str, Alternatives] = Field(
         default_factory=dict,
         description="Parts of the model whose form is not known: name -> forms beside that of the building, "

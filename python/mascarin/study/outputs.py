@@ -16,6 +16,7 @@ from mascarin.figures.files import save
 from mascarin.report.figure_files import Once, write_figures
 from mascarin.report.folder import read_folder
 from mascarin.sensitivity.files import save_all
+from mascarin.study.comfort_step import comfort_figures, comfort_table, rated
 from mascarin.study.document.sensitivity import analyzed_hours
 from mascarin.study.document.whole import document
 from mascarin.study.kept import written_once
@@ -48,11 +49,14 @@ def write_all(findings: Findings, workspace: Workspace, *, figures: bool = True)
         Whether figures are written.
     """
     out = workspace.out
-    tables = write_tables(out / "tables", tables_of(findings))
+    comfort = rated(findings)
+    of_comfort = {"comfort": comfort_table(comfort)} if comfort else {}
+    tables = write_tables(out / "tables", {**tables_of(findings), **of_comfort})
     atomic.write(out / "study.json", json.dumps(document(findings), indent=1, allow_nan=False) + "\n")
     atomic.write(out / RUN, json.dumps(run_facts(findings), indent=1) + "\n")
     written = [
         *(_all_figures(findings, workspace) if figures else []),
+        *(comfort_figures(comfort, out / "figures") if figures else []),
         *tables,
         *(out / name for name in ("study.json", RUN, "report.html")),
     ]

@@ -21,7 +21,7 @@ pub struct WallPlan {
     pub glass: Option<GlassPlan>,
     /// Position in [`Plan::windows`](crate::building::plan::Plan::windows); none for a wall.
     pub window: Option<usize>,
-    /// Whether its surfaces are eliminated each with its own zone, see [`thick_walls`](super::thick_walls).
+    /// Whether its surfaces are eliminated each with its own zone, see the module `thick_walls`.
     pub thick: bool,
 }
 

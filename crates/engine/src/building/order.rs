@@ -126,7 +126,8 @@ pub(crate) fn number_zones(count: usize, pairs: &[[usize; 2]]) -> (Vec<usize>, P
         neighbours[b].insert(a);
     }
     let groups = vec![(CHANGING, 0); count];
-    let (position, order) = Order::new(minimum_degree(neighbours, &groups, usize::MAX), &groups);
+    let elimination = minimum_degree(neighbours, &groups, usize::MAX);
+    let (position, order) = Order::new(elimination, &groups, Vec::new());
     (position, order.pattern)
 }
 

@@ -123,9 +123,9 @@ mod tests {
         for (temperature, expected) in [
             (-20.0, 103.260_377_6),
             (0.01, 611.657_024_4),
-            (10.0, 1227.995_275_4),
-            (25.0, 3169.216_470_1),
-            (40.0, 7383.460_009_0),
+            (10.0, 1_227.995_275_4),
+            (25.0, 3_169.216_470_1),
+            (40.0, 7_383.460_009_0),
         ] {
             let found = saturation_pressure(temperature);
             assert!((found / expected - 1.0).abs() < 1e-9, "{temperature}: {found}, expected {expected}");
