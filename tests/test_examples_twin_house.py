@@ -40,7 +40,7 @@ def table(data_dir: Path) -> pd.DataFrame:
 @pytest.fixture(scope="module")
 def blind(table: pd.DataFrame) -> Results:
     building = mc.load(STUDIES["twin-house"].parent / "building.yaml")
-    extra = [name for name in table if name not in CHANNELS.values()]
+    extra = [str(name) for name in table if name not in CHANNELS.values()]
     climate = mc.Climate.from_table(table, timezone="UTC+1", columns=CHANNELS, extra=extra, stamps="end")
     names = [f"{room}.air_temperature" for room in ROOMS] + [f"{room}.net_load" for room in HEATERS]
     start = {"zones": dict.fromkeys(ROOMS, 30.0)}
@@ -51,7 +51,7 @@ def blind(table: pd.DataFrame) -> Results:
 
 def series(results: Results, name: str, first: str, last: str) -> pd.Series:
     found = results.to_dataframe()[name]
-    found.index = found.index.tz_convert("Etc/GMT-1").tz_localize(None)
+    found.index = pd.DatetimeIndex(found.index).tz_convert("Etc/GMT-1").tz_localize(None)
     return found[first:last]
 
 

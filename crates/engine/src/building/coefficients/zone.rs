@@ -3,7 +3,7 @@
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::Plan;
 use crate::building::solar_distribution::{SolarDistribution, SolarSurface};
-use crate::input::description::{Infiltration, ParamId, ZoneLongwave};
+use crate::input::description::{Infiltration, ParamId, Zone, ZoneLongwave};
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::air_flow::{AirFlow, Opening};
@@ -78,7 +78,6 @@ impl<S: Real> ZoneCoefficients<S> {
         } else {
             Vec::new()
         };
-        let exchange_sums = sums_of_others(&exchange, zone_surfaces.len());
         let air_capacity = values.get(definition.volume) * heat;
         let Infiltration { constant, temperature, wind, leakage: test } = &definition.infiltration;
         let mut infiltration = [constant, temperature, wind].map(|id| values.get(*id));
@@ -90,15 +89,9 @@ impl<S: Real> ZoneCoefficients<S> {
         }
         let openings = plan.description.openings.iter().filter(|opening| opening.zone == index);
         let ventilation = definition.ventilation.iter();
-        let thermostat = |ideal_load| Thermostat::new(ideal_load, values);
-        let plants = [&definition.heating, &definition.cooling].map(|plant| plant.as_ref().map(thermostat));
-        let radiative = plants.each_ref().map(|plant| plant.as_ref().and_then(|plant| plant.radiative));
-        let [heating, cooling] = plants;
+        let ([heating, cooling], radiated_loads) = plants(definition, values);
         Self {
-            radiated_loads: radiative
-                .iter()
-                .any(Option::is_some)
-                .then(|| radiative.map(|part| part.unwrap_or_else(S::zero))),
+            radiated_loads,
             gains: definition.gains.iter().map(|gain| Gain::new(gain, values)).collect(),
             radiant_shares: radiant_shares(&areas, exchanging.then_some(&emissivities)),
             ventilation: ventilation.map(|flow| AirFlow::new(flow, values, heat, air_capacity)).collect(),
@@ -110,8 +103,8 @@ impl<S: Real> ZoneCoefficients<S> {
             infiltration,
             leakage: by_stack_and_wind,
             solar_to_air: definition.solar_to_air.map(|id| values.get(id)),
+            exchange_sums: sums_of_others(&exchange, zone_surfaces.len()),
             exchange,
-            exchange_sums,
             emission,
             solar_distribution: SolarDistribution::new(
                 &definition.sun,
@@ -137,6 +130,15 @@ impl<S: Real> ZoneCoefficients<S> {
             None => [load, S::zero()],
         }
     }
+}
+
+/// Ideal heating and cooling of a zone, and the parts of them that are radiated; none where all goes to the air.
+fn plants<S: Real>(zone: &Zone, values: &Values<'_, S>) -> ([Option<Thermostat<S>>; 2], Option<[S; 2]>) {
+    let plants = [&zone.heating, &zone.cooling]
+        .map(|plant| plant.as_ref().map(|ideal_load| Thermostat::new(ideal_load, values)));
+    let parts = plants.each_ref().map(|plant| plant.as_ref().and_then(|plant| plant.radiative));
+    let radiated = parts.iter().any(Option::is_some);
+    (plants, radiated.then(|| parts.map(|part| part.unwrap_or_else(S::zero))))
 }
 
 /// What the surfaces of a zone do with the sun.

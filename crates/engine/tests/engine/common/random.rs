@@ -733,7 +733,12 @@ impl Maker<'_> {
         } else {
             None
         };
-        IdealLoad { setpoint, capacity, radiative: None, schedule: self.random.chance(0.3).then_some(SCHEDULE) }
+        IdealLoad {
+            setpoint,
+            capacity,
+            radiative: None,
+            schedule: self.random.chance(0.3).then_some(SCHEDULE),
+        }
     }
 }
 
