@@ -134,7 +134,8 @@ def _nsga2(choices: Choices, plan: Search, evaluate: Callable[[Sequence[Design]]
     count = len(plan.objectives)
     problem = Problem(vars=variables, n_obj=count)
     algorithm = MixedVariableGA(pop_size=plan.population, survival=RankAndCrowdingSurvival())
-    algorithm.setup(problem, termination=("n_eval", plan.evaluations), seed=plan.seed, verbose=False)
+    generations = max(plan.evaluations // plan.population, 1)
+    algorithm.setup(problem, termination=("n_gen", generations), seed=plan.seed, verbose=False)
     while algorithm.has_next():
         population = algorithm.ask()
         designs = [tuple(float(one[name]) for name in names) for one in population.get("X")]
