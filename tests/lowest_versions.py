@@ -32,7 +32,10 @@ def main(file: Path) -> None:
     """Print one requirement a line."""
     project = tomllib.loads(file.read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    texts = [*project["dependencies"], *(t for name in sorted(extras) if name != "dev" for t in extras[name])]
+    texts = [
+        *project["dependencies"],
+        *(t for name in sorted(extras) if name not in ("dev", "docs") for t in extras[name]),
+    ]
     sys.stdout.write("\n".join(sorted({lowest(text) for text in texts}) + TESTS) + "\n")
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
@@ -43,7 +44,7 @@ def pinned(repository: Path) -> dict[str, Version]:
 def test_versions_agree(project: dict[str, Any], repository: Path) -> None:
     cargo = tomllib.loads((repository / "Cargo.toml").read_text(encoding="utf-8"))
     citation = (repository / "CITATION.cff").read_text(encoding="utf-8")
-    assert project["version"] == mascarin.__version__
+    assert "version" in project["dynamic"]  # maturin takes that of Cargo.toml
     assert cargo["workspace"]["package"]["version"] == mascarin.__version__
     assert f"\nversion: {mascarin.__version__}\n" in citation
     assert mascarin.__version__ in (repository / "CHANGELOG.md").read_text(encoding="utf-8")
@@ -111,3 +112,31 @@ def test_nothing_is_built_for_one_processor_only(repository: Path) -> None:
     """The same bits on every machine: no target-cpu in any build file."""
     files = [repository / "Cargo.toml", repository / "Makefile", *repository.glob(".cargo/*")]
     assert not [f for f in files if re.search(r"target-cpu\s*=", f.read_text(encoding="utf-8"))]
+
+
+def test_the_conda_package_needs_what_the_wheel_needs(project: dict[str, Any], repository: Path) -> None:
+    names_there = {"matplotlib": "matplotlib-base", "pvlib": "pvlib-python", "tzdata": "python-tzdata"}
+    recipe = yaml.safe_load((repository / "packaging" / "conda" / "recipe.yaml").read_text(encoding="utf-8"))
+    listed = {line.replace(" ", "") for line in recipe["requirements"]["run"]} - {"python>=3.11"}
+    wanted = (Requirement(text) for text in project["dependencies"])
+    assert listed == {names_there.get(one.name, one.name).lower() + str(one.specifier) for one in wanted}
+    assert recipe["context"]["version"] == mascarin.__version__
+
+
+def test_a_release_is_built_for_every_system_of_the_page(repository: Path) -> None:
+    release = yaml.safe_load(
+        (repository / ".github" / "workflows" / "release.yml").read_text(encoding="utf-8")
+    )
+    built = {one["target"] for one in release["jobs"]["wheels"]["strategy"]["matrix"]["include"]}
+    assert built == {"x86_64", "aarch64", "aarch64-apple-darwin", "x86_64-apple-darwin", "x64"}
+    publish = release["jobs"]["publish"]
+    assert publish["permissions"] == {"id-token": "write", "attestations": "write", "contents": "read"}
+    assert set(publish["needs"]) == {"wheels", "sdist"}
+
+
+def test_the_tests_run_on_every_version_of_python_that_is_declared(
+    project: dict[str, Any], repository: Path
+) -> None:
+    tests = yaml.safe_load((repository / ".github" / "workflows" / "test.yml").read_text(encoding="utf-8"))
+    declared = {text.rpartition(" ")[2] for text in project["classifiers"] if re.search(r":: 3\.\d+$", text)}
+    assert set(tests["jobs"]["tests"]["strategy"]["matrix"]["python"]) == declared

@@ -10,12 +10,12 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path[:0] = [str(HERE)]
 
-_project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+_cargo = tomllib.loads((ROOT / "Cargo.toml").read_text(encoding="utf-8"))
 
 project = "Mascarin"
 author = "Mascarin contributors"
 copyright = "Mascarin contributors"
-version = release = _project["version"]
+version = release = _cargo["workspace"]["package"]["version"]
 
 extensions = [
     "myst_nb",  # the Markdown pages and the notebooks
@@ -71,7 +71,7 @@ html_copy_source = False
 html_show_sourcelink = False
 html_theme_options = {
     "navbar_align": "left",
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 4,
     "show_prev_next": True,
     "show_toc_level": 2,
     "navigation_with_keys": False,

@@ -15,7 +15,7 @@ PERIOD = {"start": "2010-08-10", "end": "2010-08-15"}
 
 
 def main() -> None:
-    """Draw five days of the test cell, with and without latent heat, and the liquid fraction of the ceiling."""
+    """Draw five days of the test cell, with and without latent heat, and its liquid fraction."""
     mpl.use("agg")
     mpl.rcParams["svg.hashsalt"] = "mascarin"  # the same file at each call
     from matplotlib import pyplot as plt

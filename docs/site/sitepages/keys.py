@@ -36,6 +36,14 @@ _NAMES: Final = {
 }  # fmt: skip
 
 
+#: Headings with names of people and programs.
+_TITLES: Final = {
+    "MartinBerdahlSky": "Martin and Berdahl sky", "ClarkAllenSky": "Clark and Allen sky", "Doe2": "DOE-2",
+    "Iso15099": "ISO 15099", "Tarp": "TARP", "Mowitt": "MoWiTT", "PaperEq5": "Equation 5 of the paper",
+    "AlamdariHammond": "Alamdari and Hammond",
+}  # fmt: skip
+
+
 class Key(NamedTuple):
     """One key of one kind of part.
 
@@ -217,7 +225,9 @@ def _default(field: FieldInfo) -> str:
 
 
 def title(part: type[Part]) -> str:
-    """Heading of a part: its kind where a file names it, else its class in words."""
+    """Heading of a part: the name of its class in words."""
+    if part.__name__ in _TITLES:
+        return _TITLES[part.__name__]
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", part.__name__)
     return words[:1] + words[1:].lower()
 

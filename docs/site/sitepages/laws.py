@@ -1,4 +1,4 @@
-"""Physical laws with equation, source and range, from the heads of the modules of the engine that implement them."""
+"""Physical laws with equation, source and range, from the modules of the engine that implement them."""
 
 from __future__ import annotations
 

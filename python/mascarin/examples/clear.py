@@ -34,7 +34,7 @@ def clear_days(
     days : int
         Number of days.
     mean, swing : float
-        Mean of the air temperature [degC], and half of the difference of its extremes, at 15:00 and 03:00. [K]
+        Mean of the air temperature [degC], and half of the difference of its extremes. [K]
     wind : float
         Wind speed, from the west. [m/s]
     altitude : float
