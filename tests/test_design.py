@@ -152,7 +152,7 @@ def test_a_small_study(results: tuple[DesignResults, Path]) -> None:
         (table["product"] == "RT25HC") & (table["place"] == "outside") & (table["thickness"] == "0.02")
     ]
     assert float(row["cost"].iloc[0]) == pytest.approx(176.0 * 3.0 + 100.0)
-    bins = [name for name in table if name.startswith("bin ")]
+    bins = [name for name in table if str(name).startswith("bin ")]
     assert (table[bins].sum(axis=1) == 2.0).all()  # two days
     written_files = {file.name for file in (folder / "out").iterdir()}
     assert {

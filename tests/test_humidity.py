@@ -227,6 +227,7 @@ def test_vapour_is_kept_between_zones_units_and_plants() -> None:
     names = ["room.relative_humidity", "attic.humidity_ratio", "room.latent_cooling_load"]
     simulation = mc.Simulation(building, weather, step="30min", outputs=names, initial=20.0)
     found = simulation.run()
+    assert found.vapour is not None
     assert found.vapour.relative_residual < 1e-10
     assert not found.warnings
     assert found.vapour.stored == pytest.approx(sum(found.vapour.into.values()), abs=1e-9)

@@ -221,8 +221,8 @@ def _or_held(schema: dict[str, Any]) -> None:
     words = {key: {"type": "string"} for key in (*_SET_POINT, "when")}
     numbers = {key: {"type": ["number", "object"]} for key in ("temperature", "radiative")}
     schema["properties"]["held"] = {
-        "description": "Heating and cooling with this set point [degC], where a schedule 'when' says so; part of it "
-        "may be radiative",
+        "description": "Heating and cooling with this set point [degC], where a schedule 'when' says so; "
+        "part of it may be radiative",
         "anyOf": [
             {"type": "number"},
             {
