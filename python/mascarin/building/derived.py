@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from mascarin.building.convection import AlamdariHammond, Convection, Doe2, Iso15099, PaperEq5, Tarp
 from mascarin.building.humidity import with_all_zones
@@ -16,7 +16,6 @@ from mascarin.building.zone import Zone
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    from mascarin.building.description import Description
     from mascarin.building.geometry import Polygon
     from mascarin.building.window import Shade, Vertices
 
@@ -278,7 +277,7 @@ def _sentence(error: InputError) -> tuple[str, str, str]:
 
 
 #: Sections that are completed when a building is made, in this order.
-DERIVED: Final[Mapping[str, Callable[[Description], object]]] = {
+DERIVED: Final[Mapping[str, Callable[[Any], object]]] = {
     "surfaces": lambda building: derive_surfaces(building.surfaces, building.site.latitude),
     "windows": lambda building: derive_windows(building.windows, building.surfaces),
     "zones": lambda building: derive_zones(building.zones, building.surfaces, building.site.latitude),

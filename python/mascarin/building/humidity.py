@@ -171,7 +171,7 @@ class SurfaceHumidity(Part):
     Examples
     --------
     >>> SurfaceHumidity(paint=0.5)
-    SurfaceHumidity(paint=0.5 m)
+    SurfaceHumidity(paint=0.5 m, sealed=False)
     """
 
     paint: q.AirThickness | None = None

@@ -21,7 +21,7 @@ use crate::step::stage::Stage;
 use crate::step::stage_solutions::StageSolutions;
 use crate::step::stage_weather::StageWeather;
 use crate::step::state::{Initial, State};
-use crate::step::vapour::VapourBalances;
+use crate::step::vapour::balances::VapourBalances;
 use crate::weather::conditions::{Instant, Weather};
 
 /// Effective length of the stage that brings surfaces into balance [s]: too short for anything to be stored.

@@ -1,6 +1,7 @@
 //! What the heat balances of a stage leave for the vapour balances: flows of air, temperatures and heat transfer coefficients.
 
 use crate::building::coefficients::HumidityCoefficients;
+use crate::building::humidity::HumidityPlan;
 use crate::building::model::Model;
 use crate::linear::unknowns::Temperatures;
 use crate::number::real::Real;
@@ -9,7 +10,6 @@ use crate::physics::doors;
 use crate::physics::psychrometrics::{VAPOUR_GAS_CONSTANT, saturation_pressure};
 use crate::physics::sorption::VapourLayers;
 use crate::step::film::film;
-use crate::step::vapour::VapourBalances;
 use crate::weather::conditions::Conditions;
 use crate::weather::humidity::Plant;
 
@@ -66,27 +66,24 @@ impl<S: Real> StageFlows<S> {
             surfaces: vec![surface; humidity.surfaces.len()],
         }
     }
-}
 
-impl<S: Real> VapourBalances<'_, S> {
     /// Notes the flows of a stage, in its conditions and at its temperatures.
     #[inline(always)]
-    pub(crate) fn note(
+    pub(super) fn note(
         &mut self,
+        plan: &HumidityPlan,
         model: &Model<'_, S>,
         conditions: &Conditions<S>,
         at: Temperatures<'_, S>,
-        stage: usize,
     ) {
         let (Some(humidity), Some(now)) = (&model.coefficients.humidity, &conditions.humidity) else {
             return;
         };
-        let flows = &mut self.flows[stage];
-        (flows.pressure, flows.outdoor) = (now.pressure, now.outdoor);
-        for (z, (zone, now)) in flows.zones.iter_mut().zip(&now.zones).enumerate() {
+        (self.pressure, self.outdoor) = (now.pressure, now.outdoor);
+        for (z, (zone, now)) in self.zones.iter_mut().zip(&now.zones).enumerate() {
             let numbers = &model.coefficients.zones[z];
-            let changes =
-                conditions.zones[z].air_changes(numbers, conditions.wind, conditions.outdoor_air, at.air[z]);
+            let (wind, outdoor) = (conditions.wind, conditions.outdoor_air);
+            let changes = conditions.zones[z].air_changes(numbers, wind, outdoor, at.air[z]);
             let mut heat = changes.scale(1.0 / 3600.0) * numbers.air_capacity;
             if let Some(fans) = conditions.mechanical_air.zones.get(z) {
                 heat += fans.outward;
@@ -96,36 +93,13 @@ impl<S: Real> VapourBalances<'_, S> {
             (zone.drying, zone.humidifying) = (now.drying, now.humidifying);
             zone.saturated = saturation_pressure(at.air[z]);
         }
-        let mut places = flows.carried.iter_mut();
-        let mut put = |heat: S| {
-            if let Some(place) = places.next() {
-                *place = heat * humidity.mass;
-            }
-        };
-        for &path in &conditions.paths {
-            put(path);
-            put(path);
-        }
-        for (door, &whole) in model.coefficients.doors.iter().zip(&conditions.doors) {
-            let [a, b] = door.between;
-            let heat = doors::conductance(whole, at.air[a] - at.air[b]);
-            put(heat);
-            put(heat);
-        }
-        for &directed in
-            &conditions.mechanical_air.carried[..model.coefficients.mechanical_air.directed.len()]
-        {
-            put(directed);
-        }
-        for &recovered in &now.recovered {
-            put(recovered);
-        }
+        self.note_carried(humidity.mass, model, conditions, at.air);
         // Air whose vapour is recovered does not take it outdoors.
-        let first = self.plan.carries.len() - now.recovered.len();
-        for (&[from, _], &carried) in self.plan.carries[first..].iter().zip(&flows.carried[first..]) {
-            flows.zones[from].outward = flows.zones[from].outward - carried;
+        let first = plan.carries.len() - now.recovered.len();
+        for (&[from, _], &carried) in plan.carries[first..].iter().zip(&self.carried[first..]) {
+            self.zones[from].outward = self.zones[from].outward - carried;
         }
-        for (place, surface) in flows.surfaces.iter_mut().zip(&humidity.surfaces) {
+        for (place, surface) in self.surfaces.iter_mut().zip(&humidity.surfaces) {
             let (temperature, air) = (at.surfaces[surface.surface], at.air[surface.zone]);
             let heat =
                 film(model, conditions, surface.surface, temperature, air).max(S::constant(LEAST_FILM));
@@ -136,6 +110,32 @@ impl<S: Real> VapourBalances<'_, S> {
             place.to_layer = S::one() / (of_air + layers.to_surface / permeability);
             place.between = if layers.two { permeability / layers.between } else { S::zero() };
             place.saturated = saturation_pressure(temperature);
+        }
+    }
+
+    /// Air between zones, in the order of the plan's `carries`; `mass` of a flow of heat capacity [kg K/J].
+    #[inline(always)]
+    fn note_carried(&mut self, mass: S, model: &Model<'_, S>, conditions: &Conditions<S>, air: &[S]) {
+        let mut places = self.carried.iter_mut();
+        let mut put = |heat: S| {
+            if let Some(place) = places.next() {
+                *place = heat * mass;
+            }
+        };
+        for &path in &conditions.paths {
+            put(path);
+            put(path);
+        }
+        for (door, &whole) in model.coefficients.doors.iter().zip(&conditions.doors) {
+            let [a, b] = door.between;
+            let heat = doors::conductance(whole, air[a] - air[b]);
+            put(heat);
+            put(heat);
+        }
+        let directed = model.coefficients.mechanical_air.directed.len();
+        let recovered = conditions.humidity.iter().flat_map(|now| &now.recovered);
+        for &heat in conditions.mechanical_air.carried[..directed].iter().chain(recovered) {
+            put(heat);
         }
     }
 }
