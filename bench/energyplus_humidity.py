@@ -68,6 +68,15 @@ def model(damp: Building, end: str, deep: bool, names: list[str]) -> dict[str, A
     settings = written.setdefault("MaterialProperty:MoisturePenetrationDepth:Settings", {})
     # A material there belongs to one layer of one surface.
     taking = {f"{side.surface} {side.layer}" for side in vapour_sides(damp) if side.takes_up}
+    # Surfaces that take up nothing must not use its model of moisture: it reads data that they do not have.
+    words = ("outside", "inside")
+    plain = [(side.surface, words[side.side]) for side in vapour_sides(damp) if not side.takes_up]
+    for surface, side in plain:
+        called = energyplus.face_name(surface, side)
+        written.setdefault("SurfaceProperty:HeatTransferAlgorithm", {})[f"{called} dry"] = {
+            "surface_name": called,
+            "algorithm": "ConductionTransferFunction",
+        }
     for name in sorted(taking):
         material = written["Material"][name]
         settings[name] = {
