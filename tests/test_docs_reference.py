@@ -111,8 +111,9 @@ def test_every_kind_of_output_is_described_as_buildings_have_it() -> None:
     assert set(KINDS) == set(get_args(Kind))
     seen = set()
     files = [examples.FOLDER / "lgi" / "building.yaml", BUILDINGS / "600.yaml", BUILDINGS / "960.yaml"]
-    for file in files:
-        building = mc.load(file)
+    plants = {"drying": {"relative_humidity": 0.7}, "humidifying": {"relative_humidity": 0.3}}
+    damp = mc.load(files[-1]).replace({"humidity": {"zones": {"back": plants}}})
+    for building in [*map(mc.load, files), damp]:
         for output in building.outputs():
             one = KINDS[output.kind]
             seen.add(output.kind)

@@ -306,7 +306,7 @@ def test_what_cannot_be_is_refused(humidity: dict[str, Any], words: str) -> None
 
 def test_humidity_of_the_weather_and_of_the_building_are_needed() -> None:
     """A climate without dew point, and an output of a building without humidity."""
-    with pytest.raises(InputError, match="found no dew point or relative humidity"):
+    with pytest.raises(InputError, match="no column for dew_point"):
         run(room(), climate(None, hours=4), "room.relative_humidity")
     with pytest.raises(InputError, match="Add 'humidity: "):
         box().output("room.relative_humidity")

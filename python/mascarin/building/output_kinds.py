@@ -32,6 +32,7 @@ class OutputKind(NamedTuple):
 
 
 _ZONES: Final = "every zone"
+_HUMID: Final = "every zone of a building with `humidity`"
 _OUTDOORS: Final = "every surface and window that faces outdoors"
 _SIDES: Final = "SURFACE.outside_{0}, SURFACE.inside_{0}, WINDOW.outside_{0}, WINDOW.inside_{0}"
 
@@ -64,6 +65,44 @@ KINDS: Final[Mapping[Kind, OutputKind]] = {
         "W",
         "Heat that ideal cooling takes from the air, not below 0",
         "zones with `cooling`",
+    ),
+    "net_load": OutputKind(
+        "ZONE.net_load",
+        "W",
+        "Heat that ideal heating brings less what ideal cooling takes",
+        "zones with `heating` or `cooling`",
+    ),
+    "humidity_ratio": OutputKind(
+        "ZONE.humidity_ratio", "kg/kg", "Vapour in the air of the zone by mass of dry air", _HUMID
+    ),
+    "relative_humidity": OutputKind(
+        "ZONE.relative_humidity", "-", "Vapour pressure over that of saturated air, over water", _HUMID
+    ),
+    "dew_point": OutputKind("ZONE.dew_point", "degC", "Temperature at which the air is saturated", _HUMID),
+    "wet_bulb": OutputKind("ZONE.wet_bulb", "degC", "Temperature of adiabatic saturation of the air", _HUMID),
+    "latent_heating": OutputKind(
+        "ZONE.latent_heating_load",
+        "W",
+        "Heat of evaporation of the vapour that humidifying brings",
+        "zones with `humidifying` in `humidity`",
+    ),
+    "latent_cooling": OutputKind(
+        "ZONE.latent_cooling_load",
+        "W",
+        "Heat of condensation of the vapour that drying or the cooling coil takes",
+        "zones with `drying` in `humidity`",
+    ),
+    "surface_humidity": OutputKind(
+        _SIDES.format("relative_humidity"),
+        "-",
+        "Relative humidity of the air of the zone at the temperature of the surface",
+        "surfaces in zones of a building with `humidity`",
+    ),
+    "condensation": OutputKind(
+        _SIDES.format("condensation"),
+        "-",
+        "1 where the surface is colder than the dew point of the zone, else 0",
+        "surfaces in zones of a building with `humidity`",
     ),
     "air_changes": OutputKind(
         "ZONE.air_changes",

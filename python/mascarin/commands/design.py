@@ -25,7 +25,7 @@ def design(
     allow_outside: Outside = False,
     as_json: AsJson = False,
 ) -> int:
-    """Compare designs of a building: which product, how much, where.
+    """Compare designs: which product, how much, where.
 
     Runs all designs in all climates, compares the best over samples of what is uncertain, and writes
     tables and a

@@ -85,8 +85,6 @@ class Results(Mapping[str, "xr.DataArray"]):
     warnings: tuple[str, ...] = ()
     vapour: VapourLedger | None = None
 
-    # --- a mapping ----------------------------------------------------------------------------------------
-
     def __getitem__(self, name: str) -> xr.DataArray:
         """One series by the name or alias of its output.
 
@@ -148,8 +146,6 @@ class Results(Mapping[str, "xr.DataArray"]):
 
     def __dir__(self) -> list[str]:
         return [name for name in super().__dir__() if name not in _DEPRECATED]
-
-    # --- other spacings -----------------------------------------------------------------------------------
 
     def every(self, interval: str | float) -> Results:
         """The same series at another spacing, from the start of the run.
@@ -359,11 +355,7 @@ class Results(Mapping[str, "xr.DataArray"]):
                 energy=EnergyLedger.from_dict(json.loads(data.attrs["energy"])),
                 provenance=Provenance.from_dict(json.loads(data.attrs["provenance"])),
                 warnings=tuple(json.loads(data.attrs["warnings"])),
-                vapour=(
-                    VapourLedger.from_dict(json.loads(data.attrs["vapour"]))
-                    if "vapour" in data.attrs
-                    else None
-                ),
+                vapour=VapourLedger.from_json(data.attrs.get("vapour")),
             )
         except (OSError, KeyError, ValueError, TypeError) as error:
             raise InputError(
@@ -454,8 +446,6 @@ class Results(Mapping[str, "xr.DataArray"]):
         units = {output.name: output.unit for output in self.outputs}
         return comfort_of(columns, units, self.index, zone, climate, chosen)
 
-    # --- in words -----------------------------------------------------------------------------------------
-
     def __repr__(self) -> str:
         return display.text(f"Results of '{self.provenance.building}'", self._rows())
 
@@ -484,8 +474,6 @@ class Results(Mapping[str, "xr.DataArray"]):
         if changed:
             rows.append(("parameters", ", ".join(changed)))
         return [*rows, *(("warning", warning) for warning in self.warnings)]
-
-    # --- old names ----------------------------------------------------------------------------------------
 
     def frame(self) -> pd.DataFrame:
         """Deprecated name of `to_dataframe`."""

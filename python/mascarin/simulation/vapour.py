@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Self
@@ -89,6 +90,17 @@ class VapourLedger:
         into = {flow: float(values[f"{flow}_kg"]) for flow in VAPOUR_FLOWS}
         numbers = (values[key] for key in ("stored_kg", "exchanged_kg", "closure"))
         return cls(into, *(float(number) for number in numbers))
+
+    @classmethod
+    def from_json(cls, text: str | None) -> Self | None:
+        """Read the values of `to_dict`; None where there are none.
+
+        Parameters
+        ----------
+        text : str or None
+            The values as JSON.
+        """
+        return None if text is None else cls.from_dict(json.loads(text))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers for JSON."""

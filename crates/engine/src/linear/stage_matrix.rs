@@ -118,6 +118,14 @@ impl<'a> StageMatrix<'a> {
         ([[a, b], [c, d]], 1.0 / determinant(outer, inner, &response))
     }
 
+    /// Solves for the surfaces and airs of zones, without what the surfaces of thick walls add to each other.
+    #[inline(always)]
+    fn solve_rows<R: Real>(&self, rows: &mut [R]) {
+        self.system.zone_fronts.forward_values(rows);
+        self.system.coupled.solve_values(rows);
+        self.system.zone_fronts.back_values(rows);
+    }
+
     /// Replaces the right-hand sides of all equations (cells, surfaces, airs) by their solution.
     #[inline(always)]
     pub(crate) fn solve_values<R: Real>(&self, rows: &mut [R], block: &mut Vec<R>) {
@@ -157,13 +165,8 @@ impl<'a> StageMatrix<'a> {
         for (zone, &air) in self.model.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
-        let solve = |block: &mut [R]| {
-            self.system.zone_fronts.forward_values(block);
-            self.system.coupled.solve_values(block);
-            self.system.zone_fronts.back_values(block);
-        };
-        solve(block);
-        self.system.thick_walls.complete_values(block, false, solve);
+        self.solve_rows(block);
+        self.system.thick_walls.complete_values(block, false, |block| self.solve_rows(block));
         for (zone, air) in self.model.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }
