@@ -247,7 +247,7 @@ impl<S: Real> State<S> {
         }
     }
 
-    /// Largest change of a cell or an air against another state [K]; of humidity, see [`AS_KELVIN`] and [`CONTENT_AS_KELVIN`].
+    /// Largest change of a cell or an air against another state [K]; of humidity, see `AS_KELVIN` and `CONTENT_AS_KELVIN`.
     #[inline(always)]
     pub fn distance(&self, other: &Self) -> S {
         let pairs = self.cells.iter().zip(&other.cells).chain(self.air.iter().zip(&other.air));
