@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -150,6 +151,14 @@ def test_many_evaluations_are_drawn_as_pixels(fit: Calibration, monkeypatch: pyt
     drawn = io.StringIO()
     figure.savefig(drawn, format="svg")
     assert "data:image/png" in drawn.getvalue()
+
+
+def test_searches_of_equal_cost_are_drawn(fit: Calibration) -> None:
+    """Equal but for rounding: no bins fit between them."""
+    same = tuple(replace(fit.minima[0], cost=cost) for cost in (2.0, np.nextafter(2.0, 3.0), 2.0))
+    counts, edges = replace(fit, minima=same).histogram()
+    assert counts.sum() == 3
+    assert edges[0] == 2.0 < edges[-1] < 2.0 + 1e-8
 
 
 def test_all_searches_are_in_the_histogram(fit: Calibration) -> None:
