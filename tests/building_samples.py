@@ -335,11 +335,43 @@ SECTIONS: dict[str, dict[str, Any]] = {
         },
         "heater": {"supply": {"room": 0.001}, "temperature": 30},
     },
+    "humidity": {
+        "initial": 0.55,
+        "period": 24,
+        "deep_period": 504,
+        "materials": {
+            "concrete": {"like": "concrete", "factor": 1.1, "vapour_resistance": 7},
+            "wax": {"capacity": 12, "vapour_resistance": 8, "depth": 0.004, "deep_depth": 0.02},
+            "curve": {
+                "humidities": [0, 0.5, 0.9],
+                "contents": [0, 4, 11],
+                "factor": 0.9,
+                "vapour_resistance": 10,
+                "depth": 0.003,
+                "deep_depth": 0.01,
+            },
+        },
+        "zones": {
+            "room": {
+                "storage": 3,
+                "gains": {
+                    "people": {"power": 80, "schedule": "day"},
+                    "shower": {"rate": 1e-5},
+                    "plants": {"column": "T_out", "unit": "g/h", "factor": 0.9},
+                },
+                "drying": {"sensible_heat_ratio": 0.75, "coil_temperature": 11},
+                "humidifying": {"relative_humidity": 0.35, "capacity": 200},
+            },
+            "attic": {"drying": {"humidity_ratio": 0.01, "capacity": 300}},
+        },
+        "surfaces": {"ceiling": {"paint": 0.4}},
+        "recovery": {"unit": 0.5},
+    },
 }
 
 
 def house() -> Building:
-    """Fans, doors, thermal bridges, pressure tests and measured powers."""
+    """Fans, doors, thermal bridges, pressure tests, measured powers, radiant loads and humidity."""
     plain: dict[str, Any] = parse(EVERYTHING, "everything.yaml").to_dict()
     for (zone, key), part in IN_ZONES.items():
         given: Any = plain["zones"][zone].get(key, {})
@@ -347,6 +379,8 @@ def house() -> Building:
     for zone in ("room", "attic"):
         plain["zones"][zone] |= {"makeup_air": "outdoors"}
     plain["zones"]["room"] |= {"solar_to_air": 0.1}
+    for plant in ("heating", "cooling"):
+        plain["zones"]["room"][plant] |= {"radiative": 0.2}
     for section, parts in SECTIONS.items():
         plain[section] = plain.get(section, {}) | parts
     return Building.from_dict(plain)
@@ -357,4 +391,8 @@ def everything() -> list[Building]:
     building = parse(EVERYTHING, "everything.yaml")
     skies = [building.replace({"site.sky": sky}) for sky in SKIES]
     melting = [everything_melting(*laws) for laws in MELTING]
-    return [*skies, building.replace(OPTIONAL), house(), *melting]
+    depths = {
+        "humidity.materials.concrete": {"like": "concrete", "depth": 0.004, "deep_depth": 0.02},
+        "humidity.materials.wax": {"capacity": 12, "vapour_resistance": 8},
+    }
+    return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), *melting]

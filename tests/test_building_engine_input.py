@@ -33,6 +33,7 @@ STRUCTURAL = {
     "from",
     "to",
     "continuity",
+    "side",
 }
 
 

@@ -185,6 +185,13 @@ impl<'a> StageMatrix<'a> {
         }
     }
 
+    /// The transpose of [`Self::solve_rows`].
+    fn solve_rows_transposed(&self, rows: &mut [f64]) {
+        self.system.zone_fronts.back_transposed(rows);
+        self.system.coupled.solve_transposed(rows);
+        self.system.zone_fronts.forward_transposed(rows);
+    }
+
     /// Replaces weights on all unknowns by weights on their equations: the transpose of [`Self::solve_values`].
     pub(crate) fn solve_transposed(&self, rows: &mut [f64], block: &mut Vec<f64>) {
         let (cells, rest) = rows.split_at_mut(self.model.plan.n_cells);
@@ -223,13 +230,8 @@ impl<'a> StageMatrix<'a> {
         for (zone, &air) in self.model.plan.zones.iter().zip(air.iter()) {
             block[zone.air_row] = air;
         }
-        let solve = |block: &mut [f64]| {
-            self.system.zone_fronts.back_transposed(block);
-            self.system.coupled.solve_transposed(block);
-            self.system.zone_fronts.forward_transposed(block);
-        };
-        solve(block);
-        self.system.thick_walls.complete_values(block, true, solve);
+        self.solve_rows_transposed(block);
+        self.system.thick_walls.complete_values(block, true, |block| self.solve_rows_transposed(block));
         for (zone, air) in self.model.plan.zones.iter().zip(air) {
             *air = block[zone.air_row];
         }
