@@ -341,28 +341,32 @@ SECTIONS: dict[str, dict[str, Any]] = {
         "deep_period": 504,
         "materials": {
             "concrete": {"like": "concrete", "factor": 1.1, "vapour_resistance": 7},
-            "wax": {"capacity": 12, "vapour_resistance": 8, "depth": 0.004, "deep_depth": 0.02},
+            "wax": {"capacity": 12, "vapour_resistance": 8, "depth": 0.001, "deep_depth": 0.002},
             "curve": {
                 "humidities": [0, 0.5, 0.9],
                 "contents": [0, 4, 11],
                 "factor": 0.9,
                 "vapour_resistance": 10,
-                "depth": 0.003,
-                "deep_depth": 0.01,
+                "depth": 0.001,
+                "deep_depth": 0.002,
             },
         },
         "zones": {
             "room": {
                 "storage": 3,
                 "gains": {
-                    "people": {"power": 80, "schedule": "day"},
-                    "shower": {"rate": 1e-5},
-                    "plants": {"column": "T_out", "unit": "g/h", "factor": 0.9},
+                    "people": {"power": 8, "schedule": "day"},
+                    "shower": {"rate": 1e-7},
+                    "plants": {
+                        "column": "T_out",
+                        "unit": "g/h",
+                        "factor": {"value": 1e-7, "range": [0, 2e-7]},
+                    },
                 },
-                "drying": {"sensible_heat_ratio": 0.75, "coil_temperature": 11},
-                "humidifying": {"relative_humidity": 0.35, "capacity": 200},
+                "drying": {"sensible_heat_ratio": 0.75, "coil_temperature": 16},
+                "humidifying": {"relative_humidity": 0.62, "capacity": 10},
             },
-            "attic": {"drying": {"humidity_ratio": 0.01, "capacity": 300}},
+            "attic": {"drying": {"humidity_ratio": 0.0112, "capacity": 3000}},
         },
         "surfaces": {"ceiling": {"paint": 0.4}},
         "recovery": {"unit": 0.5},
@@ -392,7 +396,7 @@ def everything() -> list[Building]:
     skies = [building.replace({"site.sky": sky}) for sky in SKIES]
     melting = [everything_melting(*laws) for laws in MELTING]
     depths = {
-        "humidity.materials.concrete": {"like": "concrete", "depth": 0.004, "deep_depth": 0.02},
-        "humidity.materials.wax": {"capacity": 12, "vapour_resistance": 8},
+        "humidity.materials.concrete": {"like": "concrete", "depth": 0.002, "deep_depth": 0.004},
+        "humidity.materials.wax": {"capacity": 3000, "vapour_resistance": 8},
     }
     return [*skies, building.replace(OPTIONAL), house(), house().replace(depths), *melting]
