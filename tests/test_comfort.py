@@ -234,6 +234,16 @@ def test_a_room_with_outdoor_moisture_has_the_dew_point_of_the_climate(run: mc.R
     assert found.to_dict()["hours_of_discomfort"] == found.hours
 
 
+def test_a_building_with_humidity_brings_its_own() -> None:
+    damp = box().replace({"humidity": {"zones": {"room": {"gains": {"people": {"power": 40}}}}}})
+    outputs = [*OUTPUTS, "room.relative_humidity"]
+    run = mc.simulate(damp, box_climate(), step="1h", outputs=outputs)
+    table = run.comfort("room", index="givoni").to_dataframe()
+    simulated = 100.0 * run["room.relative_humidity"].to_numpy()
+    assert table["relative_humidity"].to_numpy() == pytest.approx(simulated[: len(table)], rel=1e-12)
+    assert 20.0 < simulated.mean() < 100.0
+
+
 def test_running_mean_needs_seven_days_before(run: mc.Results) -> None:
     found = run.comfort("room", box_climate())
     assert found.to_dict()["undefined_hours"] == 72.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
@@ -39,9 +40,9 @@ class Wanted(Part):
     least: ClassVar[bool] = True
 
     @property
+    @abstractmethod
     def unit(self) -> str:
         """Unit of the value."""
-        raise NotImplementedError
 
     def changes(self) -> dict[str, Any]:
         """What is replaced in the building for the runs of this objective."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -59,17 +60,7 @@ def locate(name: str) -> Path:
     >>> locate("lgi").name
     'study.yaml'
     """
-    path = Path(name)
-    if path.is_file():
-        return path
-    if name in STUDIES:
-        return STUDIES[name]
-    if path.is_dir() and (path / "study.yaml").is_file():
-        return path / "study.yaml"
-    raise InputError(
-        f"{name}: found no study file, expected a YAML file or one of {', '.join(STUDIES)}. "
-        f"{did_you_mean(name, STUDIES)}".rstrip()
-    )
+    return _found(name, "study", STUDIES)
 
 
 def locate_design(name: str) -> Path:
@@ -96,16 +87,21 @@ def locate_design(name: str) -> Path:
     >>> locate_design("reunion-house").name
     'design.yaml'
     """
+    return _found(name, "design", DESIGNS)
+
+
+def _found(name: str, kind: str, examples: Mapping[str, Path]) -> Path:
+    """A file, the file of this kind in a folder, or an example."""
     path = Path(name)
     if path.is_file():
         return path
-    if name in DESIGNS:
-        return DESIGNS[name]
-    if path.is_dir() and (path / "design.yaml").is_file():
-        return path / "design.yaml"
+    if name in examples:
+        return examples[name]
+    if path.is_dir() and (path / f"{kind}.yaml").is_file():
+        return path / f"{kind}.yaml"
     raise InputError(
-        f"{name}: found no design file, expected a YAML file or one of {', '.join(DESIGNS)}. "
-        f"{did_you_mean(name, DESIGNS)}".rstrip()
+        f"{name}: found no {kind} file, expected a YAML file or one of {', '.join(examples)}. "
+        f"{did_you_mean(name, examples)}".rstrip()
     )
 
 
