@@ -19,7 +19,7 @@ const ACCEPTED: f64 = 1e-6;
 const ROUNDING: f64 = 1e-13;
 /// What is left of an error after all rounds [-].
 const LEFT: f64 = 1e-14;
-/// Rounds after which a wall has to be taken as it is: nothing passes it for less than 0.996 of its heat.
+/// Most rounds: enough where less than 0.996 of the heat of a surface reaches the other one within a stage.
 const MOST_ROUNDS: usize = 10_000;
 
 /// A surface of a thick wall.
