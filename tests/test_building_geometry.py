@@ -124,6 +124,7 @@ def test_tilt_and_azimuth(direction: list[float], tilt: float, azimuth: float) -
         ([(0, 0, 0), (1, 0, 0), (1, math.nan, 0)], "vertex 3 is"),
         ([(0, 0, 0), (1, 0, 0), (1, 0, 0), (0, 1, 0)], "vertices 2 and 3 are 0 m apart"),
         ([(0, 0, 0), (1, 0, 0), (2, 0, 0)], "enclose no area"),
+        ([(0, 0, 0), (1e9, 0, 0), (1e9, 0.5, 0), (0, 0.5, 0)], "enclose no area"),  # found by make fuzz
         ([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0.1)], "is not plane"),
         ([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0.5, -1, 0)], "edge 1 crosses edge 3"),
     ],

@@ -578,15 +578,16 @@ def test_chunks_of_work_last_about_a_second() -> None:
 
     assert CHUNK_SECONDS <= 1.0
     pace = _Pace()
-    assert pace.size == 8
-    pace.update(8, 0.1)
-    assert pace.size == 80
-    pace.update(80, 8.0)  # a busy machine
-    assert pace.size == 8  # whole packs of lanes: 10 would fill no more of them
-    pace.update(1, 5.0)  # one run takes longer: nothing smaller can be kept
-    assert pace.size == 1
-    pace.update(8, 0.0)
-    assert pace.size == 2048
+    packs = 8 * (os.cpu_count() or 1)  # eight members on each processor: fewer would take as long
+    assert pace.size == packs
+    pace.update(packs, 0.1)
+    assert pace.size == 10 * packs
+    pace.update(10 * packs, 8.0)  # a busy machine
+    assert pace.size == packs
+    pace.update(packs, 5.0)  # long runs: still whole packs
+    assert pace.size == packs
+    pace.update(packs, 0.0)
+    assert pace.size == 128 * packs
 
 
 # --- the wall bench: real measurements -----------------------------------------------------------------

@@ -68,7 +68,9 @@ def window_ratings(building: Description) -> dict[str, WindowRating]:
     if not building.windows:
         return {}
     from mascarin import _engine
+    from mascarin.engine_errors import translated
 
     described = describe(building, parameters(building), 900.0, {})
-    found = _engine.Plan(described.json).window_ratings(described.values)
+    with translated():
+        found = _engine.Plan(described.json).window_ratings(described.values)
     return {name: WindowRating(*map(float, row)) for name, row in zip(building.windows, found, strict=True)}

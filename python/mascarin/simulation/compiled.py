@@ -14,7 +14,7 @@ import numpy as np
 
 from mascarin import _engine
 from mascarin._io import memory
-from mascarin.simulation.engine_errors import translated
+from mascarin.engine_errors import translated
 from mascarin.simulation.readings import Readings
 from mascarin.weather.timezones import parse_timezone
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from mascarin import _engine
 from mascarin._io import memory
-from mascarin.simulation.engine_errors import translated
+from mascarin.engine_errors import translated
 from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:

@@ -288,8 +288,7 @@ class Simulation(VectorRuns):
 
         vector = np.array(vector, dtype=np.float64)
         self._require_possible(vector[None, :])
-        watched = unmelted.watched(self.building)
-        records, raw = self.compiled.run(vector, Readings.of([*self.outputs, *watched]), progress=progress)
+        records, raw = self.compiled.run(vector, self._recorded, progress=progress)
         records, seen = np.split(records, [len(self.outputs)], axis=1)
         energy = EnergyLedger.read(raw)
         vapour = None if self.building.humidity is None else VapourLedger.read(raw["vapour"])
@@ -318,6 +317,13 @@ class Simulation(VectorRuns):
             warnings=tuple(warnings),
             vapour=vapour,
         )
+
+    @cached_property
+    def _recorded(self) -> Readings:
+        """What a run records: the outputs asked for, and the layers whose melting is watched."""
+        from mascarin.building import unmelted  # pydantic, as above
+
+        return Readings.of([*self.outputs, *unmelted.watched(self.building)])
 
     # --- times, weather, identity -------------------------------------------------------------------------
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
@@ -28,9 +29,10 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-#: Work that is lost at most when a study is killed. [s]
+#: Work that is lost at most when a study is killed, where the runs are short. [s]
 CHUNK_SECONDS: Final = 1.0
-_FIRST_CHUNK: Final = 8
+#: The engine solves eight members at once on each processor: fewer would take as long.
+_PACK: Final = 8
 
 
 def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> None:
@@ -154,15 +156,15 @@ def analyze(
 
 
 class _Pace:
-    """Number of runs in a chunk, from the time of the last chunk; whole groups of 8 where they fit."""
+    """Number of runs in a chunk, from the time of the last chunk; whole packs for all processors."""
 
     def __init__(self) -> None:
-        self.size = _FIRST_CHUNK
+        self.least = _PACK * (os.cpu_count() or 1)
+        self.size = self.least
 
     def update(self, runs: int, seconds: float) -> None:
         wanted = runs * CHUNK_SECONDS / max(seconds, 1e-3)
-        whole = 8 * round(wanted / 8) if wanted >= 8 else int(wanted)
-        self.size = int(np.clip(whole, 1, 2048))
+        self.size = self.least * int(np.clip(round(wanted / self.least), 1, 128))
 
 
 def _missing(runs: Plan, done: npt.NDArray[np.bool_], pace: _Pace) -> Iterator[tuple[int, Array]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime, tzinfo
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,8 +55,7 @@ class Grid:
 
     def span(self) -> str:
         """The range covered, as text."""
-        first, last = stamps_of(np.array([self.start, self.end]), self.zone)
-        return f"{first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M} ({zone_name(self.zone)})"
+        return _span(self.start, self.end, self.zone)
 
     def require(self, start: float, end: float, where: str, hint: str = "") -> None:
         """Refuse a span that the grid does not cover.
@@ -142,3 +142,9 @@ def frame_of(columns: Mapping[str, Array], grid: Grid) -> pd.DataFrame:
     frame = pd.DataFrame(dict(columns), index=index)
     frame.index.name = "time"
     return frame
+
+
+@lru_cache(maxsize=64)  # every run of a study names the period of its climate
+def _span(start: float, end: float, zone: tzinfo) -> str:
+    first, last = stamps_of(np.array([start, end]), zone)
+    return f"{first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M} ({zone_name(zone)})"

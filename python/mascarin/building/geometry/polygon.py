@@ -28,6 +28,9 @@ from mascarin.errors import InputError
 
 Array = npt.NDArray[np.float64]
 
+#: An area below this share of the square of its length is a line, for the engine, too [-].
+SLENDER = 1e-9
+
 
 @dataclass(frozen=True)
 class Polygon:
@@ -84,7 +87,8 @@ class Polygon:
                 )
         vector = self._vector_area
         size = float(np.max(sides))
-        if float(np.linalg.norm(vector)) < TOLERANCE * size:
+        reach = float(np.max(np.linalg.norm(self.points - self.points[0], axis=1)))
+        if float(np.linalg.norm(vector)) < max(TOLERANCE * size, SLENDER * reach**2):
             raise InputError(
                 f"surface '{self.name}': its vertices enclose no area; expected corners once around it"
             )
