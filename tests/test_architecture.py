@@ -29,7 +29,7 @@ ORDER = [
     {"study"},
     {"design"},
     {"genopt"},
-    {"commands", "cli"},
+    {"commands", "cli", "__main__"},
 ]
 LEVEL = {name: level for level, names in enumerate(ORDER) for name in names}
 
