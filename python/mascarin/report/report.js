@@ -1,7 +1,7 @@
 "use strict";
 // Interactive curves over the series of the page. Everything here is an addition: the page says the same without it.
 (() => {
-  const data = JSON.parse(document.getElementById("report-data").textContent);
+  const data = JSON.parse(document.getElementById("page-data").textContent);
   const series = data.series;
   // Local times are drawn as if they were UTC: the page states the zone.
   const seconds = (text) => Date.parse(text + "Z") / 1000;
