@@ -25,7 +25,7 @@ def page(study: Mapping[str, Any], series: Series) -> str:
     values = context(study, series) | frame(
         styles=["report/vendor/uPlot.min.css"],
         libraries=[CURVES],
-        scripts=["report/report.js"],
+        scripts=["report/curves.js", "report/report.js"],
         data=explorer(study, series),
     )
     template.render(values)  # counts the tables and figures to which texts refer
