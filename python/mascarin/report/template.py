@@ -43,8 +43,13 @@ CURVES: Final = Library(
 )
 
 
-def environment() -> Environment:
+def environment(numbering: Numbering | None = None) -> Environment:
     """Templates of all packages, by their path below ``mascarin``; they extend ``report/base.html``.
+
+    Parameters
+    ----------
+    numbering : Numbering, optional
+        Numbers of tables and figures; new ones if not given.
 
     Examples
     --------
@@ -60,7 +65,7 @@ def environment() -> Environment:
         keep_trailing_newline=True,
     )
     made.filters |= {"typeset": typeset, "significant": significant, "symbol": _symbol}
-    made.globals["numbering"] = Numbering()
+    made.globals["numbering"] = numbering or Numbering()
     return made
 
 
