@@ -277,18 +277,10 @@ def _loads(results: Results) -> list[dict[str, str]]:
 
 def _energy(results: Results) -> dict[str, Any]:
     into = {flow_words(flow): value / 1e6 for flow, value in results.energy.into.items() if value}
-    terms = [{"label": label, "value": value} for label, value in into.items()]
-    stored = {"label": "Stored in walls and air", "value": results.energy.stored / 1e6}
-    rows = [
-        (
-            term["label"],
-            text.significant(float(term["value"]), 4),
-            text.significant(float(term["value"]) / 3.6, 4),
-        )
-        for term in (*terms, stored)
-    ]
+    heats = [*into.items(), ("Stored in walls and air", results.energy.stored / 1e6)]
+    rows = [(label, text.significant(heat, 4), text.significant(heat / 3.6, 4)) for label, heat in heats]
     return {
-        "drawing": ledger_bars({"terms": [*terms, stored]}),
+        "drawing": ledger_bars({"terms": [{"label": label, "value": heat} for label, heat in heats]}),
         "rows": rows,
         "closure": text.significant(results.energy.relative_residual, 2),
         "closes": results.energy.closes,
@@ -299,8 +291,8 @@ def _outputs(results: Results) -> list[tuple[str, str, str, str, str]]:
     rows = []
     for k, output in enumerate(results.outputs):
         values = results.records[1:, k] if output.mean else results.records[:, k]
-        shown = text.alike([float(values.min()), float(values.mean()), float(values.max())], 4)
-        rows.append((output.name, units.shown(output.unit), *shown))
+        low, mean, high = text.alike([float(values.min()), float(values.mean()), float(values.max())], 4)
+        rows.append((output.name, units.shown(output.unit), low, mean, high))
     return rows
 
 
