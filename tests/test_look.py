@@ -358,11 +358,15 @@ def test_ctrl_c_ends_the_page_with_130(saved: tuple[Path, Path], tmp_path: Path)
         stderr=subprocess.PIPE, text=True, cwd=tmp_path,
     )  # fmt: skip
     assert process.stderr is not None
-    lines = []
-    while not (lines and lines[-1].startswith("Ctrl-C")):
-        lines.append(process.stderr.readline())
-        assert lines[-1], f"ended early: {lines}"
-    assert lines[-2].startswith("http://127.0.0.1:")
-    process.send_signal(signal.SIGINT)
-    assert process.wait(timeout=20) == 130
-    assert "interrupted" in process.stderr.read()
+    try:
+        lines = []
+        while not (lines and lines[-1].startswith("Ctrl-C")):
+            lines.append(process.stderr.readline())
+            assert lines[-1], f"ended early: {lines}"
+        assert lines[-2].startswith("http://127.0.0.1:")
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=120) == 130
+        assert "interrupted" in process.stderr.read()
+    finally:
+        process.kill()
+        process.wait()

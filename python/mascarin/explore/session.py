@@ -227,7 +227,7 @@ class Session:
         return rows
 
 
-def _checked(band: Sequence[float]) -> Band:
+def _checked(band: Sequence[Any]) -> Band:
     ends = list(band)
     numbers = all(isinstance(end, int | float) and np.isfinite(end) for end in ends)
     if len(ends) != 2 or not numbers or not ends[0] < ends[1]:
