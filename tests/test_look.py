@@ -125,9 +125,9 @@ def test_the_building_is_drawn_without_network_and_names_stay_text(page: Page, t
     page.locator(".pick", has_text="living_ceiling").first.click()
     assert "PCM" in page.locator("#selected").inner_text() or page.locator("#selected .droplet").count() > 0
     page.locator("#canvas").press("n")
-    before = page.locator("#selected h3").inner_text()
+    before = page.locator("#selected > h3").inner_text()
     page.locator("#canvas").press("n")
-    assert page.locator("#selected h3").inner_text() != before
+    assert page.locator("#selected > h3").inner_text() != before
     page.locator("#color-by").select_option("u")
     assert "W/(m² K)" in page.locator("#keys").inner_text()
     page.evaluate(
@@ -359,7 +359,7 @@ def test_ctrl_c_ends_the_page_with_130(saved: tuple[Path, Path], tmp_path: Path)
     )  # fmt: skip
     assert process.stderr is not None
     try:
-        lines = []
+        lines: list[str] = []
         while not (lines and lines[-1].startswith("Ctrl-C")):
             lines.append(process.stderr.readline())
             assert lines[-1], f"ended early: {lines}"
