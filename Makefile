@@ -34,8 +34,9 @@ export PIP_NO_INPUT := 1
 export PYO3_PYTHON := $(CURDIR)/$(PY)
 
 FUZZ_CALLS ?= 20000
+THREE := python/mascarin/view/vendor
 
-.PHONY: help demo test coverage test-lowest bench fuzz docs docs-links build check-tools check-rust check-python pytest
+.PHONY: help demo test coverage test-lowest bench fuzz docs docs-links vendor-three build check-tools check-rust check-python pytest
 .DELETE_ON_ERROR:
 
 help:
@@ -83,6 +84,14 @@ bench: $(BUILT) $(HYPERFINE)
 
 $(HYPERFINE): | check-tools
 	cargo install hyperfine --version $(HYPERFINE_VERSION) --locked --quiet --root target/bench/tools
+
+# The file is committed; this makes it again from its pinned sources and compares it. Needs node and a network.
+vendor-three:
+	cd packaging/three && npm ci --silent
+	cd packaging/three && node_modules/.bin/esbuild entry.js --bundle --minify --format=iife --global-name=THREE \
+		--legal-comments=none --outfile=$(CURDIR)/$(THREE)/three.iife.min.js
+	cp packaging/three/node_modules/three/LICENSE $(THREE)/three.LICENSE
+	cd $(THREE) && sha256sum --check $(CURDIR)/packaging/three/three.sha256
 
 # Bounded by the counts: those of FUZZ (see tests/fuzz_campaign.py --help), and calls of each function of the engine.
 fuzz: $(BUILT)

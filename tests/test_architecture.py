@@ -26,6 +26,7 @@ ORDER = [
     {"verification"},
     {"examples"},
     {"report"},
+    {"view", "explore"},
     {"study"},
     {"design"},
     {"genopt"},

@@ -63,6 +63,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "mascarin.commands.convert:convert",
             "Convert a model of EnergyPlus to a building.",
         ),
+        Command("view", "mascarin.commands.view:view", "Show a building in three dimensions."),
         Command("parameters", "mascarin.commands.building:parameters", "List every parameter of a building."),
         Command("outputs", "mascarin.commands.building:outputs", "List every output of a building."),
         Command(
@@ -80,6 +81,9 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
     ),
     "Run": (
         Command("run", "mascarin.commands.run:run", "Simulate a building with a weather file."),
+        Command(
+            "explore", "mascarin.commands.explore:explore", "Move sliders and see the curves of a building."
+        ),
         Command("sweep", "mascarin.commands.sweep:sweep", "Simulate a building with many parameter values."),
         Command(
             "design", "mascarin.commands.design:design", "Compare designs: which product, how much, where."

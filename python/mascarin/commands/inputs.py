@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 from cyclopts import Parameter
 
@@ -35,6 +35,36 @@ Outside = Annotated[
 Step = Annotated[str, Parameter(help="Time step, such as 900, 15min or 1h.")]
 
 
+Weather = Annotated[
+    Path,
+    Parameter(
+        help="Weather: an EPW file, TMY3 as CSV, a measured table (CSV with --column, or Parquet), or a YAML "
+        "file with the keys climate and measurements of a study, such as the study itself."
+    ),
+]
+MeasuredTable = Annotated[
+    Path | None,
+    Parameter(
+        help="Table with the measured columns that the building names. Default: the table of --weather."
+    ),
+]
+Columns = Annotated[
+    list[str] | None,
+    Parameter(
+        name="--column",
+        negative="",
+        help="Column of a measured table for --weather, as CHANNEL=COLUMN or CHANNEL=COLUMN [UNIT], such as "
+        '"air_temperature=T_out" or "wind_speed=wind [km/h]"; CHANNEL=none for what was not measured. Can be '
+        "given several times.",
+    ),
+]
+Zone = Annotated[str | None, Parameter(help="Time zone of measured tables. Default: that of the site.")]
+Stamps = Annotated[
+    Literal["start", "end"],
+    Parameter(help="Which end of its interval a stamp of a measured table marks."),
+]
+
+
 def read_building(file: Path, settings: Sequence[str] | None) -> Building:
     """Read a building and set the values of ``--set``.
 
@@ -53,8 +83,19 @@ def read_building(file: Path, settings: Sequence[str] | None) -> Building:
     from mascarin.building import load
 
     building = load(file)
-    values = dict(_setting(text) for text in settings or ())
+    values = set_values(settings)
     return building.replace(values) if values else building
+
+
+def set_values(settings: Sequence[str] | None) -> dict[str, float]:
+    """Values of ``--set`` by path.
+
+    Raises
+    ------
+    InputError
+        A setting is not ``path=number``.
+    """
+    return dict(_setting(text) for text in settings or ())
 
 
 def _setting(text: str) -> tuple[str, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -13,10 +13,23 @@ from cyclopts import Parameter
 
 from mascarin._io.atomic import drafted
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson, Outside, Settings, Step, read_building, seconds
+from mascarin.commands.inputs import (
+    AsJson,
+    Columns,
+    MeasuredTable,
+    Outside,
+    Settings,
+    Stamps,
+    Step,
+    Weather,
+    Zone,
+    read_building,
+    seconds,
+)
 from mascarin.commands.output import print_json, print_table
 from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
+from mascarin.commands.view import require_html
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
@@ -35,12 +48,13 @@ def run(
     building: Path,
     /,
     *,
-    weather: Path,
-    measurements: Path | None = None,
-    columns: Annotated[list[str] | None, Parameter(name="--column", negative="")] = None,
-    timezone: str | None = None,
-    stamps: Literal["start", "end"] = "start",
+    weather: Weather,
+    measurements: MeasuredTable = None,
+    columns: Columns = None,
+    timezone: Zone = None,
+    stamps: Stamps = "start",
     out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    report: Path | None = None,
     start: str | None = None,
     end: str | None = None,
     step: Step = "15min",
@@ -60,21 +74,10 @@ def run(
     ----------
     building : Path
         Description of a building.
-    weather : Path
-        Weather: an EPW file, TMY3 as CSV, a measured table (CSV with --column, or Parquet), or a YAML file
-        with the keys climate and measurements of a study, such as the study itself.
-    measurements : Path
-        Table with the measured columns that the building names. Default: the table of --weather.
-    columns : list of str
-        Column of a measured table for --weather, as CHANNEL=COLUMN or CHANNEL=COLUMN [UNIT], such as
-        "air_temperature=T_out" or "wind_speed=wind [km/h]"; CHANNEL=none for what was not measured. Can be
-        given several times.
-    timezone : str
-        Time zone of measured tables. Default: that of the site.
-    stamps : str
-        Which end of its interval a stamp of a measured table marks.
     out : Path
         File for the time series: NetCDF (.nc) or CSV (.csv, in local time). Without it a summary is printed.
+    report : Path
+        File for a page about the run (.html): inputs, curves, loads, energy balance, warnings.
     start : str
         Start of the period, such as 2012-09-20 or "2012-09-20 12:00", local time. Default: the start
         of the weather file.
@@ -90,7 +93,8 @@ def run(
     """
     described = read_building(building, settings)
     _require_format(out)
-    with writing(out), lines_named(building):
+    require_html("--report", report)
+    with writing(out), writing(report), lines_named(building):
         climate, measured = run_inputs(
             described,
             weather,
@@ -100,10 +104,14 @@ def run(
             stamps=stamps,
             allow_outside=allow_outside,
         )
-        results = _simulated(
+        simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
-            scheme=scheme,
+            scheme=scheme, more=report is not None,
         )  # fmt: skip
+        results = _simulated(simulation)
+        if report is not None:
+            _write_report(report, simulation, results, {"Building": building, "Weather": weather})
+            results = _only(results, matching_outputs(described, outputs))
         if interval is not None:
             results = results.every(interval)
         if out is not None:
@@ -115,26 +123,68 @@ def run(
     return 0 if results.energy.closes else 1
 
 
-def _simulated(
-    building: Building, climate: Climate, *, step: str, outputs: Sequence[str] | None, **options: Any
-) -> Results:
-    """Run once, with warnings about building and results, and progress of a long run, on standard error."""
+def _compiled(
+    building: Building,
+    climate: Climate,
+    *,
+    step: str,
+    outputs: Sequence[str] | None,
+    more: bool = False,
+    **options: Any,
+) -> Simulation:
+    """Compile a run, with warnings about the building on standard error; `more`: record what a page shows."""
+    from mascarin.simulation.compiling import chosen_outputs
     from mascarin.simulation.simulation import Simulation
 
-    simulation = Simulation(
-        building,
-        climate,
-        step=seconds(step),
-        outputs=_matching(building, outputs),
-        **options,
-    )
+    names = matching_outputs(building, outputs)
+    if more:
+        from mascarin.report.run_page import needed
+
+        own = [output.name for output in chosen_outputs(building, names)]
+        names = list(dict.fromkeys([*own, *needed(building)]))
+    simulation = Simulation(building, climate, step=seconds(step), outputs=names, **options)
     _print_warnings(building, simulation)
     _print_cost(building, simulation)
+    return simulation
+
+
+def _simulated(simulation: Simulation) -> Results:
+    """Run once, with warnings about results, and progress of a long run, on standard error."""
     with _progress() as progress:
         results = simulation.run(progress=progress)
     for line in results.warnings:
         print(f"warning: {line}", file=sys.stderr)
     return results
+
+
+def _write_report(file: Path, simulation: Simulation, results: Results, inputs: Mapping[str, Path]) -> None:
+    from mascarin.building import check
+    from mascarin.report.run_page import Notes, write
+
+    start = "warning: "
+    lines = check(simulation.building, simulation.step_seconds)
+    notes = Notes(
+        outdoors=simulation.weather("air_temperature"),
+        warnings=[line.removeprefix(start) for line in lines if line.startswith(start)],
+        inputs=[(name, str(path)) for name, path in inputs.items()],
+    )
+    write(file, results, notes)
+    print(f"wrote {file}", file=sys.stderr)
+
+
+def _only(results: Results, names: Sequence[str] | None) -> Results:
+    """The results with these outputs alone, or with the usual ones."""
+    from dataclasses import replace
+
+    from mascarin.simulation.compiling import USUAL
+
+    kept = [
+        k
+        for k, output in enumerate(results.outputs)
+        if (output.kind in USUAL if names is None else output.name in names)
+    ]
+    outputs = [results.outputs[k] for k in kept]
+    return replace(results, outputs=outputs, records=results.records[:, kept])
 
 
 @contextlib.contextmanager
@@ -194,7 +244,7 @@ def _require_format(out: Path | None) -> None:
         raise InputError(f"--out: found '{out}'; expected a file ending in {' or '.join(FORMATS)}")
 
 
-def _matching(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
+def matching_outputs(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
     """Names of the outputs that fit the patterns; None for the default outputs."""
     if patterns is None:
         return None

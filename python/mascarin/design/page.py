@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from jinja2 import Environment, StrictUndefined
-from markupsafe import Markup
 
 from mascarin import __version__
 from mascarin._io import atomic, units
@@ -19,7 +16,7 @@ from mascarin.design.measures import BINS
 from mascarin.design.results import ALL
 from mascarin.design.runs import UNDEFINED
 from mascarin.report import text
-from mascarin.report.html import palette
+from mascarin.report.template import environment, frame
 
 if TYPE_CHECKING:
     from mascarin.design.choices import Choice
@@ -64,9 +61,6 @@ def render(results: DesignResults) -> str:
     str
         HTML.
     """
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
     details = _details(results)
     sections = [
         {"id": key, "title": title, "content": content}
@@ -82,25 +76,21 @@ def render(results: DesignResults) -> str:
         )
         if content
     ]
-    style = "\n".join(
-        (palette(), _asset("mascarin.report", "report.css"), _asset("mascarin.design", "page.css"))
+    return (
+        environment()
+        .get_template("design/page.html")
+        .render(
+            frame(styles=["design/page.css"]),
+            title=results.inputs.file.name,
+            version=__version__,
+            name=results.inputs.file.name,
+            about=results.inputs.file.about,
+            negligible=text.significant(100.0 * results.inputs.file.negligible),
+            verdict=_verdict(results),
+            facts=_facts(results),
+            sections=sections,
+        )
     )
-    return environment.from_string(_asset("mascarin.design", "page.html")).render(
-        style=Markup(style),  # noqa: S704  (our own files)
-        policy="default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
-        "form-action 'none'",
-        version=__version__,
-        name=results.inputs.file.name,
-        about=results.inputs.file.about,
-        negligible=text.significant(100.0 * results.inputs.file.negligible),
-        verdict=_verdict(results),
-        facts=_facts(results),
-        sections=sections,
-    )
-
-
-def _asset(package: str, name: str) -> str:
-    return files(package).joinpath(name).read_text(encoding="utf-8")
 
 
 def _facts(results: DesignResults) -> list[tuple[str, str, str]]:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from jinja2 import Environment, StrictUndefined
-from markupsafe import Markup
 
 from mascarin import __version__
 from mascarin._io import atomic, units
 from mascarin.report import text
 from mascarin.report.svg import Axis, Chart
+from mascarin.report.template import environment, frame
 from mascarin.verification.bestest.catalogue import CASES, IN_DEPTH, MAIN, Case
 from mascarin.verification.bestest.quantities import (
     COLDEST_BIN,
@@ -72,9 +70,6 @@ def write(path: Path, rows: Sequence[Quantity], years: Mapping[str, Year], facts
 
 def render(rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[str, str]) -> str:
     """Make the page; the parameters are those of `write`."""
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
     held = [row for row in rows if row.range is not None]
     found = {(row.case, row.quantity): row for row in held}
     sections = [
@@ -93,29 +88,23 @@ def render(rows: Sequence[Quantity], years: Mapping[str, Year], facts: Mapping[s
         )
         if content
     ]
-    style = _asset("report.css") + "\n" + _asset("bestest.css")
     outside = [row for row in held if not row.passed]
-    return environment.from_string(_asset("bestest.html")).render(
-        style=Markup(style),  # noqa: S704  (our own files)
-        policy=_policy(),
-        version=__version__,
-        sections=sections,
-        programs=list(zip(PROGRAMS, _CLASSES, strict=True)),
-        count=len(held),
-        inside=len(held) - len(outside),
-        outside=[_outside(row) for row in outside],
-        cases=len({row.case for row in held}),
-        closure=text.significant(max((year.closure for year in years.values()), default=0.0), 2),
+    return (
+        environment()
+        .get_template("report/bestest.html")
+        .render(
+            frame(styles=["report/bestest.css"]),
+            title="Standard 140 with Mascarin",
+            version=__version__,
+            sections=sections,
+            programs=list(zip(PROGRAMS, _CLASSES, strict=True)),
+            count=len(held),
+            inside=len(held) - len(outside),
+            outside=[_outside(row) for row in outside],
+            cases=len({row.case for row in held}),
+            closure=text.significant(max((year.closure for year in years.values()), default=0.0), 2),
+        )
     )
-
-
-def _policy() -> str:
-    """Content security policy: no script runs, and nothing is loaded."""
-    return "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
-
-
-def _asset(name: str) -> str:
-    return files("mascarin.report").joinpath(name).read_text(encoding="utf-8")
 
 
 def _words(quantity: str) -> str:

@@ -324,12 +324,7 @@ def layers(
     edges = 60.0 + np.concatenate([[0.0], np.cumsum(widths)])
     top, bottom = 50.0, 112.0
     for number, (layer, x0, x1) in enumerate(zip(entries, edges, edges[1:], strict=False), start=1):
-        kind = _look(layer)
-        svg.add("rect", x=float(x0), y=top, width=float(x1 - x0), height=bottom - top, class_=f"layer {kind}")
-        if kind == "pcm":
-            _droplets(svg, float(x0), float(x1), top, bottom)
-        if kind == "insulation":
-            _hatch(svg, float(x0), float(x1), top, bottom)
+        fill_of(svg, layer, (float(x0), float(x1)), (top, bottom))
         svg.label(0.5 * float(x0 + x1), bottom + 14.0, str(number), "tick", "middle")
         svg.label(60.0, bottom + 17.0 * number + 16.0, _layer_text(number, layer), "layer-name")
     sides = _neighbors(building, str(construction.get("name")))
@@ -349,6 +344,29 @@ def _widths(thick: Array) -> Array:
     """Drawn widths before scaling: a power below one keeps thin layers visible beside thick ones."""
     widths: Array = np.maximum(thick, 2e-3) ** 0.45
     return widths
+
+
+def fill_of(
+    svg: Svg, layer: Mapping[str, Any], across: tuple[float, float], down: tuple[float, float]
+) -> None:
+    """Draw one layer: a rectangle with the look of its material.
+
+    Parameters
+    ----------
+    svg : Svg
+        Where to.
+    layer : mapping
+        ``kind``, ``conductivity`` and ``density``.
+    across, down : (float, float)
+        Ends of the rectangle. [px]
+    """
+    (x0, x1), (top, bottom) = across, down
+    kind = _look(layer)
+    svg.add("rect", x=x0, y=top, width=x1 - x0, height=bottom - top, class_=f"layer {kind}")
+    if kind == "pcm":
+        _droplets(svg, x0, x1, top, bottom)
+    if kind == "insulation":
+        _hatch(svg, x0, x1, top, bottom)
 
 
 def _look(layer: Mapping[str, Any]) -> str:

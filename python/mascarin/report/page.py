@@ -216,7 +216,7 @@ def _sections(study: Mapping[str, Any], series: Series) -> list[dict[str, Any]]:
             found.append(
                 {
                     "id": key.replace("_", "-"),
-                    "template": f"sections/{key}.html",
+                    "template": f"report/sections/{key}.html",
                     "title": module.TITLE,
                     "number": number,
                     "content": content,

@@ -1,7 +1,7 @@
 "use strict";
 // Interactive curves over the series of the page. Everything here is an addition: the page says the same without it.
 (() => {
-  const data = JSON.parse(document.getElementById("report-data").textContent);
+  const data = JSON.parse(document.getElementById("page-data").textContent);
   const series = data.series;
   // Local times are drawn as if they were UTC: the page states the zone.
   const seconds = (text) => Date.parse(text + "Z") / 1000;
@@ -24,37 +24,12 @@
   }
   const times = Array.from({ length: series.count }, (_, i) => start + i * series.step);
   const minus = (a, b) => a.map((v, i) => (v === null || b[i] === null ? null : v - b[i]));
-  const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const shown = (v, digits) => (v === null || v === undefined ? "–" : v.toFixed(digits).replace("-", "−"));
-  const two = (n) => String(n).padStart(2, "0");
-  const months = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
-  function date(t) {
-    const d = new Date(t * 1000);
-    return `${d.getUTCDate()} ${months[d.getUTCMonth()]} ${two(d.getUTCHours())}:${two(d.getUTCMinutes())}`;
-  }
+  const { axes, date, line, shown, style } = Curves;
 
   const box = document.getElementById("explorer");
   const picks = { sensor: "pick-sensor", period: "pick-period", beside: "pick-beside" };
   const picked = (name) => document.getElementById(picks[name])?.value ?? "";
   let plots = [];
-
-  function axes(label) {
-    const ink = style("--soft");
-    const lines = { stroke: style("--hair"), width: 1 };
-    const marks = { stroke: style("--rule"), width: 1, size: 5 };
-    const font = `11px ${style("--sans")}`;
-    const values = (_, splits, __, ___, step) => splits.map((t) => {
-      const d = new Date(t * 1000);
-      const day = `${d.getUTCDate()} ${months[d.getUTCMonth()]}`;
-      const clock = `${two(d.getUTCHours())}:${two(d.getUTCMinutes())}`;
-      return step >= 86400 ? day : d.getUTCHours() + d.getUTCMinutes() === 0 ? `${clock}\n${day}` : clock;
-    });
-    return [
-      { stroke: ink, grid: lines, ticks: marks, font, values, space: 64 },
-      { stroke: ink, grid: lines, ticks: marks, font, label, labelFont: font, labelSize: 18, size: 52,
-        values: (_, splits) => splits.map((v) => String(+v.toFixed(6)).replace("-", "−")) },
-    ];
-  }
 
   function tint(u) {
     const { ctx } = u;
@@ -80,19 +55,14 @@
   function plot(target, label, unit, height, lines, values, bands) {
     const width = target.clientWidth || box.clientWidth;
     return new uPlot({
-      width, height, tzDate: (t) => new Date(t * 1000), axes: axes(unit ? `${label} [${unit}]` : label),
+      width, height, tzDate: Curves.local, axes: axes(unit ? `${label} [${unit}]` : label),
       scales: { x: { time: true } }, bands,
       cursor: { sync: { key: "report" }, drag: { x: true, y: false }, points: { size: 6 } },
       legend: { live: true },
       hooks: { drawClear: [tint], setScale: [(u, key) => key === "x" && follow(u)] },
-      series: [{ label: "time", value: (_, t) => (t === null ? "–" : date(t)) }, ...lines],
+      series: [Curves.time, ...lines],
     }, values, target);
   }
-
-  const line = (label, stroke, unit, more = {}) => ({
-    label, stroke, width: 1.4, points: { show: false }, spanGaps: false,
-    value: (_, v) => (v === null ? "–" : `${shown(v, 2)} ${unit}`), ...more,
-  });
 
   function draw() {
     for (const p of plots) p.destroy();

@@ -1,0 +1,173 @@
+"""The command that serves a page with sliders."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from mascarin._io.locks import writing
+from mascarin.commands.inputs import (
+    Columns,
+    Flag,
+    MeasuredTable,
+    Outside,
+    Settings,
+    Stamps,
+    Step,
+    Weather,
+    Zone,
+    read_building,
+    seconds,
+    set_values,
+)
+from mascarin.commands.places import lines_named
+from mascarin.commands.run import matching_outputs
+from mascarin.commands.tables import run_inputs
+from mascarin.commands.view import open_page
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from mascarin.weather import Climate
+
+Sliders = Annotated[list[str] | None, Parameter(name=("--parameters", "--parameter"), negative="")]
+#: Length of the period where no end is given [d].
+_DAYS = 14
+
+
+def explore(
+    building: Path,
+    /,
+    *,
+    weather: Weather,
+    measurements: MeasuredTable = None,
+    columns: Columns = None,
+    timezone: Zone = None,
+    stamps: Stamps = "start",
+    parameters: Sliders = None,
+    outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
+    band: tuple[float, float] = (20.0, 26.0),
+    start: str | None = None,
+    end: str | None = None,
+    step: Step = "15min",
+    out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    port: int = 0,
+    no_open: Annotated[bool, Flag] = False,
+    settings: Settings = None,
+    allow_outside: Outside = False,
+) -> None:
+    """Move sliders and see the curves of a building.
+
+    Opens a page of this computer alone: a slider for each chosen parameter, and curves, energy balance and
+    comfort that follow it. A button writes the values as a building that extends this one. Ctrl-C ends it.
+
+    Parameters
+    ----------
+    building : Path
+        Description of a building.
+    parameters : list of str
+        Parameter with a slider, such as zones.room.volume or "surfaces.*.outside.absorptance"; can be given
+        several times. Default: the six whose ranges change the temperatures most.
+    outputs : list of str
+        Output with a curve, such as room.air_temperature or "roof.*"; can be given several times. Default:
+        operative temperatures, and ideal loads where there are any.
+    band : tuple of float
+        Comfortable operative temperatures, lower and upper limit [degC]; they can be changed on the page.
+    start : str
+        Start of the period, local time. Default: the start of the weather file.
+    end : str
+        End of the period. Default: 14 days after its start.
+    out : Path
+        File that the button writes (.yaml). Default: the name of the building with "-explored", in the
+        current folder, with a number where there is such a file.
+    port : int
+        Port of the page. Default: any that is free.
+    no_open : bool
+        Print the address without opening it.
+    """
+    from mascarin.explore import Server, Session
+    from mascarin.explore.page import render
+    from mascarin.explore.session import Band
+
+    target = _target(out, building)
+    described = read_building(building, settings)
+    given = set_values(settings)
+    with lines_named(building):
+        climate, measured = run_inputs(
+            described, weather, measurements, columns=columns or [], timezone=timezone, stamps=stamps,
+            allow_outside=allow_outside,
+        )  # fmt: skip
+        options: dict[str, Any] = {
+            "start": start,
+            "end": end,
+            "step": seconds(step),
+            "measurements": measured,
+        }
+        if end is None:
+            options["end"] = _end(climate, start)
+        session = Session(
+            described,
+            climate,
+            parameters=parameters or (),
+            outputs=matching_outputs(described, outputs) or (),
+            band=Band(*band),
+            options=options,
+        )
+
+    def save(content: Mapping[str, Any]) -> dict[str, str]:
+        with writing(target):
+            session.save(target, building, _values(content), given)
+        return {"file": str(target)}
+
+    server = Server(
+        lambda token: render(session, token, target),
+        {"/run": lambda content: session.run(_values(content), content.get("band")), "/save": save},
+        port,
+    )
+    try:
+        print(f"{server.address}\nCtrl-C ends it", file=sys.stderr, flush=True)
+        if not no_open:
+            open_page(server.address, server.address)
+        server.serve_forever(poll_interval=0.1)
+    finally:
+        server.server_close()
+
+
+def _values(content: Mapping[str, Any]) -> Mapping[str, Any]:
+    values = content.get("values", {})
+    if not isinstance(values, Mapping):
+        raise InputError(f"values: found {values!r}; expected numbers by path")
+    return values
+
+
+def _end(climate: Climate, start: str | None) -> Any:
+    """Two weeks after the start, or the end of the weather."""
+    import pandas as pd
+
+    from mascarin.simulation.compiling import period
+
+    first, last = period(climate, start, None)
+    return min(first + pd.Timedelta(days=_DAYS), last)
+
+
+def _target(out: Path | None, building: Path) -> Path:
+    """File of the button.
+
+    Raises
+    ------
+    InputError
+        Its name does not end with .yaml, its folder does not exist, or it is the building itself.
+    """
+    if out is None:
+        names = (f"{building.stem}-explored{end}.yaml" for end in ("", *(f"-{k}" for k in range(2, 1000))))
+        return next(Path(name) for name in names if not Path(name).exists())
+    if out.suffix.lower() not in (".yaml", ".yml"):
+        raise InputError(f"--out: found '{out}'; expected a file that ends with .yaml")
+    if not out.parent.is_dir():
+        raise InputError(f"--out: found no folder '{out.parent}'; expected a file in a folder that exists")
+    if out.resolve() == building.resolve():
+        raise InputError(f"--out: found '{out}', the building itself; expected another file")
+    return out

@@ -1,0 +1,221 @@
+"""Places for what a description gives without vertices: rectangles of the right area, facing the right way.
+
+A surface without vertices has an area, a tilt and an azimuth, but no place. Here the surfaces of a zone stand
+around its middle, each on the side that it faces. Their position and their shape are schematic.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+    from mascarin.building.surface import Surface
+    from mascarin.building.window import Window
+
+Array = npt.NDArray[np.float64]
+
+#: Height of a storey where nothing gives one [m].
+_STOREY: Final = 2.7
+#: Distance between the rectangles of a zone, over its width [-].
+_GAP: Final = 0.15
+#: Directions within this angle count as one [deg].
+_ALIKE: Final = 15.0
+#: Width of the place of a zone in the plan, over that of the zone [-].
+_SPAN: Final = 1.55
+_SQUARE: Final = 4
+
+
+class _Room(NamedTuple):
+    """Height and width of the place in which the surfaces of a zone stand. [m]"""
+
+    height: float
+    width: float
+
+
+def panels(building: Building) -> dict[str, Array]:
+    """Rectangles for the surfaces that have no vertices.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (4, 3)
+        Corners counter-clockwise as seen from outside, by surface. [m]
+
+    Examples
+    --------
+    >>> from mascarin.examples import box
+    >>> sorted(panels(box()))
+    ['facade']
+    """
+    groups: dict[str, list[str]] = {}
+    for name, surface in building.surfaces.items():
+        if surface.vertices is None:
+            groups.setdefault(home(surface), []).append(name)
+    if not groups:
+        return {}
+    rooms = {zone: _room(building, zone, names) for zone, names in groups.items()}
+    drawn = [vertex for one in building.surfaces.values() for vertex in one.vertices or ()]
+    left = max((float(vertex[0]) for vertex in drawn), default=-2.0) + 2.0
+    found: dict[str, Array] = {}
+    for zone, place in _places(rooms).items():
+        for name, corners in _around(building, zone, groups[zone], rooms[zone]).items():
+            found[name] = corners + place + np.array([left, 0.0, 0.0])
+    return {name: found[name] for name in building.surfaces if name in found}
+
+
+def home(surface: Surface) -> str:
+    """Zone with which a surface is drawn: that of its inside, else that of its outside, else none."""
+    return surface.inside.zone or surface.outside.zone or ""
+
+
+def _places(rooms: Mapping[str, _Room]) -> dict[str, Array]:
+    """Middle of the floor of each zone: row by row, from the west and from the north [m]."""
+    columns = math.ceil(math.sqrt(len(rooms)))
+    found: dict[str, Array] = {}
+    zones, y = list(rooms), 0.0
+    for first in range(0, len(zones), columns):
+        row = zones[first : first + columns]
+        deep = max(_SPAN * rooms[zone].width for zone in row)
+        x = 0.0
+        for zone in row:
+            wide = _SPAN * rooms[zone].width
+            found[zone] = np.array([x + 0.5 * wide, y - 0.5 * deep, 0.0])
+            x += wide
+        y -= deep
+    return found
+
+
+def _room(building: Building, zone: str, names: Sequence[str]) -> _Room:
+    surfaces = [building.surfaces[name] for name in names]
+    flat = [float(one.area or 0.0) for one in surfaces if not 30.0 < float(one.tilt or 0.0) < 150.0]
+    walls = [float(one.area or 0.0) for one in surfaces if 30.0 <= float(one.tilt or 0.0) <= 150.0]
+    volume = float(building.zones[zone].volume or 0.0) if zone else 0.0
+    height = _STOREY
+    if flat and volume:
+        height = min(max(volume / max(flat), 0.5 * _STOREY), 2.0 * _STOREY)
+    sides: dict[tuple[float, float], float] = {}
+    for name in names:
+        place = _bin(_outward(building.surfaces[name], zone))
+        sides[place] = sides.get(place, 0.0) + float(building.surfaces[name].area or 0.0) / height
+    widest = max(sides.values(), default=0.0) if walls else 0.0
+    return _Room(height, max(math.sqrt(max(flat, default=0.0)), min(widest, 30.0), 1.0))
+
+
+def _normal(surface: Surface) -> Array:
+    """Unit vector of the outside normal (east, north, up) [-]."""
+    tilt, azimuth = math.radians(float(surface.tilt or 0.0)), math.radians(float(surface.azimuth or 0.0))
+    flat = math.sin(tilt)
+    return np.array([flat * math.sin(azimuth), flat * math.cos(azimuth), math.cos(tilt)])
+
+
+def _outward(surface: Surface, zone: str) -> Array:
+    """Direction out of the zone through a surface [-]."""
+    return _normal(surface) if not zone or surface.inside.zone == zone else -_normal(surface)
+
+
+def _bin(direction: Array) -> tuple[float, float]:
+    tilt = round(math.degrees(math.acos(min(1.0, max(-1.0, float(direction[2]))))) / _ALIKE)
+    if tilt in (0, round(180.0 / _ALIKE)):
+        return tilt, 0.0
+    azimuth = math.degrees(math.atan2(float(direction[0]), float(direction[1])))
+    return tilt, round((azimuth % 360.0) / _ALIKE) % round(360.0 / _ALIKE)
+
+
+def _around(building: Building, zone: str, names: Sequence[str], room: _Room) -> dict[str, Array]:
+    """Corners of the surfaces of a zone about the middle of its floor [m]."""
+    sides: dict[tuple[float, float] | None, list[str]] = {}
+    for name in names:
+        surface = building.surfaces[name]
+        place = None if surface.internal_mass else _bin(_outward(surface, zone))
+        sides.setdefault(place, []).append(name)
+    found: dict[str, Array] = {}
+    for place, side in sides.items():
+        sizes = [_size(building.surfaces[name], room) for name in side]
+        gap = 0.04 * room.width
+        start = -0.5 * (sum(wide for wide, _ in sizes) + gap * (len(side) - 1))
+        for name, (wide, high) in zip(side, sizes, strict=True):
+            surface = building.surfaces[name]
+            normal, out = _normal(surface), _outward(surface, zone)
+            along, up = _axes(normal)
+            reach = np.array([(0.5 + _GAP) * room.width] * 2 + [(0.5 + _GAP) * room.height])
+            centre = np.zeros(3) if place is None else out * reach
+            centre = centre + np.array([0.0, 0.0, 0.5 * room.height]) + along * (start + 0.5 * wide)
+            half = (0.5 * wide * along, 0.5 * high * up)
+            found[name] = np.stack(
+                [centre + a * half[0] + b * half[1] for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            )
+            start += wide + gap
+    return found
+
+
+def _size(surface: Surface, room: _Room) -> tuple[float, float]:
+    """Width and height of a rectangle of the area of a surface [m]."""
+    area = float(surface.area or 0.0)
+    if 30.0 <= float(surface.tilt or 0.0) <= 150.0 and area / room.height <= 4.0 * room.width:
+        return area / room.height, room.height
+    return math.sqrt(area), math.sqrt(area)
+
+
+def _axes(normal: Array) -> tuple[Array, Array]:
+    """Two directions in a plane, the first one level; their cross product is the normal [-]."""
+    level = np.cross([0.0, 0.0, 1.0], normal)
+    length = float(np.linalg.norm(level))
+    along = level / length if length > 1e-9 else np.array([1.0, 0.0, 0.0])
+    return along, np.cross(normal, along)
+
+
+def window_panels(wall: Array, windows: Mapping[str, Window], area: float) -> dict[str, Array]:
+    """Outlines for windows without vertices, inside the outline of their wall.
+
+    Parameters
+    ----------
+    wall : ndarray, shape (corners, 3)
+        The wall. [m]
+    windows : mapping of str to Window
+        Its windows without vertices.
+    area : float
+        Area of the wall with its windows. [m2]
+
+    Returns
+    -------
+    dict of str to ndarray, shape (corners, 3)
+        Side by side in a wall of four corners; else the outline of the wall, made smaller. [m]
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> wall = np.array([[0.0, 0, 0], [4, 0, 0], [4, 0, 3], [0, 0, 3]])
+    >>> window_panels(wall, {"w": SimpleNamespace(area=3.0)}, 12.0)["w"][0].tolist()
+    [1.0, 0.0, 0.75]
+    """
+    sizes = {name: min(float(window.area or 0.0) / area, 1.0) for name, window in windows.items()}
+    if len(wall) != _SQUARE:
+        middle = wall.mean(axis=0)
+        return {name: middle + math.sqrt(0.9 * size) * (wall - middle) for name, size in sizes.items()}
+    share = min(sum(sizes.values()), 0.98)
+    high = math.sqrt(share) if share else 1.0
+    gap = (1.0 - high) / (len(sizes) + 1)
+    found, at = {}, gap
+    for name, size in sizes.items():
+        wide = size / high
+        low, top = 0.5 * (1.0 - high), 0.5 * (1.0 + high)
+        ends = ((at, low), (at + wide, low), (at + wide, top), (at, top))
+        found[name] = np.stack([_inside(wall, u, v) for u, v in ends])
+        at += wide + gap
+    return found
+
+
+def _inside(wall: Array, u: float, v: float) -> Array:
+    """Point of a wall of four corners by its parts along the first and along the last side [m]."""
+    below, above = (1.0 - u) * wall[0] + u * wall[1], (1.0 - u) * wall[3] + u * wall[2]
+    return np.asarray((1.0 - v) * below + v * above)
