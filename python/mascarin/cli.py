@@ -80,6 +80,7 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
     ),
     "Run": (
         Command("run", "mascarin.commands.run:run", "Simulate a building with a weather file."),
+        Command("fmu", "mascarin.commands.fmu:fmu", "Write a building as a unit for co-simulation (FMU)."),
         Command("sweep", "mascarin.commands.sweep:sweep", "Simulate a building with many parameter values."),
         Command(
             "design", "mascarin.commands.design:design", "Compare designs: which product, how much, where."

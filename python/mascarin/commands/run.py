@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import sys
 from collections.abc import Iterator, Sequence
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -13,11 +12,19 @@ from cyclopts import Parameter
 
 from mascarin._io.atomic import drafted
 from mascarin._io.locks import writing
-from mascarin.commands.inputs import AsJson, Outside, Settings, Step, read_building, seconds
+from mascarin.commands.inputs import (
+    AsJson,
+    Outside,
+    Settings,
+    Step,
+    matching_outputs,
+    read_building,
+    seconds,
+)
 from mascarin.commands.output import print_json, print_table
 from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
-from mascarin.errors import InputError, did_you_mean
+from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -125,7 +132,7 @@ def _simulated(
         building,
         climate,
         step=seconds(step),
-        outputs=_matching(building, outputs),
+        outputs=matching_outputs(building, outputs),
         **options,
     )
     _print_warnings(building, simulation)
@@ -192,32 +199,6 @@ def _print_cost(building: Building, simulation: Simulation) -> None:
 def _require_format(out: Path | None) -> None:
     if out is not None and out.suffix.lower() not in FORMATS:
         raise InputError(f"--out: found '{out}'; expected a file ending in {' or '.join(FORMATS)}")
-
-
-def _matching(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
-    """Names of the outputs that fit the patterns; None for the default outputs."""
-    if patterns is None:
-        return None
-    names = [output.name for output in building.outputs()]
-    found: dict[str, None] = {}
-    for pattern in patterns:
-        meant = [name for name in names if fnmatchcase(name, pattern)]
-        if not meant and any(sign in pattern for sign in "*?["):
-            raise InputError(
-                f"--output: found no output that fits '{pattern}'; expected a pattern that fits one. "
-                f"{_suggestion(pattern, names)}".rstrip()
-            )
-        found |= dict.fromkeys(meant or [building.output(pattern).name])
-    return list(found)
-
-
-def _suggestion(pattern: str, names: Sequence[str]) -> str:
-    """Suggest patterns that fit: with the zone or surface, or the quantity, taken from an existing name."""
-    owner, _, what = pattern.partition(".")
-    pairs = [(left, right) for left, _, right in (name.partition(".") for name in names)]
-    near = {f"{left}.{what}" for left, right in pairs if fnmatchcase(right, what)}
-    near |= {f"{owner}.{right}" for left, right in pairs if fnmatchcase(left, owner)}
-    return did_you_mean(pattern, near or names)
 
 
 def _write(results: Results, out: Path) -> None:
