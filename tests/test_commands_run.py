@@ -117,7 +117,7 @@ def test_another_value_acts(call: list[str], capsys: pytest.CaptureFixture[str])
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["-o", "box.xls"], "expected a file ending in .nc or .csv"),
+        (["-o", "box.xls"], "expected a file ending in .nc, .csv or .parquet"),
         (["-o", "nowhere/box.nc"], "make 'nowhere' first"),
         (["--output", "rom.*"], "Did you mean 'room.*'?"),
         (["--output", "facade.*_flx"], "Did you mean 'facade.inside_flux'"),

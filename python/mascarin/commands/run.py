@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from mascarin._io.atomic import drafted
 from mascarin._io.locks import writing
 from mascarin.commands.inputs import (
     AsJson,
@@ -24,7 +23,6 @@ from mascarin.commands.inputs import (
 from mascarin.commands.output import print_json, print_table
 from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
-from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -33,7 +31,6 @@ if TYPE_CHECKING:
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate
 
-FORMATS = (".nc", ".csv")
 #: Shadows that take longer are announced [s].
 LONG = 2.0
 
@@ -81,7 +78,8 @@ def run(
     stamps : str
         Which end of its interval a stamp of a measured table marks.
     out : Path
-        File for the time series: NetCDF (.nc) or CSV (.csv, in local time). Without it a summary is printed.
+        File for the time series: NetCDF (.nc), CSV (.csv, in local time, with units and provenance in a file
+        beside it) or Parquet (.parquet, in local time). Without it a summary is printed.
     start : str
         Start of the period, such as 2012-09-20 or "2012-09-20 12:00", local time. Default: the start
         of the weather file.
@@ -95,8 +93,11 @@ def run(
     scheme : str
         Time-stepping scheme.
     """
+    from mascarin.simulation.files import require_ending
+
     described = read_building(building, settings)
-    _require_format(out)
+    if out is not None:
+        require_ending(out, "--out")
     with writing(out), lines_named(building):
         climate, measured = run_inputs(
             described,
@@ -196,17 +197,8 @@ def _print_cost(building: Building, simulation: Simulation) -> None:
         )
 
 
-def _require_format(out: Path | None) -> None:
-    if out is not None and out.suffix.lower() not in FORMATS:
-        raise InputError(f"--out: found '{out}'; expected a file ending in {' or '.join(FORMATS)}")
-
-
 def _write(results: Results, out: Path) -> None:
-    with drafted(out) as part:
-        if out.suffix.lower() == ".nc":
-            results.to_netcdf(part)
-        else:
-            results.frame().to_csv(part, index_label="time")
+    results.write(out)
     print(f"wrote {out}", file=sys.stderr)
 
 
