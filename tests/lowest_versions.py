@@ -10,6 +10,7 @@ from packaging.requirements import Requirement
 
 #: What the tests import beside the package.
 TESTS = [
+    "fmpy",
     "hypothesis",
     "ipykernel",
     "jsonschema",

@@ -63,6 +63,7 @@ def code_of(file: Path) -> str:
 
 
 FILES = sorted(path for path in SOURCE.rglob("*.rs") if not is_test(path))
+OF_UNITS = sorted((ROOT / "crates" / "fmu" / "src").rglob("*.rs"))
 MODULES = {module_of(file): file for file in FILES if file != SOURCE / "lib.rs"}
 
 
@@ -168,10 +169,28 @@ def test_files_and_functions_are_short_or_say_why_not(file: Path) -> None:
             assert "Long because " in before, f"{name}, line {first}: {length} lines without a reason"
 
 
-def test_unsafe_is_in_one_folder_only() -> None:
+def test_unsafe_is_in_two_folders_only() -> None:
+    """Vector instructions of the engine, and the C functions of the unit for co-simulation."""
     word = re.compile(r"\bunsafe\b(?!_code)")
-    where = {file.relative_to(SOURCE).parts[:2] for file in FILES if word.search(code_of(file))}
-    assert where <= {("number", "simd"), ("number", "simd.rs")}, where
+    crates = ROOT / "crates"
+    where = {file.relative_to(crates) for file in crates.rglob("*.rs") if word.search(code_of(file))}
+    allowed = [Path("engine", "src", "number", "simd"), Path("fmu", "src", "border")]
+    assert not [file for file in where if not any(folder in file.parents for folder in allowed)]
+    assert {folder for folder in allowed for file in where if folder in file.parents} == set(allowed)
+
+
+@pytest.mark.parametrize("file", OF_UNITS, ids=lambda file: file.stem)
+def test_files_of_the_unit_are_short(file: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert len(text.split("\n")) <= FILE_LINES
+    assert not [name for name, _, length in functions(text) if length > FUNCTION_LINES]
+
+
+def test_only_the_contents_of_a_unit_read_files() -> None:
+    users = [file.name for file in OF_UNITS if "std::fs" in file.read_text(encoding="utf-8")]
+    assert users == ["contents.rs"]
+    manifest = (ROOT / "crates" / "fmu" / "Cargo.toml").read_text(encoding="utf-8")
+    assert "pyo3" not in manifest
 
 
 def test_paths_are_understood() -> None:

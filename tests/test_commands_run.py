@@ -117,7 +117,7 @@ def test_another_value_acts(call: list[str], capsys: pytest.CaptureFixture[str])
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["-o", "box.xls"], "expected a file ending in .nc or .csv"),
+        (["-o", "box.xls"], "expected a file ending in .nc, .csv or .parquet"),
         (["-o", "nowhere/box.nc"], "make 'nowhere' first"),
         (["--output", "rom.*"], "Did you mean 'room.*'?"),
         (["--output", "facade.*_flx"], "Did you mean 'facade.inside_flux'"),
@@ -145,12 +145,12 @@ def test_bad_input_leaves_nothing(
 def test_a_failure_while_writing_leaves_the_older_file(
     call: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def fail(_self: object, path: Path) -> None:
+    def fail(_self: object, path: Path, **_options: object) -> None:
         path.write_text("half", encoding="utf-8")
         raise OSError(28, "No space left on device", str(path))
 
     Path("box.nc").write_text("older", encoding="utf-8")
-    monkeypatch.setattr("mascarin.simulation.results.Results.to_netcdf", fail)
+    monkeypatch.setattr("xarray.Dataset.to_netcdf", fail)
     assert cli.main([*call, "-o", "box.nc"]) == 2
     assert "No space left" in capsys.readouterr().err
     assert Path("box.nc").read_text(encoding="utf-8") == "older"

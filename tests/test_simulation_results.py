@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 import pytest
 import xarray as xr
 from matplotlib.dates import num2date
@@ -138,6 +139,48 @@ def test_results_read_back_are_equal(run: Results, tmp_path: Path) -> None:
     again = tmp_path / "again.nc"
     back.to_netcdf(again)
     assert Results.open(str(again)) == full
+
+
+@pytest.mark.parametrize("ending", ["nc", "csv", "parquet"])
+def test_every_kind_of_file_is_read_back_to_the_bit(run: Results, ending: str, tmp_path: Path) -> None:
+    file = tmp_path / f"run.{ending}"
+    run.write(file)
+    assert Results.open(file) == run
+
+
+def test_tables_have_units_and_local_times(run: Results, tmp_path: Path) -> None:
+    run.write(tmp_path / "run.csv")
+    run.write(tmp_path / "run.parquet")
+    names = ["run.csv", "run.csv-metadata.json", "run.parquet"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == names
+    beside = json.loads((tmp_path / names[1]).read_text(encoding="utf-8"))
+    units = {column["titles"]: column.get("unit") for column in beside["tableSchema"]["columns"]}
+    assert units == {"time": None, **{name: run[name].attrs["units"] for name in run}}
+    assert beside["mascarin"]["mascarin_version"] == __version__
+    made_from = json.loads(beside["mascarin"]["provenance"])
+    assert len(made_from["building_sha256"]) == 64
+    table = pd.read_csv(tmp_path / "run.csv")
+    assert table["time"].iloc[-1] == str(run.index[-1])
+    frame = pd.read_parquet(tmp_path / "run.parquet")
+    assert frame.equals(run.to_dataframe())
+    schema = pq.read_schema(tmp_path / "run.parquet")
+    assert {name: schema.field(name).metadata[b"unit"].decode() for name in run} == {
+        name: run[name].attrs["units"] for name in run
+    }
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_tables_of_something_else_are_refused(run: Results, ending: str, tmp_path: Path) -> None:
+    file = tmp_path / f"run.{ending}"
+    run.write(file)
+    if ending == "csv":
+        Path(f"{file}-metadata.json").unlink()
+    else:
+        file.write_bytes(b"no parquet")
+    with pytest.raises(InputError, match="found no results of a run"):
+        Results.open(file)
+    with pytest.raises(InputError, match=r"expected a file ending in \.nc, \.csv or \.parquet"):
+        run.write(tmp_path / "run.xlsx")
 
 
 @pytest.mark.parametrize(

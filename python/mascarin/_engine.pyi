@@ -14,6 +14,7 @@ __all__ = [
     "Plan",
     "Trajectory",
     "_panic",
+    "fmu_library",
     "interrupt",
 ]
 
@@ -33,6 +34,9 @@ class EngineDefect(Exception):
 
 def interrupt() -> None:
     """Stop all calls that are running now, on whatever thread, with KeyboardInterrupt."""
+
+def fmu_library() -> tuple[bytes, str, str, str]:
+    """The library that goes into an FMU: its bytes, its ending, and the architecture and system it is for."""
 
 def _panic(message: str, border: bool = False) -> None:
     """Panic on purpose, in the engine or at its border, to test how an internal error is handled."""

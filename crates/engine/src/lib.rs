@@ -45,7 +45,7 @@ pub mod march {
     pub use crate::step::{Counters, Scheme};
 }
 
-pub use run::ratings;
+pub use run::{ratings, stepwise};
 
 /// Quantities to record.
 pub mod probe {

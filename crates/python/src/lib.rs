@@ -7,6 +7,7 @@ mod trajectory;
 
 use mascarin_engine::forcing::CLIMATE_CHANNELS;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 /// Panics on purpose, in the engine or at the border, so that tests can see what becomes of a defect.
 #[pyfunction]
@@ -17,12 +18,20 @@ fn _panic(py: Python<'_>, message: &str, border: bool) -> PyResult<()> {
     })
 }
 
+/// The library that goes into an FMU: its bytes, its ending, and the architecture and system that it is for.
+#[pyfunction]
+fn fmu_library(py: Python<'_>) -> (Bound<'_, PyBytes>, &'static str, &'static str, &'static str) {
+    static LIBRARY: &[u8] = include_bytes!(env!("MASCARIN_FMU_LIBRARY"));
+    (PyBytes::new(py, LIBRARY), env!("MASCARIN_FMU_SUFFIX"), std::env::consts::ARCH, std::env::consts::OS)
+}
+
 /// Compiled part of mascarin.
 #[pymodule]
 fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<plan::Plan>()?;
     module.add_class::<trajectory::Trajectory>()?;
     module.add_function(wrap_pyfunction!(errors::interrupt, module)?)?;
+    module.add_function(wrap_pyfunction!(fmu_library, module)?)?;
     module.add_function(wrap_pyfunction!(_panic, module)?)?;
     module.add("EngineInputError", module.py().get_type::<errors::EngineInputError>())?;
     module.add("EngineSolverError", module.py().get_type::<errors::EngineSolverError>())?;

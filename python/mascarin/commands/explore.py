@@ -20,12 +20,12 @@ from mascarin.commands.inputs import (
     Step,
     Weather,
     Zone,
+    matching_outputs,
     read_building,
     seconds,
     set_values,
 )
 from mascarin.commands.places import lines_named
-from mascarin.commands.run import matching_outputs
 from mascarin.commands.tables import run_inputs
 from mascarin.commands.view import open_page
 from mascarin.errors import InputError

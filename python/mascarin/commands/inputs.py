@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 from cyclopts import Parameter
 
-from mascarin.errors import InputError
+from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -129,6 +130,45 @@ def seconds(text: str) -> float:
     from mascarin.weather.times import seconds_of
 
     return seconds_of(text, "--step")
+
+
+def matching_outputs(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
+    """Names of the outputs that fit patterns; None for the default outputs.
+
+    Parameters
+    ----------
+    building : Building
+        Has the outputs.
+    patterns : sequence of str or None
+        Values of ``--output``.
+
+    Raises
+    ------
+    InputError
+        A pattern fits no output.
+    """
+    if patterns is None:
+        return None
+    names = [output.name for output in building.outputs()]
+    found: dict[str, None] = {}
+    for pattern in patterns:
+        meant = [name for name in names if fnmatchcase(name, pattern)]
+        if not meant and any(sign in pattern for sign in "*?["):
+            raise InputError(
+                f"--output: found no output that fits '{pattern}'; expected a pattern that fits one. "
+                f"{_suggestion(pattern, names)}".rstrip()
+            )
+        found |= dict.fromkeys(meant or [building.output(pattern).name])
+    return list(found)
+
+
+def _suggestion(pattern: str, names: Sequence[str]) -> str:
+    """Suggest patterns that fit: with the zone or surface, or the quantity, taken from an existing name."""
+    owner, _, what = pattern.partition(".")
+    pairs = [(left, right) for left, _, right in (name.partition(".") for name in names)]
+    near = {f"{left}.{what}" for left, right in pairs if fnmatchcase(right, what)}
+    near |= {f"{owner}.{right}" for left, right in pairs if fnmatchcase(left, owner)}
+    return did_you_mean(pattern, near or names)
 
 
 def read_weather(file: Path) -> Climate:

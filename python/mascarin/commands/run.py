@@ -5,13 +5,11 @@ from __future__ import annotations
 import contextlib
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from mascarin._io.atomic import drafted
 from mascarin._io.locks import writing
 from mascarin.commands.inputs import (
     AsJson,
@@ -23,6 +21,7 @@ from mascarin.commands.inputs import (
     Step,
     Weather,
     Zone,
+    matching_outputs,
     read_building,
     seconds,
 )
@@ -30,7 +29,6 @@ from mascarin.commands.output import print_json, print_table
 from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
 from mascarin.commands.view import require_html
-from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -39,7 +37,6 @@ if TYPE_CHECKING:
     from mascarin.simulation.simulation import Simulation
     from mascarin.weather import Climate
 
-FORMATS = (".nc", ".csv")
 #: Shadows that take longer are announced [s].
 LONG = 2.0
 
@@ -75,7 +72,8 @@ def run(
     building : Path
         Description of a building.
     out : Path
-        File for the time series: NetCDF (.nc) or CSV (.csv, in local time). Without it a summary is printed.
+        File for the time series: NetCDF (.nc), CSV (.csv, in local time, with units and provenance in a file
+        beside it) or Parquet (.parquet, in local time). Without it a summary is printed.
     report : Path
         File for a page about the run (.html): inputs, curves, loads, energy balance, warnings.
     start : str
@@ -91,8 +89,11 @@ def run(
     scheme : str
         Time-stepping scheme.
     """
+    from mascarin.simulation.files import require_ending
+
     described = read_building(building, settings)
-    _require_format(out)
+    if out is not None:
+        require_ending(out, "--out")
     require_html("--report", report)
     with writing(out), writing(report), lines_named(building):
         climate, measured = run_inputs(
@@ -239,43 +240,8 @@ def _print_cost(building: Building, simulation: Simulation) -> None:
         )
 
 
-def _require_format(out: Path | None) -> None:
-    if out is not None and out.suffix.lower() not in FORMATS:
-        raise InputError(f"--out: found '{out}'; expected a file ending in {' or '.join(FORMATS)}")
-
-
-def matching_outputs(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
-    """Names of the outputs that fit the patterns; None for the default outputs."""
-    if patterns is None:
-        return None
-    names = [output.name for output in building.outputs()]
-    found: dict[str, None] = {}
-    for pattern in patterns:
-        meant = [name for name in names if fnmatchcase(name, pattern)]
-        if not meant and any(sign in pattern for sign in "*?["):
-            raise InputError(
-                f"--output: found no output that fits '{pattern}'; expected a pattern that fits one. "
-                f"{_suggestion(pattern, names)}".rstrip()
-            )
-        found |= dict.fromkeys(meant or [building.output(pattern).name])
-    return list(found)
-
-
-def _suggestion(pattern: str, names: Sequence[str]) -> str:
-    """Suggest patterns that fit: with the zone or surface, or the quantity, taken from an existing name."""
-    owner, _, what = pattern.partition(".")
-    pairs = [(left, right) for left, _, right in (name.partition(".") for name in names)]
-    near = {f"{left}.{what}" for left, right in pairs if fnmatchcase(right, what)}
-    near |= {f"{owner}.{right}" for left, right in pairs if fnmatchcase(left, owner)}
-    return did_you_mean(pattern, near or names)
-
-
 def _write(results: Results, out: Path) -> None:
-    with drafted(out) as part:
-        if out.suffix.lower() == ".nc":
-            results.to_netcdf(part)
-        else:
-            results.frame().to_csv(part, index_label="time")
+    results.write(out)
     print(f"wrote {out}", file=sys.stderr)
 
 

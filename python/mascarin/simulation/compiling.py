@@ -47,6 +47,7 @@ __all__ = [
     "chosen_outputs",
     "forcing_of",
     "in_climate",
+    "limits_of_columns",
     "period",
     "read_initial",
     "require_inputs",
@@ -196,7 +197,14 @@ def forcing_of(
     names = description.schedules
     columns = description.channels[: len(description.channels) - len(names)]
     weather = climate.forcing(
-        building.site, start, end, step_seconds, scheme, columns, measurements, limits=_limits(building)
+        building.site,
+        start,
+        end,
+        step_seconds,
+        scheme,
+        columns,
+        measurements,
+        limits=limits_of_columns(building),
     )
     if names:
         profiles = scheduled(
@@ -261,7 +269,7 @@ def settings_of(
     }
 
 
-def _limits(building: Building) -> dict[str, tuple[float, float]]:
+def limits_of_columns(building: Building) -> dict[str, tuple[float, float]]:
     """Limits of the measured columns that act on a building, by what each is used for."""
     sides = [side for surface in building.surfaces.values() for side in surface.sides]
     temperatures = {side.measured: TEMPERATURES for side in sides if isinstance(side.measured, str)}

@@ -8,15 +8,14 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from mascarin._io import atomic, display
+from mascarin._io import display
 from mascarin.errors import InputError, did_you_mean
+from mascarin.simulation import files, labels
 from mascarin.simulation.energy import EnergyLedger
-from mascarin.simulation.labels import time_coordinates
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.spacing import means, state_means
 from mascarin.simulation.vapour import VapourLedger
 from mascarin.weather.times import seconds_of
-from mascarin.weather.timezones import parse_timezone
 
 if TYPE_CHECKING:
     import numpy as np
@@ -99,7 +98,7 @@ class Results(Mapping[str, "xr.DataArray"]):
         output = self.outputs[position]
         return xr.DataArray(
             self.records[:, position],
-            coords=time_coordinates(self.index),
+            coords=labels.time_coordinates(self.index),
             dims="time",
             name=output.name,
             attrs={"units": output.unit, "long_name": output.name, "timezone": str(self.index.tz)},
@@ -244,8 +243,6 @@ class Results(Mapping[str, "xr.DataArray"]):
         seconds = np.diff(np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64))
         return float(np.sum(self.records[1:, position] * seconds))
 
-    # --- tables, files, figures ---------------------------------------------------------------------------
-
     def to_dataframe(self) -> pd.DataFrame:
         """All series as a table over local time, one column an output.
 
@@ -279,7 +276,11 @@ class Results(Mapping[str, "xr.DataArray"]):
         """
         import xarray as xr
 
-        attributes = {
+        return xr.Dataset({name: self[name] for name in self}, attrs=self._attributes())
+
+    def _attributes(self) -> dict[str, Any]:
+        """Version, provenance, energy balance and outputs, as files hold them."""
+        return {
             "mascarin_version": self.provenance.version,
             "mascarin_format": _FORMAT,
             "timezone": str(self.index.tz),
@@ -289,7 +290,6 @@ class Results(Mapping[str, "xr.DataArray"]):
             "warnings": json.dumps(list(self.warnings)),
             "outputs": json.dumps([asdict(output) for output in self.outputs]),
         }
-        return xr.Dataset({name: self[name] for name in self}, attrs=attributes)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write everything to a NetCDF file, which appears when it is complete.
@@ -315,17 +315,47 @@ class Results(Mapping[str, "xr.DataArray"]):
         >>> mc.Results.open(file) == run
         True
         """
-        with atomic.drafted(Path(path)) as draft:
-            self.to_xarray().to_netcdf(draft, engine="h5netcdf")
+        files.write_netcdf(self.to_xarray(), Path(path))
 
-    @classmethod
-    def open(cls, path: str | Path) -> Results:
-        """Read what `to_netcdf` wrote.
+    def write(self, path: str | Path) -> None:
+        """Write everything to a file, which appears when it is complete; `open` reads it again.
 
         Parameters
         ----------
         path : str or Path
-            The file.
+            NetCDF (.nc), or in local time CSV (.csv; units and provenance in a file beside it) or .parquet.
+
+        Raises
+        ------
+        InputError
+            Another ending, or pyarrow is not installed.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import mascarin as mc
+        >>> from mascarin.examples import box, box_climate
+        >>> run = mc.simulate(box(), box_climate(), step="1h")
+        >>> file = Path(tempfile.mkdtemp()) / "run.csv"
+        >>> run.write(file)
+        >>> mc.Results.open(file) == run
+        True
+        """
+        target = Path(path)
+        files.require_ending(target, str(target))
+        if target.suffix.lower() == ".nc":
+            self.to_netcdf(target)
+        else:
+            files.write_table(self.to_dataframe(), self._attributes(), target)
+
+    @classmethod
+    def open(cls, path: str | Path) -> Results:
+        """Read what `write` or `to_netcdf` wrote.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file: NetCDF, CSV with the file beside it, or Parquet.
 
         Returns
         -------
@@ -335,33 +365,18 @@ class Results(Mapping[str, "xr.DataArray"]):
         Raises
         ------
         InputError
-            There is no such file, or it was not written by `to_netcdf`.
+            There is no such file, or it was not written by a run.
         """
-        import numpy as np
-        import pandas as pd
-        import xarray as xr
-
-        if not Path(path).is_file():
-            raise InputError(f"{path}: no such file; give the path from the folder you work in.")
-        try:
-            with xr.open_dataset(path, engine="h5netcdf") as data:
-                data.load()
-            outputs = [_output(fields) for fields in json.loads(data.attrs["outputs"])]
-            times = pd.DatetimeIndex(data["time"].to_numpy()).tz_localize("UTC")
-            return cls(
-                outputs=outputs,
-                index=times.tz_convert(parse_timezone(data.attrs["timezone"])),
-                records=np.stack([data[output.name].to_numpy() for output in outputs], axis=-1),
-                energy=EnergyLedger.from_dict(json.loads(data.attrs["energy"])),
-                provenance=Provenance.from_dict(json.loads(data.attrs["provenance"])),
-                warnings=tuple(json.loads(data.attrs["warnings"])),
-                vapour=VapourLedger.from_json(data.attrs.get("vapour")),
-            )
-        except (OSError, KeyError, ValueError, TypeError) as error:
-            raise InputError(
-                f"{path}: found no results of a run ({error}); expected a file that Results.to_netcdf or "
-                "`mascarin run -o FILE.nc` wrote"
-            ) from None
+        records, index, attributes = files.read(Path(path))
+        return cls(
+            outputs=[_output(fields) for fields in json.loads(attributes["outputs"])],
+            index=index,
+            records=records,
+            energy=EnergyLedger.from_dict(json.loads(attributes["energy"])),
+            provenance=Provenance.from_dict(json.loads(attributes["provenance"])),
+            warnings=tuple(json.loads(attributes["warnings"])),
+            vapour=VapourLedger.from_json(attributes.get("vapour")),
+        )
 
     def plot(
         self, names: Sequence[str] | str | None = None, ax: Axes | Sequence[Axes] | None = None
@@ -459,21 +474,8 @@ class Results(Mapping[str, "xr.DataArray"]):
         )
 
     def _rows(self) -> list[tuple[str, str]]:
-        names = list(self)
-        shown = ", ".join(names[:3]) + (f", ... {len(names) - 3} more" if len(names) > 3 else "")
-        source = self.provenance.climate.get("file")
-        changed = [f"{path} = {value:g}" for path, value in self.provenance.changed.items()]
-        rows = [
-            ("climate", str(source) if source else "table"),
-            ("period", f"{self.index[0]:%Y-%m-%d %H:%M} to {self.index[-1]:%Y-%m-%d %H:%M} {self.index.tz}"),
-            ("step", f"{self.provenance.step_seconds:g} s, {self.provenance.scheme}, {len(self.index)} rows"),
-            ("start", self.provenance.start),
-            (f"{len(names)} outputs", shown),
-            ("energy balance", f"relative residual {self.energy.relative_residual:.1e}"),
-        ]
-        if changed:
-            rows.append(("parameters", ", ".join(changed)))
-        return [*rows, *(("warning", warning) for warning in self.warnings)]
+        residual = self.energy.relative_residual
+        return labels.rows(list(self), self.index, self.provenance, residual, self.warnings)
 
     def frame(self) -> pd.DataFrame:
         """Deprecated name of `to_dataframe`."""
@@ -487,10 +489,8 @@ class Results(Mapping[str, "xr.DataArray"]):
         for position, output in enumerate(self.outputs):
             if name == output.name or name in output.aliases:
                 return position
-        known = [output.name for output in self.outputs]
-        raise InputError(
-            f"{name}: not recorded in this run; name it in outputs=. {did_you_mean(name, known)}".rstrip()
-        )
+        hint = did_you_mean(name, list(self))
+        raise InputError(f"{name}: not recorded in this run; name it in outputs=. {hint}".rstrip())
 
 
 def _output(fields: Mapping[str, Any]) -> Output:

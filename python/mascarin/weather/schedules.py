@@ -188,7 +188,7 @@ def _instants(stamps: pd.DatetimeIndex, timezone: tzinfo) -> Array:
 
 
 #: Limits of measured columns by their use, in the unit of the engine.
-_LIMITS: Final = {
+LIMITS_OF_COURSES: Final = {
     "fraction": (0.0, 1.0),
     "temperature": TEMPERATURES,
     "power": (-1e7, 1e7),
@@ -224,7 +224,7 @@ def _of_column(
             raise
         raise InputError(f"schedules.{name}.column: {error}") from None
     record.grid.require(steps.first, steps.last, f"{record.file}: {column}")
-    low, high = _LIMITS[course.kind]
+    low, high = LIMITS_OF_COURSES[course.kind]
     require_range(record, column, (low / course.scale, high / course.scale), steps.first, steps.last)
     if course.kind == "temperature":
         return column_values(record, column, steps)

@@ -21,6 +21,25 @@ pub(crate) struct Unknowns<S> {
     pub(crate) air: Vec<S>,
 }
 
+impl Unknowns<f64> {
+    /// Writes all its numbers.
+    pub(crate) fn write(&self, numbers: &mut Vec<f64>) {
+        for values in [&self.cells[..], &self.surfaces, &self.air] {
+            numbers.extend_from_slice(values);
+        }
+    }
+
+    /// Reads numbers, and gives those after them; none where there are too few.
+    pub(crate) fn read<'n>(&mut self, mut numbers: &'n [f64]) -> Option<&'n [f64]> {
+        for values in [&mut self.cells[..], &mut self.surfaces, &mut self.air] {
+            let (own, rest) = numbers.split_at_checked(values.len())?;
+            values.copy_from_slice(own);
+            numbers = rest;
+        }
+        Some(numbers)
+    }
+}
+
 impl<S: Real> Unknowns<S> {
     /// As many zeros as there are cells, surfaces and zones.
     pub(crate) fn zero(cells: usize, surfaces: usize, zones: usize) -> Self {

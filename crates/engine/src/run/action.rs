@@ -43,12 +43,15 @@ impl Action {
         }
     }
 
-    /// The actions of a run of some steps, without those of its warm-up. One temperature everywhere fits no weather; a periodic state,
-    /// and one that a run has reached, do.
-    pub(crate) fn all(steps: usize, options: &Options) -> impl Iterator<Item = Self> + use<> {
+    /// The first step of a run. One temperature everywhere fits no weather; a periodic state, and one that a run has reached, do.
+    pub(crate) fn first(options: &Options) -> Self {
         let jumps = options.warmup.is_none() && options.initial.is_uniform();
-        let first = if jumps { Self::FirstStep } else { Self::Step(0) };
-        [Self::Balance, first].into_iter().chain((1..steps).map(Self::Step))
+        if jumps { Self::FirstStep } else { Self::Step(0) }
+    }
+
+    /// The actions of a run of some steps, without those of its warm-up.
+    pub(crate) fn all(steps: usize, options: &Options) -> impl Iterator<Item = Self> + use<> {
+        [Self::Balance, Self::first(options)].into_iter().chain((1..steps).map(Self::Step))
     }
 
     /// Row of the records that the state after it is written to.

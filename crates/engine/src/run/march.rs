@@ -67,6 +67,16 @@ pub(crate) fn march_in<S: Real>(
     )
 }
 
+/// Lets a stepper find what the options ask for beside the results of every run.
+pub(super) fn prepare<S: Real>(stepper: &mut Stepper<'_, S>, options: &Options) {
+    if options.residuals {
+        stepper.evaluate_residuals();
+    }
+    if options.probes.iter().any(Output::averages_absorbed_sun) {
+        stepper.average_absorbed_sun();
+    }
+}
+
 /// Runs a stepper; `observe` is called with each action and the state after it.
 pub(crate) fn march_observed<'a, S: Real>(
     mut stepper: Stepper<'a, S>,
@@ -77,12 +87,7 @@ pub(crate) fn march_observed<'a, S: Real>(
 ) -> Result<Run<S>, EngineError> {
     let plan = stepper.model.plan;
     stepper.attend(control);
-    if options.residuals {
-        stepper.evaluate_residuals();
-    }
-    if options.probes.iter().any(Output::averages_absorbed_sun) {
-        stepper.average_absorbed_sun();
-    }
+    prepare(&mut stepper, options);
     let mut state = stepper.begin(&options.initial);
     let (cycles, warm_up_change) =
         warm_up(&mut stepper, &mut state, weather, options, control, &mut observe)?;

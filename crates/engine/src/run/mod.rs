@@ -7,6 +7,7 @@ pub mod march;
 pub mod options;
 pub mod outputs;
 pub mod ratings;
+pub mod stepwise;
 mod warm_up;
 
 pub(crate) use action::Action;

@@ -59,21 +59,13 @@ impl Options {
         forcing: &Forcing<'_>,
     ) -> Result<Level, EngineError> {
         let fail = |text: String| Err(EngineError::Input(text));
-        let stages = self.scheme.weights().len();
         if parameters != plan.description.parameters.len() {
             return fail(format!(
                 "{parameters} parameter values, expected {}",
                 plan.description.parameters.len()
             ));
         }
-        if forcing.stages() != stages || forcing.channels() != plan.n_channels() {
-            return fail(format!(
-                "forcing has {} stages and {} channels, expected {stages} and {}",
-                forcing.stages(),
-                forcing.channels(),
-                plan.n_channels()
-            ));
-        }
+        self.check_forcing(plan, forcing)?;
         if forcing.steps() == 0 || self.dt <= 0.0 || !self.dt.is_finite() || self.record_every == 0 {
             return fail("a run needs at least one step of positive length".to_owned());
         }
@@ -83,5 +75,20 @@ impl Options {
         self.initial.check(plan)?;
         self.probes.iter().try_for_each(|output| output.check(plan))?;
         Level::widest()
+    }
+
+    /// Checks the shape of a forcing.
+    pub(crate) fn check_forcing(&self, plan: &Plan, forcing: &Forcing<'_>) -> Result<(), EngineError> {
+        let stages = self.scheme.weights().len();
+        if forcing.stages() == stages && forcing.channels() == plan.n_channels() && forcing.steps() > 0 {
+            return Ok(());
+        }
+        Err(EngineError::Input(format!(
+            "forcing has {} steps, {} stages and {} channels, expected one step at least, {stages} and {}",
+            forcing.steps(),
+            forcing.stages(),
+            forcing.channels(),
+            plan.n_channels()
+        )))
     }
 }

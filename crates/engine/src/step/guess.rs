@@ -3,6 +3,7 @@
 use crate::building::coefficients::Matter;
 use crate::building::ids::SurfaceId;
 use crate::building::model::Model;
+use crate::building::plan::Plan;
 use crate::linear::unknowns::{Temperatures, Unknowns, line};
 use crate::number::real::Real;
 use crate::physics::pcm::PcmMemory;
@@ -49,6 +50,29 @@ impl<S: Real> Guess<S> {
             }
             _ => iterate.copy_some(&model.parts.nonlinear_cells, &state.view()),
         }
+    }
+}
+
+impl Guess<f64> {
+    /// Writes all its numbers.
+    pub(crate) fn write(&self, numbers: &mut Vec<f64>) {
+        numbers.push(f64::from(u8::from(self.previous.is_some())));
+        if let Some(previous) = &self.previous {
+            previous.write(numbers);
+        }
+    }
+
+    /// Reads the numbers of another one for the same plan, and gives those after them; none where these are no such numbers.
+    pub(crate) fn read<'n>(&mut self, plan: &Plan, numbers: &'n [f64]) -> Option<&'n [f64]> {
+        let (&some, rest) = numbers.split_first()?;
+        if some == 0.0 {
+            self.previous = None;
+            return Some(rest);
+        }
+        let mut previous = Unknowns::zero(plan.n_cells, plan.surfaces.len(), plan.zones.len());
+        let rest = previous.read(rest)?;
+        self.previous = Some(previous);
+        Some(rest)
     }
 }
 

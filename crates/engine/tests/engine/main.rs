@@ -25,6 +25,7 @@ mod nested_iteration;
 mod order_with_windows;
 mod properties;
 mod slopes_of_stages;
+mod stepwise;
 mod tape_memory;
 mod wind;
 mod windows;

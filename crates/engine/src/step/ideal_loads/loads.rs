@@ -21,6 +21,31 @@ pub(crate) struct LoadHistory<S> {
     slopes: Vec<S>,
 }
 
+impl LoadHistory<f64> {
+    /// Writes all its numbers.
+    pub(crate) fn write(&self, numbers: &mut Vec<f64>) {
+        if let Some(first) = &self.first {
+            first.write(numbers);
+        }
+        for values in [&self.outdoor[..], &self.earlier, &self.slopes] {
+            numbers.extend_from_slice(values);
+        }
+    }
+
+    /// Reads the numbers of another one of the same building, and gives those after them; none where there are too few.
+    pub(crate) fn read<'n>(&mut self, mut numbers: &'n [f64]) -> Option<&'n [f64]> {
+        if let Some(first) = &mut self.first {
+            numbers = first.read(numbers)?;
+        }
+        for values in [&mut self.outdoor[..], &mut self.earlier, &mut self.slopes] {
+            let (own, rest) = numbers.split_at_checked(values.len())?;
+            values.copy_from_slice(own);
+            numbers = rest;
+        }
+        Some(numbers)
+    }
+}
+
 /// The ideal loads of a building and the search for them in one step.
 #[derive(Debug, Clone)]
 pub(crate) struct IdealLoads<S: Real> {

@@ -1,0 +1,134 @@
+//! A run that its caller takes on step by step, with the weather of each step: for programs that exchange values with it meanwhile.
+//!
+//! The actions are those of [`march`](crate::run::march::march), so that the same weather gives the same bits.
+
+use crate::balance::ledger::Ledger;
+use crate::building::plan::Plan;
+use crate::error::EngineError;
+use crate::input::forcing::Forcing;
+use crate::run::action::Action;
+use crate::run::march::prepare;
+use crate::run::options::Options;
+use crate::run::warm_up::warm_up;
+use crate::step::control::RunControl;
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use crate::weather::conditions::Weather;
+
+/// A run of one plan that is taken on step by step.
+#[derive(Debug)]
+pub struct StepByStep<'a> {
+    plan: &'a Plan,
+    options: &'a Options,
+    stepper: Stepper<'a, f64>,
+    state: State<f64>,
+    ledger: Ledger<f64>,
+    /// Steps made since the start.
+    steps: usize,
+}
+
+impl<'a> StepByStep<'a> {
+    /// Brings a plan to its start: repeats the first period, where the options ask for it, and brings the surfaces into balance with the
+    /// weather at the start of the first step.
+    ///
+    /// `first_period` is the weather of the repeated steps, or of one step at least where nothing is repeated; `first_step` is that of the
+    /// first step.
+    ///
+    /// # Errors
+    /// [`EngineError::Input`], [`EngineError::NotConverged`], [`EngineError::WarmUpNotConverged`].
+    pub fn start(
+        plan: &'a Plan,
+        parameters: &'a [f64],
+        options: &'a Options,
+        first_period: &Forcing<'_>,
+        first_step: &Forcing<'_>,
+    ) -> Result<Self, EngineError> {
+        options.check(plan, parameters.len(), first_period)?;
+        options.check_forcing(plan, first_step)?;
+        let mut stepper = Stepper::new(plan, parameters, options.scheme);
+        prepare(&mut stepper, options);
+        let mut state = stepper.begin(&options.initial);
+        let repeated = options.warmup.as_ref().map_or(0, |warmup| warmup.steps);
+        let weather = Weather::for_single_run(plan, first_period, repeated);
+        let control = RunControl::default();
+        warm_up(&mut stepper, &mut state, &weather, options, &control, &mut |_, _, _| Ok(()))?;
+        let mut ledger = Ledger::new();
+        let now = Weather::for_single_run(plan, first_step, 0);
+        Action::Balance.take(&mut stepper, &mut state, &now, options.dt, &mut ledger)?;
+        Ok(Self { plan, options, stepper, state, ledger, steps: 0 })
+    }
+
+    /// Makes a step in its weather. The state stays as it was where it fails.
+    ///
+    /// # Errors
+    /// [`EngineError::Input`], [`EngineError::NotConverged`].
+    pub fn step(&mut self, forcing: &Forcing<'_>) -> Result<(), EngineError> {
+        self.options.check_forcing(self.plan, forcing)?;
+        // The forcing holds one step.
+        let action = if self.steps == 0 { Action::first(self.options) } else { Action::Step(0) };
+        let weather = Weather::for_single_run(self.plan, forcing, 0);
+        let Self { stepper, state, ledger, .. } = self;
+        action.take(stepper, state, &weather, self.options.dt, ledger).map_err(|error| match error {
+            EngineError::NotConverged { stage, place, residual, iterations, .. } => {
+                EngineError::NotConverged { step: self.steps, stage, place, residual, iterations }
+            }
+            other => other,
+        })?;
+        self.steps += 1;
+        Ok(())
+    }
+
+    /// Reads the outputs of the options: the state at the start, or after the last step.
+    pub fn read(&self, values: &mut Vec<f64>) {
+        values.clear();
+        values.extend(
+            self.options.probes.iter().map(|output| output.read(self.plan, &self.stepper, &self.state)),
+        );
+    }
+
+    /// Steps made since the start.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Relative residual of the energy balance so far, or of the vapour balance if that is larger [-].
+    #[must_use]
+    pub fn closure(&self) -> f64 {
+        let mut ledger = self.ledger.clone();
+        ledger.set_content(self.state.heat_content(&self.stepper.model), self.steps);
+        ledger.worst_closure()
+    }
+
+    /// All numbers that the steps to come depend on beside weather and parameters.
+    #[must_use]
+    pub fn save(&self) -> Vec<f64> {
+        let mut numbers = vec![self.steps as f64];
+        self.state.write(&mut numbers);
+        self.stepper.history().write(&mut numbers);
+        numbers
+    }
+
+    /// Goes on from where a run of the same plan and parameters was saved. Its energy balance begins anew, and outputs can be read again
+    /// after the next step.
+    ///
+    /// # Errors
+    /// [`EngineError::Input`]: the numbers are not those of such a run. Nothing is changed then.
+    pub fn restore(&mut self, numbers: &[f64]) -> Result<(), EngineError> {
+        let wrong = || EngineError::Input("the saved state is not one of this building".to_owned());
+        let (&steps, rest) = numbers.split_first().ok_or_else(wrong)?;
+        let (state, rest) = rest.split_at_checked(self.state.count()).ok_or_else(wrong)?;
+        let mut history = self.stepper.history();
+        let whole = steps >= 0.0 && steps.fract() == 0.0 && steps < 2.0_f64.powi(53);
+        if !(whole && history.read(self.plan, rest)) {
+            return Err(wrong());
+        }
+        self.state.read(state, |mine, saved| *mine = saved);
+        self.stepper.set_history(&history);
+        self.ledger = Ledger::new();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and not negative")]
+        let steps = steps as usize;
+        self.steps = steps;
+        Ok(())
+    }
+}

@@ -1,0 +1,122 @@
+"""The command that writes a building as a unit for co-simulation."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+from mascarin._io.locks import writing
+from mascarin.commands.inputs import Outside, Settings, Step, matching_outputs, read_building, seconds
+from mascarin.commands.places import lines_named
+from mascarin.commands.tables import run_inputs
+from mascarin.errors import InputError
+
+if TYPE_CHECKING:
+    from mascarin.building import Building
+
+
+def fmu(
+    building: Path,
+    /,
+    *,
+    weather: Path,
+    out: Annotated[Path, Parameter(alias="-o")],
+    inputs: Annotated[list[str] | None, Parameter(name="--input", negative="")] = None,
+    outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
+    parameters: Annotated[list[str] | None, Parameter(name="--parameter", negative="")] = None,
+    measurements: Path | None = None,
+    columns: Annotated[list[str] | None, Parameter(name="--column", negative="")] = None,
+    timezone: str | None = None,
+    stamps: Literal["start", "end"] = "start",
+    start: str | None = None,
+    end: str | None = None,
+    step: Step = "15min",
+    scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
+    settings: Settings = None,
+    allow_outside: Outside = False,
+    fmi: Literal["3.0", "2.0"] = "3.0",
+) -> None:
+    """Write a building as a unit for co-simulation (FMU).
+
+    The unit contains the engine and the weather, and needs no Python. Programs such as Modelica tools and
+    FMPy run it step by step and exchange values with it. Without inputs its outputs are those of
+    'mascarin run', to the bit.
+
+    Parameters
+    ----------
+    building : Path
+        Description of a building.
+    weather : Path
+        Weather: an EPW file, TMY3 as CSV, a measured table (CSV with --column, or Parquet), or a YAML file
+        with the keys climate and measurements of a study, such as the study itself.
+    out : Path
+        File for the unit, such as cell.fmu.
+    inputs : list of str
+        What the importing program sets, such as schedules.heating, columns.heater or "weather.*"; can be
+        given several times. Default: nothing; all comes from weather, schedules and tables.
+    outputs : list of str
+        Output of the unit, such as room.air_temperature or "roof.*"; can be given several times. Default: the
+        temperatures of air, surfaces, interfaces and sensors.
+    parameters : list of str
+        Parameter that can be set before a run, such as zones.room.volume or "materials.*"; can be given
+        several times. Default: all parameters that do not change the mesh.
+    measurements : Path
+        Table with the measured columns that the building names. Default: the table of --weather.
+    columns : list of str
+        Column of a measured table for --weather, as CHANNEL=COLUMN or CHANNEL=COLUMN [UNIT], such as
+        "air_temperature=T_out" or "wind_speed=wind [km/h]"; CHANNEL=none for what was not measured. Can be
+        given several times.
+    timezone : str
+        Time zone of measured tables. Default: that of the site.
+    stamps : str
+        Which end of its interval a stamp of a measured table marks.
+    start : str
+        Start of the period, such as 2012-09-20 or "2012-09-20 12:00", local time: time 0 of the unit.
+        Default: the start of the weather file.
+    end : str
+        End of the period. Default: the end of the weather file.
+    scheme : str
+        Time-stepping scheme.
+    fmi : str
+        Version of the Functional Mock-up Interface.
+    """
+    from mascarin.fmu import export
+    from mascarin.simulation.simulation import Simulation
+
+    described = read_building(building, settings)
+    if out.suffix.lower() != ".fmu":
+        raise InputError(f"--out: found '{out}'; expected a file ending in .fmu")
+    with writing(out), lines_named(building):
+        climate, measured = run_inputs(
+            described,
+            weather,
+            measurements,
+            columns=columns or [],
+            timezone=timezone,
+            stamps=stamps,
+            allow_outside=allow_outside,
+        )
+        simulation = Simulation(
+            described, climate, measurements=measured, step=seconds(step), start=start, end=end,
+            scheme=scheme, outputs=_given(described, outputs),
+        )  # fmt: skip
+        export(simulation, out, inputs=inputs or (), parameters=parameters, version=fmi)
+    size = out.stat().st_size / 2**20
+    print(f"wrote {out}: {size:.1f} MB, internal step {simulation.step_seconds:g} s", file=sys.stderr)
+
+
+def _given(building: Building, patterns: Sequence[str] | None) -> list[str] | None:
+    """Names of the outputs that fit patterns, without those that a unit cannot give, unless named in full."""
+    from mascarin.fmu import gives
+
+    names = matching_outputs(building, patterns)
+    if names is None:
+        return None
+    left = [name for name in names if not gives(building.output(name)) and name not in (patterns or ())]
+    if left:
+        print(f"warning: left out, a unit cannot give: {', '.join(left)}", file=sys.stderr)
+    return [name for name in names if name not in left]
