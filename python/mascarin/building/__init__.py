@@ -7,6 +7,7 @@ other by name.
 from __future__ import annotations
 
 from mascarin.building.air import moist_air
+from mascarin.building.blind import Blind
 from mascarin.building.bridge import ThermalBridge
 from mascarin.building.building import Building
 from mascarin.building.checks import check
@@ -96,6 +97,7 @@ __all__ = [
     "AirPath",
     "AlamdariHammond",
     "Angular",
+    "Blind",
     "BruntSky",
     "Building",
     "CapacityLaw",

@@ -6,8 +6,8 @@
 use core::fmt::{Display, Write};
 
 use super::description::{
-    AirPath, Angular, Clouds, Construction, Convection, Description, DirectedFlow, Door, Facing, FrameShare,
-    Gain, Gap, Glazing, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening,
+    AirPath, Angular, Blind, Clouds, Construction, Convection, Description, DirectedFlow, Door, Facing,
+    FrameShare, Gain, Gap, Glazing, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening,
     OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
     SunShares, Surface, ThermalBridge, UnitFlow, Ventilation, VentilationUnit, WindProfile, Zone,
     ZoneLongwave, ZoneSun,
@@ -149,7 +149,8 @@ walk!(MeltingCurve by variant {
     Fractions { temperature_shift } plain { temperatures, fractions },
 });
 
-walk!(Construction { layers, glazing } plain { name });
+walk!(Construction { layers, glazing, blind } plain { name });
+walk!(Blind { transmittance, reflectance, resistance, cover, radiation } plain { inside, schedule });
 walk!(Layer { thickness } plain { name, material, nodes });
 walk!(Glazing by variant {
     Panes { panes, gaps, angular } plain {},

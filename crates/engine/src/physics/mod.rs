@@ -1,6 +1,7 @@
 //! Laws of materials, surfaces, radiation, windows and air flow: functions of plain numbers, without a plan.
 
 pub mod air_flow;
+pub mod blinds;
 pub mod constants;
 pub mod convection;
 pub mod doors;

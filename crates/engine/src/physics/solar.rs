@@ -174,6 +174,20 @@ impl<S: Real> Irradiance<S> {
         self.beam + self.diffuse + self.ground
     }
 
+    /// The same parts of a measured sum [W/m2].
+    #[inline(always)]
+    pub fn measured(&self, sum: f64) -> Self {
+        let factor = S::constant(sum.max(0.0)) / self.total().max(S::constant(1e-6));
+        Self {
+            cosine: self.cosine,
+            beam: self.beam * factor,
+            circumsolar: self.circumsolar * factor,
+            horizon: self.horizon * factor,
+            diffuse: self.diffuse * factor,
+            ground: self.ground * factor,
+        }
+    }
+
     /// From the sun's direction: beam and circumsolar.
     #[inline(always)]
     pub fn directed(&self) -> S {

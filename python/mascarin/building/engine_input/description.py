@@ -24,11 +24,13 @@ from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners
 from mascarin.building.engine_input.materials import describe_construction, describe_material
 from mascarin.building.engine_input.surfaces import describe_sensor, describe_surface
 from mascarin.building.engine_input.windows import (
+    describe_blinded_glazing,
     describe_frame,
     describe_frame_construction,
     describe_glazing,
     describe_window,
     framed,
+    shaded,
 )
 from mascarin.building.engine_input.zones import describe_zone
 from mascarin.building.mesh import Mesh, choose
@@ -95,7 +97,7 @@ def describe(
     description = {
         "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
         "site": _site(building.site, below(ids, "site")),
-        **_constructions(building, mesh, ids),
+        **_constructions(building, mesh, ids, places),
         "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
         **_air(building, ids, places),
         "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
@@ -127,8 +129,8 @@ def describe(
     )
 
 
-def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int]) -> Json:
-    """Materials and constructions, those of glazings and frames included."""
+def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int], places: Places) -> Json:
+    """Materials and constructions, those of glazings, frames and blinds included."""
     return {
         "materials": [
             *each(building.materials, "materials", ids, describe_material),
@@ -149,6 +151,7 @@ def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int]) ->
                 describe_frame_construction(name, len(building.materials) + index)
                 for index, name in enumerate(framed(building))
             ),
+            *(describe_blinded_glazing(building, places, ids, name) for name in shaded(building)),
         ],
     }
 

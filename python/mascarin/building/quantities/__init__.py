@@ -120,6 +120,11 @@ from mascarin.building.quantities.surfaces import (
     SkyView,
 )
 from mascarin.building.quantities.windows import (
+    BlindCover,
+    BlindRadiation,
+    BlindReflectance,
+    BlindResistance,
+    BlindTransmittance,
     CavityHeight,
     CurveAngle,
     CurveOptic,
@@ -154,6 +159,11 @@ __all__ = [
     "Area",
     "AreaFactor",
     "Azimuth",
+    "BlindCover",
+    "BlindRadiation",
+    "BlindReflectance",
+    "BlindResistance",
+    "BlindTransmittance",
     "BoundaryLayer",
     "BridgeLength",
     "BridgeNumber",

@@ -27,7 +27,7 @@ pub use bridge::ThermalBridge;
 pub use building::Description;
 pub use construction::{Construction, Layer};
 pub use convection::{Convection, PowerLaw};
-pub use glazing::{Angular, Gap, Gas, Glazing, Pane, PaneOptics};
+pub use glazing::{Angular, Blind, Gap, Gas, Glazing, Pane, PaneOptics};
 pub use material::Material;
 pub use parameter::{ParamId, Parameter};
 pub use phase_change::{HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail};

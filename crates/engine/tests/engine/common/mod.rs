@@ -164,7 +164,12 @@ impl Builder {
             nodes,
         });
         let layers = layers.collect();
-        self.description.constructions.push(Construction { name: name.to_owned(), layers, glazing: None });
+        self.description.constructions.push(Construction {
+            name: name.to_owned(),
+            layers,
+            glazing: None,
+            blind: None,
+        });
         self.description.constructions.len() - 1
     }
 
