@@ -374,8 +374,29 @@ SECTIONS: dict[str, dict[str, Any]] = {
 }
 
 
+#: Blinds, by window, and a measured irradiance.
+BLINDS: dict[str, dict[str, Any]] = {
+    "light": {
+        "position": "outside",
+        "transmittance": 0.1,
+        "reflectance": 0.5,
+        "resistance": 0.15,
+        "cover": 0.9,
+        "schedule": "day",
+        "radiation": 250,
+    },
+    "hatch": {
+        "position": "inside",
+        "transmittance": 0.2,
+        "reflectance": 0.6,
+        "shutter_resistance": 0.1,
+        "air_permeability": "high",
+    },
+}
+
+
 def house() -> Building:
-    """Fans, doors, thermal bridges, pressure tests, measured powers, radiant loads and humidity."""
+    """Fans, doors, thermal bridges, pressure tests, measured powers, blinds, radiant loads and humidity."""
     plain: dict[str, Any] = parse(EVERYTHING, "everything.yaml").to_dict()
     for (zone, key), part in IN_ZONES.items():
         given: Any = plain["zones"][zone].get(key, {})
@@ -385,6 +406,10 @@ def house() -> Building:
     plain["zones"]["room"] |= {"solar_to_air": 0.1}
     for plant in ("heating", "cooling"):
         plain["zones"]["room"][plant] |= {"radiative": 0.2}
+    for window, blind in BLINDS.items():
+        plain["windows"][window] |= {"blind": blind}
+    plain["windows"]["pane"]["outside"] |= {"irradiance": "G_west"}
+    plain["site"] |= {"horizon": [[60, 4], [200, 20]]}
     for section, parts in SECTIONS.items():
         plain[section] = plain.get(section, {}) | parts
     return Building.from_dict(plain)

@@ -241,3 +241,31 @@ def test_a_windowed_building_with_heating_and_cooling_is_studied(tmp_path: Path)
 
 def test_every_flow_has_a_label() -> None:
     assert tuple(FLOW_LABELS) == FLOWS
+
+
+def test_a_column_that_is_sensor_and_input_is_masked_as_a_sensor_only(wall: SyntheticWall) -> None:
+    """A stuck stretch is not compared, and drives the model with the values of the table all the same."""
+    table = wall.measurements.data.copy()
+    table.loc[table.index[100:140], "room"] = float(table["room"].iloc[100])
+    measured = Measurements.from_table(table)
+    sensors = {"joint": SENSOR, "air": Sensor(column="room", output="wall.inside_temperature", use=False)}
+    study = Study(**options(wall, measurements=measured, sensors=sensors))
+    assert [(s.channel, s.kind) for s in study.quality] == [("room", "stuck")]
+    stuck = np.isnan(study.observation.measured)
+    assert (stuck[:, 0].sum(), stuck[:, 1].sum()) == (0, 39)
+    every = Study(**options(wall, measurements=measured, sensors=sensors, quality={"mask": []}))
+    assert np.isfinite(every.observation.measured).all()
+    assert np.array_equal(study.simulation.run().records, every.simulation.run().records)
+    again = study.with_measurements(measured)
+    assert np.isfinite(again.simulation.run().records).all()
+
+
+def test_a_study_writes_the_inputs_unmasked(wall: SyntheticWall, tmp_path: Path) -> None:
+    table = wall.measurements.data.copy()
+    table.loc[table.index[100:140], "room"] = float(table["room"].iloc[100])
+    sensors = {"joint": SENSOR, "air": Sensor(column="room", output="wall.inside_temperature", use=False)}
+    study = Study(**options(wall, measurements=Measurements.from_table(table), sensors=sensors))
+    study.to_yaml(tmp_path / "study.yaml")
+    read = Study.from_yaml(tmp_path / "study.yaml")
+    assert read.sources.driving.data["room"].notna().all()
+    assert np.isnan(read.observation.measured[:, 1]).sum() == 39

@@ -7,6 +7,7 @@ other by name.
 from __future__ import annotations
 
 from mascarin.building.air import moist_air
+from mascarin.building.blind import Blind
 from mascarin.building.bridge import ThermalBridge
 from mascarin.building.building import Building
 from mascarin.building.checks import check
@@ -33,6 +34,7 @@ from mascarin.building.glazing import (
     PaneGlazing,
     SimpleGlazing,
 )
+from mascarin.building.ground_floor import on_ground
 from mascarin.building.humidity import (
     CoolingCoil,
     Humidistat,
@@ -105,6 +107,7 @@ __all__ = [
     "AirPath",
     "AlamdariHammond",
     "Angular",
+    "Blind",
     "BruntSky",
     "Building",
     "CapacityLaw",
@@ -198,6 +201,7 @@ __all__ = [
     "json_schema",
     "load",
     "moist_air",
+    "on_ground",
     "parameter_table",
     "window_ratings",
 ]

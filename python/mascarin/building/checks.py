@@ -67,6 +67,7 @@ def check(building: Description, step_seconds: float = 900.0) -> list[str]:
         *_in_zones(building),
         *_surfaces(building),
         *_windows(building),
+        *_blinds(building),
         *_constructions(building, mesh),
         *_winds(building),
         *humidity_lines(building),
@@ -213,6 +214,26 @@ def _windows(building: Description) -> Iterator[str]:
             f"{rating.solar_heat_gain:.3f} by EN 673 and EN 410, solar transmittance "
             f"{rating.transmittance:.3f}, {rating.diffuse_transmittance:.3f} of diffuse radiation"
             f"{_how_known(building.glazings[building.windows[name].glazing])}"
+        )
+
+
+def _blinds(building: Description) -> Iterator[str]:
+    """What closes the blinds of windows, and the U value of the glass behind them."""
+    if all(window.blind is None for window in building.windows.values()):
+        return
+    for name, rating in window_ratings(building).items():
+        blind = building.windows[name].blind
+        if blind is None:
+            continue
+        resistance = float(blind.resistance or 0.0) * float(blind.cover)
+        closed = f"as schedule {blind.schedule}" if blind.schedule else "always"
+        if blind.radiation is not None:
+            closed += f" above {blind.radiation:g} W/m2 on the window"
+        yield (
+            f"window {name}: blind {blind.position}, closed {closed}, transmits "
+            f"{100 * blind.transmittance:g} % and reflects {100 * blind.reflectance:g} % of the sun; "
+            f"U of the glass {rating.u_value:.2f} W/(m2 K) open, "
+            f"{1.0 / (1.0 / rating.u_value + resistance):.2f} closed"
         )
 
 

@@ -35,6 +35,9 @@ def schedule_uses(building: Description) -> Iterator[Use]:
         for name, part in parts.items():
             if part.schedule is not None:
                 yield part.schedule, (section, name, "schedule"), "fraction"
+    for name, window in building.windows.items():
+        if window.blind is not None and window.blind.schedule is not None:
+            yield window.blind.schedule, ("windows", name, "blind", "schedule"), "fraction"
     yield from _of_units(building)
     yield from _of_humidity(building)
 

@@ -127,6 +127,11 @@ def _behind_walls(building: Description) -> Reasons:
         ):
             yield f"glazings.{name}.panes.{len(glazing.panes) - 1}.reflectance.inside", reason
     for name, window in building.windows.items():
+        if window.blind is not None:
+            inside = building.zones[str(building.surfaces[window.surface].inside.zone)].longwave
+            law = window.outside.longwave if window.blind.position == "outside" else inside
+            if isinstance(law, NoLongwave):
+                yield f"windows.{name}.blind.emissivity", "longwave is none"
         glass = building.glazings[window.glazing]
         gaps = glass.gaps if isinstance(glass, PaneGlazing) else ()
         if not any(isinstance(gap, FilledGap) for gap in gaps):
@@ -199,7 +204,7 @@ def _on_side(item: SurfaceSide) -> Reasons:
         yield f"{path}.height", "the surface heat transfer coefficient does not depend on wind"
     if not isinstance(side, WindowInside) and side.outdoors and isinstance(side.longwave, NoLongwave):
         yield f"{path}.emissivity", "longwave is none"
-        if side.irradiance is not None:
+        if side.irradiance is not None and not isinstance(side, WindowOutside):
             yield f"{path}.sky_view", "longwave is none and the irradiance is measured"
     windless = not side.exposed.wind
     if isinstance(side.convection, LinearWind) and windless:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from mascarin.building.blind import Blind
 from mascarin.building.courses import temperature_course
 from mascarin.building.glazing import GivenGap, Glazing, SimpleGlazing
 from mascarin.building.material import PhaseChangeMaterial, Resistance
@@ -34,6 +35,8 @@ FILMS: Final = (0.04, 0.13)
 _GAP: Final = 0.17
 #: Least resistance of a frame without the rated surface resistances, as in the engine. [m2 K/W]
 _LEAST: Final = 1e-3
+#: Resistance between an open blind and the glass, as in the engine [m2 K/W].
+_OPEN: Final = 1e-3
 #: Resistance of an outer pane of a glazing by U and g, as in the engine [m2 K/W].
 _PANE: Final = 0.004
 #: Positions closer than this are the same. [m2 K/W]
@@ -207,9 +210,8 @@ def walls(building: Building, nodes: Mapping[tuple[str, str], int]) -> list[Wall
     """
     found = [_opaque(building, name, nodes) for name in building.surfaces]
     for name, window in building.windows.items():
-        found.append(
-            _glazed(name, building.glazings[window.glazing], building.surfaces[window.surface].sides)
-        )
+        glass = _glazed(name, building.glazings[window.glazing], building.surfaces[window.surface].sides)
+        found.append(glass if window.blind is None else _behind(glass, window.blind))
     for window in building.windows.values():
         if window.frame is not None:
             resistance = max(1.0 / window.frame.u_value - sum(FILMS), _LEAST)
@@ -255,6 +257,15 @@ def _glazed(name: str, glazing: Glazing, sides: tuple[Side, Side]) -> Wall:
             gap = glazing.gaps[k]
             layers.append((0.0, 1.0 / gap.conductance if isinstance(gap, GivenGap) else _GAP))
     return Wall(name, sides, tuple(layers), tuple(cells))
+
+
+def _behind(glass: Wall, blind: Blind) -> Wall:
+    """A glazing with an open blind, whose node is the surface: that of the glass is one more node."""
+    opened = (0.0, _OPEN)
+    if blind.position == "outside":
+        cells = (_OPEN, *(cell + _OPEN for cell in glass.cells))
+        return Wall(glass.name, glass.sides, (opened, *glass.layers), cells)
+    return Wall(glass.name, glass.sides, (*glass.layers, opened), (*glass.cells, glass.whole))
 
 
 def given(start: GivenStart, found: Sequence[Wall], building: Building) -> Known:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mascarin.building.blind import NET_RADIATION
 from mascarin.building.convection import SOURCES
 from mascarin.building.glazing import SOURCES as GLASS
 from mascarin.building.glazing import FilledGap, SimpleGlazing, TwoSides
@@ -118,6 +119,8 @@ def _of_methods(building: Description) -> Iterator[str]:
         if any(side.takes_up for side in vapour_sides(building)):
             yield EMPD
     yield from _of_glazings(building)
+    if any(window.blind is not None for window in building.windows.values()):
+        yield NET_RADIATION
     traced = any(isinstance(zone.sun, TracedSun) for zone in building.zones.values())
     if building.shades or traced or obstructions(building):
         yield _SHADOWS

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from mascarin.building import quantities as q
 from mascarin.building.number import Number, Remark, problem
-from mascarin.building.part import Part, Shorthand
+from mascarin.building.part import Part, Shorthand, fault, refuse
 from mascarin.errors import did_you_mean
 
 if TYPE_CHECKING:
@@ -258,7 +259,27 @@ class Site(Part):
     diffuse: Literal["perez", "hay_davies", "isotropic"] = Field(
         "perez", description="Model of diffuse short-wave radiation on a tilted plane"
     )
+    horizon: tuple[tuple[q.HorizonAzimuth, q.HorizonElevation], ...] = Field(
+        (),
+        description="Azimuth, rising, and elevation of terrain and far obstacles; interpolated between them, "
+        "none: free",
+    )
     self_shading: bool = Field(True, description="Whether surfaces with vertices shade each other")
+
+    @model_validator(mode="after")
+    def _around(self) -> Site:
+        azimuths = [float(azimuth) for azimuth, _ in self.horizon]
+        for before, after in pairwise([*azimuths, 360.0]):
+            if self.horizon and after <= before:
+                refuse(
+                    fault(
+                        ("horizon",),
+                        f"azimuth {after:g} after {before:g}",
+                        "rising azimuths, clockwise from north, each once",
+                        "Sort the points by azimuth; write 0 in place of 360.",
+                    )
+                )
+        return self
 
     @model_validator(mode="wrap")
     @classmethod

@@ -66,7 +66,9 @@ def u_value(building: Description, surface: Surface) -> float:
         U value; infinite without any resistance, 0 where a side is adiabatic. [W/(m2 K)]
     """
     layers = building.constructions[surface.construction].layers
-    resistance = sum(_resistance(building.materials[layer.material], layer.thickness) for layer in layers)
+    resistance = sum(
+        layer_resistance(building.materials[layer.material], layer.thickness) for layer in layers
+    )
     resistance += sum(_surface_resistance(building, side, surface)[0] for side in surface.sides)
     return 1.0 / resistance if resistance > 0.0 else math.inf
 
@@ -95,7 +97,9 @@ def described_u_value(building: Description, surface: Surface) -> float:
     ISO 6946:2017, annex C.
     """
     layers = building.constructions[surface.construction].layers
-    resistance = sum(_resistance(building.materials[layer.material], layer.thickness) for layer in layers)
+    resistance = sum(
+        layer_resistance(building.materials[layer.material], layer.thickness) for layer in layers
+    )
     tilt = float(surface.tilt or 0.0)
     for side in surface.sides:
         if side.adiabatic:
@@ -163,7 +167,16 @@ def _coefficient(side: Side | WindowOutside | WindowInside, tilt: float) -> floa
     return 5.0 if tilt < 30.0 else 0.7 if tilt > 150.0 else 2.5
 
 
-def _resistance(material: Material, thickness: float | None) -> float:
+def layer_resistance(material: Material, thickness: float | None) -> float:
+    """Thermal resistance of a layer, of a solid phase-change material below its melting. [m2 K/W].
+
+    Parameters
+    ----------
+    material : Solid, PhaseChangeMaterial or Resistance
+        What it is made of.
+    thickness : float or None
+        Its thickness; None for a resistance. [m]
+    """
     if isinstance(material, Resistance):
         return float(material.resistance)
     return (thickness or 0.0) / phase(material.conductivity, "solid")

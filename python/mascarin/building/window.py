@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field, model_validator
 
 from mascarin.building import quantities as q
+from mascarin.building.blind import Blind
 from mascarin.building.convection import CONVECTION, Convection
 from mascarin.building.glazing import PaneGlazing, both
 from mascarin.building.names import GlazingName, SurfaceName
@@ -45,6 +46,11 @@ class WindowOutside(Part):
     """
 
     convection: Convection = Field(description=CONVECTION)
+    irradiance: str | None = Field(
+        None,
+        description="Measured column of the irradiance of this plane [W/m2], shared among beam, sky and "
+        "ground as the climate has them; none: from the climate",
+    )
     sky_view: q.SkyView | None = None
     height: q.Height | None = None
     longwave: OutdoorLongwave | None = Field(
@@ -57,13 +63,8 @@ class WindowOutside(Part):
         return True
 
     @property
-    def irradiance(self) -> None:
-        """No measured column: irradiance comes from the climate."""
-        return
-
-    @property
     def sunlit(self) -> bool:
-        """Always."""
+        """Whether its irradiance comes from the climate: beam and diffuse part do in any case."""
         return True
 
     @property
@@ -155,6 +156,7 @@ class Window(Part):
     )
     cavity_height: q.CavityHeight | None = None
     frame: Frame | None = Field(None, description="Frame; none: the whole area is glass")
+    blind: Blind | None = Field(None, description="Blind or shutter before the glass; none: bare glass")
     outside: WindowOutside = Field(description="The outer side")
     inside: WindowInside = Field(description="The inner side")
 

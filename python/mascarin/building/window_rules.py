@@ -65,7 +65,7 @@ def windows_lie_in_walls(building: Description) -> Faults:
 def _between_zones(building: Description, at: Location, window: Window) -> Faults:
     """What has no effect on a window between two zones, and what says nothing of it."""
     wall, outside = building.surfaces[window.surface], window.outside
-    for key in ("sky_view", "height", "longwave"):
+    for key in ("sky_view", "height", "longwave", "irradiance"):
         if getattr(outside, key) is not None:
             yield fault(
                 (*at, "outside", key),
@@ -73,6 +73,13 @@ def _between_zones(building: Description, at: Location, window: Window) -> Fault
                 "only what has an effect on this side",
                 f"Remove '{key}:': it has no effect here.",
             )
+    if window.blind is not None:
+        yield fault(
+            (*at, "blind"),
+            "a blind of a window between two zones",
+            "a blind of a window to outdoors",
+            "Remove it, or give the window a glazing with its properties.",
+        )
     if isinstance(outside.convection, Doe2):
         yield fault(
             (*at, "outside", "convection"),

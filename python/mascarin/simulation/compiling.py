@@ -273,8 +273,9 @@ def limits_of_columns(building: Building) -> dict[str, tuple[float, float]]:
     """Limits of the measured columns that act on a building, by what each is used for."""
     sides = [side for surface in building.surfaces.values() for side in surface.sides]
     temperatures = {side.measured: TEMPERATURES for side in sides if isinstance(side.measured, str)}
-    irradiances = {side.irradiance: IRRADIANCES for side in sides if side.irradiance is not None}
     panes = [side for window in building.windows.values() for side in (window.outside, window.inside)]
+    lit = (side.irradiance for side in [*sides, *panes])
+    irradiances = {column: IRRADIANCES for column in lit if column is not None}
     films = [measured_column(side.convection) for side in [*sides, *panes]]
     return temperatures | irradiances | {film: COEFFICIENTS for film in films if film is not None}
 

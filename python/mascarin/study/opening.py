@@ -54,7 +54,9 @@ class Inputs:
     climate : Climate
         The weather.
     measurements : Measurements
-        The measured columns, masked by the plan.
+        The measured columns to compare with, masked by the plan.
+    driving : Measurements
+        The measured columns as inputs of the model: never masked, so that a column may be both.
     quality : list of Stretch
         Suspicious values of the measured columns.
     places : Places
@@ -69,6 +71,7 @@ class Inputs:
     building: Building
     climate: Climate
     measurements: Measurements
+    driving: Measurements
     quality: list[Stretch]
     places: Places
     hashes: dict[str, str]
@@ -123,14 +126,14 @@ def _from_file(path: Path, beside: Beside) -> Inputs:
     longest = file.measurements.fill_gaps
     if longest is not None:
         read = filled(read, building, longest)
-    read = _masked(read, file, quality)
+    compared = _masked(read, file, quality)
     hashes = {
         "study": _hash_of_all(path),
         "building": _hash_of_all(described),
         "measurements": read.sha256 or "",
         "climate": climate.sha256 or "",
     }
-    return Inputs(file, building, climate, read, quality, places, hashes, path)
+    return Inputs(file, building, climate, compared, read, quality, places, hashes, path)
 
 
 def _with_sky(building: Building, climate: Climate, plan: StudyPlan) -> Building:
@@ -177,14 +180,14 @@ def from_objects(
     faults.raise_all(places.file)
     building = _with_sky(building, climate, checked)
     quality = measurements.quality() + filled_stretches(measurements.data, _columns(checked))
-    read = _masked(measurements, checked, quality)
+    compared = _masked(measurements, checked, quality)
     hashes = {
         "study": _digest(checked.model_dump(mode="json")),
         "building": _digest(building.model_dump(mode="json")),
-        "measurements": read.sha256 or _digest_of_table(read.data),
+        "measurements": compared.sha256 or _digest_of_table(compared.data),
         "climate": climate.sha256 or _digest_of_table(climate.data),
     }
-    return Inputs(checked, building, climate, read, quality, places, hashes)
+    return Inputs(checked, building, climate, compared, measurements, quality, places, hashes)
 
 
 def with_measurements(inputs: Inputs, measurements: Measurements) -> Inputs:
@@ -203,10 +206,13 @@ def with_measurements(inputs: Inputs, measurements: Measurements) -> Inputs:
     """
     plan = inputs.plan
     quality = measurements.quality() + filled_stretches(measurements.data, _columns(plan))
-    read = _masked(measurements, plan, quality)
-    digest = read.sha256 or _digest_of_table(read.data)
+    compared = _masked(measurements, plan, quality)
     return replace(
-        inputs, measurements=read, quality=quality, hashes={**inputs.hashes, "measurements": digest}
+        inputs,
+        measurements=compared,
+        driving=measurements,
+        quality=quality,
+        hashes={**inputs.hashes, "measurements": compared.sha256 or _digest_of_table(compared.data)},
     )
 
 

@@ -71,6 +71,7 @@ class Setup:
         self.plan: StudyPlan = inputs.plan
         self.building: Building = inputs.building
         self.climate: Climate = inputs.climate
+        #: To compare with, masked by the plan; the inputs of the model are `sources.driving`.
         self.measurements: Measurements = inputs.measurements
         self.quality: list[Stretch] = inputs.quality
         self.places: Places = inputs.places
@@ -227,7 +228,7 @@ class Setup:
             outputs=[*(sensor.output for sensor in self.plan.sensors.values()), *further],
             scheme=self.plan.scheme,
             initial=self.initial,
-            measurements=self.measurements,
+            measurements=self.sources.driving,
             ranges=self._ranges(building),
         )
 

@@ -72,7 +72,7 @@ def write_study(inputs: Inputs, path: Path) -> str:
     if inputs.path is None:
         inputs.building.to_yaml(path.with_name(_BUILDING))
         atomic.write(path.with_name(_CLIMATE), _table(inputs.climate.data))
-        atomic.write(path.with_name(_MEASUREMENTS), _table(inputs.measurements.data))
+        atomic.write(path.with_name(_MEASUREMENTS), _table(inputs.driving.data))
     else:
         content = _moved(content, inputs.path.parent, path.parent)
     text = text_of(content)
@@ -85,7 +85,7 @@ def _content(inputs: Inputs) -> dict[str, Any]:
     plan = inputs.plan.model_dump(mode="json", exclude_unset=True)
     if isinstance(inputs.plan, StudyFile):
         return plan
-    measured = inputs.measurements
+    measured = inputs.driving
     means = [name for name, kind in measured.kinds.items() if kind == "mean"]
     return {
         "name": inputs.plan.name,

@@ -7,15 +7,18 @@
 //! The long-wave exchange between two panes is exact in T^4 and iterated with the rest. The convective conductance of a gap is
 //! computed once per stage, at temperatures predicted for it (laws in [`window_gaps`](crate::physics::window_gaps)).
 //!
+//! A blind is one more node outside of the glass or inside of it ([`blinds`](crate::physics::blinds)).
+//!
 //! A unit by U and g has two panes without heat capacity, the outermost and the innermost, and one gap between them.
 //!
 //! Source of the surface resistances of a rated U value: ISO 10292:1994 and EN 673.
 
 use super::cell::{Cell, Matter};
 use super::ids::SurfaceId;
-use crate::input::description::{Gap, Glazing, Pane, Surface};
+use crate::input::description::{self, Gap, Glazing, Pane, Surface};
 use crate::input::values::Values;
 use crate::number::real::Real;
+use crate::physics::blinds::{Blind, OPEN};
 use crate::physics::optics::{Diffuse, Optics, Rating};
 use crate::physics::window_gaps::{GapTangent, GasGap};
 
@@ -53,17 +56,87 @@ pub struct GlassPlan {
     pub sites: Vec<Site>,
     /// Link across each gap.
     pub gap_links: Vec<usize>,
+    /// Link between a blind and the glass, and the place of the blind among the sites.
+    pub blind: Option<[usize; 2]>,
 }
 
 impl GlassPlan {
-    /// Lays out a glazing.
+    /// Lays out a glazing, with its blind.
     #[must_use]
-    pub fn new(glazing: &Glazing) -> Self {
+    pub fn new(glazing: &Glazing, blind: Option<&description::Blind>) -> Self {
+        let mut plan = Self::of_panes(glazing);
+        match blind {
+            Some(blind) if blind.inside => plan.add_inner_blind(),
+            Some(_) => plan.add_outer_blind(),
+            None => {}
+        }
+        plan
+    }
+
+    /// The innermost surface of the panes becomes a cell, the blind the inside surface.
+    fn add_inner_blind(&mut self) {
+        let cell = self.cell_panes.len();
+        self.replace(Node::Inside, Node::Cell(cell));
+        self.cell_panes.push(self.cell_panes.last().map_or(0, |pane| *pane));
+        self.blind = Some([cell + 1, self.sites.len()]);
+        self.sites.push(Site::Surfaces([Node::Inside; 2]));
+    }
+
+    /// The outermost surface of the panes becomes the first cell, the blind the outside surface.
+    fn add_outer_blind(&mut self) {
+        for site in &mut self.sites {
+            match site {
+                Site::Middle(cell) => *cell += 1,
+                Site::Surfaces(nodes) => {
+                    for node in nodes {
+                        if let Node::Cell(cell) = node {
+                            *cell += 1;
+                        }
+                    }
+                }
+            }
+        }
+        self.replace(Node::Outside, Node::Cell(0));
+        for link in &mut self.gap_links {
+            *link += 1;
+        }
+        self.cell_panes.insert(0, 0);
+        self.blind = Some([0, 0]);
+        self.sites.insert(0, Site::Surfaces([Node::Outside; 2]));
+    }
+
+    fn replace(&mut self, old: Node, new: Node) {
+        let surfaces = self.sites.iter_mut().filter_map(|site| match site {
+            Site::Surfaces(nodes) => Some(nodes),
+            Site::Middle(_) => None,
+        });
+        for node in surfaces.flatten().filter(|node| **node == old) {
+            *node = new;
+        }
+    }
+
+    /// The panes among what has a site, and the blind.
+    #[inline(always)]
+    pub(crate) fn split<'a, T>(&self, all: &'a mut [T]) -> (&'a mut [T], Option<&'a mut T>) {
+        match self.blind {
+            None => (all, None),
+            Some([_, 0]) => {
+                let (blind, panes) = all.split_at_mut(1);
+                (panes, blind.first_mut())
+            }
+            Some(_) => {
+                let (panes, blind) = all.split_at_mut(all.len() - 1);
+                (panes, blind.first_mut())
+            }
+        }
+    }
+
+    fn of_panes(glazing: &Glazing) -> Self {
         let Glazing::Panes { panes, .. } = glazing else {
             let sites = [Node::Outside, Node::Inside].map(|node| Site::Surfaces([node; 2]));
-            return Self { cell_panes: vec![0, 1], sites: sites.to_vec(), gap_links: vec![1] };
+            return Self { cell_panes: vec![0, 1], sites: sites.to_vec(), gap_links: vec![1], blind: None };
         };
-        let mut plan = Self { cell_panes: Vec::new(), sites: Vec::new(), gap_links: Vec::new() };
+        let mut plan = Self { cell_panes: Vec::new(), sites: Vec::new(), gap_links: Vec::new(), blind: None };
         for (k, pane) in panes.iter().enumerate() {
             let add = |plan: &mut Self| {
                 plan.cell_panes.push(k);
@@ -91,6 +164,8 @@ pub struct Glass<S> {
     pub horizon: Diffuse<S>,
     /// Gaps whose conductance depends on temperature, with their links.
     gaps: Vec<(usize, GasGap<S>)>,
+    /// A blind, with its link to the glass.
+    pub blind: Option<(usize, Blind<S>)>,
 }
 
 /// Cells and massless resistances of a glazed wall.
@@ -104,8 +179,23 @@ pub struct GlassWall<S> {
 }
 
 impl<S: Real> GlassWall<S> {
-    /// Evaluates a glazing in a window.
-    pub fn new(values: &Values<'_, S>, glazing: &Glazing, plan: &GlassPlan, window: &Surface) -> Self {
+    /// Evaluates a glazing and its blind in a window.
+    pub fn new(
+        values: &Values<'_, S>,
+        (glazing, blind): (&Glazing, Option<&description::Blind>),
+        plan: &GlassPlan,
+        window: &Surface,
+    ) -> Self {
+        let mut wall = Self::of_panes(values, glazing, plan, window);
+        wall.glass.blind = blind.zip(plan.blind).map(|(blind, [link, _])| {
+            // Replaced in every iteration: an open blind.
+            wall.extra[link] = S::constant(OPEN);
+            (link, Blind::new(values, blind))
+        });
+        wall
+    }
+
+    fn of_panes(values: &Values<'_, S>, glazing: &Glazing, plan: &GlassPlan, window: &Surface) -> Self {
         let tilt = values.get(window.tilt);
         match glazing {
             Glazing::Panes { panes, gaps, angular } => {
@@ -153,20 +243,24 @@ impl<S: Real> GlassWall<S> {
                     category: values.get(*category),
                 };
                 let height = values.get_or(window.cavity_height, 1.0);
-                Self::of_rating(&rating, plan.gap_links[0], [tilt, height])
+                Self::of_rating(&rating, plan, [tilt, height])
             }
         }
     }
 
     /// Two panes and one gap in place of a unit by its rated values.
-    fn of_rating(rating: &Rating<S>, link: usize, [tilt, height]: [S; 2]) -> Self {
+    fn of_rating(rating: &Rating<S>, plan: &GlassPlan, [tilt, height]: [S; 2]) -> Self {
+        let link = plan.gap_links[0];
         let matter = Matter::Solid { conductivity: S::one(), capacity: S::zero() };
         let surface = Cell { thickness: S::zero(), matter };
         let pane = rating.resistances[1];
         let gap = GasGap::of_rating(&rating.gaps(), height);
         let glass = Glass::new(Optics::of_rating(rating), vec![(link, gap)], tilt);
         // The gap's resistance is replaced in every iteration.
-        Self { cells: vec![surface.clone(), surface], extra: vec![pane, S::one(), pane], glass }
+        let cells = vec![surface; plan.cell_panes.len()];
+        let mut extra = vec![S::zero(); cells.len() + 1];
+        (extra[link - 1], extra[link], extra[link + 1]) = (pane, S::one(), pane);
+        Self { cells, extra, glass }
     }
 }
 
@@ -186,7 +280,8 @@ fn pane_cells<S: Real>(values: &Values<'_, S>, panes: &[Pane], plan: &GlassPlan)
         };
         cells.push(Cell { thickness, matter: Matter::Solid { conductivity, capacity } });
     }
-    for (pane, site) in panes.iter().zip(&plan.sites) {
+    let outer_blind = usize::from(matches!(plan.blind, Some([_, 0])));
+    for (pane, site) in panes.iter().zip(plan.sites.iter().skip(outer_blind)) {
         if let Site::Surfaces([front, _]) = site {
             let link = if let Node::Cell(cell) = front { cell + 1 } else { 0 };
             extra[link] = values.get(pane.thickness) / values.get(pane.conductivity);
@@ -209,7 +304,7 @@ impl<S: Real> Glass<S> {
 
     fn new(optics: Optics<S>, gaps: Vec<(usize, GasGap<S>)>, tilt: S) -> Self {
         let sine = tilt.scale(core::f64::consts::PI / 180.0).sin();
-        Self { horizon: optics.beam.horizon(sine), optics, gaps }
+        Self { horizon: optics.beam.horizon(sine), optics, gaps, blind: None }
     }
 
     /// Number of gaps whose conductance depends on temperature.
@@ -251,7 +346,7 @@ mod tests {
         };
         let gaps = vec![Gap::Given { conductance: ParamId(0) }];
         let light = Glazing::Panes { panes: vec![pane(None), pane(None)], gaps: gaps.clone(), angular: None };
-        let plan = GlassPlan::new(&light);
+        let plan = GlassPlan::new(&light, None);
         assert_eq!(plan.cell_panes, [0, 1]);
         assert_eq!(plan.gap_links, [1]);
         assert_eq!(
@@ -260,7 +355,7 @@ mod tests {
         );
         let heavy = Some([ParamId(0); 2]);
         let heavy = Glazing::Panes { panes: vec![pane(heavy), pane(heavy)], gaps, angular: None };
-        let plan = GlassPlan::new(&heavy);
+        let plan = GlassPlan::new(&heavy, None);
         assert_eq!(plan.cell_panes, [0, 0, 1, 1]);
         assert_eq!(plan.gap_links, [2]);
         assert_eq!(plan.sites, [Site::Middle(0), Site::Middle(3)]);

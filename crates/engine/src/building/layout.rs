@@ -2,7 +2,7 @@
 
 use super::glazing::GlassPlan;
 use super::ids::SurfaceId;
-use crate::input::description::{Construction, Description, Glazing, Material};
+use crate::input::description::{Construction, Description, Material};
 
 /// A wall as a chain of cells between two surfaces.
 #[derive(Debug, Clone)]
@@ -67,7 +67,7 @@ impl WallPlan {
     /// Lays out a construction in cells; `first_cell` is its place in the flat cell arrays.
     pub(crate) fn new(description: &Description, construction: &Construction, first_cell: usize) -> Self {
         if let Some(glazing) = &construction.glazing {
-            return Self::of_glass(glazing, first_cell);
+            return Self::of_glass(GlassPlan::new(glazing, construction.blind.as_ref()), first_cell);
         }
         let mut cell_layers = Vec::new();
         let mut link_layers = vec![Vec::new()];
@@ -103,8 +103,7 @@ impl WallPlan {
         }
     }
 
-    fn of_glass(glazing: &Glazing, first_cell: usize) -> Self {
-        let glass = GlassPlan::new(glazing);
+    fn of_glass(glass: GlassPlan, first_cell: usize) -> Self {
         Self {
             first_cell,
             cell_layers: glass.cell_panes.clone(),

@@ -6,10 +6,10 @@
 use core::fmt::{Display, Write};
 
 use super::description::{
-    AirPath, Angular, Buffer, Clouds, Construction, Convection, Depth, Description, DirectedFlow, Door,
-    Drying, Facing, FrameShare, Gain, Gap, Glazing, Humidity, HumidityControl, HumiditySetPoint, IdealLoad,
-    Infiltration, Layer, Leakage, Material, MeltingCurve, Opening, OutdoorLongwave, Pane, PaneOptics,
-    ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, Sorption, SunShares, Surface,
+    AirPath, Angular, Blind, Buffer, Clouds, Construction, Convection, Depth, Description, DirectedFlow,
+    Door, Drying, Facing, FrameShare, Gain, Gap, Glazing, Humidity, HumidityControl, HumiditySetPoint,
+    IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening, OutdoorLongwave, Pane,
+    PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, Sorption, SunShares, Surface,
     ThermalBridge, UnitFlow, VapourGain, Ventilation, VentilationUnit, WindProfile, Zone, ZoneHumidity,
     ZoneLongwave, ZoneSun,
 };
@@ -107,7 +107,7 @@ walk!(Description { site, materials, constructions, zones, air_paths, directed_f
     thermal_bridges, openings, surfaces, sensors, humidity }
     plain { parameters, shades, channels });
 
-walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse });
+walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse, horizon });
 impl ParameterIds for Clouds {
     fn parameter_ids<F: FnMut(&str, ParamId)>(&self, walk: &mut Walk<F>) {
         match self {
@@ -150,7 +150,8 @@ walk!(MeltingCurve by variant {
     Fractions { temperature_shift } plain { temperatures, fractions },
 });
 
-walk!(Construction { layers, glazing } plain { name });
+walk!(Construction { layers, glazing, blind } plain { name });
+walk!(Blind { transmittance, reflectance, resistance, cover, radiation } plain { inside, schedule });
 walk!(Layer { thickness } plain { name, material, nodes });
 walk!(Glazing by variant {
     Panes { panes, gaps, angular } plain {},

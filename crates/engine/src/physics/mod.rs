@@ -1,10 +1,12 @@
 //! Laws of materials, surfaces, radiation, windows and air flow: functions of plain numbers, without a plan.
 
 pub mod air_flow;
+pub mod blinds;
 pub mod constants;
 pub mod convection;
 pub mod doors;
 pub mod gains;
+pub mod horizon;
 pub mod leakage;
 pub mod longwave;
 pub mod mechanical_air;

@@ -94,6 +94,13 @@ impl Sunlight {
         }
     }
 
+    /// Takes away what comes from the direction of the sun, on the ground as well.
+    pub(crate) fn hide_sun(&mut self) {
+        let beam = self.direct_normal * self.direction[2].max(0.0);
+        self.global_horizontal = (self.global_horizontal - beam).max(0.0);
+        (self.direct_normal, self.circumsolar) = (0.0, 0.0);
+    }
+
     /// Whether there is no short-wave radiation at all.
     #[must_use]
     pub fn dark(&self) -> bool {
@@ -172,6 +179,20 @@ impl<S: Real> Irradiance<S> {
     #[inline(always)]
     pub fn total(&self) -> S {
         self.beam + self.diffuse + self.ground
+    }
+
+    /// The same parts of a measured sum [W/m2].
+    #[inline(always)]
+    pub fn measured(&self, sum: f64) -> Self {
+        let factor = S::constant(sum.max(0.0)) / self.total().max(S::constant(1e-6));
+        Self {
+            cosine: self.cosine,
+            beam: self.beam * factor,
+            circumsolar: self.circumsolar * factor,
+            horizon: self.horizon * factor,
+            diffuse: self.diffuse * factor,
+            ground: self.ground * factor,
+        }
     }
 
     /// From the sun's direction: beam and circumsolar.

@@ -79,7 +79,8 @@ fn rated(glass: &Glass<f64>, layout: &GlassPlan, mut links: Vec<f64>) -> WindowR
         Node::Inside => places[places.len() - 1] / whole,
     };
     let mut panes = vec![0.0; layout.sites.len()];
-    let transmittance = glass.optics.beam.split(1.0, &mut panes);
+    // As with an open blind.
+    let transmittance = glass.optics.beam.split(1.0, layout.split(&mut panes).0);
     let mut gain = transmittance;
     for (absorbed, site) in panes.iter().zip(&layout.sites) {
         gain += absorbed

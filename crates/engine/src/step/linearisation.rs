@@ -86,6 +86,12 @@ impl<S: Real> Linearisation<S> {
                 #[inline(always)]
                 |link, GapTangent { left, right, offset }| links[link] = Link { left, right, offset },
             );
+            if let Some((link, blind)) = &glass.blind {
+                let windows = stage.model.plan.windows.iter().zip(&stage.conditions.sun.windows);
+                let covered = windows.filter(|(window, _)| **window == w).map(|(_, sun)| sun.covered).next();
+                let conductance = blind.conductance(covered.unwrap_or_else(S::zero));
+                chain.links[*link] = Link { left: conductance, right: conductance, offset: S::zero() };
+            }
         } else {
             chain.linearise(numbers, &at, &start, stage.storage);
         }

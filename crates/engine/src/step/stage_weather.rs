@@ -9,7 +9,7 @@ use crate::step::scheme::Tableau;
 use crate::weather::conditions::Conditions;
 use crate::weather::index::WeatherIndex;
 use crate::weather::instant::{Instant, Weather};
-use crate::weather::sun::SolarMeans;
+use crate::weather::solar_means::SolarMeans;
 
 /// What acts on the building in the stage to be solved.
 #[derive(Debug, Clone)]

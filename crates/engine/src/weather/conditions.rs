@@ -321,7 +321,7 @@ mod tests {
         }
         let night = conditions(&plan, &dark);
         assert!(night.surfaces.iter().all(|surface| surface.solar == 0.0));
-        let mut means = crate::weather::sun::SolarMeans::new(&day.sun);
+        let mut means = crate::weather::solar_means::SolarMeans::new(&day.sun);
         means.add(&day.sun, 0.25);
         means.add(&night.sun, 0.75);
         assert_eq!(means.zones[0], 0.25 * day.sun.zones[0].transmitted);

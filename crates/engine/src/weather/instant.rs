@@ -10,6 +10,7 @@ use crate::input::description::Facing;
 use crate::input::forcing::{Forcing, channel};
 use crate::number::elementary::sincos;
 use crate::physics::convection::{Wind, WindTerms};
+use crate::physics::horizon;
 use crate::physics::longwave::SkyState;
 use crate::physics::solar::{SkyVisibility, Sunlight};
 
@@ -40,12 +41,16 @@ impl<'a> Instant<'a> {
             let (sine, cosine) = if needed { sincos(angle) } else { (0.0, 0.0) };
             [cosine, sine]
         };
-        let sunlight = Sunlight::new(row, plan.description.site.diffuse);
+        let site = &plan.description.site;
+        let mut sunlight = Sunlight::new(row, site.diffuse);
+        if horizon::hides(&site.horizon, sunlight.direction) {
+            sunlight.hide_sun();
+        }
         Self {
             row,
             fractions: plan.solar_geometry.at(&sunlight),
             sunlight,
-            sky: SkyState::new(&plan.description.site.sky, row),
+            sky: SkyState::new(&site.sky, row),
             wind: Wind::new(row[channel::WIND_SPEED], terms),
             wind_from: unit(row[channel::WIND_DIRECTION].to_radians(), terms.direction),
             season: unit(row[channel::DAY_OF_YEAR] * PER_DAY, ground),

@@ -5,6 +5,7 @@ pub(crate) mod humidity;
 pub mod index;
 pub(crate) mod instant;
 pub(crate) mod mechanical_air;
+pub(crate) mod solar_means;
 pub(crate) mod sun;
 pub(crate) mod surface;
 pub mod zone_conditions;

@@ -5,7 +5,7 @@
 //! (see [`solar_distribution`](crate::building::solar_distribution)).
 
 use crate::building::coefficients::{Boundary, Coefficients};
-use crate::building::glazing::{Node, Site};
+use crate::building::glazing::{Glass, Node, Site};
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::layout::{SurfaceRole, ZonePlan};
 use crate::building::plan::Plan;
@@ -22,8 +22,10 @@ pub struct WindowConditions<S> {
     pub transmitted: S,
     /// The part of it that comes from the sun's direction [W].
     pub beam: S,
-    /// Absorbed in each pane, from both sides [W/m2].
+    /// Absorbed in each pane, from both sides, and in a blind [W/m2].
     pub panes: Vec<S>,
+    /// Part that a blind covers [-].
+    pub covered: S,
     /// The part of it that acts in each cell [W/m2].
     pub cells: Vec<S>,
 }
@@ -67,6 +69,7 @@ impl<S: Real> SolarConditions<S> {
         let windows = plan.windows.iter().map(|&w| WindowConditions {
             transmitted: zero,
             beam: zero,
+            covered: zero,
             panes: vec![zero; plan.walls[w].glass.as_ref().map_or(0, |glass| glass.sites.len())],
             cells: vec![zero; plan.walls[w].len()],
         });
@@ -93,6 +96,7 @@ impl<S: Real> SolarConditions<S> {
         for (at, (a, b)) in self.windows.iter_mut().zip(first.windows.iter().zip(&second.windows)) {
             at.transmitted = line(a.transmitted, b.transmitted);
             at.beam = line(a.beam, b.beam);
+            at.covered = line(a.covered, b.covered).max(S::zero()).min(S::one());
             let sets = [(&mut at.panes, &a.panes, &b.panes), (&mut at.cells, &a.cells, &b.cells)];
             for (set, one, other) in sets {
                 for (heat, (&a, &b)) in set.iter_mut().zip(one.iter().zip(other)) {
@@ -155,20 +159,36 @@ impl<S: Real> SolarConditions<S> {
                 continue;
             };
             if now.sunlight.dark() {
+                at.covered = covered(glass, now, S::zero());
                 continue;
             }
             let open = now.visibility(plan, SurfaceId::outside(w));
-            let light = now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open);
+            let mut light = now.sunlight.on(&outdoors.plane, coefficients.ground_reflectance, &open);
+            if let Some(channel) = coefficients.surfaces[SurfaceId::outside(w)].irradiance {
+                light = light.measured(now.row[channel]);
+            }
             let (directed, scattered) = (light.directed(), light.scattered());
             let (front, level) = (&glass.optics.front, &glass.horizon);
-            let through = glass.optics.beam.split(light.cosine, &mut at.panes);
+            let (panes, of_blind) = match &plan.walls[w].glass {
+                Some(layout) => layout.split(&mut at.panes),
+                None => (&mut at.panes[..], None),
+            };
+            let through = glass.optics.beam.split(light.cosine, panes);
             let diffuse = front.absorptance.iter().zip(&level.absorptance);
-            for (pane, (&everywhere, &level)) in at.panes.iter_mut().zip(diffuse) {
+            for (pane, (&everywhere, &level)) in panes.iter_mut().zip(diffuse) {
                 *pane = *pane * directed + everywhere * scattered + level * light.horizon;
             }
-            at.beam = wall.area * through * directed;
             let spread = front.transmittance * scattered + level.transmittance * light.horizon;
-            at.transmitted = at.beam + wall.area * spread;
+            if let (Some((_, blind)), Some(own)) = (&glass.blind, of_blind) {
+                let beam = through * directed;
+                let mut sun = [beam, beam + spread];
+                at.covered = blind.covers(now.row, light.total());
+                blind.cover(at.covered, light.total(), [front, &glass.optics.back], &mut sun, (panes, own));
+                (at.beam, at.transmitted) = (wall.area * sun[0], wall.area * sun[1]);
+            } else {
+                at.beam = wall.area * through * directed;
+                at.transmitted = at.beam + wall.area * spread;
+            }
             if let SurfaceRole::Zone { zone, .. } = plan.surfaces[SurfaceId::inside(w)].role {
                 self.zones[zone].transmitted += at.transmitted;
             }
@@ -288,6 +308,10 @@ impl<S: Real> SolarConditions<S> {
                 let Some(glass) = &coefficients.walls[plan.windows[window]].glass else { continue };
                 let on = self.on_glass(distribution, z, zone, i);
                 let panes = &mut self.windows[window].panes;
+                let (panes, _) = match &plan.walls[plan.windows[window]].glass {
+                    Some(layout) => layout.split(panes),
+                    None => (&mut panes[..], None),
+                };
                 for (pane, &absorptance) in panes.iter_mut().zip(&glass.facing(zone.surfaces[i]).absorptance)
                 {
                     *pane += absorptance * on;
@@ -427,60 +451,12 @@ fn to_air(plan: &Plan) -> bool {
     plan.description.zones.iter().any(|zone| zone.solar_to_air.is_some())
 }
 
+/// Part of a window that its blind covers; none without a blind.
+fn covered<S: Real>(glass: &Glass<S>, now: &Instant<'_>, irradiance: S) -> S {
+    glass.blind.as_ref().map_or_else(S::zero, |(_, blind)| blind.covers(now.row, irradiance))
+}
+
 /// A part over the whole, which may be zero.
 fn part<S: Real>(some: S, all: S) -> S {
     some / all.max(S::constant(f64::MIN_POSITIVE))
-}
-
-/// The sun over a step: means of its stages.
-#[derive(Debug, Clone)]
-pub struct SolarMeans<S> {
-    /// Irradiance from each of [`WeatherIndex::irradiance_sources`] [W/m2].
-    pub(crate) irradiances: Vec<S>,
-    /// Transmitted by each window [W].
-    pub windows: Vec<S>,
-    /// Transmitted into each zone, from other zones included [W].
-    pub zones: Vec<S>,
-    /// Lost outdoors from each zone [W].
-    pub lost: Vec<S>,
-}
-
-impl<S: Real> SolarMeans<S> {
-    /// Zeros for a building.
-    #[must_use]
-    pub fn new(sun: &SolarConditions<S>) -> Self {
-        let zeros = |count: usize| vec![S::zero(); count];
-        Self {
-            irradiances: zeros(sun.irradiances.len()),
-            windows: zeros(sun.windows.len()),
-            zones: zeros(sun.zones.len()),
-            lost: zeros(sun.zones.len()),
-        }
-    }
-
-    /// Sets all means to zero.
-    #[inline(always)]
-    pub fn restart(&mut self) {
-        for means in [&mut self.irradiances, &mut self.windows, &mut self.zones, &mut self.lost] {
-            means.fill(S::zero());
-        }
-    }
-
-    /// Adds a stage by its weight.
-    #[inline(always)]
-    pub fn add(&mut self, sun: &SolarConditions<S>, weight: f64) {
-        for (mean, irradiance) in self.irradiances.iter_mut().zip(&sun.irradiances) {
-            *mean += irradiance.scale(weight);
-        }
-        for (mean, window) in self.windows.iter_mut().zip(&sun.windows) {
-            *mean += window.transmitted.scale(weight);
-        }
-        for ((mean, lost), zone) in self.zones.iter_mut().zip(&mut self.lost).zip(&sun.zones) {
-            *mean += zone.transmitted.scale(weight);
-            *lost += zone.lost.scale(weight);
-        }
-        for (mean, exchanged) in self.zones.iter_mut().zip(&sun.exchanged) {
-            *mean += exchanged.scale(weight);
-        }
-    }
 }

@@ -21,6 +21,7 @@ def channels(building: Description) -> list[str]:
     ]
     panes = (side for window in building.windows.values() for side in (window.outside, window.inside))
     columns += [measured_column(side.convection) for side in panes]
+    columns += [window.outside.irradiance for window in building.windows.values()]
     return list(dict.fromkeys(column for column in columns if column is not None))
 
 

@@ -25,11 +25,13 @@ from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners
 from mascarin.building.engine_input.materials import describe_construction, describe_material
 from mascarin.building.engine_input.surfaces import describe_sensor, describe_surface
 from mascarin.building.engine_input.windows import (
+    describe_blinded_glazing,
     describe_frame,
     describe_frame_construction,
     describe_glazing,
     describe_window,
     framed,
+    shaded,
 )
 from mascarin.building.engine_input.zones import describe_zone
 from mascarin.building.mesh import Mesh, choose
@@ -96,7 +98,7 @@ def describe(
     description = {
         "parameters": [{"path": leaf.path, "value": leaf.value} for leaf in leaves],
         "site": _site(building.site, below(ids, "site")),
-        **_constructions(building, mesh, ids),
+        **_constructions(building, mesh, ids, places),
         "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
         **_air(building, ids, places),
         "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
@@ -129,8 +131,8 @@ def describe(
     )
 
 
-def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int]) -> Json:
-    """Materials and constructions, those of glazings and frames included."""
+def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int], places: Places) -> Json:
+    """Materials and constructions, those of glazings, frames and blinds included."""
     return {
         "materials": [
             *each(building.materials, "materials", ids, describe_material),
@@ -151,6 +153,7 @@ def _constructions(building: Description, mesh: Mesh, ids: Mapping[str, int]) ->
                 describe_frame_construction(name, len(building.materials) + index)
                 for index, name in enumerate(framed(building))
             ),
+            *(describe_blinded_glazing(building, places, ids, name) for name in shaded(building)),
         ],
     }
 
@@ -199,4 +202,7 @@ def _site(site: Site, ids: Ids) -> Json:
         "sky": fields_of(site.sky, ids, "sky."),
         "cloud": _clouds(site.cloud, ids),
         "diffuse": site.diffuse,
+        **(
+            {"horizon": [[float(angle) for angle in point] for point in site.horizon]} if site.horizon else {}
+        ),
     }

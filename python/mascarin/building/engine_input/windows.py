@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin.building.description import Description
-from mascarin.building.engine_input.ids import Ids, Json, below, corners, deeper, fields_of
+from mascarin.building.engine_input.air import schedule_of
+from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners, deeper, fields_of
 from mascarin.building.engine_input.surfaces import describe_convection
 from mascarin.building.glazing import Angular, FilledGap, GivenGap, Glazing, Pane, SimpleGlazing, TwoSides
 from mascarin.building.window import Window
@@ -99,14 +100,45 @@ def describe_window(
             glass.panes[last].emissivity, lambda key: every[f"{path}panes.{last}.{key}"], "emissivity"
         )
         emissivity = [outer[0], inner[1]]
+    if window.blind is not None:
+        emissivity[0 if window.blind.position == "outside" else 1] = ids("blind.emissivity")
     written = _glazed(building, columns, every, window, ids, emissivity) | {
         "name": name,
-        "construction": len(building.constructions) + list(building.glazings).index(window.glazing),
+        "construction": _construction_of(building, name, window),
         "cavity_height": ids("cavity_height"),
     }
     if window.frame is not None:
         written["frame"] = {"fraction": ids("frame.fraction"), "is_frame": False}
     return written
+
+
+def _construction_of(building: Description, name: str, window: Window) -> int:
+    """Place of the construction of a window's glass; those with a blind follow all others."""
+    first = len(building.constructions)
+    if window.blind is None:
+        return first + list(building.glazings).index(window.glazing)
+    return first + len(building.glazings) + len(framed(building)) + shaded(building).index(name)
+
+
+def shaded(building: Description) -> list[str]:
+    """Names of the windows with a blind, in the order of the description."""
+    return [name for name, window in building.windows.items() if window.blind is not None]
+
+
+def describe_blinded_glazing(
+    building: Description, places: Places, every: Mapping[str, int], name: str
+) -> Json:
+    """Describe the glazing of a window with its blind as a construction."""
+    window, ids = building.windows[name], below(every, f"windows.{name}.blind")
+    written = describe_glazing(
+        f"{name}.glass", building.glazings[window.glazing], below(every, f"glazings.{window.glazing}")
+    )
+    blind: Json = {"inside": window.blind is not None and window.blind.position == "inside"}
+    blind |= {key: ids(key) for key in ("transmittance", "reflectance", "resistance", "cover")}
+    blind |= schedule_of(window.blind, places)
+    if window.blind is not None and window.blind.radiation is not None:
+        blind["radiation"] = ids("radiation")
+    return written | {"blind": blind}
 
 
 def describe_frame(building: Description, columns: list[str], name: str, every: Mapping[str, int]) -> Json:
@@ -148,6 +180,8 @@ def _glazed(
         "emissivity": emissivity[0],
         "convection": describe_convection(window.outside.convection, columns, deeper(ids, "outside")),
     }
+    if window.outside.irradiance is not None:
+        outside["irradiance"] = columns.index(window.outside.irradiance)
     if window.outside.longwave is not None:
         outside["longwave"] = fields_of(window.outside.longwave, deeper(ids, "outside"), "longwave.")
     inside = {

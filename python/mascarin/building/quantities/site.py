@@ -52,6 +52,24 @@ AirSpecificHeat = Annotated[
         Limits(at_least=500, at_most=5000),
     ),
 ]
+HorizonAzimuth = Annotated[
+    Number,
+    Quantity(
+        "deg",
+        "Azimuth of a point of the horizon, clockwise from north",
+        Fixed("a point of a surveyed curve"),
+        Limits(at_least=0, at_most=360),
+    ),
+]
+HorizonElevation = Annotated[
+    Number,
+    Quantity(
+        "deg",
+        "Elevation of a point of the horizon",
+        Fixed("a point of a surveyed curve"),
+        Limits(at_least=0, at_most=90),
+    ),
+]
 GroundReflectance = Annotated[
     Number,
     Quantity(

@@ -133,6 +133,47 @@ SurfaceResistance = Annotated[
 WindowArea = Annotated[
     Number, Quantity("m2", "Area of the window, frame included", Percent(5, TAPE), POSITIVE)
 ]
+BlindTransmittance = Annotated[
+    Number,
+    Quantity("-", "Solar transmittance of the blind", Within(0.05, "products of one color"), FRACTION),
+]
+BlindReflectance = Annotated[
+    Number,
+    Quantity(
+        "-", "Solar reflectance of both sides of the blind", Within(0.15, "color, age and dirt"), FRACTION
+    ),
+]
+BlindResistance = Annotated[
+    Number,
+    Quantity(
+        "m2 K/W",
+        "Resistance of the closed blind, with the air between it and the glass",
+        Percent(40, "air permeability, EN 13125"),
+        Limits(at_least=0, at_most=5),
+    ),
+]
+ShutterResistance = Annotated[
+    Number,
+    Quantity(
+        "m2 K/W",
+        "Resistance of the shutter itself, without the air behind it",
+        Fixed("gives the resistance of the closed blind; vary that"),
+        Limits(at_least=0, at_most=5),
+    ),
+]
+BlindCover = Annotated[
+    Number,
+    Quantity("-", "Part of the glass that the closed blind covers", Within(0.05, "gaps at edges"), FRACTION),
+]
+BlindRadiation = Annotated[
+    Number,
+    Quantity(
+        "W/m2",
+        "Irradiance of the window above which the blind is closed",
+        Percent(20, "sensors of controls"),
+        Limits(at_least=0, at_most=1500),
+    ),
+]
 CavityHeight = Annotated[
     Number,
     Quantity("m", "Height of the gaps of a window", Percent(5, TAPE), POSITIVE),

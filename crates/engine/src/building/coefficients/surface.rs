@@ -14,6 +14,7 @@ use crate::input::forcing::CLIMATE_CHANNELS;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::convection::{Placement, SurfaceConvection};
+use crate::physics::horizon;
 use crate::physics::longwave::Emission;
 use crate::physics::solar::Plane;
 
@@ -139,7 +140,15 @@ pub(super) fn imposed<S: Real>(facing: &Facing, values: &Values<'_, S>) -> Optio
 
 fn outdoors<S: Real>(plan: &Plan, index: SurfaceId, side: &Side, values: &Values<'_, S>) -> Outdoors<S> {
     let wall = &plan.description.surfaces[index.wall()];
-    let (plane, heading) = plane(wall, index, side, values);
+    let (mut plane, heading) = plane(wall, index, side, values);
+    let horizon = &plan.description.site.horizon;
+    if !horizon.is_empty() {
+        let [sky, band] = horizon::open(horizon, &plane);
+        plane.sin_tilt = plane.sin_tilt * band;
+        if side.sky_view.is_none() {
+            plane.sky_view = plane.sky_view * sky;
+        }
+    }
     let sky_view = plane.sky_view;
     let open = plan.solar_geometry.open_sky(index);
     Outdoors {

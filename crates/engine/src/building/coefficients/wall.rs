@@ -39,7 +39,8 @@ impl<S: Real> WallCoefficients<S> {
         let wall: &WallPlan = &plan.walls[index];
         let area = net_area(described, values);
         if let (Some(glazing), Some(glass)) = (&construction.glazing, &wall.glass) {
-            let GlassWall { cells, extra, glass } = GlassWall::new(values, glazing, glass, described);
+            let GlassWall { cells, extra, glass } =
+                GlassWall::new(values, (glazing, construction.blind.as_ref()), glass, described);
             let massless = vec![true; extra.len()];
             let (pcm, layer_resistance) = (Vec::new(), Vec::new());
             return Self { area, cells, extra, massless, pcm, layer_resistance, glass: Some(glass) };

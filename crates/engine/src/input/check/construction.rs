@@ -1,7 +1,7 @@
 //! Materials, layers and glazings.
 
 use super::numbers::{check_count, check_fractions, check_rising};
-use super::{Checked, check_index, refuse};
+use super::{Checked, check_index, check_schedule, refuse};
 use crate::input::description::{
     Angular, Construction, Description, Glazing, Material, MeltingCurve, PcmLaw, TablePoints,
 };
@@ -61,6 +61,12 @@ fn check_curve(curve: &MeltingCurve) -> Checked {
 /// Layers or a glazing, and their materials.
 pub(super) fn check_construction(description: &Description, construction: &Construction) -> Checked {
     let place = format!("construction {}", construction.name);
+    if let Some(blind) = &construction.blind {
+        if construction.glazing.is_none() {
+            return refuse(place, "a blind without a glazing", "a glazing");
+        }
+        check_schedule(description, format_args!("{place}, blind"), blind.schedule)?;
+    }
     match (&construction.glazing, construction.layers.is_empty()) {
         (None, true) => return refuse(place, "neither layers nor a glazing", "one of both"),
         (Some(_), false) => return refuse(place, "layers and a glazing", "one of both"),

@@ -48,6 +48,7 @@ fn check_schedule(description: &Description, place: impl Display, schedule: Opti
 /// [`EngineError::Description`] with the place, what was found there and what was expected.
 pub(crate) fn check(description: &Description) -> Checked {
     check_parameters(description)?;
+    check_horizon(&description.site.horizon)?;
     for material in &description.materials {
         construction::check_material(material)?;
     }
@@ -78,6 +79,21 @@ pub(crate) fn check(description: &Description) -> Checked {
         numbers::check_polygon(&format!("shade {index}"), shade)?;
     }
     Ok(())
+}
+
+/// Azimuths that rise from 0 to below 360 deg, with elevations from 0 to 90 deg.
+fn check_horizon(points: &[[f64; 2]]) -> Checked {
+    let outside = |point: &[f64; 2]| !(0.0..360.0).contains(&point[0]) || !(0.0..=90.0).contains(&point[1]);
+    if let Some([azimuth, elevation]) = points.iter().find(|point| outside(point)) {
+        let found = format_args!("azimuth {azimuth} and elevation {elevation}").to_string();
+        return refuse("site.horizon", found, "azimuths from 0 to below 360, elevations from 0 to 90");
+    }
+    match points.windows(2).find(|pair| pair[0][0] >= pair[1][0]) {
+        Some(pair) => {
+            refuse("site.horizon", format_args!("{} after {}", pair[1][0], pair[0][0]), "rising azimuths")
+        }
+        None => Ok(()),
+    }
 }
 
 /// Every parameter id has a parameter, and every nominal value is a number.

@@ -61,14 +61,14 @@ fn check_side(description: &Description, place: &str, side: &Side, glazed: bool)
             return refuse(place, format_args!("shaded by surface {wall} without vertices"), "vertices");
         }
     }
-    check_irradiance(place, side, channels)?;
+    check_irradiance(place, side, (channels, glazed))?;
     check_convection(place, side, channels)
 }
 
-fn check_irradiance(place: &str, side: &Side, channels: usize) -> Checked {
+fn check_irradiance(place: &str, side: &Side, (channels, glazed): (usize, bool)) -> Checked {
     let Some(channel) = side.irradiance else { return Ok(()) };
     check_index(place, "irradiance in channel", channel, channels)?;
-    if side.absorptance.is_none() {
+    if side.absorptance.is_none() && !glazed {
         return refuse(place, "a measured irradiance without it", "absorptance");
     }
     if side.convection.is_none() && !matches!(side.facing, Facing::Adiabatic) {

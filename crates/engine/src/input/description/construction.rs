@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::glazing::Glazing;
+use super::glazing::{Blind, Glazing};
 use super::parameter::ParamId;
 
 /// Layers from outside to inside, or a glazing.
@@ -19,6 +19,10 @@ pub struct Construction {
     /// Panes instead of layers.
     #[serde(default)]
     pub glazing: Option<Glazing>,
+
+    /// A blind in front of a glazing or behind it.
+    #[serde(default)]
+    pub blind: Option<Blind>,
 }
 
 /// One layer of a construction.

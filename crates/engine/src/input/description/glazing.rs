@@ -102,6 +102,28 @@ pub enum Gas {
     Xenon,
 }
 
+/// A blind or shutter; equations in `physics/blinds.rs`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Blind {
+    /// Whether it is on the side of the room; else it is outdoors.
+    pub inside: bool,
+    /// Solar transmittance [-].
+    pub transmittance: ParamId,
+    /// Solar reflectance of both sides [-].
+    pub reflectance: ParamId,
+    /// Of the closed blind and the air behind it [m2 K/W].
+    pub resistance: ParamId,
+    /// Part of the window that it covers when it is closed [-].
+    pub cover: ParamId,
+    /// Index into [`Description::channels`](super::Description::channels): how far it is closed [-]. None: always closed.
+    #[serde(default)]
+    pub schedule: Option<usize>,
+    /// Irradiance of the window above which it is closed [W/m2]; none: it follows its schedule alone.
+    #[serde(default)]
+    pub radiation: Option<ParamId>,
+}
+
 /// Optics of a whole unit over the angle of incidence, for sun from outside.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -28,7 +28,7 @@ pub use bridge::ThermalBridge;
 pub use building::Description;
 pub use construction::{Construction, Layer};
 pub use convection::{Convection, PowerLaw};
-pub use glazing::{Angular, Gap, Gas, Glazing, Pane, PaneOptics};
+pub use glazing::{Angular, Blind, Gap, Gas, Glazing, Pane, PaneOptics};
 pub use humidity::{
     Buffer, Depth, Drying, Humidity, HumidityControl, HumiditySetPoint, Sorption, VapourGain, ZoneHumidity,
 };

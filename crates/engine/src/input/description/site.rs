@@ -26,6 +26,9 @@ pub struct Site {
     pub cloud: Clouds,
     /// Model of the sky's diffuse short-wave radiation.
     pub diffuse: DiffuseSky,
+    /// Azimuth, rising below 360, and elevation of what hides the sky [deg]; empty: nothing.
+    #[serde(default)]
+    pub horizon: Vec<[f64; 2]>,
 }
 
 /// Power-law wind profile (ASHRAE Handbook of Fundamentals, ch. 24):

@@ -118,6 +118,7 @@ pub fn glazed(sun: ZoneSun, order: [usize; 6]) -> Description {
             name: "glass".to_owned(),
             layers: Vec::new(),
             glazing: Some(glazing),
+            blind: None,
         });
     }
     let u_value = number(&mut d, "frame.u_value", 2.0);

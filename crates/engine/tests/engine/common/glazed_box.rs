@@ -43,7 +43,12 @@ pub fn glazed_box(gas: bool) -> Description {
     let height = put("cavity_height", 1.5);
     let mut d = b.describe();
     let glazing = Some(Glazing::Panes { panes, gaps: vec![gap], angular: None });
-    d.constructions.push(Construction { name: "window".to_owned(), layers: Vec::new(), glazing });
+    d.constructions.push(Construction {
+        name: "window".to_owned(),
+        layers: Vec::new(),
+        glazing,
+        blind: None,
+    });
     d.surfaces[3].construction = 1;
     d.surfaces[3].cavity_height = Some(height);
     d

@@ -67,6 +67,7 @@ impl Builder {
                 add("site.cloud.c3", 0.00028),
             ]),
             diffuse: DiffuseSky::Perez,
+            horizon: Vec::new(),
         };
         let description = Description {
             parameters,
@@ -165,7 +166,12 @@ impl Builder {
             nodes,
         });
         let layers = layers.collect();
-        self.description.constructions.push(Construction { name: name.to_owned(), layers, glazing: None });
+        self.description.constructions.push(Construction {
+            name: name.to_owned(),
+            layers,
+            glazing: None,
+            blind: None,
+        });
         self.description.constructions.len() - 1
     }
 

@@ -609,7 +609,7 @@ impl Maker<'_> {
             thickness: None,
             nodes: 0,
         };
-        Construction { name: "frame".to_owned(), layers: vec![layer], glazing: None }
+        Construction { name: "frame".to_owned(), layers: vec![layer], glazing: None, blind: None }
     }
 
     fn glass(&mut self, d: &mut Description) -> Construction {
@@ -631,7 +631,7 @@ impl Maker<'_> {
             let gaps = (1..count).map(|_| self.gap(d)).collect();
             Glazing::Panes { panes, gaps, angular: None }
         };
-        Construction { name: "glass".to_owned(), layers: Vec::new(), glazing: Some(glazing) }
+        Construction { name: "glass".to_owned(), layers: Vec::new(), glazing: Some(glazing), blind: None }
     }
 
     fn pane(&mut self, d: &mut Description) -> Pane {
