@@ -266,7 +266,11 @@ fn unpack(bytes: &[u8], stages: usize, channels: usize) -> Option<Vec<f64>> {
     let numbers = bytes.strip_prefix(MAGIC)?;
     let (numbers, rest) = numbers.as_chunks::<8>();
     let instants = numbers.len() / channels;
-    if !rest.is_empty() || instants == 0 || instants * channels != numbers.len() || instants % stages != 0 {
+    if !rest.is_empty()
+        || instants == 0
+        || instants * channels != numbers.len()
+        || !instants.is_multiple_of(stages)
+    {
         return None;
     }
     let mut forcing = vec![0.0; numbers.len()];

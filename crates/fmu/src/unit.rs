@@ -278,7 +278,7 @@ impl Unit {
     fn steps_in(&self, seconds: f64) -> Option<usize> {
         let steps = seconds / self.contents.options.dt;
         let whole = steps.round();
-        if !(whole >= 0.0 && whole <= 2.0_f64.powi(52) && (steps - whole).abs() <= TIME) {
+        if !((0.0..=4_503_599_627_370_496.0).contains(&whole) && (steps - whole).abs() <= TIME) {
             return None;
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and not negative")]

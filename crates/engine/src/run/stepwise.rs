@@ -95,7 +95,7 @@ impl<'a> StepByStep<'a> {
     /// Relative residual of the energy balance so far, or of the vapour balance if that is larger [-].
     #[must_use]
     pub fn closure(&self) -> f64 {
-        let mut ledger = self.ledger.clone();
+        let mut ledger = self.ledger;
         ledger.set_content(self.state.heat_content(&self.stepper.model), self.steps);
         ledger.worst_closure()
     }
@@ -119,7 +119,7 @@ impl<'a> StepByStep<'a> {
         let (&steps, rest) = numbers.split_first().ok_or_else(wrong)?;
         let (state, rest) = rest.split_at_checked(self.state.count()).ok_or_else(wrong)?;
         let mut history = self.stepper.history();
-        let whole = steps >= 0.0 && steps.fract() == 0.0 && steps < 2.0_f64.powi(53);
+        let whole = steps >= 0.0 && steps.fract() == 0.0 && steps < 9_007_199_254_740_992.0;
         if !(whole && history.read(self.plan, rest)) {
             return Err(wrong());
         }
