@@ -96,7 +96,7 @@ def overcast(diffuse: float, **columns: Any) -> Climate:
     )
 
 
-def day(building: Building, **columns: float) -> Results:
+def day(building: Building, **columns: Any) -> Results:
     names = [one.name for one in building.outputs()]
     return simulate(building, overcast(200.0, **columns), step="1h", outputs=names)
 
