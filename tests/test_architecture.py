@@ -20,7 +20,7 @@ ORDER = [
     {"weather"},
     {"comfort"},
     {"simulation", "convert"},
-    {"ensemble"},
+    {"ensemble", "fmu"},
     {"sensitivity", "optimization", "validation"},
     {"calibration"},
     {"verification"},
@@ -153,10 +153,15 @@ def test_no_module_reads_private_names_of_another(path: Path) -> None:
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             hidden = node.attr.startswith("_") and not node.attr.startswith("__")
             name = node.value.id
-            assert not (hidden and name in imports - own), f"{path.name}:{node.lineno}: {name}.{node.attr}"
+            public = f"{name}.{node.attr}" in DOCUMENTED
+            assert public or not (hidden and name in imports - own), (
+                f"{path.name}:{node.lineno}: {name}.{node.attr}"
+            )
 
 
 PRIVATE_MODULES = {"_engine", "_io", "__version__"}
+# Names with an underscore that the library documents for its users.
+DOCUMENTED = {"os._exit"}
 
 
 def test_every_package_is_described() -> None:

@@ -9,6 +9,7 @@ import gc
 import json
 import math
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -168,3 +169,29 @@ def test_matrices_beyond_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch,
     monkeypatch.setattr(memory, "available", lambda: 2**28)
     with pytest.raises(InputError, match=r"state_space: matrices of \d+ states would take .* are free"):
         state_space(building)
+
+
+SIGNAL_DURING_IMPORT = """
+import os, sys
+import mascarin.__main__ as start
+
+class Sender:
+    def find_spec(self, name, path=None, target=None):
+        if name == "mascarin.cli":
+            os.kill(os.getpid(), {number})
+
+sys.meta_path.insert(0, Sender())
+sys.exit(start.main())
+"""
+
+
+@pytest.mark.parametrize(
+    ("number", "code", "words"),
+    [(signal.SIGINT, 130, "interrupted\n"), (signal.SIGTERM, 143, "terminated\n")],
+)
+def test_a_signal_while_modules_are_imported_ends_the_command_in_one_line(
+    number: signal.Signals, code: int, words: str
+) -> None:
+    script = SIGNAL_DURING_IMPORT.format(number=int(number))
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (code, "", words)

@@ -31,6 +31,7 @@ from mascarin.commands.view import open_page
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
+    from mascarin.explore import Session
     from mascarin.weather import Climate
 
 Sliders = Annotated[list[str] | None, Parameter(name=("--parameters", "--parameter"), negative="")]
@@ -88,8 +89,7 @@ def explore(
     no_open : bool
         Print the address without opening it.
     """
-    from mascarin.explore import Server, Session
-    from mascarin.explore.page import render
+    from mascarin.explore import Session
     from mascarin.explore.session import Band
 
     target = _target(out, building)
@@ -117,6 +117,16 @@ def explore(
             options=options,
         )
 
+    _serve(session, building, given, target, port=port, open_it=not no_open)
+
+
+def _serve(
+    session: Session, building: Path, given: Mapping[str, float], target: Path, *, port: int, open_it: bool
+) -> None:
+    """Serve the page until Ctrl-C."""
+    from mascarin.explore import Server
+    from mascarin.explore.page import render
+
     def save(content: Mapping[str, Any]) -> dict[str, str]:
         with writing(target):
             session.save(target, building, _values(content), given)
@@ -129,7 +139,7 @@ def explore(
     )
     try:
         print(f"{server.address}\nCtrl-C ends it", file=sys.stderr, flush=True)
-        if not no_open:
+        if open_it:
             open_page(server.address, server.address)
         server.serve_forever(poll_interval=0.1)
     finally:
