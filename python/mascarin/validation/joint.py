@@ -36,6 +36,8 @@ _SWEEPS: Final = 12
 _SETTLED: Final = 1e-3
 #: Largest number of active sets that are tried.
 _SETS: Final = 60
+#: Information, in units of the prior, from which a combination of columns is told from zero. [-]
+_TOLD: Final = 1e-3
 #: Smallest variance of a whitened series, as a part of that of the measured values (rounding).
 _FLOOR: Final = 1e-12
 
@@ -234,6 +236,48 @@ class Joint:
             other.right[s] = self.white[s].T @ other.left[s]
             other.total[s] = other.left[s] @ other.left[s]
         return other
+
+    def in_directions(self, kept: Sequence[int], variance: Floats) -> Joint:
+        """The same problem with few columns in place of many.
+
+        Columns with a prior about zero are replaced by those combinations of them that the measurements can
+        tell from zero: eigenvectors of their information in units of the priors. Along all other
+        combinations the measurements say next to nothing. The limits of the replaced columns are dropped;
+        their priors hold them.
+
+        Parameters
+        ----------
+        kept : sequence of int
+            Columns that stay as they are, as do those without a prior about zero.
+        variance : ndarray, shape (S,)
+            Of each whitened series, from a solution with all columns. [unit^2 of each]
+
+        Returns
+        -------
+        Joint
+            Columns in the same order, the combinations where the first of the replaced ones was.
+        """
+        replaced = (self.precision > 0.0) & (self.center == 0.0)
+        replaced[list(kept)] = False
+        of = np.flatnonzero(replaced)
+        if of.size == 0:
+            return self
+        sd = self.precision[of] ** -0.5
+        information = np.tensordot(1.0 / variance, np.stack([g[np.ix_(of, of)] for g in self.gram]), 1)
+        eigenvalues, vectors = np.linalg.eigh(sd[:, None] * information * sd)
+        told = vectors[:, eigenvalues > _TOLD]
+        rest = np.flatnonzero(~replaced)
+        before, after = rest[rest < of[0]], rest[rest > of[0]]
+        combined = np.tensordot((sd[:, None] * told).T, self.columns[of], 1)
+        none = np.tile([-np.inf, np.inf], (len(combined), 1))
+        return Joint(
+            self.residual,
+            np.concatenate([self.columns[before], combined, self.columns[after]]),
+            np.concatenate([self.center[before], np.zeros(len(combined)), self.center[after]]),
+            np.concatenate([self.precision[before], np.ones(len(combined)), self.precision[after]]),
+            np.concatenate([self.limits[before], none, self.limits[after]]),
+            self.whitening,
+        )
 
     def solve(
         self, active: Sequence[int], extra: Sequence[Extra] = (), start: Solution | None = None
