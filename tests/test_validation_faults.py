@@ -176,6 +176,41 @@ def test_least_squares_in_a_box_and_its_deviance_by_hand() -> None:
     assert held.standard_error(0) == 0.0
 
 
+def test_many_columns_that_act_alike_are_replaced_by_few_combinations() -> None:
+    # 200 columns of 6 series: with the combinations an offset and its evidence are the same.
+    random = np.random.default_rng(5)
+    n, sensors, many, series = 600, 3, 200, 6
+    patterns = np.cumsum(random.normal(size=(series, n, sensors)), axis=1)
+    columns = np.tensordot(random.normal(size=(many, series)), patterns, 1) / 50.0
+    offsets = np.zeros((sensors, n, sensors))
+    offsets[range(sensors), :, range(sensors)] = 1.0
+    change = np.concatenate([0.3 * random.normal(size=many), [0.0, 0.0, 0.0]])
+    every = np.concatenate([columns, offsets])
+    residual = np.tensordot(change, every, 1) + random.normal(0.0, 0.1, (n, sensors))
+    residual[:, 1] += 2.0
+    free = np.tile([-np.inf, np.inf], (many + sensors, 1))
+    precision = np.concatenate([np.full(many, 16.0), np.full(sensors, 100.0)])
+    plain = Whitening(tuple(np.empty(0) for _ in range(sensors)))
+    joint = Joint(residual, every, np.zeros(many + sensors), precision, free, plain)
+    kept = [0, *range(many, many + sensors)]
+    null = joint.solve(range(many + sensors))
+
+    few = joint.in_directions(kept, null.variance)
+
+    assert len(few.columns) == len(kept) + series
+    assert np.array_equal(few.columns[0], columns[0])
+    assert np.array_equal(few.columns[-sensors:], offsets)
+    extra = [Extra(1, np.ones(n))]
+    (one, with_one), (two, with_two) = (
+        (p.solve(range(len(p.columns))), p.solve(range(len(p.columns)), extra)) for p in (joint, few)
+    )
+    assert one.deviance - with_one.deviance > 20.0
+    assert two.deviance - with_two.deviance == pytest.approx(one.deviance - with_one.deviance, rel=1e-3)
+    assert with_two.values[-1] == pytest.approx(with_one.values[-1], rel=1e-3)
+    last = [s.standard_error(s.values.size - 1) for s in (with_one, with_two)]
+    assert last[1] == pytest.approx(last[0], rel=1e-3)
+
+
 @pytest.mark.parametrize("sd", [0.08, 0.3])
 def test_the_floor_of_white_noise(sd: float) -> None:
     found, error = white_noise(sd * np.random.default_rng(5).normal(size=N) + SIMULATED[:, 0], STEP)
