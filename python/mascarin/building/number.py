@@ -241,6 +241,11 @@ class Limits:
         return next((x for x in (self.above, self.at_least) if x is not None), -math.inf)
 
     @property
+    def least(self) -> float:
+        """Smallest value inside."""
+        return self.lower if self.above is None else self.above + SMALLEST
+
+    @property
     def upper(self) -> float:
         """Upper end."""
         return math.inf if self.at_most is None else self.at_most

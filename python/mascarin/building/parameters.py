@@ -5,6 +5,7 @@ Sensitivity analysis, calibration, sweeps and GenOpt files name numbers by these
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
@@ -36,7 +37,7 @@ class Parameter:
     unit : str
         Unit of value, limits and range.
     lower, upper : float
-        Limits; may be infinite. [unit]
+        Smallest and largest value that has a meaning; may be infinite. [unit]
     low, high : float
         Plausible range: as given in the description, else the default of the quantity. [unit]
     description : str
@@ -53,6 +54,8 @@ class Parameter:
         Reason for the width of the range.
     members : tuple of str
         Paths that vary as one with it, where it is a tied parameter; see ``ties`` of the building.
+    above : float or None
+        Where the smallest value is one just above this number, which has no meaning itself. [unit]
 
     Examples
     --------
@@ -78,6 +81,16 @@ class Parameter:
     reason: str | None
     range_reason: str
     members: tuple[str, ...] = ()
+    above: float | None = None
+
+    @property
+    def allowed(self) -> str:
+        """The limits in words, such as ``a value above 0 and at most 500 W/(m K)``."""
+        first = f"from {self.lower:g}" if self.above is None else f"above {self.above:g}"
+        second = f" to {self.upper:g}" if self.above is None else f" and at most {self.upper:g}"
+        if math.isinf(self.upper):
+            second = ""
+        return f"a value {first}{second} {self.unit}".removesuffix(" -").rstrip()
 
     @property
     def varies(self) -> bool:
@@ -130,7 +143,7 @@ def _parameter(
         path=path,
         value=float(number),
         unit=quantity.unit,
-        lower=quantity.limits.lower,
+        lower=quantity.limits.least,
         upper=quantity.limits.upper,
         low=low,
         high=high,
@@ -140,6 +153,7 @@ def _parameter(
         structural=number.structural,
         reason=quantity.spread.reason if number.structural else inactive,
         range_reason=_range_reason(quantity.spread.reason, number, cut),
+        above=quantity.limits.above,
     )
 
 

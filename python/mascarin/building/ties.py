@@ -273,9 +273,11 @@ def _made(
         )
     first = members[0]
     reason = first.reason if all(p.reason is not None for p in members) else None
+    above = next((p.above for p in members if p.above is not None and p.lower == limits[0]), None)
     return Parameter(
         path=pattern, value=value, unit=unit, lower=limits[0], upper=limits[1], low=span[0], high=span[1],
         description=f"{what}{len(members)} numbers together: {first.description}",
         source=None, assumed=False, structural=False, reason=reason,
         range_reason="what the ranges of all have in common", members=tuple(p.path for p in members),
+        above=above,
     )  # fmt: skip

@@ -235,8 +235,7 @@ def _numbers(name: str, variable: Variable, building: Building, places: Places) 
                 if not parameter.lower <= value <= parameter.upper:
                     raise InputError(
                         f"found {value:g} {parameter.unit} for {parameter.path}, expected "
-                        f"{parameter.lower:g} to "
-                        f"{parameter.upper:g} {parameter.unit}, which is possible there; check its unit"
+                        f"{parameter.allowed}; check its unit"
                     )
         for parameter in known:
             _require_thin(building, parameter.path, max(values))

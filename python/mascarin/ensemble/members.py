@@ -150,8 +150,8 @@ def _numbers(building: Building, path: str, values: npt.NDArray[Any]) -> Array:
     bad = np.flatnonzero(~((column >= parameter.lower) & (column <= parameter.upper)))
     if bad.size:
         raise InputError(
-            f"samples: {path} of member {bad[0]} is {column[bad[0]]:g} {parameter.unit}; expected a "
-            f"value from {parameter.lower:g} to {parameter.upper:g}"
+            f"samples: {path} of member {bad[0]} is {column[bad[0]]:g} {parameter.unit}; expected "
+            f"{parameter.allowed}"
         )
     return column
 

@@ -344,8 +344,8 @@ def checked_range(building: Building, path: str, span: tuple[float, float]) -> t
         raise InputError(f"{path}: is structural ({parameter.reason}) and cannot be varied; leave it out")
     if not parameter.lower <= low < high <= parameter.upper:
         raise InputError(
-            f"{path}: found [{low:g}, {high:g}] {parameter.unit}, expected a lower and a higher value from "
-            f"{parameter.lower:g} to {parameter.upper:g}; correct the range"
+            f"{path}: found [{low:g}, {high:g}] {parameter.unit}, expected a lower and a higher one, each "
+            f"{parameter.allowed}; correct the range"
         )
     return low, high
 

@@ -62,7 +62,7 @@ class Limits:
             parameter = self._parameters[k]
             raise InputError(
                 f"samples: {parameter.path} of member {member}: found {vectors[member, k]:g} "
-                f"{parameter.unit}; expected a value from {parameter.lower:g} to {parameter.upper:g}"
+                f"{parameter.unit}; expected {parameter.allowed}"
             )
 
 
