@@ -31,7 +31,7 @@ def genopt(
     Parameters
     ----------
     study : str
-        Study file (YAML), or the name of an example study: wall-bench, lgi.
+        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house.
     out : Path
         Folder for the project.
     algorithm : str

@@ -40,7 +40,7 @@ def study(
     Parameters
     ----------
     file : str
-        Study file (YAML), or the name of an example study: wall-bench, lgi.
+        Study file (YAML), or the name of an example study: wall-bench, lgi, twin-house.
     out : Path
         Folder for study.json, tables, figures, the report and intermediate results.
     figures : bool

@@ -344,7 +344,7 @@ def checked_range(building: Building, path: str, span: tuple[float, float]) -> t
         raise InputError(f"{path}: is structural ({parameter.reason}) and cannot be varied; leave it out")
     if not parameter.lower <= low < high <= parameter.upper:
         raise InputError(
-            f"{path}: found [{low:g}, {high:g}] {parameter.unit}, expected a lower and a higher one, each "
+            f"{path}: found [{low:g}, {high:g}] {parameter.unit}, expected a lower and a higher value, each "
             f"{parameter.allowed}; correct the range"
         )
     return low, high
