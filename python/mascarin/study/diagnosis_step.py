@@ -235,19 +235,9 @@ class _Search:
         places = self.model.neighbours(self.vector) if near else {}
         return Series(self.measured, simulated, self.u, self.model.interval, shortest, self.units, places)
 
-    def _few_columns(self) -> Joint:
-        """The problem with combinations of the parameters that are not calibrated.
-
-        A fault of data is fitted with all parameters, hundreds in a house; few combinations of them matter.
-        """
-        problem = self.joint()
-        size = len(problem.columns)
-        kept = [*range(len(self.model.fitted)), *range(size - len(self.names), size)]
-        return problem.in_directions(kept, problem.solve(range(size)).variance)
-
     def _best_fault(self, near: bool) -> tuple[Fault, float, float, Joint, Solution, list[int]] | None:
         """The most important fault, its p and its part of the sum of squares; None where there is none."""
-        problem = self._few_columns()
+        problem = self.joint().in_directions(range(len(self.model.fitted)))  # a house has hundreds of columns
         active = list(range(len(problem.columns)))
         null = problem.solve(active)
         series = self._series(near)

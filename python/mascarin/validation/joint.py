@@ -237,7 +237,7 @@ class Joint:
             other.total[s] = other.left[s] @ other.left[s]
         return other
 
-    def in_directions(self, kept: Sequence[int], variance: Floats) -> Joint:
+    def in_directions(self, kept: Sequence[int]) -> Joint:
         """The same problem with few columns in place of many.
 
         Columns with a prior about zero are replaced by those combinations of them that the measurements can
@@ -248,9 +248,8 @@ class Joint:
         Parameters
         ----------
         kept : sequence of int
-            Columns that stay as they are, as do those without a prior about zero.
-        variance : ndarray, shape (S,)
-            Of each whitened series, from a solution with all columns. [unit^2 of each]
+            Columns that stay as they are, as do those without a prior about zero and those that act on one
+            series.
 
         Returns
         -------
@@ -259,9 +258,11 @@ class Joint:
         """
         replaced = (self.precision > 0.0) & (self.center == 0.0)
         replaced[list(kept)] = False
+        replaced &= np.sum([np.diag(gram) > 0.0 for gram in self.gram], axis=0) > 1
         of = np.flatnonzero(replaced)
         if of.size == 0:
             return self
+        variance = self.solve(range(len(self.columns))).variance
         sd = self.precision[of] ** -0.5
         information = np.tensordot(1.0 / variance, np.stack([g[np.ix_(of, of)] for g in self.gram]), 1)
         eigenvalues, vectors = np.linalg.eigh(sd[:, None] * information * sd)
