@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 #: Largest number of values of the derivatives that are kept: longer records are averaged.
 MOST_VALUES: Final = 4_000_000
-#: Parameters that the engine derives by at once.
-_BATCH: Final = 8
+#: Parameters that the engine derives by at once: they share one plain run, and the threads.
+_BATCH: Final = 64
 #: Standard deviation of the prior of a parameter that is not calibrated. [ranges]
 PRIOR: Final = 0.25
 #: The same for a calibrated parameter without a prior.
