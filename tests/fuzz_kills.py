@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import fuzz_processes
+from design_support import written
 from genopt_support import write_project
 from study_support import BUILDING, STUDY, logger_table
 
@@ -59,6 +60,14 @@ def loops() -> dict[str, Loop]:
             _tables,
             15.0,
         ),
+        "design": Loop(
+            _design,
+            lambda folder: fuzz_processes.mascarin(
+                "design", str(folder / "design.yaml"), "-o", str(folder / "out")
+            ),
+            _designs,
+            8.0,
+        ),
     }
 
 
@@ -82,6 +91,15 @@ def _study(folder: Path) -> None:
     (folder / "building.yaml").write_text(BUILDING, encoding="utf-8")
     (folder / "study.yaml").write_text(STUDY, encoding="utf-8")
     logger_table(folder / "building.yaml").round(3).to_csv(folder / "logger.csv")
+
+
+def _design(folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    written(folder)
+
+
+def _designs(folder: Path) -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in (folder / "out").glob("*.*") if file.is_file()}
 
 
 def _tables(folder: Path) -> dict[str, bytes]:
