@@ -13,6 +13,7 @@ import numpy as np
 from mascarin.building.outputs import Output
 from mascarin.errors import InputError, SolverError
 from mascarin.sensitivity.building_analysis import factors_of
+from mascarin.study.parameter_effects import Effects
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
 #: Largest number of values of the derivatives that are kept: longer records are averaged.
 MOST_VALUES: Final = 4_000_000
-#: Parameters that the engine derives by at once: they share one plain run, and the threads.
-_BATCH: Final = 64
 #: Standard deviation of the prior of a parameter that is not calibrated. [ranges]
 PRIOR: Final = 0.25
 #: The same for a calibrated parameter without a prior.
@@ -128,24 +127,38 @@ class Model:
 
         return self.store.array(("fine", run.identity, vector.tobytes()), make)
 
-    def slopes(self, paths: Sequence[str], vector: Array, simulation: Simulation | None = None) -> Array:
-        """Exact derivatives by some parameters, in ranges, shape (P, n, S). [unit of each]
+    def slopes(self, vector: Array, *, every: bool) -> Array:
+        """Derivatives by the calibrated parameters, and by the others, in ranges. [unit of each]
 
-        Each batch is stored when it is done.
+        Parameters
+        ----------
+        vector : ndarray
+            Parameter vector. [unit of each]
+        every : bool
+            Whether the others are asked for.
+
+        Returns
+        -------
+        ndarray, shape (P, n, S)
+            In the order of `paths`: exact ones, then differences of runs (zero where a run failed).
         """
-        run = simulation or self.simulation
-        parts = []
-        for first in range(0, len(paths), _BATCH):
-            chosen = paths[first : first + _BATCH]
+        run, fitted = self.simulation, list(self.fitted)
 
-            def make(chosen: Sequence[str] = chosen) -> Array:
-                _, slopes = run.jacobian_vector(chosen, vector)
-                width = np.array([self.range[p][1] - self.range[p][0] for p in chosen])
-                return np.asarray(self.sampled(run, slopes[..., : self.sensors]) * width[:, None, None])
+        def exact() -> Array:
+            _, slopes = run.jacobian_vector(fitted, vector)
+            width = np.array([self.range[p][1] - self.range[p][0] for p in fitted])
+            return np.asarray(self.sampled(run, slopes[..., : self.sensors]) * width[:, None, None])
 
-            key = ("slopes", run.identity, self.group, vector.tobytes(), tuple(chosen))
-            parts.append(self.store.array(key, make))
-        return np.concatenate(parts) if parts else np.zeros((0, *self.measured.shape))
+        key = ("slopes", run.identity, self.group, vector.tobytes())
+        found = self.store.array(key, exact) if fitted else np.zeros((0, *self.measured.shape))
+        if not every or len(self.paths) == len(fitted):
+            return found
+        others = np.zeros((len(self.paths) - len(fitted), *found.shape[1:]))
+        place = {path: k for k, path in enumerate(self.paths[len(fitted) :])}
+        for path, effect in Effects(self.setup, run, self.fine(vector), vector).each():
+            if path in place:
+                others[place[path]] = self._averaged(effect)
+        return np.concatenate([found, others])
 
     def moved(self, vector: Array, paths: Sequence[str], steps: Array) -> Array:
         """A parameter vector with changes in ranges, inside the ranges."""

@@ -136,7 +136,7 @@ class _Search:
         self.fixes = Corrections(len(self.measured))
         self.fine = setup.observation.measured.copy()
         self.paths = list(model.fitted)
-        self.slopes = model.slopes(self.paths, vector)
+        self.slopes = model.slopes(vector, every=False)
         self.slopes_at = vector
         self.whitening: Whitening | None = None
         self._key = (model.simulation.identity, vector.tobytes(), setup.inputs()["measurements"])
@@ -198,7 +198,7 @@ class _Search:
         vector, kept = self.vector, (self.paths, self.slopes)
         for _ in range(_ITERATIONS):
             try:
-                self.paths, self.slopes = paths, self.model.slopes(paths, vector)
+                self.paths, self.slopes = paths, self.model.slopes(vector, every=False)
                 self.vector = vector
                 problem = self.joint()
             except SolverError:
@@ -225,7 +225,7 @@ class _Search:
         width = np.array([self.model.range[path][1] - self.model.range[path][0] for path in paths])
         moved = np.abs(now - then) / width
         if len(self.paths) != len(paths) or moved.max(initial=0.0) > _FAR:
-            self.paths, self.slopes = paths, self.model.slopes(paths, self.vector)
+            self.paths, self.slopes = paths, self.model.slopes(self.vector, every=True)
             self.slopes_at = self.vector
         self.whitening = None
 

@@ -1,4 +1,4 @@
-"""Effects of all parameters on the sensors, linearized at the fitted model."""
+"""Effects of all parameters on the sensors, linearized at a parameter vector."""
 
 from __future__ import annotations
 
@@ -15,10 +15,8 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from mascarin.simulation.results import Results
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.setup import Setup
-    from mascarin.validation.observation import Observation
 
     Array = npt.NDArray[np.float64]
 
@@ -30,21 +28,23 @@ _CHUNK: Final = 32
 class Effects:
     """Differences of runs in which one parameter is changed, extrapolated to its whole range.
 
+    Runs side by side: for hundreds of parameters quicker than exact derivatives.
+
     Parameters
     ----------
     study : Setup
         Has the folder where runs are kept.
     simulation : Simulation
         The model.
-    results : Results
-        The unchanged run of the same simulation.
+    base : ndarray, shape (n, S)
+        Its series at the instants of the comparison, without a change. [unit of each sensor]
     values : ndarray, shape (P,)
         Its parameter vector. [unit of each]
     """
 
-    def __init__(self, study: Setup, simulation: Simulation, results: Results, values: Array) -> None:
-        self._study = study
-        self._simulation, self._results, self._values = simulation, results, values
+    def __init__(self, study: Setup, simulation: Simulation, base: Array, values: Array) -> None:
+        self._study, self._simulation = study, simulation
+        self._base, self._values = base, values
         self._factors = factors_of(simulation.building)
         self.room: dict[str, tuple[float, float]] = {}
 
@@ -53,41 +53,32 @@ class Effects:
         """Number of parameters."""
         return len(self._factors)
 
-    def found(
-        self,
-        observation: Observation,
-        use: npt.NDArray[np.bool_],
-        progress: Callable[[int, int], object],
-    ) -> dict[str, Array]:
-        """Change of the simulated series for a change of the parameter by its range.
+    def each(self, progress: Callable[[int, int], object] | None = None) -> Iterator[tuple[str, Array]]:
+        """Change of the simulated series for a change of each parameter by its range.
 
         Parameters
         ----------
-        observation : Observation
-            Gives the instants.
-        use : ndarray of bool, shape (n,)
-            Instants to keep.
-        progress : callable
+        progress : callable, optional
             Called with the number of runs done and their total.
 
-        Returns
-        -------
-        dict of str to ndarray, shape (instants, S)
-            By path; parameters whose run failed are left out. `room` contains for each the largest change
-            down and up, in ranges. [unit of each sensor]
+        Yields
+        ------
+        str
+            Path. Parameters whose run failed or that have no effect are left out. `room` contains for each
+            the largest change down and up, in ranges.
+        ndarray, shape (n, S)
+            Change. [unit of each sensor]
         """
-        sensors, index = len(observation.names), self._results.index
-        base, done = observation.simulated(index, self._results.records[..., :sensors])[use], 0
-        effects: dict[str, Array] = {}
+        done = 0
         for paths, steps, samples in self._chunks():
-            series = kept_series(self._study, self._simulation, samples)[:, use]
+            series = kept_series(self._study, self._simulation, samples)
             for path, step, moved in zip(paths, steps, series, strict=True):
-                effect = (moved - base) / step
+                effect = (moved - self._base) / step
                 if np.isfinite(effect).all() and np.abs(effect).max() > 0.0:
-                    effects[path] = effect
+                    yield path, effect
             done += len(paths)
-            progress(done, len(self._factors))
-        return effects
+            if progress is not None:
+                progress(done, len(self._factors))
 
     def _chunks(self) -> Iterator[tuple[list[str], list[float], Array]]:
         """Paths, signed steps [ranges] and parameter vectors, in chunks."""

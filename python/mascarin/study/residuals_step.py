@@ -83,13 +83,14 @@ def error_sources(
     observation, blind, analyzed = setup.observation, setup.during["blind"].copy(), _analyzed(setup)
     if not analyzed:
         return None
-    error = observation.simulated(run.results.index, run.results.records) - _blind(setup)
-    effects = Effects(setup, run.simulation, run.results, run.simulation.vector(fit.values))
+    simulated = observation.simulated(run.results.index, run.results.records[..., : len(observation.names)])
+    error = simulated - _blind(setup)
+    effects = Effects(setup, run.simulation, simulated, run.simulation.vector(fit.values))
     # In a long record every second or third instant contains the same information.
     values = int(blind.sum()) * len(observation.names) * effects.count
     blind &= np.arange(blind.size) % max(1, math.ceil(values / MOST_EFFECTS)) == 0
     with reporting(progress, "sources of remaining error") as report:
-        found = effects.found(observation, blind, report)
+        found = {path: effect[blind] for path, effect in effects.each(report)}
     local = observation.times.tz_localize(None)
     columns = list(analyzed.values())
     return find_error_sources(
