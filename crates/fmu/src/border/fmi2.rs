@@ -105,9 +105,9 @@ fn path_of(address: &str) -> Result<String, String> {
     let mut signs = rest.bytes();
     while let Some(sign) = signs.next() {
         if sign == b'%' {
-            let code: Vec<u8> = signs.by_ref().take(2).collect();
-            let code = std::str::from_utf8(&code).ok().and_then(|code| u8::from_str_radix(code, 16).ok());
-            bytes.push(code.ok_or_else(wrong)?);
+            let mut digit = || signs.next().and_then(|sign| char::from(sign).to_digit(16)).ok_or_else(wrong);
+            let code = 16 * digit()? + digit()?;
+            bytes.push(u8::try_from(code).map_err(|_| wrong())?);
         } else {
             bytes.push(sign);
         }
@@ -334,6 +334,8 @@ mod tests {
         ] {
             assert_eq!(path_of(address).as_deref(), Ok(path));
         }
-        assert!(path_of("/tmp/a").is_err() && path_of("file:///a%2").is_err());
+        for address in ["/tmp/a", "file:///a%2", "file:///a%+f"] {
+            assert!(path_of(address).is_err(), "{address}");
+        }
     }
 }
