@@ -160,6 +160,14 @@ class Model:
                 others[place[path]] = self._averaged(effect)
         return np.concatenate([found, others])
 
+    def distance(self, one: Array, other: Array) -> float:
+        """Largest difference of a parameter between two vectors. [ranges]"""
+        value = self.simulation.value_in
+        return max(
+            (abs(value(one, p) - value(other, p)) / (high - low) for p, (low, high) in self.range.items()),
+            default=0.0,
+        )
+
     def moved(self, vector: Array, paths: Sequence[str], steps: Array) -> Array:
         """A parameter vector with changes in ranges, inside the ranges."""
         moved = vector.copy()

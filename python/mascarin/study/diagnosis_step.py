@@ -59,7 +59,7 @@ _SAME: Final = 0.9
 _SHORTEST: Final = 300.0
 _ITERATIONS: Final = 6
 #: The parameters are derived by again where one moved by more than this part of its range.
-_FAR: Final = 0.05
+_FAR: Final = 0.25
 #: A series with fewer values is not diagnosed.
 _FEWEST: Final = 48
 
@@ -219,14 +219,11 @@ class _Search:
     def whole(self) -> None:
         """Refit, and derive by all parameters."""
         self._refit()
-        paths = self.model.paths
-        value = self.model.simulation.value_in
-        now, then = (np.array([value(v, path) for path in paths]) for v in (self.vector, self.slopes_at))
-        width = np.array([self.model.range[path][1] - self.model.range[path][0] for path in paths])
-        moved = np.abs(now - then) / width
-        if len(self.paths) != len(paths) or moved.max(initial=0.0) > _FAR:
-            self.paths, self.slopes = paths, self.model.slopes(self.vector, every=True)
+        far = self.model.distance(self.vector, self.slopes_at) > _FAR
+        if far:
             self.slopes_at = self.vector
+        if far or len(self.paths) != len(self.model.paths):
+            self.paths, self.slopes = self.model.paths, self.model.slopes(self.slopes_at, every=True)
         self.whitening = None
 
     def _series(self, near: bool) -> Series:
