@@ -93,12 +93,15 @@ class Plan:
     def jacobian(
         self,
         values: _Array,
-        which: list[int],
+        directions: list[list[tuple[int, float]]],
         forcing: _Array,
         options: dict[str, Any],
         report: Callable[[int], object] | None = None,
     ) -> tuple[_Array, _Array]:
-        """Records (rows x probes) and their slopes (parameters x rows x probes) by some parameters."""
+        """Records (rows x probes) and their slopes (directions x rows x probes).
+
+        A direction names parameters that change together, and how much each changes.
+        """
 
     def state_space(self, values: _Array) -> dict[str, Any]:
         """Matrices a, b, c, d and names of states, inputs and outputs of a linear building."""

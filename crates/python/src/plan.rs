@@ -1,6 +1,6 @@
 //! A compiled building and its runs.
 
-use mascarin_engine::derivatives::jacobian;
+use mascarin_engine::derivatives::{Direction, slopes_along};
 use mascarin_engine::description::Description;
 use mascarin_engine::forcing::Forcing;
 use mascarin_engine::ledger::Flow;
@@ -135,13 +135,13 @@ impl Plan {
         })
     }
 
-    /// Records (rows x probes) and their slopes (parameters x rows x probes) by some parameters.
-    #[pyo3(signature = (values, which, forcing, options, report=None))]
+    /// Records (rows x probes) and their slopes (directions x rows x probes) along parameters that change together.
+    #[pyo3(signature = (values, directions, forcing, options, report=None))]
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
         values: PyReadonlyArray1<'py, f64>,
-        which: Vec<usize>,
+        directions: Vec<Direction>,
         forcing: PyReadonlyArray3<'py, f64>,
         options: RunOptions,
         report: Option<&Bound<'py, PyAny>>,
@@ -153,11 +153,12 @@ impl Plan {
                 Forcing::new(contiguous(forcing.as_slice())?, shape.1, shape.2).map_err(|e| to_python(&e))?;
             let plan = &self.plan;
             let report = report.map(|report| (report, done_members as fn(&Watch) -> usize));
-            let result =
-                attended(py, report, |watch| jacobian(plan, numbers, &which, &drive, &options, watch))?;
+            let result = attended(py, report, |watch| {
+                slopes_along(plan, numbers, &directions, &drive, &options, watch)
+            })?;
             let (rows, probes) = (options.rows(drive.steps()), options.probes.len());
             let records = PyArray1::from_vec(py, result.records).reshape([rows, probes])?;
-            Ok((records, PyArray1::from_vec(py, result.slopes).reshape([which.len(), rows, probes])?))
+            Ok((records, PyArray1::from_vec(py, result.slopes).reshape([directions.len(), rows, probes])?))
         })
     }
 

@@ -200,7 +200,7 @@ class CompiledRun:
 
     def jacobian(
         self,
-        positions: Sequence[int],
+        directions: Sequence[Sequence[tuple[int, float]]],
         vector: Array,
         *,
         record_from: int = 0,
@@ -211,8 +211,9 @@ class CompiledRun:
 
         Parameters
         ----------
-        positions : sequence of int
-            Positions of the parameters in the vector.
+        directions : sequence of sequence of (int, float)
+            For each derivative the positions of the parameters in the vector that change together, and how
+            much each changes.
         vector : ndarray, shape (P,)
             Parameter vector. [unit of each]
         record_from, record_every : int
@@ -224,7 +225,7 @@ class CompiledRun:
         -------
         records : ndarray, shape (rows, outputs)
             Outputs. [unit of each]
-        slopes : ndarray, shape (parameters, rows, outputs)
+        slopes : ndarray, shape (directions, rows, outputs)
             Derivatives. [unit of the output / unit of the parameter]
 
         Raises
@@ -233,11 +234,13 @@ class CompiledRun:
             A step or the repeated first period did not converge.
         """
         options = self.options(None, record_from, record_every)
-        report = _of_total(progress, len(positions))
-        rows, many = self._rows(record_from, record_every), len(positions) + 1
-        self._require_room(many, rows, f"derivatives by {len(positions)} parameters", "take fewer")
+        report = _of_total(progress, len(directions))
+        rows, many = self._rows(record_from, record_every), len(directions) + 1
+        self._require_room(many, rows, f"derivatives by {len(directions)} parameters", "take fewer")
         with translated(self.dated):
-            raw, slopes = self.plan.jacobian(vector, list(positions), self.forcing, options, report)
+            raw, slopes = self.plan.jacobian(
+                vector, [list(one) for one in directions], self.forcing, options, report
+            )
         return self.readings.values(raw), self.readings.slopes(raw, slopes)
 
     def trajectory(

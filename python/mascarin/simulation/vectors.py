@@ -242,24 +242,17 @@ class VectorRuns:
             raise InputError(
                 "derivatives: no parameters; give at least one path, as `mascarin parameters` lists"
             )
-        spread = [self._spread(path) for path in vary]
-        places = list(dict.fromkeys(place for pairs in spread for place, _ in pairs))
-        records, slopes = self.compiled.jacobian(
-            places,
+        # The numbers that a tied parameter stands for change together.
+        directions = [
+            [(place, 1.0 if weight is None else weight) for place, weight in self._spread(path)]
+            for path in vary
+        ]
+        return self.compiled.jacobian(
+            directions,
             self._checked(vector),
             record_from=record_from,
             record_every=record_every,
             progress=progress,
-        )
-        row = {place: k for k, place in enumerate(places)}
-        if spread == [[(place, None)] for place in places]:
-            return records, slopes
-        # Chain rule: the derivative by a tied parameter is the sum over what it stands for.
-        return records, np.stack(
-            [
-                sum(slopes[row[place]] * (1.0 if weight is None else weight) for place, weight in pairs)
-                for pairs in spread
-            ]
         )
 
     def trajectory(

@@ -24,14 +24,17 @@ use super::known_steps::DerivativeStepper;
 pub struct Jacobian {
     /// Rows x probes.
     pub records: Vec<f64>,
-    /// Chosen parameters x rows x probes [unit of the record / unit of the parameter].
+    /// Chosen parameters or directions x rows x probes [unit of the record / unit of the parameter].
     pub slopes: Vec<f64>,
 }
+
+/// Parameters that change together: their positions, and how much each changes.
+pub type Direction = Vec<(usize, f64)>;
 
 /// Runs a plan and computes the slopes of all its records by the parameters `which`, on all threads.
 ///
 /// # Errors
-/// As [`march`](crate::run::march::march); [`EngineError::Input`] also for a parameter that does not exist.
+/// As [`slopes_along`].
 pub fn jacobian(
     plan: &Plan,
     numbers: &[f64],
@@ -40,17 +43,33 @@ pub fn jacobian(
     options: &Options,
     watch: &RunControl,
 ) -> Result<Jacobian, EngineError> {
+    let directions: Vec<Direction> = which.iter().map(|&k| vec![(k, 1.0)]).collect();
+    slopes_along(plan, numbers, &directions, forcing, options, watch)
+}
+
+/// Runs a plan and computes the slopes of all its records along directions of the parameters, on all threads.
+///
+/// # Errors
+/// As [`march`](crate::run::march::march); [`EngineError::Input`] also for a parameter that does not exist.
+pub fn slopes_along(
+    plan: &Plan,
+    numbers: &[f64],
+    directions: &[Direction],
+    forcing: &Forcing<'_>,
+    options: &Options,
+    watch: &RunControl,
+) -> Result<Jacobian, EngineError> {
     options.check(plan, numbers.len(), forcing)?;
-    if which.is_empty() || which.iter().any(|&k| k >= numbers.len()) {
+    if directions.is_empty() || directions.iter().flatten().any(|&(k, _)| k >= numbers.len()) {
         return Err(EngineError::Input(format!(
-            "derivatives by parameters {which:?}: give at least one, each below {}",
+            "derivatives by parameters {directions:?}: give at least one, each below {}",
             numbers.len()
         )));
     }
     let weather = Weather::new(plan, forcing);
     // All groups of a thread use the solutions of one plain run.
-    let share = GROUP * which.len().div_ceil(GROUP).div_ceil(rayon::current_num_threads());
-    let parts: Vec<_> = which
+    let share = GROUP * directions.len().div_ceil(GROUP).div_ceil(rayon::current_num_threads());
+    let parts: Vec<_> = directions
         .par_chunks(share)
         .map(|some| {
             let part = run_with_slopes(plan, numbers, some, &weather, options, watch);
@@ -89,16 +108,17 @@ struct Slopes {
 fn run_with_slopes(
     plan: &Plan,
     numbers: &[f64],
-    by: &[usize],
+    by: &[Direction],
     weather: &Weather<'_>,
     options: &Options,
     watch: &RunControl,
 ) -> Result<Vec<Slopes>, EngineError> {
-    let sloped = |group: &[usize]| {
+    let sloped = |group: &[Direction]| {
         let mut sloped: Vec<_> = numbers.iter().map(|&value| Sloped::constant(value)).collect();
-        for (which, &by) in group.iter().enumerate() {
-            // A parameter may be chosen twice.
-            sloped[by].slope[which] = 1.0;
+        for (which, direction) in group.iter().enumerate() {
+            for &(by, weight) in direction {
+                sloped[by].slope[which] += weight;
+            }
         }
         (sloped, group.len())
     };

@@ -16,7 +16,7 @@ mod forward;
 mod known_steps;
 mod reverse;
 
-pub use forward::{Jacobian, jacobian};
+pub use forward::{Direction, Jacobian, jacobian, slopes_along};
 pub use reverse::Trajectory;
 
 #[cfg(test)]
