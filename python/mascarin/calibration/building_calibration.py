@@ -19,6 +19,7 @@ from mascarin.calibration.rules import MethodName, Rules
 from mascarin.calibration.search import solve
 from mascarin.calibration.stated_errors import depth_paths, require_supported, with_sensor_errors
 from mascarin.errors import InputError
+from mascarin.linear_algebra import one_thread
 from mascarin.progress import ProgressOption
 from mascarin.simulation.options import Scheme, TimeLike
 from mascarin.simulation.simulation import Simulation
@@ -41,6 +42,7 @@ MOST_CONSTANT: Final = 0.5
 """Largest part of a period over which a sensor may repeat one value. [-]"""
 
 
+@one_thread()
 def calibrate(
     building: Building,
     climate: Climate,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from mascarin.linear_algebra import one_thread
 from mascarin.study.combined import combined_intervals, estimates_of
 from mascarin.study.kept import kept
 from mascarin.study.prediction_intervals import prediction_intervals, slopes
@@ -41,6 +42,7 @@ class Calibrated:
     combination: Combination | None
 
 
+@one_thread()
 def calibrated(study: Setup, runs: ModelRuns) -> Calibrated:
     """Calibrate the model of a study: with the errors of sensors and model, if it states any.
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from mascarin.errors import SolverError
+from mascarin.linear_algebra import one_thread
 from mascarin.progress import reporting
 from mascarin.study import diagnosis_words as words
 from mascarin.study.corrections import Corrections, Found
@@ -64,6 +65,7 @@ _FAR: Final = 0.25
 _FEWEST: Final = 48
 
 
+@one_thread()
 def diagnosis(
     setup: Setup,
     run: ModelRun,

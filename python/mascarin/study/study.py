@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 from mascarin import report
 from mascarin._io import display
 from mascarin.errors import InputError
+from mascarin.linear_algebra import one_thread
 from mascarin.report.folder import read_folder
 from mascarin.study import opening
 from mascarin.study.calibrated import calibrated
@@ -242,6 +243,7 @@ class Study(Setup):
         """
         return study_text(self.sources) if path is None else write_study(self.sources, Path(path))
 
+    @one_thread()
     def run(
         self, out: str | Path | None = None, *, figures: bool = True, progress: ProgressOption = None
     ) -> StudyResults:
