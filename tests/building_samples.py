@@ -369,7 +369,14 @@ SECTIONS: dict[str, dict[str, Any]] = {
             "pressure": {"kind": "table", "coefficients": [-0.3, -0.6, -0.8, -0.6], "height": 4},
             "control": "calm",
         },
-        "grille": {"zone": "shaft", "area": 0.01, "height": 0.3, "elevation": 2, "pressure": "none", "control": "mild"},
+        "grille": {
+            "zone": "shaft",
+            "area": 0.01,
+            "height": 0.3,
+            "elevation": 2,
+            "pressure": "none",
+            "control": "mild",
+        },
     },
     "controls": {
         "warmth": {"zone": "room", "indoor": _band(24.2, 23.8, 0.3)},
