@@ -8,10 +8,13 @@
 //! - A tall opening is two openings of half the area, 2/9 of the height above and below its middle: with equal pressures in the
 //!   middle they exchange `C_d W H/3 sqrt(g H |dT|/T)`, as the whole opening does (Brown & Solvason 1962,
 //!   doi:10.1016/0017-9310(62)90184-9).
-//! - Wind on the wall of a low building, at an angle a from its normal, and a wall S times as long as the next one:
-//!   `C_p = 0.6 ln(1.248 - 0.703 sin(a/2) - 1.175 sin(a)^2 + 0.131 sin(2 a G)^3 + 0.769 cos(a/2) + 0.07 G^2 sin(a/2)^2
-//!   + 0.717 cos(a/2)^2)`, `G = ln S`. Swami & Chandra (1988), Correlations for pressure distribution on buildings and calculation
-//!   of natural-ventilation airflow, ASHRAE Trans. 94(1), 243-266.
+//! - Wind on the wall of a low building (Swami & Chandra 1988, Correlations for pressure distribution on buildings and calculation of
+//!   natural-ventilation airflow, ASHRAE Trans. 94(1), 243-266), at an angle a from its normal, and a wall S times as long as the next:
+//!
+//! ```text
+//! C_p = 0.6 ln(1.248 - 0.703 sin(a/2) - 1.175 sin(a)^2 + 0.131 sin(2 a G)^3 + 0.769 cos(a/2) + 0.07 G^2 sin(a/2)^2
+//!              + 0.717 cos(a/2)^2),   G = ln S
+//! ```
 
 use crate::input::description;
 use crate::number::real::Real;

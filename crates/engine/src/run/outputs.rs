@@ -283,6 +283,7 @@ impl Output {
     }
 
     /// Reads the quantity after a step.
+    // Long because each quantity has its own line.
     pub fn read<S: Real>(&self, plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>) -> S {
         match *self {
             Self::AirTemperature { zone } => state.air[zone],

@@ -71,7 +71,7 @@ fn drive<S: Real>(
     // Weight above that of the outdoor air [N/m3].
     let excess = |zone: usize| numbers.weight / (air[zone] + kelvin) - outdoor;
     network.links.clear();
-    for (k, vent) in numbers.vents.iter().enumerate() {
+    for (k, vent) in numbers.all.iter().enumerate() {
         let at_other_end = vent.to.map_or_else(S::zero, excess);
         let fall = at_other_end - excess(vent.zone);
         for &height in &vent.heights {
@@ -93,7 +93,7 @@ fn spread<S: Real>(network: &VentNetwork<'_, S>, model: &Model<'_, S>, condition
     let numbers = &model.coefficients.vents;
     let (zones, carried) = (&mut conditions.mechanical_air.zones, &mut conditions.mechanical_air.carried);
     let (mut link, mut pair) = (0, air.first_of_vents);
-    for (vent, flows) in numbers.vents.iter().zip(&mut conditions.vents.flows) {
+    for (vent, flows) in numbers.all.iter().zip(&mut conditions.vents.flows) {
         *flows = [S::zero(); 2];
         for _ in &vent.heights {
             let flow = network.flow(link);

@@ -18,8 +18,8 @@ pub struct VentConditions<S> {
 impl<S: Real> VentConditions<S> {
     /// Zeros.
     pub(crate) fn new(vents: &Vents<S>) -> Self {
-        let zeros = || vec![S::zero(); vents.vents.len()];
-        Self { pressure: zeros(), open: zeros(), flows: vec![[S::zero(); 2]; vents.vents.len()] }
+        let zeros = || vec![S::zero(); vents.all.len()];
+        Self { pressure: zeros(), open: zeros(), flows: vec![[S::zero(); 2]; vents.all.len()] }
     }
 
     /// Linear interpolation or extrapolation of wind and schedules; open fractions stay between 0 and 1.
@@ -38,7 +38,7 @@ impl<S: Real> VentConditions<S> {
     #[inline(never)]
     pub(crate) fn update(&mut self, vents: &Vents<S>, row: &[f64]) {
         let (speed, direction) = (row[channel::WIND_SPEED], row[channel::WIND_DIRECTION]);
-        for ((pressure, open), vent) in self.pressure.iter_mut().zip(&mut self.open).zip(&vents.vents) {
+        for ((pressure, open), vent) in self.pressure.iter_mut().zip(&mut self.open).zip(&vents.all) {
             *pressure = vent.pressure(speed, direction);
             *open = vent.open(row);
         }
@@ -46,7 +46,7 @@ impl<S: Real> VentConditions<S> {
 
     /// Closes what controls have closed.
     pub(crate) fn control(&mut self, vents: &Vents<S>, opened: &[S]) {
-        for (open, vent) in self.open.iter_mut().zip(&vents.vents) {
+        for (open, vent) in self.open.iter_mut().zip(&vents.all) {
             if let Some(control) = vent.control {
                 *open = *open * opened[control];
             }

@@ -17,7 +17,7 @@ const OF_DENSITY: f64 = 288.15;
 #[derive(Debug, Clone)]
 pub struct Vents<S> {
     /// Openings of the pressure network.
-    pub(crate) vents: Vec<VentNumbers<S>>,
+    pub(crate) all: Vec<VentNumbers<S>>,
     /// Controls.
     pub(crate) controls: Vec<Control<S>>,
     /// Heat capacity of a cubic metre of air [J/(m3 K)].
@@ -156,11 +156,7 @@ impl<S: Real> Vents<S> {
         let density = air::density(plan, values);
         let description = &plan.description;
         Self {
-            vents: description
-                .vents
-                .iter()
-                .map(|vent| VentNumbers::new(plan, vent, values, density))
-                .collect(),
+            all: description.vents.iter().map(|vent| VentNumbers::new(plan, vent, values, density)).collect(),
             controls: description.controls.iter().map(|control| Control::new(control, values)).collect(),
             heat: air::heat_capacity(plan, values, density),
             weight: density.scale(GRAVITY * OF_DENSITY),
@@ -170,7 +166,7 @@ impl<S: Real> Vents<S> {
     /// Whether there are none.
     #[inline(always)]
     pub(crate) fn is_empty(&self) -> bool {
-        self.vents.is_empty() && self.controls.is_empty()
+        self.all.is_empty() && self.controls.is_empty()
     }
 }
 
