@@ -322,6 +322,14 @@ IN_ZONES: dict[tuple[str, str], dict[str, Any]] = {
         "yard": {"chi": 0.2, "measured": ["T_out"]},
     },
 }
+
+
+def _band(opens: float, closes: float, half: float) -> dict[str, Any]:
+    """Limits of a control with ranges."""
+    both = {"open": opens, "close": closes}
+    return {key: {"value": value, "range": [value - half, value + half]} for key, value in both.items()}
+
+
 SECTIONS: dict[str, dict[str, Any]] = {
     "air_paths": {
         "door": {"between": ["room", "attic"], "door": {"width": 0.9, "height": 2}},
@@ -334,6 +342,48 @@ SECTIONS: dict[str, dict[str, Any]] = {
             "recovery": 0.7,
         },
         "heater": {"supply": {"room": 0.001}, "temperature": 30},
+    },
+    "vents": {
+        "casement": {
+            "zone": "room",
+            "surface": "west",
+            "area": 0.03,
+            "height": 0.8,
+            "elevation": 1.5,
+            "pressure": {"kind": "low_rise", "side_ratio": 1.4, "shelter": 0.7, "height": 2.5},
+            "schedule": "day",
+            "control": "warmth",
+        },
+        "flap": {
+            "between": ["room", "attic"],
+            "area": 0.01,
+            "elevation": 2.6,
+            "exponent": {"value": 0.6, "range": [0.5, 0.7]},
+            "control": "coolness",
+        },
+        "cowl": {
+            "zone": "attic",
+            "azimuth": 20,
+            "area": 0.01,
+            "elevation": 3.4,
+            "pressure": {"kind": "table", "coefficients": [-0.3, -0.6, -0.8, -0.6], "height": 4},
+            "control": "calm",
+        },
+        "grille": {
+            "zone": "shaft",
+            "area": 0.01,
+            "height": 0.3,
+            "elevation": 2,
+            "pressure": "none",
+            "control": "mild",
+        },
+    },
+    "controls": {
+        "warmth": {"zone": "room", "indoor": _band(24.2, 23.8, 0.3)},
+        "coolness": {"zone": "attic", "difference": _band(0.2, -0.1, 0.08)},
+        "mild": {"zone": "room", "outdoor": _band(22, 21, 2)},
+        "calm": {"zone": "attic", "wind": _band(3.5, 4.2, 0.6)},
+        "dry": {"zone": "attic", "rain": {"column": "T_out", **_band(25, 26, 0.9)}},
     },
     "humidity": {
         "initial": 0.55,
@@ -410,6 +460,7 @@ def house() -> Building:
         plain["windows"][window] |= {"blind": blind}
     plain["windows"]["pane"]["outside"] |= {"irradiance": "G_west"}
     plain["site"] |= {"horizon": [[60, 4], [200, 20]]}
+    plain["openings"]["ridge"] |= {"control": "dry"}
     for section, parts in SECTIONS.items():
         plain[section] = plain.get(section, {}) | parts
     return Building.from_dict(plain)

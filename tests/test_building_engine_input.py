@@ -34,6 +34,7 @@ STRUCTURAL = {
     "to",
     "continuity",
     "side",
+    "control",
 }
 
 

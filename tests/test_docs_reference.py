@@ -113,7 +113,10 @@ def test_every_kind_of_output_is_described_as_buildings_have_it() -> None:
     files = [examples.FOLDER / "lgi" / "building.yaml", BUILDINGS / "600.yaml", BUILDINGS / "960.yaml"]
     plants = {"drying": {"relative_humidity": 0.7}, "humidifying": {"relative_humidity": 0.3}}
     damp = mc.load(files[-1]).replace({"humidity": {"zones": {"back": plants}}})
-    for building in [*map(mc.load, files), damp]:
+    vents = {"flap": {"zone": "back", "area": 0.1, "elevation": 1, "pressure": "none"}}
+    controls = {"night": {"zone": "back", "indoor": {"open": 24, "close": 22}}}
+    aired = damp.replace({"vents": vents, "controls": controls})
+    for building in [*map(mc.load, files), aired]:
         for output in building.outputs():
             one = KINDS[output.kind]
             seen.add(output.kind)

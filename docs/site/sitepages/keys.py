@@ -31,7 +31,8 @@ from sitepages.snippets import Snippets
 #: Steps of a path that the user names.
 _NAMES: Final = {
     "materials": "MATERIAL", "constructions": "CONSTRUCTION", "schedules": "SCHEDULE", "zones": "ZONE",
-    "air_paths": "PATH", "ventilation_units": "UNIT", "openings": "OPENING", "surfaces": "SURFACE",
+    "air_paths": "PATH", "ventilation_units": "UNIT", "openings": "OPENING", "vents": "VENT",
+    "controls": "CONTROL", "surfaces": "SURFACE",
     "glazings": "GLAZING", "windows": "WINDOW", "shades": "SHADE", "sensors": "SENSOR", "layers": "LAYER",
 }  # fmt: skip
 

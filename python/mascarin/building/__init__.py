@@ -85,6 +85,17 @@ from mascarin.building.site import (
 from mascarin.building.sorption import LinearSorption, Published, TabulatedSorption
 from mascarin.building.surface import Construction, Exposure, Ground, Layer, Sensor, Side, Surface
 from mascarin.building.tables import json_schema, parameter_table
+from mascarin.building.vent import (
+    DifferenceBand,
+    LowRise,
+    NoWind,
+    PressureTable,
+    RainBand,
+    TemperatureBand,
+    Vent,
+    VentControl,
+    WindBand,
+)
 from mascarin.building.ventilation import UnitFlow, VentilationUnit
 from mascarin.building.window import Frame, Shade, Window, WindowInside, WindowOutside
 from mascarin.building.zone import (
@@ -117,6 +128,7 @@ __all__ = [
     "Constant",
     "Construction",
     "CoolingCoil",
+    "DifferenceBand",
     "DiffuseOptics",
     "Doe2",
     "Door",
@@ -148,10 +160,12 @@ __all__ = [
     "LinearLaw",
     "LinearSorption",
     "LinearWind",
+    "LowRise",
     "MartinBerdahlSky",
     "Measured",
     "MeasuredSky",
     "Mowitt",
+    "NoWind",
     "Number",
     "OffsetSky",
     "Opening",
@@ -163,7 +177,9 @@ __all__ = [
     "PhaseChangeMaterial",
     "Power",
     "PowerLaw",
+    "PressureTable",
     "Published",
+    "RainBand",
     "Resistance",
     "Sensor",
     "SetPoint",
@@ -180,6 +196,7 @@ __all__ = [
     "TabulatedSorption",
     "TanhLaw",
     "Tarp",
+    "TemperatureBand",
     "TemperatureDays",
     "TemperaturePoint",
     "TemperatureSchedule",
@@ -188,9 +205,12 @@ __all__ = [
     "TriangleLaw",
     "UnitFlow",
     "VapourGain",
+    "Vent",
+    "VentControl",
     "Ventilation",
     "VentilationUnit",
     "Wind",
+    "WindBand",
     "Window",
     "WindowInside",
     "WindowOutside",

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from mascarin.building.part import fault
+from mascarin.building.vent import LowRise
 
 if TYPE_CHECKING:
     from pydantic_core import InitErrorDetails
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
 #: Largest difference of what enters and what leaves a zone, over the larger of the two [-].
 BALANCED: Final = 1e-3
+
+#: Tilts of surfaces that count as walls [deg].
+STEEP: Final = (60.0, 120.0)
 
 #: A flow of a zone: its path, its part, and 1 where it enters the zone, -1 where it leaves.
 ZoneFlowAt = tuple[str, "Driven", float]
@@ -71,6 +75,7 @@ def air_faults(building: Description) -> Iterator[InitErrorDetails]:
         yield from _bridges(building, zone)
         if part.solar_to_air is not None:
             yield from _solar_to_air(building, zone)
+    yield from vent_faults(building)
     for zone, those in flows.items():
         if building.zones[zone].makeup_air is not None:
             continue
@@ -79,6 +84,28 @@ def air_faults(building: Description) -> Iterator[InitErrorDetails]:
         wrong = imbalance({path: sign * part.number for path, part, sign in those})
         if wrong is not None:
             yield fault(("zones", zone), wrong, "as much air in as out", REMEDY)
+
+
+def vent_faults(building: Description) -> Iterator[InitErrorDetails]:
+    """Openings in surfaces that they cannot be in."""
+    for name, vent in building.vents.items():
+        if vent.surface is None:
+            continue
+        surface, at = building.surfaces[vent.surface], ("vents", name, "surface")
+        if not surface.outside.outdoors or surface.inside.zone != vent.zone:
+            yield fault(
+                at,
+                f"'{vent.surface}' between {surface.inside.in_words()} and {surface.outside.in_words()}",
+                f"a surface between zone '{vent.zone}' and outdoors",
+                "Name another surface, or give 'azimuth:' in its place.",
+            )
+        elif isinstance(vent.pressure, LowRise) and not STEEP[0] <= float(surface.tilt or 0.0) <= STEEP[1]:
+            yield fault(
+                ("vents", name, "pressure"),
+                f"low_rise in '{vent.surface}' of tilt {surface.tilt:g} deg",
+                "a wall: the correlation holds for vertical surfaces",
+                "Write 'pressure: {kind: table, coefficients: [-0.6]}' with the coefficients of the roof.",
+            )
 
 
 def _schedule(part: Driven) -> str | None:

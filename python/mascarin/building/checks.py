@@ -141,7 +141,24 @@ def _in_zones(building: Description) -> Iterator[str]:
     for name, unit in building.ventilation_units.items():
         yield from _unit(name, unit, heat)
     for name, opening in building.openings.items():
-        yield f"opening {name}: {opening.area:g} m2 in {opening.zone}{_scheduled(opening.schedule)}"
+        steered = _scheduled(opening.schedule) + _controlled(opening.control)
+        yield f"opening {name}: {opening.area:g} m2 in {opening.zone}{steered}"
+    yield from _vents(building)
+
+
+def _vents(building: Description) -> Iterator[str]:
+    for name, vent in building.vents.items():
+        ends = f"between {' and '.join(vent.between)}" if vent.between else f"from {vent.zone} to outdoors"
+        wind = f", wind pressure {vent.pressure.kind}" if vent.pressure is not None else ""
+        steered = _scheduled(vent.schedule) + _controlled(vent.control)
+        yield f"vent {name}: {vent.area:g} m2 {ends} at {vent.elevation:g} m{wind}{steered}"
+    for name, control in building.controls.items():
+        bands = ", ".join(f"{key} {band.open:g} and {band.close:g}" for key, band in control.conditions)
+        yield f"control {name} in {control.zone} opens and closes at {bands}"
+
+
+def _controlled(control: str | None) -> str:
+    return "" if control is None else f", by control {control}"
 
 
 def _bridges(name: str, zone: Zone) -> Iterator[str]:

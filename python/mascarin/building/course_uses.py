@@ -31,8 +31,8 @@ def schedule_uses(building: Description) -> Iterator[Use]:
         for which, side in (("outside", surface.outside), ("inside", surface.inside)):
             if side.scheduled is not None:
                 yield side.scheduled, ("surfaces", name, which, "scheduled"), "temperature"
-    for section, parts in (("air_paths", building.air_paths), ("openings", building.openings)):
-        for name, part in parts.items():
+    for section in ("air_paths", "openings", "vents"):
+        for name, part in getattr(building, section).items():
             if part.schedule is not None:
                 yield part.schedule, (section, name, "schedule"), "fraction"
     for name, window in building.windows.items():
@@ -96,6 +96,9 @@ def column_courses(building: Description) -> Iterator[tuple[ColumnCourse, tuple[
                 temperature_course(unit.temperature.column),
                 ("ventilation_units", name, "temperature", "column"),
             )
+    for name, control in building.controls.items():
+        if control.rain is not None:
+            yield control.rain.course, ("controls", name, "rain", "column")
     for name, vapour in (building.humidity.zones if building.humidity is not None else {}).items():
         for key, source in vapour.gains.items():
             if source.course is not None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
-CourseKind = Literal["temperature", "power", "flow", "vapour"]
+CourseKind = Literal["temperature", "power", "flow", "vapour", "rain"]
 
 #: Units that a column may have, by what it means: the factor to the unit of the engine.
 POWER_UNITS: Final[Mapping[str, float]] = {"W": 1.0, "kW": 1000.0}
@@ -17,6 +17,7 @@ _UNITS: Final[Mapping[str, Mapping[str, float]]] = {
     "power": POWER_UNITS,
     "flow": FLOW_UNITS,
     "vapour": VAPOUR_UNITS,
+    "rain": {"mm/h": 1.0},
 }
 
 

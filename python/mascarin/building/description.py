@@ -15,6 +15,7 @@ from mascarin.building.part import Part
 from mascarin.building.schedule import Schedule
 from mascarin.building.site import Site
 from mascarin.building.surface import Construction, Sensor, Surface
+from mascarin.building.vent import Vent, VentControl
 from mascarin.building.ventilation import VentilationUnit
 from mascarin.building.window import Shade, Window
 from mascarin.building.zone import AirPath, Opening, Zone
@@ -39,6 +40,12 @@ class Description(Part):
     humidity: Humidity | None = Field(None, description="Humidity of the air; none: air without vapour")
     openings: dict[Name, Opening] = Field(
         default_factory=dict, description="Openings between zones and outdoors, by name"
+    )
+    vents: dict[Name, Vent] = Field(
+        default_factory=dict, description="Openings of the pressure network of wind and stack, by name"
+    )
+    controls: dict[Name, VentControl] = Field(
+        default_factory=dict, description="What opens and closes openings and vents, by name"
     )
     surfaces: dict[Name, Surface] = Field(
         default_factory=dict, description="Walls, roofs, floors, doors by name"

@@ -197,6 +197,29 @@ KINDS: Final[Mapping[Kind, OutputKind]] = {
         "Convective heat transfer coefficient",
         "sides that face air outdoors or of a zone",
     ),
+    "vent_inflow": OutputKind(
+        "VENT.inflow",
+        "m3/s",
+        "Air that flows into the zone of the vent, or from the second zone to the first, at the density of "
+        "the site",
+        "every vent",
+    ),
+    "vent_outflow": OutputKind(
+        "VENT.outflow",
+        "m3/s",
+        "Air that flows out of the zone of the vent, or from the first zone to the second, at the density of "
+        "the site",
+        "every vent",
+    ),
+    "vent_open": OutputKind(
+        "VENT.open", "-", "Fraction of the area of the vent that its schedule and control open", "every vent"
+    ),
+    "control_open": OutputKind(
+        "CONTROL.open",
+        "-",
+        "1 where the control lets openings open, else 0, during the step",
+        "every control",
+    ),
     "sky_temperature": OutputKind(
         "sky_temperature",
         "degC",

@@ -50,6 +50,10 @@ Kind = Literal[
     "latent_heating",
     "surface_humidity",
     "condensation",
+    "vent_inflow",
+    "vent_outflow",
+    "vent_open",
+    "control_open",
 ]
 
 _ZONE_KINDS: tuple[Kind, ...] = (
@@ -116,8 +120,8 @@ class Output:
         Its unit.
     kind : str
         What it is.
-    zone, surface, sensor : int or None
-        Position of the zone, surface or sensor in the description.
+    zone, surface, sensor, vent, control : int or None
+        Position of the zone, surface, sensor, vent or control in the description.
     side : int or None
         0 for the outside, 1 for the inside.
     layer : int or None
@@ -144,6 +148,8 @@ class Output:
     layer: int | None = None
     interface: int | None = None
     sensor: int | None = None
+    vent: int | None = None
+    control: int | None = None
     aliases: tuple[str, ...] = ()
 
     @property
@@ -154,7 +160,7 @@ class Output:
     @property
     def place(self) -> dict[str, int]:
         """Positions that are set for this kind, by name."""
-        keys = ("zone", "surface", "side", "layer", "interface", "sensor")
+        keys = ("zone", "surface", "side", "layer", "interface", "sensor", "vent", "control")
         return {key: value for key in keys if (value := getattr(self, key)) is not None}
 
 
@@ -181,10 +187,21 @@ def outputs(building: Description) -> list[Output]:
         found += _of_sides(building, index, name, lit)
         found += _of_damp_sides(building, index, name, name)
     found += _of_windows(building)
+    found += _of_vents(building)
     found.append(Output("sky_temperature", "degC", "sky_temperature"))
     for index, name in enumerate(building.sensors):
         found.append(Output(f"{name}.temperature", "degC", "sensor", sensor=index))
     return found
+
+
+def _of_vents(building: Description) -> Iterator[Output]:
+    """Flows through the openings of the pressure network, how far they are open, and the controls."""
+    for index, name in enumerate(building.vents):
+        yield Output(f"{name}.inflow", "m3/s", "vent_inflow", vent=index)
+        yield Output(f"{name}.outflow", "m3/s", "vent_outflow", vent=index)
+        yield Output(f"{name}.open", "-", "vent_open", vent=index)
+    for index, name in enumerate(building.controls):
+        yield Output(f"{name}.open", "-", "control_open", control=index)
 
 
 def _of_humidity(building: Description, index: int, name: str) -> Iterator[Output]:

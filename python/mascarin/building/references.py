@@ -20,6 +20,7 @@ from mascarin.building.phase_change import FractionsLaw, TableLaw
 from mascarin.building.self_shading import obstructions
 from mascarin.building.site import ASHRAE_WIND, CLARK, MARTIN
 from mascarin.building.vapour_sides import vapour_sides
+from mascarin.building.vent import ORIFICE, SWAMI_CHANDRA, LowRise
 from mascarin.building.ventilation import RECOVERY_SOURCE
 from mascarin.building.zone import ASHRAE_OPENING, BROWN_SOLVASON, TracedSun
 from mascarin.building.zone_surfaces import closed
@@ -132,6 +133,12 @@ def _of_methods(building: Description) -> Iterator[str]:
 def _of_air(building: Description) -> Iterator[str]:
     if building.openings:
         yield ASHRAE_OPENING
+    if building.vents:
+        yield ORIFICE
+    if any(isinstance(vent.pressure, LowRise) for vent in building.vents.values()):
+        yield SWAMI_CHANDRA
+    if any(vent.height is not None for vent in building.vents.values()):
+        yield BROWN_SOLVASON
     if any(path.door is not None for path in building.air_paths.values()):
         yield BROWN_SOLVASON
     if any(unit.recovery is not None for unit in building.ventilation_units.values()):

@@ -68,6 +68,8 @@ def _one_namespace(building: Description) -> Faults:
         "surfaces": building.surfaces,
         "windows": building.windows,
         "sensors": building.sensors,
+        "vents": building.vents,
+        "controls": building.controls,
     }
     owner: dict[str, str] = {}
     for section, named in sections.items():
@@ -76,7 +78,7 @@ def _one_namespace(building: Description) -> Faults:
                 yield fault(
                     (section, name),
                     f"'{name}' also under '{owner[name]}:'",
-                    "a name that no other zone, surface, window or sensor has",
+                    "a name that no other zone, surface, window, sensor, vent or control has",
                     "Rename one: results have this name.",
                 )
             owner.setdefault(name, section)

@@ -46,6 +46,8 @@ def rows(building: Description, parameters: Sequence[Parameter]) -> list[tuple[s
         "air_paths",
         "ventilation_units",
         "openings",
+        "vents",
+        "controls",
         "shades",
         "sensors",
     )

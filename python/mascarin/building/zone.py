@@ -11,7 +11,7 @@ from mascarin.building import quantities as q
 from mascarin.building.bridge import ThermalBridge
 from mascarin.building.driven import Driven
 from mascarin.building.leakage import PressureTest
-from mascarin.building.names import Name, ScheduleName, ZoneName
+from mascarin.building.names import ControlName, Name, ScheduleName, ZoneName
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, Shorthand
 from mascarin.building.set_point import SetPoint
@@ -391,4 +391,7 @@ class Opening(Part):
     wind_coefficient: q.WindCoefficient = Number(0.3, source=ASHRAE_OPENING, assumed=True)
     schedule: ScheduleName | None = Field(
         None, description="Schedule of the fraction of the area that is open; none: always 1"
+    )
+    control: ControlName | None = Field(
+        None, description="Name of the control that opens and closes it; none: not controlled"
     )

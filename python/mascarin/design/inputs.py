@@ -204,6 +204,7 @@ def _require_wind(climate: Climate, building: Building) -> None:
     driven = [
         f"openings.{name}" for name, one in building.openings.items() if float(one.wind_coefficient) > 0.0
     ]
+    driven += [f"vents.{name}" for name, vent in building.vents.items() if vent.windy]
     driven += [f"zones.{name}.infiltration" for name, zone in building.zones.items() if _by_wind(zone)]
     columns = climate.record.data
     wind = np.asarray(columns["wind_speed"], dtype=np.float64) if "wind_speed" in columns else np.zeros(1)
@@ -211,8 +212,8 @@ def _require_wind(climate: Climate, building: Building) -> None:
         raise InputError(
             f"found no wind in the weather file, expected wind speeds, by which air flows through "
             f"{driven[0]}. "
-            "Choose another file, or set the wind coefficient of these openings to 0, so that only "
-            "buoyancy acts"
+            "Choose another file, or set the wind coefficient of these openings to 0 and 'pressure' of vents "
+            "to none, so that only buoyancy acts"
         )
 
 

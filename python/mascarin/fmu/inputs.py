@@ -23,7 +23,14 @@ if TYPE_CHECKING:
 #: The sun follows from the time, and the global radiation from its parts.
 _WEATHER: Final = CHANNELS[:9]
 _GLOBAL: Final = ("direct_normal", "diffuse_horizontal")
-_UNITS: Final = {"fraction": "-", "temperature": "degC", "power": "W", "flow": "m3/s", "vapour": "kg/s"}
+_UNITS: Final = {
+    "fraction": "-",
+    "temperature": "degC",
+    "power": "W",
+    "flow": "m3/s",
+    "vapour": "kg/s",
+    "rain": "mm/h",
+}
 _COLUMN_UNITS: Final = {TEMPERATURES: "degC", IRRADIANCES: "W/m2", COEFFICIENTS: "W/(m2 K)"}
 
 

@@ -18,6 +18,7 @@ from mascarin.simulation.flow_balance import require_balanced_flows
 from mascarin.simulation.initial import MeasuredStart, resolved
 from mascarin.simulation.initial import read as read_initial
 from mascarin.simulation.sky import with_sky_of
+from mascarin.simulation.wind import require_wind
 from mascarin.weather import (
     CHANNELS,
     COEFFICIENTS,
@@ -222,6 +223,7 @@ def forcing_of(
         forcing = np.ascontiguousarray(weather, dtype=np.float64)
     _require_numbers(forcing, description.channels, building)
     require_balanced_flows(building, forcing, description.channels, (start, step_seconds))
+    require_wind(building, climate, forcing)
     return forcing
 
 

@@ -194,6 +194,7 @@ LIMITS_OF_COURSES: Final = {
     "power": (-1e7, 1e7),
     "flow": (0.0, 1000.0),
     "vapour": (0.0, 10.0),
+    "rain": (0.0, 1000.0),
 }
 
 

@@ -2,13 +2,13 @@
 
 use super::order::number_zones;
 use super::pattern::Pattern;
-use crate::input::description::Description;
+use crate::input::description::{Description, Vent};
 
 /// The vapour balances of a building.
 #[derive(Debug, Clone)]
 pub(crate) struct HumidityPlan {
     /// Air that carries vapour, from a zone to another one: of each air path and of each door both ways, of each directed flow,
-    /// then of each exhaust to each supply of the units that recover vapour; there both may be one zone.
+    /// of each opening between zones both ways, then of each exhaust to each supply of the units that recover vapour; there both may be one zone.
     pub(crate) carries: Vec<[usize; 2]>,
     /// Place in the matrix of what each of them brings; none where both zones are one.
     pub(crate) places: Vec<Option<usize>>,
@@ -28,6 +28,9 @@ impl HumidityPlan {
             carries.extend([[a, b], [b, a]]);
         }
         carries.extend(description.directed_flows.iter().map(|flow| [flow.from, flow.to]));
+        for [a, b] in description.vents.iter().filter_map(Vent::between) {
+            carries.extend([[a, b], [b, a]]);
+        }
         let others = carries.len();
         for (unit, recovery) in description.ventilation_units.iter().zip(&humidity.recoveries) {
             if recovery.is_some() {

@@ -16,3 +16,4 @@ pub(crate) mod solar_geometry;
 #[cfg(test)]
 pub(crate) mod test_buildings;
 pub(crate) mod thick_walls;
+pub(crate) mod vents;

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use super::ids::SurfaceId;
 use super::layout::{SurfacePlan, SurfaceRole, WallPlan, ZonePlan};
 use super::pattern::Pattern;
-use crate::input::description::{Description, Facing, ZoneLongwave};
+use crate::input::description::{Description, Facing, Vent, ZoneLongwave};
 
 /// The order of elimination; see [`Plan`](crate::building::plan::Plan).
 #[derive(Debug, Clone)]
@@ -234,7 +234,7 @@ fn neighbours(
     neighbours
 }
 
-/// Zones whose airs exchange heat through doors, by fans or through thermal bridges.
+/// Zones whose airs exchange heat through doors, by fans, through openings or through thermal bridges.
 fn coupled_airs(description: &Description) -> Vec<[usize; 2]> {
     let mut pairs: Vec<[usize; 2]> = description.doors.iter().map(|door| door.between).collect();
     pairs.extend(description.directed_flows.iter().map(|flow| [flow.from, flow.to]));
@@ -248,6 +248,7 @@ fn coupled_airs(description: &Description) -> Vec<[usize; 2]> {
             pairs.push([bridge.zone, zone]);
         }
     }
+    pairs.extend(description.vents.iter().filter_map(Vent::between));
     pairs.retain(|[a, b]| a != b);
     pairs
 }

@@ -8,6 +8,7 @@ use super::passages::Passage;
 use super::pattern::Pattern;
 use super::solar_geometry::SolarGeometry;
 use super::thick_walls;
+use super::vents::VentPlan;
 use crate::error::EngineError;
 use crate::input::check::check;
 use crate::input::description::{Description, Side, Zone};
@@ -34,6 +35,8 @@ pub struct Plan {
     pub solar_geometry: SolarGeometry,
     /// Vapour balance of the zones.
     pub(crate) humidity: Option<HumidityPlan>,
+    /// Pressure network of its openings.
+    pub(crate) vents: Option<VentPlan>,
     /// Number of finite volumes in all walls.
     pub n_cells: usize,
     /// Number of the first rows of the coupled system: surfaces of walls of constant properties whose other surface is in no
@@ -90,9 +93,10 @@ impl Plan {
         }
         let passages = Passage::all(&windows, &zones);
         let solar_geometry = SolarGeometry::new(&description, &windows, &zones);
-        let humidity = HumidityPlan::new(&description);
+        let (humidity, vents) = (HumidityPlan::new(&description), VentPlan::new(&description));
         Ok(Self {
             humidity,
+            vents,
             description,
             walls,
             surfaces: surfaces.into(),

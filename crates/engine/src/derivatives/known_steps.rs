@@ -89,6 +89,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
         S::vectorised(
             #[inline(always)]
             || {
+                self.stepper.control_vents(state, weather.row(step, 0));
                 self.stepper.begin_known_step(state);
                 let plan = self.stepper.model.plan;
                 let controlled =
@@ -105,7 +106,7 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
                         if place.stage > 0 {
                             self.stepper.store_first_stage(state);
                         }
-                        self.stepper.conditions_of_stage(weather, step, place.stage);
+                        self.stepper.conditions_of_stage(state, weather, step, place.stage);
                         self.stage(state, place, known);
                         if round == rounds {
                             self.stepper.note_vapour(place.stage);
@@ -130,6 +131,8 @@ impl<'a, S: Real> DerivativeStepper<'a, S> {
             || {
                 self.stepper.begin_known_step(state);
                 self.stepper.conditions_now(now);
+                self.stepper.control_vents(state, now.row);
+                self.stepper.drive_vents(state);
                 self.stage(state, StagePlace::instant(), &solution.stages[0]);
                 self.stepper.end_known_balance(state);
             },

@@ -6,12 +6,12 @@
 use core::fmt::{Display, Write};
 
 use super::description::{
-    AirPath, Angular, Blind, Buffer, Clouds, Construction, Convection, Depth, Description, DirectedFlow,
-    Door, Drying, Facing, FrameShare, Gain, Gap, Glazing, Humidity, HumidityControl, HumiditySetPoint,
-    IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening, OutdoorLongwave, Pane,
-    PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky, Sorption, SunShares, Surface,
-    ThermalBridge, UnitFlow, VapourGain, Ventilation, VentilationUnit, WindProfile, Zone, ZoneHumidity,
-    ZoneLongwave, ZoneSun,
+    AirPath, Angular, Band, Blind, Buffer, ChannelBand, Clouds, Construction, Convection, Depth, Description,
+    DirectedFlow, Door, Drying, Facing, FrameShare, Gain, Gap, Glazing, Humidity, HumidityControl,
+    HumiditySetPoint, IdealLoad, Infiltration, Layer, Leakage, Material, MeltingCurve, Opening,
+    OutdoorLongwave, Pane, PaneOptics, ParamId, PcmLaw, PowerLaw, Sensor, SetPoint, Side, Site, Sky,
+    Sorption, SunShares, Surface, ThermalBridge, UnitFlow, VapourGain, Vent, VentControl, Ventilation,
+    VentilationUnit, WindOnVent, WindPressure, WindProfile, Zone, ZoneHumidity, ZoneLongwave, ZoneSun,
 };
 
 /// Gets each parameter id and its place in the description, e.g. `surfaces[3].outside.emissivity`.
@@ -104,7 +104,7 @@ macro_rules! walk {
 }
 
 walk!(Description { site, materials, constructions, zones, air_paths, directed_flows, doors, ventilation_units,
-    thermal_bridges, openings, surfaces, sensors, humidity }
+    thermal_bridges, openings, vents, controls, surfaces, sensors, humidity }
     plain { parameters, shades, channels });
 
 walk!(Site { altitude, air_density, air_specific_heat, ground_reflectance, wind, sky, cloud } plain { diffuse, horizon });
@@ -199,7 +199,16 @@ walk!(Door { width, height, discharge, open } plain { name, between, schedule })
 walk!(UnitFlow { flow } plain { zone, schedule });
 walk!(VentilationUnit { supply, exhaust, temperature, recovery } plain { name });
 walk!(ThermalBridge { coefficient, size, to } plain { name, zone });
-walk!(Opening { area, height, discharge, wind_coefficient } plain { name, zone, schedule });
+walk!(Opening { area, height, discharge, wind_coefficient } plain { name, zone, schedule, control });
+walk!(Vent { area, height, elevation, discharge, exponent, wind } plain { name, zone, to, schedule, control });
+walk!(WindOnVent { azimuth, height, shelter, pressure } plain {});
+walk!(WindPressure by variant {
+    LowRise { side_ratio } plain {},
+    Table {} plain { coefficients },
+});
+walk!(VentControl { indoor, outdoor, difference, wind, rain } plain { name, zone });
+walk!(Band { open, close } plain {});
+walk!(ChannelBand { band } plain { channel });
 
 walk!(Surface { area, openings, frame, cavity_height, tilt, azimuth, outside, inside }
     plain { name, construction, vertices });

@@ -22,6 +22,7 @@ pub(crate) mod surface_balance;
 pub(crate) mod thick_walls;
 pub(crate) mod tridiagonal;
 pub(crate) mod unknowns;
+pub(crate) mod vent_network;
 pub(crate) mod wall;
 pub(crate) mod wall_linearisation;
 pub(crate) mod zone_front;

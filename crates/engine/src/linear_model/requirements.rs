@@ -32,6 +32,9 @@ pub(super) fn require_linear(
     if let Some(opening) = plan.description.openings.first() {
         return refuse(&format!("opening {}", opening.name), "use ventilation without a schedule");
     }
+    if let Some(vent) = plan.description.vents.first() {
+        return refuse(&format!("vent {}", vent.name), "use ventilation without a schedule");
+    }
     if let Some(door) = plan.description.doors.first() {
         return refuse(&format!("door {}", door.name), "give the air path a flow");
     }

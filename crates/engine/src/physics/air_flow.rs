@@ -90,6 +90,8 @@ pub struct Opening<S> {
     /// `C_d^2 2 g h` [m2/s2].
     stack: S,
     schedule: Schedule,
+    /// Control that opens and closes it.
+    pub(crate) control: Option<usize>,
 }
 
 impl<S: Real> Opening<S> {
@@ -102,6 +104,7 @@ impl<S: Real> Opening<S> {
             wind: wind * wind,
             stack: discharge * discharge * values.get(opening.height).scale(2.0 * GRAVITY),
             schedule: Schedule::new(opening.schedule),
+            control: opening.control,
         }
     }
 
@@ -207,6 +210,7 @@ mod tests {
             discharge: id(2),
             wind_coefficient: id(3),
             schedule: None,
+            control: None,
         };
         let openings = [Opening::new(&opening, &Values::new(&[0.5, 1.0, 0.6, 0.3]), 1.0)];
         let intake = |open: &[f64], air: f64| {

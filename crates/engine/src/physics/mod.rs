@@ -15,4 +15,5 @@ pub mod pcm;
 pub mod psychrometrics;
 pub mod solar;
 pub mod sorption;
+pub mod vents;
 pub mod window_gaps;

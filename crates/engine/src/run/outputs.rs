@@ -184,6 +184,26 @@ pub enum Output {
         /// 0 outside, 1 inside.
         side: usize,
     },
+    /// Air into the zone of an opening of the pressure network, in the last stage [m3/s].
+    VentInflow {
+        /// Index of the opening.
+        vent: usize,
+    },
+    /// Air out of the zone of an opening of the pressure network, in the last stage [m3/s].
+    VentOutflow {
+        /// Index of the opening.
+        vent: usize,
+    },
+    /// Open fraction of an opening of the pressure network, in the last stage [-].
+    VentOpen {
+        /// Index of the opening.
+        vent: usize,
+    },
+    /// 1 where a control lets openings open, else 0, during the step [-].
+    ControlOpen {
+        /// Index of the control.
+        control: usize,
+    },
     /// Temperature of the sky as a black body [degC].
     SkyTemperature,
     /// Temperature at a sensor [degC].
@@ -243,6 +263,10 @@ impl Output {
                 layer < layers(surface)
                     && plan.walls[surface].layer_cells[layer].1 > plan.walls[surface].layer_cells[layer].0
             }
+            Self::VentInflow { vent } | Self::VentOutflow { vent } | Self::VentOpen { vent } => {
+                vent < description.vents.len()
+            }
+            Self::ControlOpen { control } => control < description.controls.len(),
             Self::Sensor { sensor } => sensor < description.sensors.len(),
         };
         if known {
@@ -259,6 +283,7 @@ impl Output {
     }
 
     /// Reads the quantity after a step.
+    // Long because each quantity has its own line.
     pub fn read<S: Real>(&self, plan: &Plan, stepper: &Stepper<'_, S>, state: &State<S>) -> S {
         match *self {
             Self::AirTemperature { zone } => state.air[zone],
@@ -311,6 +336,10 @@ impl Output {
                 let humidity = stepper.surface_humidity(state, SurfaceId::new(surface, side));
                 S::select(S::one().lt(humidity), S::one(), S::zero())
             }
+            Self::VentInflow { vent } => stepper.vents_now().flows[vent][1],
+            Self::VentOutflow { vent } => stepper.vents_now().flows[vent][0],
+            Self::VentOpen { vent } => stepper.vents_now().open[vent],
+            Self::ControlOpen { control } => state.opened[control],
             Self::SkyTemperature => stepper.sky_temperature(),
             Self::Sensor { sensor } => {
                 let surface = plan.description.sensors[sensor].surface;

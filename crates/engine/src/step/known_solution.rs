@@ -66,9 +66,16 @@ impl<S: Real> Stepper<'_, S> {
 
     /// The weather of a stage.
     #[inline(always)]
-    pub(crate) fn conditions_of_stage(&mut self, weather: &Weather<'_>, step: usize, stage: usize) {
+    pub(crate) fn conditions_of_stage(
+        &mut self,
+        state: &State<S>,
+        weather: &Weather<'_>,
+        step: usize,
+        stage: usize,
+    ) {
         let (tableau, part) = (self.scheme.tableau(), Part::whole(step));
         self.weather.set_stage(&self.model, weather, tableau, part, stage);
+        self.drive_vents(state);
     }
 
     /// The weather of an instant.

@@ -25,6 +25,7 @@ mod stage_weather;
 pub mod state;
 pub(crate) mod stepper;
 pub(crate) mod vapour;
+mod vents;
 
 pub use newton::Counters;
 pub use scheme::Scheme;

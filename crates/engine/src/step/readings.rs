@@ -7,6 +7,7 @@ use crate::physics::psychrometrics::relative_humidity;
 use crate::step::film::film;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+use crate::weather::vents::VentConditions;
 
 impl<S: Real> Stepper<'_, S> {
     /// Outdoor air entering a zone at an air temperature, in the weather of the last stage [1/h].
@@ -15,6 +16,11 @@ impl<S: Real> Stepper<'_, S> {
         let rate = conditions.zones[zone].air_changes(numbers, conditions.wind, conditions.outdoor_air, air);
         let fans = conditions.mechanical_air.zones.get(zone);
         fans.map_or(rate, |fans| rate + fans.fresh.scale(3600.0) / numbers.air_capacity)
+    }
+
+    /// Openings of the pressure network in the last stage.
+    pub(crate) fn vents_now(&self) -> &VentConditions<S> {
+        &self.weather.conditions.vents
     }
 
     /// Short-wave radiation on a surface outdoors, mean over the last step [W/m2].

@@ -79,6 +79,8 @@ pub struct State<S> {
     /// Humidity ratio of each zone [kg/kg], then the moisture contents of the first and the second layer of each surface that takes up
     /// vapour [kg/m2]; empty in a building without vapour balances.
     pub vapour: Vec<S>,
+    /// Whether each control of openings lets them open: 1 or 0.
+    pub opened: Vec<S>,
 }
 
 impl<S: Real> State<S> {
@@ -100,6 +102,7 @@ impl<S: Real> State<S> {
             enthalpy: vec![S::zero(); plan.n_cells],
             load: vec![S::zero(); plan.zones.len()],
             vapour: vapour_at(model, &air),
+            opened: vec![S::zero(); plan.description.controls.len()],
             cells,
             surfaces: surfaces.into(),
             air,
@@ -151,9 +154,16 @@ impl<S: Real> State<S> {
         Temperatures { cells: &self.cells, surfaces: &self.surfaces, air: &self.air }
     }
 
+    /// All but the memory.
+    #[inline(always)]
+    fn plain(&self) -> [&[S]; 7] {
+        let Self { cells, enthalpy, surfaces, air, load, vapour, opened, .. } = self;
+        [cells, enthalpy, surfaces, air, load, vapour, opened]
+    }
+
     /// All its numbers, one after the other.
     pub(crate) fn write(&self, numbers: &mut Vec<S>) {
-        for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load, &self.vapour] {
+        for values in self.plain() {
             numbers.extend_from_slice(values);
         }
         for memory in &self.memory {
@@ -164,8 +174,8 @@ impl<S: Real> State<S> {
     /// Changes each number by one of others, in the order of [`Self::write`].
     #[inline(always)]
     pub(crate) fn read<T: Copy>(&mut self, mut numbers: &[T], mut change: impl FnMut(&mut S, T)) {
-        let Self { cells, enthalpy, memory, surfaces, air, load, vapour } = self;
-        for values in [&mut cells[..], enthalpy, surfaces, air, load, vapour] {
+        let Self { cells, enthalpy, memory, surfaces, air, load, vapour, opened } = self;
+        for values in [&mut cells[..], enthalpy, surfaces, air, load, vapour, opened] {
             let (own, rest) = numbers.split_at(values.len());
             numbers = rest;
             for (mine, &theirs) in values.iter_mut().zip(own) {
@@ -181,7 +191,7 @@ impl<S: Real> State<S> {
     /// Passes each number with one of others to a function, in the order of [`Self::write`].
     #[inline(always)]
     pub(crate) fn zip_with<T: Copy>(&self, mut numbers: &[T], mut see: impl FnMut(S, T)) {
-        for values in [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load, &self.vapour] {
+        for values in self.plain() {
             let (own, rest) = numbers.split_at(values.len());
             numbers = rest;
             for (&mine, &theirs) in values.iter().zip(own) {
@@ -204,13 +214,13 @@ impl<S: Real> State<S> {
         self.air.copy_from_slice(&other.air);
         self.load.copy_from_slice(&other.load);
         self.vapour.copy_from_slice(&other.vapour);
+        self.opened.copy_from_slice(&other.opened);
         self.memory.copy_from_slice(&other.memory);
     }
 
     /// How many numbers it has.
     pub(crate) fn count(&self) -> usize {
-        let plain = [&self.cells[..], &self.enthalpy, &self.surfaces, &self.air, &self.load, &self.vapour];
-        plain.into_iter().map(<[S]>::len).sum::<usize>() + REMEMBERED * self.memory.len()
+        self.plain().into_iter().map(<[S]>::len).sum::<usize>() + REMEMBERED * self.memory.len()
     }
 
     /// Changes each number by the one at its place in another state.
@@ -222,6 +232,7 @@ impl<S: Real> State<S> {
             (&mut self.air, &other.air),
             (&mut self.load, &other.load),
             (&mut self.vapour, &other.vapour),
+            (&mut self.opened, &other.opened),
         ];
         for (mine, theirs) in plain {
             for (mine, &theirs) in mine.iter_mut().zip(theirs) {
@@ -242,6 +253,7 @@ impl<S: Real> State<S> {
         blend(mask, &mut self.air, &other.air);
         blend(mask, &mut self.load, &other.load);
         blend(mask, &mut self.vapour, &other.vapour);
+        blend(mask, &mut self.opened, &other.opened);
         for (a, b) in self.memory.iter_mut().zip(&other.memory) {
             a.take(mask, b);
         }

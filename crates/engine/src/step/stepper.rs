@@ -9,6 +9,7 @@ use crate::building::model::Model;
 use crate::building::plan::Plan;
 use crate::error::EngineError;
 use crate::linear::unknowns::Unknowns;
+use crate::linear::vent_network::VentNetwork;
 use crate::number::real::{Mask, Real};
 use crate::step::control::RunControl;
 use crate::step::guess::Guess;
@@ -41,6 +42,8 @@ pub struct Stepper<'a, S: Real> {
     pub(crate) known: StageSolutions<S>,
     /// Present only in a building with vapour balances.
     pub(crate) vapour: Option<Box<VapourBalances<'a, S>>>,
+    /// Present only in a building with a pressure network.
+    pub(super) vents: Option<Box<VentNetwork<'a, S>>>,
     /// Present only where residuals are evaluated.
     pub(super) residuals: Option<Box<StageResiduals<S>>>,
 }
@@ -59,6 +62,7 @@ impl<'a, S: Real> Stepper<'a, S> {
             solver,
             guess: Guess::none(),
             vapour: VapourBalances::new(&model, tableau.weights.len()).map(Box::new),
+            vents: plan.vents.as_ref().map(|network| Box::new(VentNetwork::new(network))),
             parts: StepParts::new(plan.zones.len()),
             known: StageSolutions::nothing(),
             residuals: None,
@@ -112,6 +116,8 @@ impl<'a, S: Real> Stepper<'a, S> {
             #[inline(always)]
             || {
                 self.weather.set_instant(&self.model, now);
+                self.control_vents(state, now.row);
+                self.drive_vents(state);
                 self.begin_step(state, 0.0);
                 self.solve_stage(state, INSTANT, (0, 0), Search::Whole(S::Mask::splat(true)))?;
                 state.surfaces.copy_from_slice(&self.solver.solution.surfaces);
@@ -136,6 +142,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     ) -> Result<(), EngineError> {
         self.parts.begin(step);
         self.known.halved = false;
+        self.control_vents(state, weather.row(step, 0));
         self.take_parts(state, weather, dt, ledger)
     }
 
@@ -152,6 +159,7 @@ impl<'a, S: Real> Stepper<'a, S> {
     ) -> Result<(), EngineError> {
         self.parts.begin_first();
         self.known.halved = true;
+        self.control_vents(state, weather.row(0, 0));
         self.take_parts(state, weather, dt, ledger)
     }
 
@@ -250,6 +258,7 @@ impl<'a, S: Real> Stepper<'a, S> {
                 self.begin_second_stage(state);
             }
             self.weather.set_stage(&self.model, weather, tableau, part, stage);
+            self.drive_vents(state);
             let all = Search::Whole(S::Mask::splat(true));
             self.solve_stage(state, tableau.diagonal * length, (part.step, stage + 1), all)?;
             self.note_vapour(stage);

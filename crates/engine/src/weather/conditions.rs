@@ -16,6 +16,7 @@ use crate::weather::mechanical_air::MechanicalConditions;
 pub use crate::weather::sun::SolarConditions;
 pub use crate::weather::surface::SurfaceConditions;
 use crate::weather::surface::{forced, imposed_temperature};
+use crate::weather::vents::VentConditions;
 use crate::weather::zone_conditions::ZoneConditions;
 
 /// What acts on all parts of a building.
@@ -31,6 +32,8 @@ pub struct Conditions<S: Real> {
     pub doors: Vec<S>,
     /// Flows that fans drive.
     pub mechanical_air: MechanicalConditions<S>,
+    /// Openings of the pressure network.
+    pub vents: VentConditions<S>,
     /// Humidity, in a building with vapour balances.
     pub(crate) humidity: Option<HumidityConditions<S>>,
     /// Temperature at the other end of each thermal bridge; none where that is a zone [degC].
@@ -62,6 +65,7 @@ impl<S: Real> Conditions<S> {
             paths: vec![zero; coefficients.paths.len()],
             doors: vec![zero; coefficients.doors.len()],
             mechanical_air: MechanicalConditions::new(&coefficients.mechanical_air, plan.zones.len()),
+            vents: VentConditions::new(&coefficients.vents),
             humidity: coefficients.humidity.as_ref().map(|humidity| {
                 HumidityConditions::new(humidity, plan.humidity.as_ref().map_or(0, HumidityPlan::recovered))
             }),
@@ -100,6 +104,7 @@ impl<S: Real> Conditions<S> {
             *at = rate(a, b);
         }
         self.mechanical_air.interpolate(&first.mechanical_air, &second.mechanical_air, fraction);
+        self.vents.interpolate(&first.vents, &second.vents, fraction);
         if let (Some(at), Some(a), Some(b)) = (&mut self.humidity, &first.humidity, &second.humidity) {
             at.interpolate(a, b, fraction);
         }
@@ -174,6 +179,9 @@ impl<S: Real> Conditions<S> {
         }
         if !coefficients.mechanical_air.is_empty() {
             self.mechanical_air.update(&coefficients.mechanical_air, now.row, self.outdoor_air);
+        }
+        if !coefficients.vents.is_empty() {
+            self.vents.update(&coefficients.vents, now.row);
         }
         if let (Some(at), Some(humidity)) = (&mut self.humidity, &coefficients.humidity) {
             at.update(humidity, &coefficients.mechanical_air.units, now.row);

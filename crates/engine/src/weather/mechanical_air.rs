@@ -57,6 +57,14 @@ impl<S: Real> ZoneBalance<S> {
         self.fresh = self.supply + (self.exhaust - surplus).max(S::zero());
     }
 
+    /// Adds air that leaves to outdoors and outdoor air that enters in its place [W/K].
+    #[inline(always)]
+    pub(crate) fn exchange(&mut self, [out, into]: [S; 2]) {
+        self.outward += out;
+        self.leaving += out;
+        self.fresh += into;
+    }
+
     /// Heat into the air of the zone, of `T_outdoor - T_air`: that of supplied air and of air that leaves.
     #[inline(always)]
     pub(crate) fn heat(&self) -> Line<S> {

@@ -8,4 +8,5 @@ pub(crate) mod mechanical_air;
 pub(crate) mod solar_means;
 pub(crate) mod sun;
 pub(crate) mod surface;
+pub(crate) mod vents;
 pub mod zone_conditions;

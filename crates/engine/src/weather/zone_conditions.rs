@@ -57,6 +57,15 @@ impl<S: Real> ZoneConditions<S> {
         }
     }
 
+    /// Closes the openings that controls have closed.
+    pub(crate) fn control(&mut self, zone: &ZoneCoefficients<S>, opened: &[S]) {
+        for (open, opening) in self.open.iter_mut().zip(&zone.openings) {
+            if let Some(control) = opening.control {
+                *open = *open * opened[control];
+            }
+        }
+    }
+
     #[inline(always)]
     fn intake<'a>(&'a self, zone: &'a ZoneCoefficients<S>) -> Intake<'a, S> {
         Intake { ventilation: self.ventilation, openings: &zone.openings, open: &self.open }

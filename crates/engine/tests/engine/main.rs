@@ -27,6 +27,7 @@ mod properties;
 mod slopes_of_stages;
 mod stepwise;
 mod tape_memory;
+mod vents;
 mod wind;
 mod windows;
 mod zones;

@@ -20,6 +20,11 @@ def schedule_of(part: Any, places: Places) -> Json:
     return {"schedule": None if part.schedule is None else places[part.schedule]}
 
 
+def control_of(building: Description, part: Any) -> Json:
+    """Position of the control of a part."""
+    return {"control": None if part.control is None else list(building.controls).index(part.control)}
+
+
 def driven(part: Driven, key: str, places: Places, ids: Ids) -> Json:
     """Describe a power or flow: a number with its schedule, or a factor with the channel of its column."""
     if part.course is None:
@@ -75,7 +80,8 @@ def describe_unit(building: Description, places: Places, name: str, unit: Ventil
 def describe_opening(building: Description, places: Places, name: str, opening: Opening, ids: Ids) -> Json:
     """Describe an opening to outdoors."""
     zone = list(building.zones).index(opening.zone)
-    return {"name": name, "zone": zone, **fields_of(opening, ids), **schedule_of(opening, places)}
+    written = {"name": name, "zone": zone, **fields_of(opening, ids)}
+    return {**written, **schedule_of(opening, places), **control_of(building, opening)}
 
 
 def describe_bridges(building: Description, places: Places, ids: Mapping[str, int]) -> list[Json]:

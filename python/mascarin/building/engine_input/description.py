@@ -24,6 +24,7 @@ from mascarin.building.engine_input.humidity import describe_humidity
 from mascarin.building.engine_input.ids import Ids, Json, Places, below, corners, each, fields_of
 from mascarin.building.engine_input.materials import describe_construction, describe_material
 from mascarin.building.engine_input.surfaces import describe_sensor, describe_surface
+from mascarin.building.engine_input.vents import describe_vents
 from mascarin.building.engine_input.windows import (
     describe_blinded_glazing,
     describe_frame,
@@ -102,6 +103,7 @@ def describe(
         "zones": each(building.zones, "zones", ids, partial(describe_zone, building, places)),
         **_air(building, ids, places),
         "openings": each(building.openings, "openings", ids, partial(describe_opening, building, places)),
+        **describe_vents(building, places, ids),
         "surfaces": _obstructed(
             building,
             [

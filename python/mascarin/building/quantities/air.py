@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mascarin.building.number import Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
+from mascarin.building.number import Fixed, Limits, Number, OnlyGiven, Percent, Quantity, Span, Within
 from mascarin.building.quantities.common import FRACTION, NOT_NEGATIVE, POSITIVE
 
 CapacityFactor = Annotated[
@@ -189,4 +189,69 @@ BridgeNumber = Annotated[
     Quantity(
         "-", "Number of such bridges", OnlyGiven("counted: it varies only if a range is given"), NOT_NEGATIVE
     ),
+]
+_OWN = OnlyGiven("chosen for the control: it varies only if a range is given")
+VentHeight = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Height of the opening itself: air passes both ways; none: it passes in one direction",
+        Percent(10, "frame and opening angle"),
+        Limits(above=0, at_most=50),
+    ),
+]
+Elevation = Annotated[
+    Number,
+    Quantity(
+        "m",
+        "Height of the middle of the opening above the ground",
+        Within(0.1, "measured from plans"),
+        Limits(at_least=0, at_most=500),
+    ),
+]
+FlowExponent = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Exponent of the pressure difference in the flow; for other ones than 0.5 the area is that at 4 Pa",
+        OnlyGiven("0.5 for openings; 0.6 to 0.7 for leaks"),
+        Limits(at_least=0.5, at_most=1.0),
+    ),
+]
+Shelter = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Speed of the wind at the opening over that on the open ground of the site",
+        Span(0.3, 1.0, "between close buildings or trees to free"),
+        Limits(at_least=0, at_most=2),
+    ),
+]
+SideRatio = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Length of the wall over that of the walls beside it",
+        Percent(10, "measured from plans"),
+        Limits(at_least=0.1, at_most=10),
+    ),
+]
+PressureCoefficient = Annotated[
+    Number,
+    Quantity(
+        "-",
+        "Wind pressure coefficient",
+        Fixed("a point of a measured curve; vary the shelter instead"),
+        Limits(at_least=-5, at_most=3),
+    ),
+]
+ControlTemperature = Annotated[
+    Number, Quantity("degC", "Limit of a control", _OWN, Limits(at_least=-60, at_most=90))
+]
+ControlDifference = Annotated[
+    Number, Quantity("K", "Limit of a control", _OWN, Limits(at_least=-100, at_most=100))
+]
+ControlSpeed = Annotated[Number, Quantity("m/s", "Limit of a control", _OWN, Limits(at_least=0, at_most=110))]
+ControlRain = Annotated[
+    Number, Quantity("mm/h", "Limit of a control", _OWN, Limits(at_least=0, at_most=1000))
 ]

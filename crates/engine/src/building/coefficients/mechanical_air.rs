@@ -1,6 +1,7 @@
 //! Mechanical ventilation and air that flows from zone to zone, with the pairs of zones that exchange heat by them.
 
 use crate::building::plan::Plan;
+use crate::input::description::Vent;
 use crate::input::values::Values;
 use crate::number::real::Real;
 use crate::physics::mechanical_air::{DirectedFlow, Unit};
@@ -13,8 +14,12 @@ pub struct MechanicalAir<S> {
     /// Air from zone to zone.
     pub directed: Vec<DirectedFlow<S>>,
     /// Zones that heat comes from and goes to: of each directed flow, then of each supply and exhaust of each unit with heat
-    /// recovery that are in different zones.
+    /// recovery that are in different zones, then of each opening of the pressure network between zones, both ways.
     pub carries: Vec<[usize; 2]>,
+    /// Place of the first opening among them.
+    pub(crate) first_of_vents: usize,
+    /// Whether there is a pressure network, which every zone is part of.
+    vented: bool,
 }
 
 impl<S: Real> MechanicalAir<S> {
@@ -32,18 +37,23 @@ impl<S: Real> MechanicalAir<S> {
                 carries.extend(pairs.filter(|[from, to]| from != to));
             }
         }
-        Self { units, directed, carries }
+        let first_of_vents = carries.len();
+        let between = description.vents.iter().filter_map(Vent::between);
+        carries.extend(between.flat_map(|[a, b]| [[a, b], [b, a]]));
+        Self { units, directed, carries, first_of_vents, vented: plan.vents.is_some() }
     }
 
     /// Whether there are none.
     #[inline(always)]
     pub(crate) fn is_empty(&self) -> bool {
-        self.units.is_empty() && self.directed.is_empty()
+        self.units.is_empty() && self.directed.is_empty() && !self.vented
     }
 
     /// Whether one of them enters or leaves a zone.
     pub(crate) fn reaches(&self, zone: usize) -> bool {
         let of_unit = |unit: &Unit<S>| unit.supply.iter().chain(&unit.exhaust).any(|flow| flow.zone == zone);
-        self.units.iter().any(of_unit) || self.directed.iter().any(|flow| flow.ends.contains(&zone))
+        self.vented
+            || self.units.iter().any(of_unit)
+            || self.directed.iter().any(|flow| flow.ends.contains(&zone))
     }
 }

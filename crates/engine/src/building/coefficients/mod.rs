@@ -6,6 +6,7 @@ pub(crate) mod humidity;
 pub(crate) mod mechanical_air;
 pub(crate) mod passing;
 pub(crate) mod surface;
+pub(crate) mod vents;
 pub(crate) mod wall;
 pub(crate) mod zone;
 
@@ -14,6 +15,7 @@ pub use self::humidity::HumidityCoefficients;
 pub use self::mechanical_air::MechanicalAir;
 pub use self::passing::Passing;
 pub use self::surface::{Boundary, Imposed, Outdoors, SurfaceCoefficients};
+pub use self::vents::Vents;
 pub use self::wall::WallCoefficients;
 pub use self::zone::ZoneCoefficients;
 pub use super::cell::{Cell, Matter};
@@ -42,6 +44,8 @@ pub struct Coefficients<S> {
     pub doors: Vec<Door<S>>,
     /// Flows that fans drive.
     pub mechanical_air: MechanicalAir<S>,
+    /// Openings of the pressure network, and controls of openings.
+    pub vents: Vents<S>,
     /// Thermal bridges.
     pub bridges: Vec<Bridge<S>>,
     /// Solar reflectance of the ground [-].
@@ -80,6 +84,7 @@ impl<S: Real> Coefficients<S> {
             paths,
             doors: description.doors.iter().map(|door| Door::new(door, &values, heat)).collect(),
             mechanical_air: MechanicalAir::new(plan, &values, heat),
+            vents: Vents::new(plan, &values),
             bridges: description.thermal_bridges.iter().map(|bridge| Bridge::new(bridge, &values)).collect(),
             ground_reflectance: values.get(site.ground_reflectance),
             clouds: CloudEffect::new(&site.cloud, &values),

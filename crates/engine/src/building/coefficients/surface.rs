@@ -185,7 +185,7 @@ fn plane<S: Real>(
 }
 
 /// Wind at a height of the site over the wind at the mast [-]: `(delta_mast/z_mast)^a_mast (z/delta)^a`.
-fn wind_factor<S: Real>(plan: &Plan, height: ParamId, values: &Values<'_, S>) -> S {
+pub(super) fn wind_factor<S: Real>(plan: &Plan, height: ParamId, values: &Values<'_, S>) -> S {
     let wind = &plan.description.site.wind;
     let get = |id| values.get(id);
     let mast = (get(wind.mast_layer) / get(wind.mast_height)).powf(get(wind.mast_exponent));

@@ -1,7 +1,10 @@
 //! Doors, flows that fans drive, and thermal bridges.
 
+use super::numbers::check_finite;
 use super::{Checked, check_index, check_schedule, refuse};
-use crate::input::description::{Description, Door, Facing, SetPoint, ThermalBridge, VentilationUnit};
+use crate::input::description::{
+    Description, Door, Facing, SetPoint, ThermalBridge, Vent, VentControl, VentilationUnit, WindPressure,
+};
 
 /// All of them.
 pub(super) fn check_air(description: &Description) -> Checked {
@@ -18,6 +21,12 @@ pub(super) fn check_air(description: &Description) -> Checked {
     }
     for bridge in &description.thermal_bridges {
         check_bridge(description, bridge)?;
+    }
+    for vent in &description.vents {
+        check_vent(description, vent)?;
+    }
+    for control in &description.controls {
+        check_control(description, control)?;
     }
     for (index, zone) in description.zones.iter().enumerate() {
         if zone.solar_to_air.is_some() && window_between_zones(description, index) {
@@ -61,6 +70,32 @@ fn check_unit(description: &Description, unit: &VentilationUnit) -> Checked {
         return refuse(place, "both", "a temperature of the supplied air or heat recovery");
     }
     Ok(())
+}
+
+fn check_vent(description: &Description, vent: &Vent) -> Checked {
+    let place = format!("vent {}", vent.name);
+    match vent.to {
+        Some(to) => check_ends(description, &place, [vent.zone, to])?,
+        None => check_index(&place, "zone", vent.zone, description.zones.len())?,
+    }
+    check_schedule(description, &place, vent.schedule)?;
+    if let Some(control) = vent.control {
+        check_index(&place, "control", control, description.controls.len())?;
+    }
+    match vent.wind.as_ref().map(|wind| &wind.pressure) {
+        Some(_) if vent.to.is_some() => refuse(place, "wind between two zones", "wind on vents to outdoors"),
+        Some(WindPressure::Table { coefficients }) if coefficients.is_empty() => {
+            refuse(place, "no coefficients", "at least one")
+        }
+        Some(WindPressure::Table { coefficients }) => check_finite(&place, coefficients),
+        Some(WindPressure::LowRise { .. }) | None => Ok(()),
+    }
+}
+
+fn check_control(description: &Description, control: &VentControl) -> Checked {
+    let place = format!("control {}", control.name);
+    check_index(&place, "zone", control.zone, description.zones.len())?;
+    check_schedule(description, &place, control.rain.as_ref().map(|rain| rain.channel))
 }
 
 fn check_bridge(description: &Description, bridge: &ThermalBridge) -> Checked {

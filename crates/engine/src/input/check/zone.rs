@@ -108,5 +108,8 @@ pub(super) fn check_air_path(description: &Description, path: &AirPath) -> Check
 pub(super) fn check_opening(description: &Description, opening: &Opening) -> Checked {
     let place = format!("opening {}", opening.name);
     check_index(&place, "zone", opening.zone, description.zones.len())?;
+    if let Some(control) = opening.control {
+        check_index(&place, "control", control, description.controls.len())?;
+    }
     check_schedule(description, &place, opening.schedule)
 }

@@ -111,4 +111,7 @@ pub struct Opening {
     /// Index into [`Description::channels`](super::Description::channels): fraction of the area that is open [-]. None: always all of it.
     #[serde(default)]
     pub schedule: Option<usize>,
+    /// Index into [`Description::controls`](super::Description::controls). None: not controlled.
+    #[serde(default)]
+    pub control: Option<usize>,
 }

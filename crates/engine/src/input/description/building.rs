@@ -10,6 +10,7 @@ use super::material::Material;
 use super::parameter::Parameter;
 use super::site::Site;
 use super::surface::{Sensor, Surface};
+use super::vent::{Vent, VentControl};
 use super::zone::Zone;
 
 /// A whole building: references between its parts are indices into the lists.
@@ -44,6 +45,12 @@ pub struct Description {
     /// Openings between zones and outdoors.
     #[serde(default)]
     pub openings: Vec<Opening>,
+    /// Openings of the pressure network.
+    #[serde(default)]
+    pub vents: Vec<Vent>,
+    /// What opens and closes openings of both kinds.
+    #[serde(default)]
+    pub controls: Vec<VentControl>,
     /// Walls and windows.
     pub surfaces: Vec<Surface>,
     /// Sensors inside walls.

@@ -21,6 +21,7 @@ mod parameter;
 mod phase_change;
 mod site;
 mod surface;
+mod vent;
 mod zone;
 
 pub use air_flow::{AirPath, DirectedFlow, Door, Opening, UnitFlow, VentilationUnit};
@@ -37,6 +38,7 @@ pub use parameter::{ParamId, Parameter};
 pub use phase_change::{HysteresisModel, MeltingCurve, PcmLaw, TablePoints, Tail};
 pub use site::{Clouds, DiffuseSky, Site, Sky, WindProfile};
 pub use surface::{Exposure, Facing, FrameShare, OutdoorLongwave, Sensor, Side, Surface};
+pub use vent::{Band, ChannelBand, Vent, VentControl, WindOnVent, WindPressure};
 pub use zone::{
     Gain, IdealLoad, Infiltration, Leakage, SetPoint, SunShares, Ventilation, Zone, ZoneLongwave, ZoneSun,
 };

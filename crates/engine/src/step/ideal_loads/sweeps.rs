@@ -172,6 +172,7 @@ impl<S: Real> Stepper<'_, S> {
                 self.ideal_loads.guess(index, cells, &mut solver.iterate, &mut solver.solution);
             } else {
                 self.weather.set_stage(&self.model, weather, tableau, part, index);
+                self.drive_vents(state);
                 if self.ideal_loads.continues {
                     self.correct_guess(state, index);
                 }

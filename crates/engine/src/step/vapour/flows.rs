@@ -134,7 +134,9 @@ impl<S: Real> StageFlows<S> {
         }
         let directed = model.coefficients.mechanical_air.directed.len();
         let recovered = conditions.humidity.iter().flat_map(|now| &now.recovered);
-        for &heat in conditions.mechanical_air.carried[..directed].iter().chain(recovered) {
+        let carried = &conditions.mechanical_air.carried;
+        let vents = &carried[model.coefficients.mechanical_air.first_of_vents..];
+        for &heat in carried[..directed].iter().chain(vents).chain(recovered) {
             put(heat);
         }
     }

@@ -61,6 +61,7 @@ pub fn conditioned(gamma: f64) -> Description {
         discharge: number(&mut d, "slot.discharge", 0.6),
         wind_coefficient: number(&mut d, "slot.wind_coefficient", 0.25),
         schedule: None,
+        control: None,
     };
     d.openings.push(opening);
     d

@@ -81,6 +81,8 @@ impl Builder {
             ventilation_units: Vec::new(),
             thermal_bridges: Vec::new(),
             openings: Vec::new(),
+            vents: Vec::new(),
+            controls: Vec::new(),
             surfaces: Vec::new(),
             sensors: Vec::new(),
             humidity: None,

@@ -578,6 +578,7 @@ impl Maker<'_> {
                 discharge: number(d, "opening.discharge", 0.6),
                 wind_coefficient: number(d, "opening.wind_coefficient", 0.25),
                 schedule: self.random.chance(0.5).then_some(SCHEDULE),
+                control: None,
             };
             d.openings.push(opening);
         }

@@ -1,0 +1,198 @@
+//! Openings of the pressure network and the controls of openings.
+
+use super::air;
+use super::surface::wind_factor;
+use crate::building::plan::Plan;
+use crate::input::description::{Band, Vent, VentControl, WindOnVent};
+use crate::input::forcing::{CLIMATE_CHANNELS, Schedule, scheduled};
+use crate::input::values::Values;
+use crate::number::real::Real;
+use crate::physics::constants::GRAVITY;
+use crate::physics::vents::{self, HALF_PLACE};
+
+/// Temperature that the density of the site belongs to [K]: that of the standard atmosphere at sea level.
+const OF_DENSITY: f64 = 288.15;
+
+/// All of them; empty in a building without.
+#[derive(Debug, Clone)]
+pub struct Vents<S> {
+    /// Openings of the pressure network.
+    pub(crate) all: Vec<VentNumbers<S>>,
+    /// Controls.
+    pub(crate) controls: Vec<Control<S>>,
+    /// Heat capacity of a cubic metre of air [J/(m3 K)].
+    pub(crate) heat: S,
+    /// Weight of a cubic metre of air times its temperature [N K/m3].
+    pub(crate) weight: S,
+}
+
+/// An opening of the pressure network.
+#[derive(Debug, Clone)]
+pub(crate) struct VentNumbers<S> {
+    pub(crate) zone: usize,
+    pub(crate) to: Option<usize>,
+    /// Heights above the ground of the parts that air passes in one direction [m].
+    pub(crate) heights: Vec<S>,
+    /// Volume flow of one part at 1 Pa [m3/s].
+    pub(crate) strength: S,
+    pub(crate) exponent: S,
+    wind: Option<Wind<S>>,
+    schedule: Schedule,
+    pub(crate) control: Option<usize>,
+}
+
+/// The wind on an opening.
+#[derive(Debug, Clone)]
+struct Wind<S> {
+    coefficients: vents::Coefficients<S>,
+    azimuth: S,
+    /// Dynamic pressure where the wind at the mast is 1 m/s [Pa].
+    dynamic: S,
+}
+
+impl<S: Real> Wind<S> {
+    fn new(plan: &Plan, wind: &WindOnVent, values: &Values<'_, S>, density: S) -> Self {
+        let factor = wind_factor(plan, wind.height, values) * values.get(wind.shelter);
+        Self {
+            coefficients: vents::Coefficients::new(&wind.pressure, |id| values.get(id)),
+            azimuth: values.get_or(wind.azimuth, 0.0),
+            dynamic: density.scale(0.5) * factor * factor,
+        }
+    }
+}
+
+impl<S: Real> VentNumbers<S> {
+    fn new(plan: &Plan, vent: &Vent, values: &Values<'_, S>, density: S) -> Self {
+        let middle = values.get(vent.elevation);
+        let heights = match vent.height {
+            None => vec![middle],
+            Some(height) => {
+                let place = values.get(height).scale(HALF_PLACE);
+                vec![middle - place, middle + place]
+            }
+        };
+        let area = values.get(vent.area).scale(1.0 / heights.len() as f64);
+        let exponent = values.get(vent.exponent);
+        Self {
+            zone: vent.zone,
+            to: vent.to,
+            strength: vents::strength(area, values.get(vent.discharge), exponent, density),
+            heights,
+            exponent,
+            wind: vent.wind.as_ref().map(|wind| Wind::new(plan, wind, values, density)),
+            schedule: Schedule::new(vent.schedule),
+            control: vent.control,
+        }
+    }
+
+    /// Fraction of the area that its schedule opens in a forcing row [-].
+    #[inline(always)]
+    pub(crate) fn open(&self, row: &[f64]) -> S {
+        scheduled(S::one(), self.schedule, row)
+    }
+
+    /// Pressure of a wind at the mast [m/s] from a direction [deg], above that of still air [Pa].
+    #[inline(always)]
+    pub(crate) fn pressure(&self, speed: f64, direction: f64) -> S {
+        self.wind.as_ref().map_or_else(S::zero, |wind| {
+            wind.dynamic.scale(speed * speed) * wind.coefficients.at(direction, wind.azimuth)
+        })
+    }
+}
+
+/// Limits of a condition: beyond the first it lets open what is closed, beyond the second it closes what is open.
+type Limits<S> = [S; 2];
+
+/// What opens and closes openings.
+#[derive(Debug, Clone)]
+pub(crate) struct Control<S> {
+    zone: usize,
+    indoor: Option<Limits<S>>,
+    outdoor: Option<Limits<S>>,
+    difference: Option<Limits<S>>,
+    wind: Option<Limits<S>>,
+    rain: Option<(usize, Limits<S>)>,
+}
+
+impl<S: Real> Control<S> {
+    fn new(control: &VentControl, values: &Values<'_, S>) -> Self {
+        let band = |band: &Band| [values.get(band.open), values.get(band.close)];
+        let of = |given: &Option<Band>| given.as_ref().map(band);
+        Self {
+            zone: control.zone,
+            indoor: of(&control.indoor),
+            outdoor: of(&control.outdoor),
+            difference: of(&control.difference),
+            wind: of(&control.wind),
+            rain: control.rain.as_ref().map(|rain| (CLIMATE_CHANNELS + rain.channel, band(&rain.band))),
+        }
+    }
+
+    /// 1 where it opens or stays open, else 0, after it was in a state, with the airs of the zones and the outdoor air [degC] and the
+    /// wind at the mast [m/s] of a forcing row.
+    pub(crate) fn decide(&self, before: S, air: &[S], outdoor: f64, wind: f64, row: &[f64]) -> S {
+        let was_open = S::constant(0.5).lt(before);
+        let mut open = S::one();
+        let mut require = |holds: S::Mask| open = S::select(holds, open, S::zero());
+        let (indoor, outdoor) = (air[self.zone], S::constant(outdoor));
+        let above = [(self.indoor, indoor), (self.outdoor, outdoor), (self.difference, indoor - outdoor)];
+        for (limits, value) in above {
+            if let Some([opens, closes]) = limits {
+                require(S::select(was_open, closes, opens).lt(value));
+            }
+        }
+        let rain = self.rain.map(|(channel, limits)| (limits, row[channel]));
+        for (limits, value) in self.wind.map(|limits| (limits, wind)).into_iter().chain(rain) {
+            let [opens, closes] = limits;
+            // At the limit itself it is open: no rain is 0.
+            require(!S::select(was_open, closes, opens).lt(S::constant(value)));
+        }
+        open
+    }
+}
+
+impl<S: Real> Vents<S> {
+    pub(crate) fn new(plan: &Plan, values: &Values<'_, S>) -> Self {
+        let density = air::density(plan, values);
+        let description = &plan.description;
+        Self {
+            all: description.vents.iter().map(|vent| VentNumbers::new(plan, vent, values, density)).collect(),
+            controls: description.controls.iter().map(|control| Control::new(control, values)).collect(),
+            heat: air::heat_capacity(plan, values, density),
+            weight: density.scale(GRAVITY * OF_DENSITY),
+        }
+    }
+
+    /// Whether there are none.
+    #[inline(always)]
+    pub(crate) fn is_empty(&self) -> bool {
+        self.all.is_empty() && self.controls.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Opens above 24 degC and 2 K warmer than outdoors, closes below 22 degC, 1 K, or above 8 m/s; opens again below 6 m/s, without rain.
+    #[test]
+    fn hysteresis() {
+        let control = Control {
+            zone: 0,
+            indoor: Some([24.0, 22.0]),
+            outdoor: None,
+            difference: Some([2.0, 1.0]),
+            wind: Some([6.0, 8.0]),
+            rain: Some((0, [0.0, 0.2])),
+        };
+        let decide = |before: f64, air: f64, outdoor: f64, wind: f64, rain: f64| {
+            control.decide(before, &[air], outdoor, wind, &[rain])
+        };
+        assert_eq!((decide(0.0, 23.0, 18.0, 3.0, 0.0), decide(1.0, 23.0, 18.0, 3.0, 0.0)), (0.0, 1.0));
+        assert_eq!((decide(0.0, 24.5, 23.0, 3.0, 0.0), decide(1.0, 24.5, 23.0, 3.0, 0.0)), (0.0, 1.0));
+        assert_eq!((decide(0.0, 25.0, 18.0, 7.0, 0.0), decide(1.0, 25.0, 18.0, 7.0, 0.0)), (0.0, 1.0));
+        assert_eq!((decide(0.0, 25.0, 18.0, 3.0, 0.1), decide(1.0, 25.0, 18.0, 3.0, 0.1)), (0.0, 1.0));
+        assert_eq!((decide(0.0, 24.5, 18.0, 6.0, 0.0), decide(1.0, 24.5, 18.0, 8.1, 0.0)), (1.0, 0.0));
+        assert_eq!((decide(1.0, 21.9, 18.0, 3.0, 0.0), decide(1.0, 24.0, 18.0, 3.0, 0.3)), (0.0, 0.0));
+    }
+}

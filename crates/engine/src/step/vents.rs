@@ -1,0 +1,116 @@
+//! Air through openings that pressure drives, and the controls of openings.
+//!
+//! A control decides at the beginning of a step, from the temperatures there and the weather in the first stage; its decision holds for
+//! the step. The pressures and flows of a stage belong to the weather in the stage and to the temperatures of the airs at the beginning of
+//! the step, or of the part of it: a step stays as linear as it is without them, and its flows are of first order in its length. (Hensen
+//! 1999, A comparison of coupled and de-coupled solutions for temperature and air flow in a building, ASHRAE Trans. 105(2), 962-969, calls
+//! this ping-pong.) A flow that a temperature difference alone drives grows with the root of it: a flow that is too large for the heat in
+//! the room is followed by one that is too small by less than half of that.
+
+use crate::building::model::Model;
+use crate::input::forcing::channel;
+use crate::linear::vent_network::{LEAK, Link, VentNetwork};
+use crate::number::real::Real;
+use crate::physics::constants::KELVIN;
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use crate::weather::conditions::Conditions;
+
+impl<S: Real> Stepper<'_, S> {
+    /// Lets the controls decide in a forcing row.
+    #[inline(always)]
+    pub(crate) fn control_vents(&self, state: &mut State<S>, row: &[f64]) {
+        let State { opened, air, .. } = state;
+        let (outdoor, wind) = (row[channel::AIR_TEMPERATURE], row[channel::WIND_SPEED]);
+        for (opened, control) in opened.iter_mut().zip(&self.model.coefficients.vents.controls) {
+            *opened = control.decide(*opened, air, outdoor, wind, row);
+        }
+    }
+
+    /// Closes what controls have closed, and finds the flows in the weather that is set.
+    #[inline(always)]
+    pub(crate) fn drive_vents(&mut self, state: &State<S>) {
+        if !self.model.coefficients.vents.is_empty() {
+            self.find_vent_flows(state);
+        }
+    }
+
+    // Most buildings have none: one copy of it is enough.
+    #[inline(never)]
+    fn find_vent_flows(&mut self, state: &State<S>) {
+        let Self { model, weather, vents, .. } = self;
+        let (numbers, conditions) = (&model.coefficients, &mut weather.conditions);
+        for (at, zone) in conditions.zones.iter_mut().zip(&numbers.zones) {
+            at.control(zone, &state.opened);
+        }
+        conditions.vents.control(&numbers.vents, &state.opened);
+        if let Some(network) = vents {
+            S::vectorised(
+                #[inline(always)]
+                || {
+                    drive(network, model, conditions, &state.air);
+                    network.solve();
+                    spread(network, model, conditions);
+                },
+            );
+        }
+    }
+}
+
+/// Wind and stack on all parts of openings.
+#[inline(always)]
+fn drive<S: Real>(
+    network: &mut VentNetwork<'_, S>,
+    model: &Model<'_, S>,
+    conditions: &Conditions<S>,
+    air: &[S],
+) {
+    let numbers = &model.coefficients.vents;
+    let kelvin = S::constant(KELVIN);
+    let outdoor = numbers.weight / (conditions.outdoor_air + kelvin);
+    // Weight above that of the outdoor air [N/m3].
+    let excess = |zone: usize| numbers.weight / (air[zone] + kelvin) - outdoor;
+    network.links.clear();
+    for (k, vent) in numbers.all.iter().enumerate() {
+        let at_other_end = vent.to.map_or_else(S::zero, excess);
+        let fall = at_other_end - excess(vent.zone);
+        for &height in &vent.heights {
+            network.links.push(Link {
+                from: vent.zone,
+                to: vent.to,
+                strength: vent.strength * conditions.vents.open[k],
+                exponent: vent.exponent,
+                drive: fall * height - conditions.vents.pressure[k],
+            });
+        }
+    }
+}
+
+/// Flows of all openings, and the heat that they carry.
+#[inline(always)]
+fn spread<S: Real>(network: &VentNetwork<'_, S>, model: &Model<'_, S>, conditions: &mut Conditions<S>) {
+    let air = &model.coefficients.mechanical_air;
+    let numbers = &model.coefficients.vents;
+    let (zones, carried) = (&mut conditions.mechanical_air.zones, &mut conditions.mechanical_air.carried);
+    let (mut link, mut pair) = (0, air.first_of_vents);
+    for (vent, flows) in numbers.all.iter().zip(&mut conditions.vents.flows) {
+        *flows = [S::zero(); 2];
+        for _ in &vent.heights {
+            let flow = network.flow(link);
+            flows[0] += flow.max(S::zero());
+            flows[1] += (-flow).max(S::zero());
+            link += 1;
+        }
+        let heat = flows.map(|flow| flow * numbers.heat);
+        if vent.to.is_some() {
+            carried[pair..pair + 2].copy_from_slice(&heat);
+            pair += 2;
+        } else {
+            zones[vent.zone].exchange(heat);
+        }
+    }
+    for (zone, &pressure) in zones.iter_mut().zip(&network.pressures) {
+        let leak = pressure.scale(LEAK) * numbers.heat;
+        zone.exchange([leak.max(S::zero()), (-leak).max(S::zero())]);
+    }
+}
