@@ -318,7 +318,9 @@ def test_a_port_in_use_is_named(
 
 
 @pytest.mark.browser
-def test_a_slider_moves_the_curve(browser: Browser, server: Server, saved: tuple[Path, Path]) -> None:
+def test_a_slider_moves_the_curve(
+    browser: Browser, server: Server, session: Session, saved: tuple[Path, Path]
+) -> None:
     context = browser.new_context()
     page = context.new_page()
     messages: list[str] = []
@@ -329,12 +331,16 @@ def test_a_slider_moves_the_curve(browser: Browser, server: Server, saved: tuple
     page.goto(server.address)
     page.wait_for_selector("body[data-ready]")
     picture = "document.querySelector('#plots canvas').toDataURL()"
-    before, table = page.evaluate(picture), page.locator("#comfort").inner_text()
+    before, table = page.evaluate(picture), page.locator("#comfort tbody").inner_text()
     slider = page.locator(f".slider[data-path='{ABSORPTANCE}']")
     slider.locator("input[type=range]").press("End")
     page.wait_for_selector("body[data-runs='1']")
-    assert page.evaluate(picture) != before
-    assert page.locator("#comfort").inner_text() != table
+    moved = page.evaluate(picture)
+    assert moved != before
+    highest = float(slider.locator("input[type=number]").input_value())
+    hours = session.run({ABSORPTANCE: highest}, [20.0, 26.0])["comfort"][0]["hot_degree_hours"]
+    assert hours > 1.0
+    assert f"{hours:.1f}" in page.locator("#comfort tbody").inner_text() != table
     slider.locator("input[type=number]").fill("7")
     slider.locator("input[type=number]").press("Enter")
     slider.locator(".message:not([hidden])").wait_for()
@@ -342,6 +348,7 @@ def test_a_slider_moves_the_curve(browser: Browser, server: Server, saved: tuple
     slider.locator("input[type=number]").fill("0.25")
     slider.locator("input[type=number]").press("Enter")
     page.wait_for_selector("body[data-runs='2']")
+    assert page.evaluate(picture) not in (before, moved)
     page.locator("#save").click()
     page.locator("#saved code", has_text="saved.yaml").wait_for()
     assert mc.load(saved[1]).parameter(ABSORPTANCE).value == 0.25
@@ -353,20 +360,22 @@ def test_a_slider_moves_the_curve(browser: Browser, server: Server, saved: tuple
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_ctrl_c_ends_the_page_with_130(saved: tuple[Path, Path], tmp_path: Path) -> None:
     words = ["explore", str(saved[0]), "--weather", "shipped:golden", "--parameters", ABSORPTANCE]
-    process = subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, "-m", "mascarin.cli", *words, "--no-open", "--step", "1h"],
         stderr=subprocess.PIPE, text=True, cwd=tmp_path,
-    )  # fmt: skip
-    assert process.stderr is not None
-    try:
-        lines: list[str] = []
-        while not (lines and lines[-1].startswith("Ctrl-C")):
-            lines.append(process.stderr.readline())
-            assert lines[-1], f"ended early: {lines}"
-        assert lines[-2].startswith("http://127.0.0.1:")
-        process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=120) == 130
-        assert "interrupted" in process.stderr.read()
-    finally:
-        process.kill()
-        process.wait()
+    ) as process:  # fmt: skip
+        guard = threading.Timer(60.0, process.kill)  # a command that hangs fails here, and nothing waits for it
+        guard.start()
+        try:
+            assert process.stderr is not None
+            lines: list[str] = []
+            while not (lines and lines[-1].startswith("Ctrl-C")):
+                lines.append(process.stderr.readline())
+                assert lines[-1], f"ended early: {lines}"
+            assert lines[-2].startswith("http://127.0.0.1:")
+            process.send_signal(signal.SIGINT)
+            assert "interrupted" in process.stderr.read()
+            assert process.wait() == 130
+        finally:
+            guard.cancel()
+            process.kill()
