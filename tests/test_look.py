@@ -30,6 +30,7 @@ from mascarin.explore.page import render as explore_page
 from mascarin.explore.server import TOKEN
 from mascarin.report.run_page import Notes
 from mascarin.report.run_page import render as run_page
+from mascarin.report.template import asset
 from mascarin.verification.bestest.catalogue import CASES
 from mascarin.view import render, write
 from mascarin.view.layers import constructions
@@ -50,6 +51,8 @@ COLORS = """() => {
   context.drawImage(seen, 0, 0);
   return new Set(new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
 }"""
+
+PICTURE = "() => document.getElementById('canvas').toDataURL()"
 
 
 # --- the building -------------------------------------------------------------------------------------------
@@ -128,6 +131,10 @@ def test_the_building_is_drawn_without_network_and_names_stay_text(page: Page, t
     before = page.locator("#selected > h3").inner_text()
     page.locator("#canvas").press("n")
     assert page.locator("#selected > h3").inner_text() != before
+    outside = page.evaluate(PICTURE)
+    page.locator("#show-inside").check()
+    page.wait_for_function(f"({PICTURE})() !== {json.dumps(outside)}")  # the roof no longer hides the rooms
+    page.locator("#show-inside").uncheck()
     page.locator("#color-by").select_option("u")
     assert "W/(m² K)" in page.locator("#keys").inner_text()
     page.evaluate(
@@ -149,6 +156,12 @@ def test_the_vendored_library_is_the_pinned_one(repository: Path) -> None:
     pinned, name = (repository / "packaging" / "three" / "three.sha256").read_text().split()
     vendored = repository / "python" / "mascarin" / "view" / "vendor" / name
     assert hashlib.sha256(vendored.read_bytes()).hexdigest() == pinned
+
+
+def test_every_name_of_the_library_that_the_page_uses_is_in_it(repository: Path) -> None:
+    used = set(re.findall(r"\bTHREE\.(\w+)", asset("view/view.js")))
+    listed = (repository / "packaging" / "three" / "entry.js").read_text(encoding="utf-8")
+    assert used == set(re.findall(r"\w+", " ".join(re.findall(r"{(.*?)}", listed, re.DOTALL))))
 
 
 def test_view_names_a_missing_file(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -350,7 +363,8 @@ def test_a_slider_moves_the_curve(
     page.wait_for_selector("body[data-runs='2']")
     assert page.evaluate(picture) not in (before, moved)
     page.locator("#save").click()
-    page.locator("#saved code", has_text="saved.yaml").wait_for()
+    page.locator("#saved", has_text="Wrote ").wait_for()
+    assert "saved.yaml" in page.locator("#saved code").inner_text()
     assert mc.load(saved[1]).parameter(ABSORPTANCE).value == 0.25
     assert messages == []
     assert {url.split("/")[2] for url in requests} == {f"127.0.0.1:{server.server_port}"}
