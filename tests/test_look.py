@@ -25,7 +25,7 @@ from mascarin import cli, examples
 from mascarin.building.geometry import Polygon
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
-from mascarin.explore import Server, Session
+from mascarin.explore import Server, Session, choice
 from mascarin.explore.page import render as explore_page
 from mascarin.explore.server import TOKEN
 from mascarin.report.run_page import Notes
@@ -268,6 +268,17 @@ def test_parameters_that_do_not_exist_or_cannot_vary_are_named() -> None:
         Session(mc.load(HOUSE), box_climate(), parameters=["site.latitude"])
     with pytest.raises(InputError, match="lower one first"):
         Session(box(), box_climate(), parameters=[ABSORPTANCE]).run({}, [26.0, 20.0])
+
+
+def test_tied_parameters_have_one_slider() -> None:
+    plain = box().to_dict()
+    plain["materials"]["other"] = plain["materials"]["concrete"]
+    plain["constructions"]["wall"]["layers"].append({"material": "other", "thickness": 0.1})
+    building = mc.Building.from_dict(plain | {"ties": {"materials.*.density": "factor"}})
+    assert [one.path for one in choice.named(building, ["materials.*.dens*"])] == ["materials.*.density"]
+    assert [one.path for one in choice.named(building, ["materials.*.density"])] == ["materials.*.density"]
+    one = "materials.concrete.density"
+    assert [one.path for one in choice.named(building, [one])] == [one]
 
 
 @pytest.fixture(scope="module")
