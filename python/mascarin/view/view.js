@@ -445,7 +445,8 @@
     renderer.setSize(wide, high, false);
     camera.aspect = wide / high;
     camera.updateProjectionMatrix();
-    if (!framed) { framed = true; look("south-east"); $("view-from").value = "south-east"; }
+    if (!framed) { framed = true; $("view-from").value = "south-east"; }
+    if ($("view-from").value) look($("view-from").value); // until the reader turns it
     render();
   }
   new ResizeObserver(resize).observe(canvas.parentElement);
