@@ -63,7 +63,8 @@ def browser() -> Iterator[Browser]:
     program = os.environ.get("MASCARIN_BROWSER") or shutil.which("chromium")
     if program is None:
         unavailable("no Chromium: set MASCARIN_BROWSER to the program")
-    flags = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-sync"]
+    flags = ["--no-sandbox", "--disable-background-networking", "--disable-sync"]
+    flags += ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]  # WebGL drawn by the processor
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=flags)
         try:

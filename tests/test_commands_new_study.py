@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 from ruamel.yaml import YAML
 
+from mascarin.building.yaml_document import plain
 from mascarin.cli import main
 from mascarin.examples import STUDIES
 
@@ -25,9 +28,17 @@ def test_every_example_can_be_started_from(
     said = capsys.readouterr()
     written = [Path(line) for line in said.out.splitlines()]
     source = STUDIES[name].parent
-    assert [path.name for path in written] == sorted(p.name for p in source.iterdir() if p.is_file())
-    same = [path for path in written if path.name != "study.yaml"]
-    assert all(path.read_bytes() == (source / path.name).read_bytes() for path in same)
+    copies = [path for path in written if not path.name.endswith(".schema.json")]
+    assert [path.name for path in copies] == sorted(p.name for p in source.iterdir() if p.is_file())
+    for path in copies:
+        if path.name != "study.yaml":
+            head = b"# yaml-language-server: $schema=building.schema.json\n" * (path.name == "building.yaml")
+            assert path.read_bytes() == head + (source / path.name).read_bytes()
+    for kind in ("building", "study"):
+        text = (folder / f"{kind}.yaml").read_text(encoding="utf-8")
+        named = text.partition("\n")[0].partition("$schema=")[2]
+        schema = json.loads((folder / named).read_text(encoding="utf-8"))
+        jsonschema.Draft202012Validator(schema).validate(plain(text, kind))
     copied, example = yaml(folder / "study.yaml"), yaml(STUDIES[name])
     # What describes the data of the example would be wrong for other data.
     assert copied["about"] == "Describe your data here."

@@ -25,11 +25,12 @@ from mascarin import cli, examples
 from mascarin.building.geometry import Polygon
 from mascarin.errors import InputError
 from mascarin.examples import box, box_climate
-from mascarin.explore import Server, Session
+from mascarin.explore import Server, Session, choice
 from mascarin.explore.page import render as explore_page
 from mascarin.explore.server import TOKEN
 from mascarin.report.run_page import Notes
 from mascarin.report.run_page import render as run_page
+from mascarin.report.template import asset
 from mascarin.verification.bestest.catalogue import CASES
 from mascarin.view import render, write
 from mascarin.view.layers import constructions
@@ -50,6 +51,8 @@ COLORS = """() => {
   context.drawImage(seen, 0, 0);
   return new Set(new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
 }"""
+
+PICTURE = "() => document.getElementById('canvas').toDataURL()"
 
 
 # --- the building -------------------------------------------------------------------------------------------
@@ -128,6 +131,10 @@ def test_the_building_is_drawn_without_network_and_names_stay_text(page: Page, t
     before = page.locator("#selected > h3").inner_text()
     page.locator("#canvas").press("n")
     assert page.locator("#selected > h3").inner_text() != before
+    outside = page.evaluate(PICTURE)
+    page.locator("#show-inside").check()
+    page.wait_for_function(f"({PICTURE})() !== {json.dumps(outside)}")  # the roof no longer hides the rooms
+    page.locator("#show-inside").uncheck()
     page.locator("#color-by").select_option("u")
     assert "W/(m² K)" in page.locator("#keys").inner_text()
     page.evaluate(
@@ -149,6 +156,12 @@ def test_the_vendored_library_is_the_pinned_one(repository: Path) -> None:
     pinned, name = (repository / "packaging" / "three" / "three.sha256").read_text().split()
     vendored = repository / "python" / "mascarin" / "view" / "vendor" / name
     assert hashlib.sha256(vendored.read_bytes()).hexdigest() == pinned
+
+
+def test_every_name_of_the_library_that_the_page_uses_is_in_it(repository: Path) -> None:
+    used = set(re.findall(r"\bTHREE\.(\w+)", asset("view/view.js")))
+    listed = (repository / "packaging" / "three" / "entry.js").read_text(encoding="utf-8")
+    assert used == set(re.findall(r"\w+", " ".join(re.findall(r"{(.*?)}", listed, re.DOTALL))))
 
 
 def test_view_names_a_missing_file(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -257,6 +270,17 @@ def test_parameters_that_do_not_exist_or_cannot_vary_are_named() -> None:
         Session(box(), box_climate(), parameters=[ABSORPTANCE]).run({}, [26.0, 20.0])
 
 
+def test_tied_parameters_have_one_slider() -> None:
+    plain = box().to_dict()
+    plain["materials"]["other"] = plain["materials"]["concrete"]
+    plain["constructions"]["wall"]["layers"].append({"material": "other", "thickness": 0.1})
+    building = mc.Building.from_dict(plain | {"ties": {"materials.*.density": "factor"}})
+    assert [one.path for one in choice.named(building, ["materials.*.dens*"])] == ["materials.*.density"]
+    assert [one.path for one in choice.named(building, ["materials.*.density"])] == ["materials.*.density"]
+    one = "materials.concrete.density"
+    assert [one.path for one in choice.named(building, [one])] == [one]
+
+
 @pytest.fixture(scope="module")
 def server(session: Session, saved: tuple[Path, Path]) -> Iterator[Server]:
     base, target = saved
@@ -318,7 +342,9 @@ def test_a_port_in_use_is_named(
 
 
 @pytest.mark.browser
-def test_a_slider_moves_the_curve(browser: Browser, server: Server, saved: tuple[Path, Path]) -> None:
+def test_a_slider_moves_the_curve(
+    browser: Browser, server: Server, session: Session, saved: tuple[Path, Path]
+) -> None:
     context = browser.new_context()
     page = context.new_page()
     messages: list[str] = []
@@ -329,12 +355,16 @@ def test_a_slider_moves_the_curve(browser: Browser, server: Server, saved: tuple
     page.goto(server.address)
     page.wait_for_selector("body[data-ready]")
     picture = "document.querySelector('#plots canvas').toDataURL()"
-    before, table = page.evaluate(picture), page.locator("#comfort").inner_text()
+    before, table = page.evaluate(picture), page.locator("#comfort tbody").inner_text()
     slider = page.locator(f".slider[data-path='{ABSORPTANCE}']")
     slider.locator("input[type=range]").press("End")
     page.wait_for_selector("body[data-runs='1']")
-    assert page.evaluate(picture) != before
-    assert page.locator("#comfort").inner_text() != table
+    moved = page.evaluate(picture)
+    assert moved != before
+    highest = float(slider.locator("input[type=number]").input_value())
+    hours = session.run({ABSORPTANCE: highest}, [20.0, 26.0])["comfort"][0]["hot_degree_hours"]
+    assert hours > 1.0
+    assert f"{hours:.1f}" in page.locator("#comfort tbody").inner_text() != table
     slider.locator("input[type=number]").fill("7")
     slider.locator("input[type=number]").press("Enter")
     slider.locator(".message:not([hidden])").wait_for()
@@ -342,8 +372,10 @@ def test_a_slider_moves_the_curve(browser: Browser, server: Server, saved: tuple
     slider.locator("input[type=number]").fill("0.25")
     slider.locator("input[type=number]").press("Enter")
     page.wait_for_selector("body[data-runs='2']")
+    assert page.evaluate(picture) not in (before, moved)
     page.locator("#save").click()
-    page.locator("#saved code", has_text="saved.yaml").wait_for()
+    page.locator("#saved", has_text="Wrote ").wait_for()
+    assert "saved.yaml" in page.locator("#saved code").inner_text()
     assert mc.load(saved[1]).parameter(ABSORPTANCE).value == 0.25
     assert messages == []
     assert {url.split("/")[2] for url in requests} == {f"127.0.0.1:{server.server_port}"}
@@ -353,20 +385,22 @@ def test_a_slider_moves_the_curve(browser: Browser, server: Server, saved: tuple
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_ctrl_c_ends_the_page_with_130(saved: tuple[Path, Path], tmp_path: Path) -> None:
     words = ["explore", str(saved[0]), "--weather", "shipped:golden", "--parameters", ABSORPTANCE]
-    process = subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, "-m", "mascarin.cli", *words, "--no-open", "--step", "1h"],
         stderr=subprocess.PIPE, text=True, cwd=tmp_path,
-    )  # fmt: skip
-    assert process.stderr is not None
-    try:
-        lines: list[str] = []
-        while not (lines and lines[-1].startswith("Ctrl-C")):
-            lines.append(process.stderr.readline())
-            assert lines[-1], f"ended early: {lines}"
-        assert lines[-2].startswith("http://127.0.0.1:")
-        process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=120) == 130
-        assert "interrupted" in process.stderr.read()
-    finally:
-        process.kill()
-        process.wait()
+    ) as process:  # fmt: skip
+        guard = threading.Timer(60.0, process.kill)  # a command that hangs fails here
+        guard.start()
+        try:
+            assert process.stderr is not None
+            lines: list[str] = []
+            while not (lines and lines[-1].startswith("Ctrl-C")):
+                lines.append(process.stderr.readline())
+                assert lines[-1], f"ended early: {lines}"
+            assert lines[-2].startswith("http://127.0.0.1:")
+            process.send_signal(signal.SIGINT)
+            assert "interrupted" in process.stderr.read()
+            assert process.wait() == 130
+        finally:
+            guard.cancel()
+            process.kill()

@@ -4,6 +4,8 @@ import base64
 import re
 import struct
 import zlib
+from collections.abc import Callable
+from functools import cache
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
@@ -192,7 +194,7 @@ def test_markup_in_texts_stays_text() -> None:
     study, series = report_example.lgi()
     page = render(poisoned(study), series)
     assert "<script>alert" not in page
-    assert page.count("<script") == 3
+    assert page.count("<script") == 4  # data, uPlot, curves.js, report.js
     outline = Outline(page)
     assert outline.faults == []
     assert not outline.all("b")
@@ -278,14 +280,28 @@ def test_carpet_pictures_hold_the_errors(lgi_page: str) -> None:
 # --- in a browser --------------------------------------------------------------------------------
 
 
-def opened(page: Page, folder: Path, name: str) -> tuple[list[str], list[str]]:
+Pages = Callable[[str], Path]
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Pages:
+    """Gives the file of a report by its name; each is made once."""
+
+    @cache
+    def file(name: str) -> Path:
+        folder = tmp_path_factory.mktemp(name)
+        return write(folder / "report.html", *getattr(report_example, name)())
+
+    return file
+
+
+def opened(page: Page, file: Path) -> tuple[list[str], list[str]]:
     """Open a report; give the addresses that it asked for and what it complained about."""
     asked: list[str] = []
     complaints: list[str] = []
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    file = write(folder / "report.html", *getattr(report_example, name)())
     page.goto(file.as_uri())
     page.wait_for_selector("#plot-values canvas")
     return asked, complaints
@@ -293,8 +309,8 @@ def opened(page: Page, folder: Path, name: str) -> tuple[list[str], list[str]]:
 
 @pytest.mark.browser
 @pytest.mark.parametrize("name", ["lgi", "wall"])
-def test_nothing_leaves_the_page_and_nothing_fails(page: Page, tmp_path: Path, name: str) -> None:
-    asked, complaints = opened(page, tmp_path, name)
+def test_nothing_leaves_the_page_and_nothing_fails(page: Page, pages: Pages, name: str) -> None:
+    asked, complaints = opened(page, pages(name))
     for scheme in ("dark", "light"):
         page.emulate_media(color_scheme=scheme)
     options = page.eval_on_selector_all("#pick-sensor option", "all => all.map(o => o.value)")
@@ -318,20 +334,20 @@ def test_nothing_leaves_the_page_and_nothing_fails(page: Page, tmp_path: Path, n
 
 @pytest.mark.browser
 @pytest.mark.parametrize("width", [320, 768, 1400])
-def test_no_width_scrolls_sideways(page: Page, tmp_path: Path, width: int) -> None:
+def test_no_width_scrolls_sideways(page: Page, pages: Pages, width: int) -> None:
     page.set_viewport_size({"width": width, "height": 800})
-    opened(page, tmp_path, "lgi")
+    opened(page, pages("lgi"))
     page.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
     assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 @pytest.mark.browser
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing(page: Page, tmp_path: Path, scheme: Any) -> None:
+def test_axe_finds_nothing(page: Page, pages: Pages, scheme: Any) -> None:
     from axe_playwright_python.sync_playwright import Axe
 
     page.emulate_media(color_scheme=scheme)
-    opened(page, tmp_path, "lgi")
+    opened(page, pages("lgi"))
     page.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
     found = Axe().run(page)
     assert found.response["passes"]
@@ -339,10 +355,10 @@ def test_axe_finds_nothing(page: Page, tmp_path: Path, scheme: Any) -> None:
 
 
 @pytest.mark.browser
-def test_curves_in_the_browser_are_those_of_the_study(page: Page, tmp_path: Path) -> None:
+def test_curves_in_the_browser_are_those_of_the_study(page: Page, pages: Pages) -> None:
     """The browser's decoding of the packed series gives the values back."""
     _, series = report_example.lgi()
-    opened(page, tmp_path, "lgi")
+    opened(page, pages("lgi"))
     page.select_option("#pick-period", "")
     page.hover("#plot-values .u-over", position={"x": 200, "y": 100})
     shown = page.eval_on_selector_all(

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from mascarin.building import Building
 from mascarin.errors import InputError, SolverError
 from mascarin.simulation.inactive import inactive_parameters
 from mascarin.simulation.readings import globe_temperature
+from mascarin.simulation.results import Results
 from mascarin.simulation.run import simulate
 from mascarin.simulation.simulation import Simulation
 from mascarin.verification.analytical import setup, zones
@@ -110,6 +112,21 @@ def test_measured_columns_may_be_in_a_separate_table(linear: Building, climate: 
     together = simulate(linear, climate, step="1h", end="2001-01-03").records
     apart = simulate(linear, weather(3), measurements=beside, step="1h", end="2001-01-03").records
     assert np.array_equal(apart, together)
+
+
+def test_a_file_of_results_names_the_measured_table(linear: Building, tmp_path: Path) -> None:
+    index = pd.date_range("2001-01-01", periods=73, freq="1h", tz="UTC", name="time")
+    table = tmp_path / "measured.csv"
+    pd.DataFrame(measured(3), index=index).to_csv(table)
+    beside = Measurements.from_table(table, timezone="UTC")
+    run = simulate(linear, weather(3), measurements=beside, step="1h", end="2001-01-01 03:00")
+    run.write(tmp_path / "run.csv")
+    made_from = Results.open(tmp_path / "run.csv").provenance.measurements
+    assert made_from is not None
+    assert made_from["sha256"] == hashlib.sha256(table.read_bytes()).hexdigest()
+    assert made_from["columns"] == list(measured(3))
+    alone = simulate(linear, weather(3, **measured(3)), step="1h", end="2001-01-01 03:00")
+    assert alone.provenance.measurements is None
 
 
 # --- start ---

@@ -53,7 +53,9 @@ GROUPS: Final[dict[str, tuple[Command, ...]]] = {
             "Copy an example study into a new folder.",
         ),
         Command(
-            "schema", "mascarin.commands.building:schema", "Print the JSON Schema of a building description."
+            "schema",
+            "mascarin.commands.schema:schema",
+            "Print the JSON Schema of a building, a study or a design.",
         ),
         Command(
             "check", "mascarin.commands.building:check", "Check a building description and print a summary."

@@ -13,6 +13,7 @@ from pydantic_core import PydanticUndefined
 
 from mascarin.building.description import Description
 from mascarin.building.documenting import summary_of
+from mascarin.building.json_schemas import json_schema
 from mascarin.building.number import (
     Fixed,
     Number,
@@ -25,7 +26,6 @@ from mascarin.building.number import (
     quantity_of,
 )
 from mascarin.building.part import Part
-from mascarin.building.tables import json_schema
 from sitepages.snippets import Snippets
 
 #: Steps of a path that the user names.

@@ -43,6 +43,7 @@ from mascarin.building.humidity import (
     VapourGain,
     ZoneHumidity,
 )
+from mascarin.building.json_schemas import json_schema
 from mascarin.building.leakage import LeakageFactor, LeakageStackWind
 from mascarin.building.material import PhaseChangeMaterial, Resistance, Solid
 from mascarin.building.number import Number
@@ -84,7 +85,7 @@ from mascarin.building.site import (
 )
 from mascarin.building.sorption import LinearSorption, Published, TabulatedSorption
 from mascarin.building.surface import Construction, Exposure, Ground, Layer, Sensor, Side, Surface
-from mascarin.building.tables import json_schema, parameter_table
+from mascarin.building.tables import parameter_table
 from mascarin.building.vent import (
     DifferenceBand,
     LowRise,

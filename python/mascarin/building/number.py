@@ -413,10 +413,16 @@ def noted_form(plain: dict[str, Any], words: Sequence[dict[str, Any]] = ()) -> d
     return {
         "type": "object",
         "properties": {
-            "value": {"anyOf": [plain, *words]},
-            "range": {"type": "array", "items": plain, "minItems": 2, "maxItems": 2},
-            "source": {"type": "string"},
-            "assumed": {"type": "boolean"},
+            "value": {"anyOf": [plain, *words], "description": "The value"},
+            "range": {
+                "type": "array",
+                "items": plain,
+                "minItems": 2,
+                "maxItems": 2,
+                "description": "Smallest and largest plausible value",
+            },
+            "source": {"type": "string", "description": "Where the value comes from"},
+            "assumed": {"type": "boolean", "description": "Whether the value is an assumption"},
         },
         "required": ["value"],
         "additionalProperties": False,

@@ -218,8 +218,14 @@ def _plant_of(held: Any) -> Any:
 
 def _or_held(schema: dict[str, Any]) -> None:
     """Allow ``held``, the short form of heating and cooling with one set point, in the JSON Schema."""
-    words = {key: {"type": "string"} for key in (*_SET_POINT, "when")}
-    numbers = {key: {"type": ["number", "object"]} for key in ("temperature", "radiative")}
+    texts = {
+        "schedule": "Schedule that gives the set point",
+        "column": "Measured column that gives the set point",
+        "when": "Schedule of the hours in which the zone is held",
+    }
+    words = {key: {"type": "string", "description": text} for key, text in texts.items()}
+    facts = {"temperature": "Set point [degC]", "radiative": "Radiative part of the load [-]"}
+    numbers = {key: {"type": ["number", "object"], "description": text} for key, text in facts.items()}
     schema["properties"]["held"] = {
         "description": "Heating and cooling with this set point [degC], where a schedule 'when' says so; "
         "part of it may be radiative",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import InitErrorDetails
 
 from mascarin.building.number import problem, shown
@@ -45,6 +45,11 @@ def _text(raw: Any) -> Any:
     return str(raw) if isinstance(raw, int) and not isinstance(raw, bool) else raw
 
 
+Category = Annotated[
+    str | None,
+    BeforeValidator(_text),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "integer"}, {"type": "null"}]}),
+]
 Humidity = Annotated[float | Literal["outdoor", "simulated"] | None, BeforeValidator(_known_humidity)]
 
 
@@ -59,7 +64,7 @@ class ComfortSettings(Part):
     """
 
     index: IndexName = Field("adaptive-en", description="Comfort index")
-    category: Annotated[str | None, BeforeValidator(_text)] = Field(
+    category: Category = Field(
         None,
         description="Category: I, II, III (adaptive-en), 80, 90 (adaptive-ashrae), A, B, C (pmv); by default "
         "II, 80 and B",

@@ -15,17 +15,6 @@ if TYPE_CHECKING:
     from mascarin.building import Building
 
 
-def schema() -> None:
-    """Print the JSON Schema of a building description.
-
-    With this file an editor can complete and check building files. The same as a page for readers, with
-    examples, is "Keys of a building" in the reference of the documentation.
-    """
-    from mascarin.building import json_schema
-
-    print_json(json_schema())
-
-
 def check(
     building: Path, /, *, step: Step = "15min", settings: Settings = None, as_json: AsJson = False
 ) -> None:

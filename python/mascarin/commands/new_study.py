@@ -11,9 +11,12 @@ from cyclopts import Parameter
 
 from mascarin._io.atomic import write
 from mascarin._io.locks import writing_into
+from mascarin.commands.schema import HEADER, schema_file
 from mascarin.errors import InputError, did_you_mean
 
 _STUDY: Final = "study.yaml"
+#: Files with a JSON Schema beside them, each with its kind.
+_KINDS: Final = {"building.yaml": "building", _STUDY: "study"}
 #: Keys of a study file that describe its data.
 _TEXTS: Final = {
     "name": "name: New study\n",
@@ -31,7 +34,8 @@ def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example"
     """Copy an example study into a new folder.
 
     Copies building, study and measurements, and prints the next commands. Texts of the study that describe
-    the data of the example are replaced: they would be wrong for other data.
+    the data of the example are replaced: they would be wrong for other data. Files that end with .schema.json
+    let an editor complete and check building and study.
 
     Parameters
     ----------
@@ -57,6 +61,11 @@ def init(folder: Path, /, *, example: Annotated[str, Parameter(name=("--example"
                 content = source.read_bytes()
                 if source.name == _STUDY:
                     content = undescribed(content.decode("utf-8")).encode("utf-8")
+                kind = _KINDS.get(source.name)
+                if kind is not None:
+                    schema = f"{kind}.schema.json"
+                    content = HEADER.format(file=schema).encode("utf-8") + content
+                    print(write(folder / schema, schema_file(kind)))
                 print(write(folder / source.name, content))
     study = folder / _STUDY
     print(

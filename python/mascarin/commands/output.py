@@ -10,7 +10,12 @@ from typing import Any
 
 def print_json(result: Any) -> None:
     """Print a result as JSON; NaN and infinity become null, as JSON has no such numbers."""
-    print(json.dumps(_finite(result), indent=2, ensure_ascii=False, allow_nan=False))
+    print(json_text(result))
+
+
+def json_text(result: Any) -> str:
+    """A result as JSON; NaN and infinity become null."""
+    return json.dumps(_finite(result), indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def _finite(value: Any) -> Any:

@@ -25,7 +25,7 @@ from mascarin.progress import reporting
 from mascarin.simulation.compiling import in_climate
 from mascarin.simulation.energy import ensemble_warnings
 from mascarin.simulation.options import RunOptions, described
-from mascarin.weather import summary
+from mascarin.weather import summary, summary_of_measurements
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -364,12 +364,14 @@ def _unit(building: Building, path: str) -> str:
 
 def _manifest(inputs: EnsembleInputs, members: Members, seed: int | None) -> dict[str, Any]:
     simulation = _first(inputs, members)
+    given = inputs.options.measurements
     units = {output.name: output.unit for output in simulation.outputs}
     times = simulation.index.tz_convert("UTC").tz_localize(None)
     return {
         "mascarin_version": __version__,
         "building": inputs.building.name,
         "climate": summary(inputs.climate),
+        "measurements": None if given is None else summary_of_measurements(given),
         "identity": inputs.identity,
         "samples": members.digest(),
         "members": members.count,

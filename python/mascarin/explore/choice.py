@@ -52,7 +52,7 @@ def named(building: Building, patterns: Sequence[str]) -> list[Parameter]:
     known = {one.path: one for one in building.parameters()}
     found: dict[str, Parameter] = {}
     for pattern in patterns:
-        paths = matching(pattern, known) if is_pattern(pattern) else [building.parameter(pattern).path]
+        paths = _paths(building, pattern, known)
         fixed = [known[path] for path in paths if known[path].structural]
         if len(fixed) == len(paths):
             raise InputError(
@@ -66,6 +66,15 @@ def named(building: Building, patterns: Sequence[str]) -> list[Parameter]:
             "pattern"
         )
     return list(found.values())
+
+
+def _paths(building: Building, pattern: str, known: Mapping[str, Parameter]) -> list[str]:
+    """What a pattern matches; what is tied has one slider, that of the tie."""
+    if pattern in known or not is_pattern(pattern):  # the path of a tie has a star, too
+        return [building.parameter(pattern).path]
+    paths = list(matching(pattern, known))
+    tied = {member for path in paths for member in known[path].members}
+    return [path for path in paths if path not in tied]
 
 
 def strongest(simulation: Simulation, most: int = USUAL) -> list[Parameter]:
@@ -84,7 +93,11 @@ def strongest(simulation: Simulation, most: int = USUAL) -> list[Parameter]:
         The one with the largest effect first: derivative of the mean of all recorded temperatures times the
         width of the range. Where there are no derivatives, those with the widest ranges.
     """
-    varying = {one.path: one for one in simulation.building.parameters() if one.varies and not one.structural}
+    everything = simulation.building.parameters()
+    tied = {member for one in everything for member in one.members}
+    varying = {
+        one.path: one for one in everything if one.varies and not one.structural and one.path not in tied
+    }
     try:
         slopes = simulation.gradient(_mean_of_all).slopes
         width = {path: abs(slopes.get(path, 0.0)) * (one.high - one.low) for path, one in varying.items()}

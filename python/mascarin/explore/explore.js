@@ -166,5 +166,5 @@
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", rebuild);
   build();
   fill();
-  document.body.dataset.ready = "true";
+  requestAnimationFrame(() => setTimeout(() => { document.body.dataset.ready = "true"; })); // painted
 })();

@@ -168,6 +168,7 @@ def _run(
         "building": simulation.building.name,
         "building_sha256": compiled.hash,
         "climate": summary(simulation.climate),
+        "measurements": simulation.measured,
         "start": simulation.start.isoformat(),
     }
     return json.dumps(content, default=str).encode()

@@ -303,6 +303,11 @@ def _inputs(results: Results, notes: Notes) -> list[tuple[str, str]]:
         (f"Weather, {key.replace('_', ' ')}", _words(value)) for key, value in found.climate.items() if value
     ]
     rows += [
+        (f"Measurements, {key.replace('_', ' ')}", _words(value))
+        for key, value in (found.measurements or {}).items()
+        if value
+    ]
+    rows += [
         ("Period", f"{results.index[0]:%Y-%m-%d %H:%M} to {results.index[-1]:%Y-%m-%d %H:%M}"),
         ("Time zone", str(results.index.tz)),
         ("Step", text.with_unit(found.step_seconds, "s", 6)),

@@ -42,6 +42,8 @@ class Provenance:
         updated at the end of a step, contains only the sum. A shorter step makes it smaller.
     version : str
         Version of Mascarin.
+    measurements : dict or None
+        File, hash, period, columns and conversions of the measured table; None where none was given.
     """
 
     building: str
@@ -56,6 +58,7 @@ class Provenance:
     halved_steps: int = 0
     reversals: int = 0
     version: str = field(default=__version__)
+    measurements: Mapping[str, Any] | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
@@ -64,6 +67,7 @@ class Provenance:
             "building": self.building,
             "building_sha256": self.building_hash,
             "climate": dict(self.climate),
+            "measurements": None if self.measurements is None else dict(self.measurements),
             "step_seconds": self.step_seconds,
             "scheme": self.scheme,
             "start": self.start,

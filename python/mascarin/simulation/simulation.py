@@ -21,7 +21,7 @@ from mascarin.simulation.results import Results
 from mascarin.simulation.slopes import gradient_of, labelled_slopes
 from mascarin.simulation.vapour import VapourLedger
 from mascarin.simulation.vectors import VectorRuns
-from mascarin.weather import CHANNELS, summary
+from mascarin.weather import CHANNELS, summary, summary_of_measurements
 from mascarin.weather.times import epoch_seconds, seconds_of
 from mascarin.weather.timezones import zone_name
 
@@ -61,6 +61,8 @@ class Simulation(VectorRuns):
         The building, with `parameters` replaced.
     climate : Climate
         Its weather.
+    measured : dict or None
+        What the measured table is: file, hash, period, columns.
     start, end : pandas.Timestamp
         The period, in local time of the climate.
     step_seconds : float
@@ -115,6 +117,7 @@ class Simulation(VectorRuns):
             building, climate, measurements=measurements, parameters=options.parameters, varied=ranges or ()
         )
         self.climate = climate
+        self.measured = None if measurements is None else summary_of_measurements(measurements)
         self.scheme: Scheme = scheme
         self.step_seconds = seconds_of(step)
         self.start, self.end = compiling.period(climate, start, end)
@@ -305,6 +308,7 @@ class Simulation(VectorRuns):
                 building=self.building.name,
                 building_hash=self.compiled.hash,
                 climate=summary(self.climate),
+                measurements=self.measured,
                 step_seconds=self.step_seconds,
                 scheme=self.scheme,
                 start=self._start_note(raw),

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Tag
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Tag, WithJsonSchema
 
 from mascarin.building.initial_state import Degrees, GivenStart
 from mascarin.building.number import problem
@@ -97,10 +97,20 @@ Initial = Annotated[
 #: A local time, ISO 8601, with or without an offset.
 Time = str
 Span = tuple[Time, Time]
-Spans = Annotated[tuple[Span, ...], BeforeValidator(_listed)]
+_PAIR: Final = {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2}
+Spans = Annotated[
+    tuple[Span, ...],
+    BeforeValidator(_listed),
+    WithJsonSchema({"anyOf": [_PAIR, {"type": "array", "items": _PAIR, "minItems": 1}]}),
+]
 #: A part of the record: start and end, or one day.
 Stretch = Span | Time
 Hours = tuple[Annotated[str, AfterValidator(_hour)], Annotated[str, AfterValidator(_hour)]]
-Duration = Annotated[str, BeforeValidator(_seconds), AfterValidator(_duration)]
+Duration = Annotated[
+    str,
+    BeforeValidator(_seconds),
+    AfterValidator(_duration),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}]}),
+]
 TimeZone = Annotated[str, BeforeValidator(_timezone)]
 Columns = str | tuple[str, ...] | dict[str, Any]

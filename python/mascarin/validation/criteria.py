@@ -18,9 +18,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema
 
 from mascarin.errors import InputError, did_you_mean
 from mascarin.validation.comparison import OVER_MEAN, PERCENT, Metrics
@@ -45,6 +45,27 @@ _WORDS: Final = {
     "rmse_over_range": "rmse",
     "bias_over_range": "|bias|",
 }
+
+
+def _listed(value: object) -> object:
+    """A single name is read as a list of one."""
+    return [value] if isinstance(value, str) else value
+
+
+#: Names, or one of them.
+Names = Annotated[
+    Annotated[tuple[str, ...], Field(min_length=1)] | None,
+    BeforeValidator(_listed),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string"},
+                {"type": "array", "items": {"type": "string"}, "minItems": 1},
+                {"type": "null"},
+            ]
+        }
+    ),
+]
 
 
 class Criterion(BaseModel):
@@ -80,24 +101,13 @@ class Criterion(BaseModel):
         allow_inf_nan=False,
         description="Largest size of the metric, itself allowed. [unit of the metric]",
     )
-    sensors: tuple[str, ...] | None = Field(
-        default=None, min_length=1, description="Sensors it applies to; every sensor when absent."
-    )
-    periods: tuple[str, ...] | None = Field(
-        default=None, min_length=1, description="Periods it applies to; every period when absent."
-    )
-    units: tuple[str, ...] | None = Field(
+    sensors: Names = Field(default=None, description="Sensors it applies to; every sensor when absent.")
+    periods: Names = Field(default=None, description="Periods it applies to; every period when absent.")
+    units: Names = Field(
         default=None,
-        min_length=1,
         description="Units of the sensors it applies to, such as degC or W; every unit when absent.",
     )
     name: str | None = Field(default=None, description="A name for the report.")
-
-    @field_validator("sensors", "periods", "units", mode="before")
-    @classmethod
-    def _listed(cls, value: object) -> object:
-        """A single name is read as a list of one."""
-        return [value] if isinstance(value, str) else value
 
     def describe(self, unit: str) -> str:
         """Describe the criterion in words.

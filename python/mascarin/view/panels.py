@@ -22,20 +22,28 @@ Array = npt.NDArray[np.float64]
 
 #: Height of a storey where nothing gives one [m].
 _STOREY: Final = 2.7
-#: Distance between the rectangles of a zone, over its width [-].
+#: Distance of the rectangles from the outline of a zone, over its shorter side [-].
 _GAP: Final = 0.15
 #: Directions within this angle count as one [deg].
 _ALIKE: Final = 15.0
-#: Width of the place of a zone in the plan, over that of the zone [-].
-_SPAN: Final = 1.55
+#: Distance between the outlines of two zones, over the shorter side of each [-].
+_BETWEEN: Final = 0.6
+#: Longest side of a zone in the plan [m].
+_LONGEST: Final = 30.0
 _SQUARE: Final = 4
 
 
 class _Room(NamedTuple):
-    """Height and width of the place in which the surfaces of a zone stand. [m]"""
+    """Height, width to the east and depth to the north of the place in which surfaces stand. [m]"""
 
     height: float
     width: float
+    depth: float
+
+    @property
+    def gap(self) -> float:
+        """Distance of the rectangles from it. [m]"""
+        return _GAP * min(self.width, self.depth)
 
 
 def panels(building: Building) -> dict[str, Array]:
@@ -85,30 +93,44 @@ def _places(rooms: Mapping[str, _Room]) -> dict[str, Array]:
     zones, y = list(rooms), 0.0
     for first in range(0, len(zones), columns):
         row = zones[first : first + columns]
-        deep = max(_SPAN * rooms[zone].width for zone in row)
+        deep = max(rooms[zone].depth + _between(rooms[zone]) for zone in row)
         x = 0.0
         for zone in row:
-            wide = _SPAN * rooms[zone].width
+            wide = rooms[zone].width + _between(rooms[zone])
             found[zone] = np.array([x + 0.5 * wide, y - 0.5 * deep, 0.0])
             x += wide
         y -= deep
     return found
 
 
+def _between(room: _Room) -> float:
+    return _BETWEEN * min(room.width, room.depth)
+
+
 def _room(building: Building, zone: str, names: Sequence[str]) -> _Room:
     surfaces = [building.surfaces[name] for name in names]
     flat = [float(one.area or 0.0) for one in surfaces if not 30.0 < float(one.tilt or 0.0) < 150.0]
-    walls = [float(one.area or 0.0) for one in surfaces if 30.0 <= float(one.tilt or 0.0) <= 150.0]
     volume = float(building.zones[zone].volume or 0.0) if zone else 0.0
     height = _STOREY
     if flat and volume:
         height = min(max(volume / max(flat), 0.5 * _STOREY), 2.0 * _STOREY)
-    sides: dict[tuple[float, float], float] = {}
-    for name in names:
-        place = _bin(_outward(building.surfaces[name], zone))
-        sides[place] = sides.get(place, 0.0) + float(building.surfaces[name].area or 0.0) / height
-    widest = max(sides.values(), default=0.0) if walls else 0.0
-    return _Room(height, max(math.sqrt(max(flat, default=0.0)), min(widest, 30.0), 1.0))
+    lengths: dict[tuple[float, float], float] = {}
+    for surface in surfaces:
+        if not surface.internal_mass and 30.0 <= float(surface.tilt or 0.0) <= 150.0:
+            place = _bin(_outward(surface, zone))
+            lengths[place] = lengths.get(place, 0.0) + float(surface.area or 0.0) / height
+    floor = max(flat, default=0.0)
+    # Walls that face north or south give the width, those that face east or west the depth.
+    width = max((one for place, one in lengths.items() if _along_north(place)), default=0.0)
+    depth = max((one for place, one in lengths.items() if not _along_north(place)), default=0.0)
+    width = width or (floor / depth if depth else math.sqrt(floor))
+    depth = depth or (floor / width if width and floor else width)
+    return _Room(height, *(min(max(one, 1.0), _LONGEST) for one in (width, depth)))
+
+
+def _along_north(place: tuple[float, float]) -> bool:
+    """Whether a direction is nearer to north or south than to east or west."""
+    return abs(math.cos(math.radians(place[1] * _ALIKE))) > math.sqrt(0.5)
 
 
 def _normal(surface: Surface) -> Array:
@@ -140,14 +162,14 @@ def _around(building: Building, zone: str, names: Sequence[str], room: _Room) ->
         sides.setdefault(place, []).append(name)
     found: dict[str, Array] = {}
     for place, side in sides.items():
-        sizes = [_size(building.surfaces[name], room) for name in side]
-        gap = 0.04 * room.width
+        sizes = [_size(building.surfaces[name], room, alone=len(side) == 1) for name in side]
+        gap = 0.04 * min(room.width, room.depth)
         start = -0.5 * (sum(wide for wide, _ in sizes) + gap * (len(side) - 1))
         for name, (wide, high) in zip(side, sizes, strict=True):
             surface = building.surfaces[name]
             normal, out = _normal(surface), _outward(surface, zone)
             along, up = _axes(normal)
-            reach = np.array([(0.5 + _GAP) * room.width] * 2 + [(0.5 + _GAP) * room.height])
+            reach = 0.5 * np.array([room.width, room.depth, room.height]) + room.gap
             centre = np.zeros(3) if place is None else out * reach
             centre = centre + np.array([0.0, 0.0, 0.5 * room.height]) + along * (start + 0.5 * wide)
             half = (0.5 * wide * along, 0.5 * high * up)
@@ -158,11 +180,14 @@ def _around(building: Building, zone: str, names: Sequence[str], room: _Room) ->
     return found
 
 
-def _size(surface: Surface, room: _Room) -> tuple[float, float]:
+def _size(surface: Surface, room: _Room, *, alone: bool) -> tuple[float, float]:
     """Width and height of a rectangle of the area of a surface [m]."""
     area = float(surface.area or 0.0)
-    if 30.0 <= float(surface.tilt or 0.0) <= 150.0 and area / room.height <= 4.0 * room.width:
-        return area / room.height, room.height
+    if 30.0 <= float(surface.tilt or 0.0) <= 150.0:
+        if area / room.height <= 4.0 * max(room.width, room.depth):
+            return area / room.height, room.height
+    elif alone and area <= 4.0 * room.width * room.depth:
+        return room.width, area / room.width
     return math.sqrt(area), math.sqrt(area)
 
 

@@ -66,22 +66,44 @@
     return new THREE.Line(new THREE.BufferGeometry().setFromPoints(shown), material);
   }
 
+  // Of two parts that overlap in one plane, such as a door in its wall, the smaller one is in front: the number
+  // of parts, one before the other, that a part is behind.
+  function levels() {
+    const planes = new Map();
+    data.parts.forEach(({ corners }, number) => {
+      const points = corners.map(vector), normal = normalOf(points), about = new THREE.Box3().setFromPoints(points);
+      if ((Math.abs(normal.x) > 1e-6 ? normal.x : Math.abs(normal.y) > 1e-6 ? normal.y : normal.z) < 0) normal.negate();
+      const key = [normal.x, normal.y, normal.z, normal.dot(points[0])].map((x) => Math.round(100 * x)).join(" ");
+      // Neighbours that share an edge do not overlap.
+      const inside = about.clone().expandByVector(about.getSize(new THREE.Vector3()).multiplyScalar(-0.01));
+      planes.set(key, [...(planes.get(key) || []), { number, inside, area: areaOf(points) }]);
+    });
+    const found = data.parts.map(() => 0);
+    for (const plane of planes.values()) {
+      plane.sort((a, b) => a.area - b.area);
+      plane.forEach((one, k) => {
+        for (const other of plane.slice(0, k)) {
+          if (other.inside.intersectsBox(one.inside)) found[one.number] = Math.max(found[one.number], found[other.number] + 1);
+        }
+      });
+    }
+    return found;
+  }
+
   const building = new THREE.Group();
   const edges = new THREE.LineBasicMaterial();
   const marked = new THREE.LineBasicMaterial();
   const normals = new THREE.Group();
   const arrows = new THREE.LineBasicMaterial();
   const box = { low: new THREE.Vector3(1, 1, 1).multiplyScalar(Infinity), high: new THREE.Vector3(1, 1, 1).multiplyScalar(-Infinity) };
-  // Of two surfaces in one plane, such as a door in its wall, the smaller one is in front.
-  const areas = data.parts.map(({ corners }) => areaOf(corners.map(vector)));
-  const order = [...areas].sort((a, b) => a - b);
+  const behind = levels();
   const parts = data.parts.map((part, number) => {
     const points = part.corners.map(vector);
     const normal = normalOf(points);
     for (const p of points) { box.low.min(p); box.high.max(p); }
     const material = new THREE.MeshLambertMaterial({
       side: THREE.DoubleSide, transparent: true, opacity: part.kind === "window" ? 0.45 : 1,
-      depthWrite: part.kind !== "window", polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 + 8 * Math.min(order.indexOf(areas[number]), 400),
+      depthWrite: part.kind !== "window", polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 + 16 * behind[number],
     });
     const mesh = new THREE.Mesh(faces(points, part.holes.map((hole) => hole.map(vector)), normal), material);
     const edge = outline(points, part.marked ? marked : edges);
@@ -196,7 +218,7 @@
     const k = Math.min(Math.floor(place), sun.times - 2);
     return sunAt(day, k).lerp(sunAt(day, k + 1), place - k).normalize();
   }
-  const sky = new THREE.Group(), reach = 1.9 * size;
+  const sky = new THREE.Group(), reach = 1.35 * size, inSky = [];
   const base = new THREE.Vector3(centre.x, centre.y, ground);
   const pathLine = new THREE.LineBasicMaterial({ color: 0xd9902f }), faint = new THREE.LineBasicMaterial();
   const disc = new THREE.Mesh(new THREE.SphereGeometry(0.055 * size, 20, 14), new THREE.MeshBasicMaterial({ color: 0xe8a317 }));
@@ -211,6 +233,7 @@
       const to = direction(day, hour);
       if (to.z >= 0) points.push(base.clone().addScaledVector(to, reach));
     }
+    if (material === faint) inSky.push(...points);
     return points.length > 1 ? outline(points, material, false) : null;
   };
   const circle = [];
@@ -311,18 +334,20 @@
     south: [0, -1, 0.25], above: [0, -0.001, 1],
   };
   function look(from) {
-    // As near as all corners of the building allow.
+    // As near as all corners of the building allow, and all places of the sun where its path is shown.
     const to = vector(eyes[from]).normalize();
     const right = new THREE.Vector3().crossVectors(camera.up, to).normalize(), up = new THREE.Vector3().crossVectors(to, right);
     const high = Math.tan(camera.fov * Math.PI / 360), wide = high * camera.aspect;
     let away = 0;
-    for (const { points } of parts) for (const p of points) {
+    const include = (p, room) => {
       const c = p.clone().sub(centre);
-      away = Math.max(away, c.dot(to) + 1.18 * Math.max(Math.abs(c.dot(up)) / high, Math.abs(c.dot(right)) / wide));
-    }
+      away = Math.max(away, c.dot(to) + room * Math.max(Math.abs(c.dot(up)) / high, Math.abs(c.dot(right)) / wide));
+    };
+    for (const { points } of parts) for (const p of points) include(p, 1.18);
+    if ($("show-sun").checked) for (const p of inSky) include(p, 1.06);
     controls.target.copy(centre);
     camera.position.copy(centre).addScaledVector(to, away);
-    camera.near = size / 200;
+    camera.near = size / 50;
     camera.far = 100 * size;
     camera.updateProjectionMatrix();
     controls.update();
@@ -420,7 +445,8 @@
     renderer.setSize(wide, high, false);
     camera.aspect = wide / high;
     camera.updateProjectionMatrix();
-    if (!framed) { framed = true; look("south-east"); }
+    if (!framed) { framed = true; $("view-from").value = "south-east"; }
+    if ($("view-from").value) look($("view-from").value); // until the reader turns it
     render();
   }
   new ResizeObserver(resize).observe(canvas.parentElement);

@@ -29,7 +29,7 @@ from mascarin.weather.schedules import scheduled
 from mascarin.weather.shipped import SHIPPED, ShippedClimate
 from mascarin.weather.site import Place
 from mascarin.weather.steps import STAGES
-from mascarin.weather.summary import summary
+from mascarin.weather.summary import summary, summary_of_measurements
 from mascarin.weather.timezones import parse_timezone
 
 __all__ = [
@@ -53,6 +53,7 @@ __all__ = [
     "parse_timezone",
     "scheduled",
     "summary",
+    "summary_of_measurements",
     "write_epw",
 ]
 

@@ -1,10 +1,11 @@
-"""Description of a climate for reports and files of results."""
+"""Description of a climate, and of measurements, for reports and files of results."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from mascarin.weather.climate import Climate
+from mascarin.weather.measurements import Measurements
 
 
 def summary(climate: Climate) -> dict[str, Any]:
@@ -44,3 +45,36 @@ def summary(climate: Climate) -> dict[str, Any]:
                                            "altitude": place.altitude, "name": place.name},
         "provenance": list(climate.used.provenance),
     }  # fmt: skip
+
+
+def summary_of_measurements(measured: Measurements) -> dict[str, Any]:
+    """Description of measured columns for a report: file, hash, range, step and what was done with them.
+
+    Parameters
+    ----------
+    measured : Measurements
+        The columns.
+
+    Returns
+    -------
+    dict
+        Values that JSON can hold.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> from mascarin.weather import Measurements
+    >>> index = pd.date_range("2024-06-01", periods=4, freq="1h", tz="UTC")
+    >>> table = pd.DataFrame({"T_wall": [20.0, 20.5, 21.0, 20.8]}, index=index)
+    >>> summary_of_measurements(Measurements.from_table(table))["columns"]
+    ['T_wall']
+    """
+    return {
+        "file": measured.file,
+        "sha256": measured.sha256,
+        "range": measured.grid.span(),
+        "step_seconds": measured.grid.interval,
+        "timezone": measured.timezone,
+        "columns": [str(name) for name in measured.data.columns],
+        "provenance": list(measured.provenance),
+    }
