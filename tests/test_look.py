@@ -389,7 +389,7 @@ def test_ctrl_c_ends_the_page_with_130(saved: tuple[Path, Path], tmp_path: Path)
         [sys.executable, "-m", "mascarin.cli", *words, "--no-open", "--step", "1h"],
         stderr=subprocess.PIPE, text=True, cwd=tmp_path,
     ) as process:  # fmt: skip
-        guard = threading.Timer(60.0, process.kill)  # a command that hangs fails here
+        guard = threading.Timer(100.0, process.kill)  # a command that hangs fails here
         guard.start()
         try:
             assert process.stderr is not None
