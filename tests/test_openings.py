@@ -216,8 +216,8 @@ def test_derivatives_of_a_controlled_network() -> None:
 @pytest.mark.parametrize(
     ("columns", "said"),
     [
-        ({"wind_speed": 0.0}, r"no wind in the whole period.*vents\.windward and 1 more.*pressure: none"),
-        ({"absent": {"wind_speed": 0.0}}, r"no wind in the whole period.*absent: \{wind_speed: 2\}"),
+        ({"wind_speed": 0.0}, r"no wind in the whole record.*vents\.windward and 1 more.*pressure: none"),
+        ({"absent": {"wind_speed": 0.0}}, r"no wind in the whole record.*absent: \{wind_speed: 2\}"),
         ({"absent": {"wind_direction": 0.0}}, r"no direction of the wind.*wind_direction: 225"),
     ],
 )

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
-    """Refuse a period without wind where wind drives air through vents.
+    """Refuse a climate without wind where wind drives air through vents; calm days are none.
 
     Parameters
     ----------
@@ -32,13 +32,15 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
     Raises
     ------
     InputError
-        There is no wind in the whole period, or no direction of it; the text names a vent and what to do.
+        There is no wind in the whole record, or no direction of it; the text names a vent and what to do.
     """
     windy = [name for name, vent in building.vents.items() if vent.windy]
     directed = [name for name, vent in building.vents.items() if vent.directed]
-    if windy and not forcing[..., list(CHANNELS).index("wind_speed")].any():
+    speeds = climate.record.data.get("wind_speed")
+    calm = not forcing[..., list(CHANNELS).index("wind_speed")].any()
+    if windy and calm and (speeds is None or not speeds.any()):
         raise InputError(
-            "climate: found no wind in the whole period (0 m/s, or 'absent: [wind_speed]'), expected a wind "
+            "climate: found no wind in the whole record (0 m/s, or 'absent: [wind_speed]'), expected a wind "
             f"speed: the wind drives air through {_some(windy)}. Give the column of the wind speed, a speed "
             "in place of it ('absent: {wind_speed: 2}'), or write 'pressure: none' at the vents, which stack "
             "alone then drives"
@@ -47,7 +49,7 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
     directions = climate.record.data.get("wind_direction")
     if directed and (directions is None or not directions.any()):
         raise InputError(
-            "climate: found no direction of the wind in the whole period (0 deg, or 'absent: "
+            "climate: found no direction of the wind in the whole record (0 deg, or 'absent: "
             "[wind_direction]'), expected one: the wind pressure on "
             f"{_some(directed)} depends on it. Give the column of the wind direction, a direction in place "
             "of it ('absent: {wind_direction: 225}'; 360 is north), or wind pressure coefficients that hold "
