@@ -118,7 +118,7 @@ def test_parameters_by_path(room: Simulation, unit_file: Path, tmp_path: Path) -
     described = fmpy.read_model_description(str(file))
     found = {v.name: v for v in described.modelVariables if v.causality == "parameter"}
     volume = found["zones.room.volume"]
-    assert (float(volume.start), volume.unit, float(volume.min)) == (50.0, "m3", 0.0)
+    assert (float(volume.start), volume.unit, float(volume.min)) == (50.0, "m3", 1e-12)
     assert all(name.startswith("zones.room.") for name in found)
     changed = {"zones.room.volume": 30.0, "zones.room.gains.people.power": 500.0}
     assert np.array_equal(simulated(file, room, start_values=changed), room.run(changed).records)

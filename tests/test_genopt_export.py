@@ -350,15 +350,15 @@ def test_the_project_is_searched_like_a_calibration(
 ) -> None:
     # Ranges from 0 to 1 and steps of a power of two are the same numbers for GenOpt, which searches in the
     # units of the parameters with seven digits, and for a calibration, which searches in shares of the range.
-    emissivity = "surfaces.wall.outside.emissivity"
+    coefficient = "surfaces.wall.inside.convection.coefficient"
     edit(
         copy / "study.yaml",
         "building: building.yaml",
-        f"building: building.yaml\nset: {{{emissivity}: 0.75}}",
+        f"building: building.yaml\nset: {{{coefficient}: 0.75}}",
     )
     edit(copy / "study.yaml", "{low: 0.2, high: 0.8}", "{low: 0, high: 1}")
     edit(
-        copy / "study.yaml", f"{INSULATION}: {{low: 0.02, high: 0.06}}", f"{emissivity}: {{low: 0, high: 1}}"
+        copy / "study.yaml", f"{INSULATION}: {{low: 0.02, high: 0.06}}", f"{coefficient}: {{low: 0, high: 1}}"
     )
     ini = write_project(str(copy / "study.yaml"), tmp_path / "project", replace(SHORT, starts=1))
     command = ini.parent / "command.txt"

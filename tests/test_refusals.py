@@ -349,12 +349,12 @@ def test_the_data_folder_may_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_a_panic_is_a_defect_wherever_it_happens(
     border: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import mascarin.commands.building as commands
+    import mascarin.commands.schema as commands
 
     def broken(*words: object) -> None:
         _engine._panic("index 7 of 3", border)
 
-    monkeypatch.setattr(commands, "print_json", broken)
+    monkeypatch.setattr(commands, "json_text", broken)
     assert main(["schema"]) == 70
     assert "index 7 of 3" in capsys.readouterr().err
 
@@ -376,22 +376,22 @@ def test_a_panic_in_a_worker_is_a_defect(folder: Path) -> None:
 def test_a_full_disk_is_no_defect(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import mascarin.commands.building as commands
+    import mascarin.commands.schema as commands
 
     def full(*words: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(commands, "print_json", full)
+    monkeypatch.setattr(commands, "json_text", full)
     assert "Make room on the disk" in refused(["schema"], capsys)
 
 
 def test_no_memory_is_no_defect(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    import mascarin.commands.building as commands
+    import mascarin.commands.schema as commands
 
     def huge(*words: object) -> None:
         raise MemoryError("Unable to allocate 7 GiB")
 
-    monkeypatch.setattr(commands, "print_json", huge)
+    monkeypatch.setattr(commands, "json_text", huge)
     said = refused(["schema"], capsys)
     assert "Unable to allocate 7 GiB" in said
     assert "longer step" in said

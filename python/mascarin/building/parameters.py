@@ -92,6 +92,10 @@ class Parameter:
             second = ""
         return f"a value {first}{second} {self.unit}".removesuffix(" -").rstrip()
 
+    def inside(self, low: float) -> float:
+        """The low end of a range; just inside where it lies on a limit that has no meaning itself. [unit]"""
+        return self.lower if low == self.above else low
+
     @property
     def varies(self) -> bool:
         """Whether a sensitivity analysis can vary it with an effect."""

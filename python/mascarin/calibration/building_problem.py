@@ -80,11 +80,11 @@ def fit_parameter(
     low, high = bounds_of(path, pair)
     return FitParameter(
         path=parameter.path,
-        lower=low,
+        lower=parameter.inside(low),
         upper=high,
         nominal=parameter.value,
         unit=parameter.unit,
-        limits=(parameter.lower, parameter.upper),
+        limits=(parameter.lower if parameter.above is None else parameter.above, parameter.upper),
         prior=None if prior is None else (parameter.value, prior),
         start=start,
         scale=scale,

@@ -342,6 +342,7 @@ def checked_range(building: Building, path: str, span: tuple[float, float]) -> t
     parameter, (low, high) = building.parameter(path), bounds_of(path, span)
     if parameter.structural:
         raise InputError(f"{path}: is structural ({parameter.reason}) and cannot be varied; leave it out")
+    low = parameter.inside(low)
     if not parameter.lower <= low < high <= parameter.upper:
         raise InputError(
             f"{path}: found [{low:g}, {high:g}] {parameter.unit}, expected a lower and a higher value, each "
