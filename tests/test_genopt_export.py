@@ -354,7 +354,7 @@ def test_the_project_is_searched_like_a_calibration(
     edit(
         copy / "study.yaml",
         "building: building.yaml",
-        f"building: building.yaml\nset: {{{coefficient}: 0.75}}",
+        f"building: building.yaml\nset: {{{coefficient}: 0.25}}",
     )
     edit(copy / "study.yaml", "{low: 0.2, high: 0.8}", "{low: 0, high: 1}")
     edit(
