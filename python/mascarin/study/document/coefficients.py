@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -25,7 +25,8 @@ def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[s
     """Effective mean coefficient of each convection law that has one of some parameters.
 
     It is the constant that exchanges as much heat: the mean of the heat flux without its sign, over the mean
-    of the temperature difference without its sign, in the identification period.
+    of the temperature difference without its sign, in the identification period. For tied parameters it is
+    that of all their surfaces together.
 
     Parameters
     ----------
@@ -42,23 +43,32 @@ def coefficients(study: Setup, models: Mapping[str, ModelRun], paths: Iterable[s
         ``coefficients``: ``period``, ``unit`` and ``models``, model -> path of the law -> coefficient;
         nothing where no parameter belongs to a convection law.
     """
-    laws = dict.fromkeys(found[0] for path in paths if (found := _LAW.match(path)))
+    laws = {found[0]: _members(study.building, path) for path in paths if (found := _LAW.match(path))}
     if not laws:
         return {}
     content = {"period": _PERIOD, "unit": "W/(m2 K)"}
-    means = {name: _means(study, run, list(laws)) for name, run in models.items()}
+    means = {name: _means(study, run, laws) for name, run in models.items()}
     return {"coefficients": {**content, "models": means}} if any(means.values()) else {}
 
 
-def _means(study: Setup, run: ModelRun, laws: list[str]) -> dict[str, float]:
+def _members(building: Building, path: str) -> list[str]:
+    """Laws that a parameter belongs to: one, or those that a tied parameter stands for."""
+    members = building.parameter(path).members or (path,)
+    return list(dict.fromkeys(found[0] for member in members if (found := _LAW.match(member))))
+
+
+def _means(study: Setup, run: ModelRun, laws: Mapping[str, Sequence[str]]) -> dict[str, float]:
     """Effective mean coefficients of one model, W/(m2 K); laws that it does not have are left out."""
     building = run.simulation.building.replace(run.results.provenance.changed)
     known = {output.name for output in building.outputs()}
-    names = {law: found for law in laws if (found := _outputs(building, law))[0] in known}
-    if not names:
+    outputs = {law: [_outputs(building, member) for member in members] for law, members in laws.items()}
+    names = {law: [one for one in found if one[0] in known] for law, found in outputs.items()}
+    wanted = dict.fromkeys(
+        name for found in names.values() for one in found for name in one if name is not None
+    )
+    if not wanted:
         return {}
     recorded = {building.output(sensor.output).name for sensor in study.plan.sensors.values()}
-    wanted = dict.fromkeys(name for found in names.values() for name in found if name is not None)
     simulation = study.over_record(building, [name for name in wanted if name not in recorded])
     results = simulation.run()
     first, last = study.identification
@@ -66,12 +76,16 @@ def _means(study: Setup, run: ModelRun, laws: list[str]) -> dict[str, float]:
     air = simulation.weather("air_temperature")
     columns = [output.name for output in results.outputs]
     means = {}
-    for law, (coefficient, face, zone) in names.items():
-        h, surface = (results.records[during, columns.index(name)] for name in (coefficient, face))
-        beside = air[during] if zone is None else results.records[during, columns.index(zone)]
-        difference = np.abs(surface - beside)
-        if difference.sum() > 0.0:
-            means[law] = float(f"{np.sum(h * difference) / np.sum(difference):.6g}")
+    for law, found in names.items():
+        heat = whole = 0.0
+        for coefficient, face, zone in found:
+            h, surface = (results.records[during, columns.index(name)] for name in (coefficient, face))
+            beside = air[during] if zone is None else results.records[during, columns.index(zone)]
+            area = float(building.surfaces[face.split(".")[0]].area or 1.0)
+            difference = np.abs(surface - beside) * area
+            heat, whole = heat + float(np.sum(h * difference)), whole + float(np.sum(difference))
+        if whole > 0.0:
+            means[law] = float(f"{heat / whole:.6g}")
     return means
 
 
