@@ -48,6 +48,18 @@ def held(kind: str, path: Path) -> Iterator[None]:
             other.communicate()
 
 
+def test_an_output_that_is_held_for_a_moment_is_waited_for(tmp_path: Path) -> None:
+    # As by a program that a killed process was just starting.
+    brief = HOLD.replace("sys.stdin.read()", "import time; time.sleep(0.1)")
+    with subprocess.Popen(
+        [sys.executable, "-c", brief, "folder", str(tmp_path)], stdout=subprocess.PIPE, text=True
+    ) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "held\n"
+        with writing_into(tmp_path):
+            pass
+
+
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a building, a weather file and a study."""

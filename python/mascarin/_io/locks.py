@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     import filelock
 
 NAME: Final = ".lock"
+#: How long a lock is tried for. [s] A program that a killed process was just starting holds the open files of
+#: that process for a moment, the lock among them.
+_PATIENCE: Final = 1.0
 
 
 class FolderLock:
@@ -62,12 +65,12 @@ class FolderLock:
 
 
 def _acquired(file: Path, held: str, other: str) -> filelock.BaseFileLock:
-    """Lock a file, at once or not at all."""
+    """Lock a file, soon or not at all."""
     import filelock  # some commands write nothing
 
-    lock = filelock.FileLock(file, timeout=0)
+    lock = filelock.FileLock(file, timeout=_PATIENCE)
     try:
-        lock.acquire()
+        lock.acquire(poll_interval=0.02)
     except filelock.Timeout:
         raise InUse(
             f"{held}; expected one at a time. Wait until it has finished, or choose {other}"
