@@ -127,6 +127,8 @@ def test_surfaces_that_cannot_enclose_the_volume() -> None:
         for w in noted(small, "warning")
     )
     assert not any("sphere" in w for w in noted(room(), "warning"))
+    huge = parse(ROOM.replace("volume: 30", "volume: 1.0e+308"), "x")  # its square is no number
+    assert any("cannot enclose 1e+308 m3" in w for w in noted(huge, "warning"))
 
 
 def test_a_surface_larger_than_all_others() -> None:

@@ -124,6 +124,12 @@ FAULTS = {
         "surfaces.rest.outside",
         ["a side that faces nothing"],
     ),
+    "no column": (
+        "outside: {adiabatic: true}",
+        "outside: {measured: []} # here",
+        "surfaces.rest.outside.measured",
+        ["found: no column", "the name of a measured column"],
+    ),
     "outdoors: false": (
         "outside: {adiabatic: true}",
         "outside: {adiabatic: false} # here",

@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 from pydantic import Field, model_validator
 
 from mascarin.building import quantities as q
+from mascarin.building.courses import Columns
 from mascarin.building.names import ZoneName
 from mascarin.building.number import Number, Remark, problem, quantity_of
 from mascarin.building.part import Part
@@ -40,7 +41,7 @@ class ThermalBridge(Part):
     outdoors: Literal[True] | None = Field(None, description="Ends outdoors: true, or nothing at all")
     zone: ZoneName | None = Field(None, description="Ends in this zone")
     ground: Ground | None = Field(None, description="Ends in ground of this temperature")
-    measured: str | tuple[str, ...] | None = Field(
+    measured: Columns | None = Field(
         None, description="Ends in air of this measured column, or of the mean of several"
     )
 

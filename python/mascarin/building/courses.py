@@ -4,9 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Annotated, Final, Literal
+
+from pydantic import AfterValidator
+
+from mascarin.building.number import problem
 
 CourseKind = Literal["temperature", "power", "flow", "vapour", "rain"]
+
+
+def _named(columns: str | tuple[str, ...]) -> str | tuple[str, ...]:
+    if not columns:
+        raise problem(
+            "no column",
+            "the name of a measured column, or a list of names",
+            "Name one, or leave the key out.",
+        )
+    return columns
+
+
+#: A measured column, or several of which the mean is used.
+Columns = Annotated[str | tuple[str, ...], AfterValidator(_named)]
 
 #: Units that a column may have, by what it means: the factor to the unit of the engine.
 POWER_UNITS: Final[Mapping[str, float]] = {"W": 1.0, "kW": 1000.0}

@@ -114,7 +114,7 @@ def _implausible_volumes(building: Description) -> Iterator[str]:
     for name, zone in building.zones.items():
         volume = float(zone.volume or 0.0)
         area = sum(building.surfaces[surface].area or 0.0 for surface, _ in building.connections.sides(name))
-        least = (36.0 * math.pi * volume**2) ** (1.0 / 3.0)
+        least = (36.0 * math.pi) ** (1.0 / 3.0) * volume ** (2.0 / 3.0)
         if area < least:
             yield (
                 f"zones.{name}: {area:.2f} m2 of surfaces cannot enclose {volume:g} m3 "

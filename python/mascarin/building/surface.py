@@ -11,6 +11,7 @@ from pydantic_core import InitErrorDetails
 
 from mascarin.building import quantities as q
 from mascarin.building.convection import CONVECTION, Convection, Doe2, Mowitt, Tarp
+from mascarin.building.courses import Columns
 from mascarin.building.names import ConstructionName, MaterialName, Name, ScheduleName, SurfaceName, ZoneName
 from mascarin.building.number import Number, Remark, problem
 from mascarin.building.part import Part, Shorthand, fault, insist, refuse
@@ -192,7 +193,7 @@ class Side(Part):
     outdoors: Literal[True] | None = Field(None, description="Faces the weather: write true")
     zone: ZoneName | None = Field(None, description="Faces the air of this zone")
     ground: Ground | None = Field(None, description="Touches ground of this temperature")
-    measured: str | tuple[str, ...] | None = Field(
+    measured: Columns | None = Field(
         None,
         description="Faces air of this measured column, or of the mean of several; without convection, "
         "has its temperature",
