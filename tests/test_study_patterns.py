@@ -201,6 +201,24 @@ def test_a_study_estimates_the_factor_of_a_tie(wall: Building) -> None:
     assert results.to_dict()["parameters"][CONDUCTIVITY]["nominal"] == 1.0
 
 
+@pytest.mark.parametrize(
+    ("area", "low", "high"), [(0.004, 15.0, 15.2), (4.0, 17.0, 23.0), (4000.0, 24.8, 25.0)]
+)
+def test_a_tied_convection_law_has_one_mean_coefficient(
+    wall: Building, area: float, low: float, high: float
+) -> None:
+    """Of two walls with 15 and 25 W/(m2 K), by the heat that they exchange: by their areas, too."""
+    one = wall.to_dict()["surfaces"]["wall"]
+    other = {**one, "area": area, "outside": {**one["outside"], "convection": 25.0}}
+    both = wall.replace({"surfaces.other": other})
+    factor = "surfaces.*.outside.convection.coefficient"
+    results = study_of(both, {factor: {"tie": "factor", "low": 0.5, "high": 2.0}}).run()
+    models = results.to_dict()["coefficients"]["models"]
+    nominal, fitted = (models[name]["surfaces.*.outside.convection"] for name in ("nominal", "fitted"))
+    assert low < nominal < high
+    assert fitted / nominal == pytest.approx(results.calibration.values[factor], rel=0.02)
+
+
 def test_exact_slopes_of_a_tie_agree_with_differences(wall: Building) -> None:
     problem = study_of(wall, {CONDUCTIVITY: {"tie": True, "low": 0.6, "high": 1.6}}).problem()
     step, x = 1e-4, np.array([1.1])

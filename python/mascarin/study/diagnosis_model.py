@@ -149,7 +149,7 @@ class Model:
             width = np.array([self.range[p][1] - self.range[p][0] for p in fitted])
             return np.asarray(self.sampled(run, slopes[..., : self.sensors]) * width[:, None, None])
 
-        key = ("slopes", run.identity, self.group, vector.tobytes())
+        key = ("slopes", run.identity, self.group, vector.tobytes(), tuple(fitted))
         found = self.store.array(key, exact) if fitted else np.zeros((0, *self.measured.shape))
         if not every or len(self.paths) == len(fitted):
             return found

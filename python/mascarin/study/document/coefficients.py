@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-_LAW: Final = re.compile(r"surfaces\.(?P<surface>[^.]+)\.(?P<side>outside|inside)\.convection")
+_LAW: Final = re.compile(r"surfaces\.(?P<surface>[^.]+)\.(?P<side>[^.]+)\.convection")
 _PERIOD: Final = "identification"
 
 
@@ -81,7 +81,7 @@ def _means(study: Setup, run: ModelRun, laws: Mapping[str, Sequence[str]]) -> di
         for coefficient, face, zone in found:
             h, surface = (results.records[during, columns.index(name)] for name in (coefficient, face))
             beside = air[during] if zone is None else results.records[during, columns.index(zone)]
-            area = float(building.surfaces[face.split(".")[0]].area or 1.0)
+            area = float(building.surfaces[face.split(".")[0]].area or 0.0)
             difference = np.abs(surface - beside) * area
             heat, whole = heat + float(np.sum(h * difference)), whole + float(np.sum(difference))
         if whole > 0.0:
