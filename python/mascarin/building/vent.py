@@ -206,9 +206,6 @@ class TemperatureBand(_Band):
     TemperatureBand(open=24 degC, close=22 degC)
     """
 
-    open: q.ControlTemperature
-    close: q.ControlTemperature
-
 
 class DifferenceBand(_Band):
     """Open above a temperature difference, closed below another one.

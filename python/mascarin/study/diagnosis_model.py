@@ -12,6 +12,7 @@ import numpy as np
 
 from mascarin.building.outputs import Output
 from mascarin.errors import InputError, SolverError
+from mascarin.progress import reporting
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study.parameter_effects import Effects
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.calibration import Calibration
+    from mascarin.progress import ProgressOption
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.setup import Setup
     from mascarin.study.storage import Workspace
@@ -81,10 +83,20 @@ class Model:
         Its calibration.
     store : Store
         Intermediate results.
+    progress : bool, callable or None
+        Where the progress of many runs is shown.
     """
 
-    def __init__(self, setup: Setup, simulation: Simulation, fit: Calibration, store: Store) -> None:
+    def __init__(
+        self,
+        setup: Setup,
+        simulation: Simulation,
+        fit: Calibration,
+        store: Store,
+        progress: ProgressOption = None,
+    ) -> None:
         self.setup, self.simulation, self.store = setup, simulation, store
+        self._progress = progress
         self.sensors = len(setup.observation.names)
         self.fitted = {parameter.path: parameter for parameter in fit.problem.parameters}
         factors = {factor.path: factor for factor in _factors(simulation.building)}
@@ -155,9 +167,11 @@ class Model:
             return found
         others = np.zeros((len(self.paths) - len(fitted), *found.shape[1:]))
         place = {path: k for k, path in enumerate(self.paths[len(fitted) :])}
-        for path, effect in Effects(self.setup, run, self.fine(vector), vector).each():
-            if path in place:
-                others[place[path]] = self._averaged(effect)
+        effects = Effects(self.setup, run, self.fine(vector), vector)
+        with reporting(self._progress, "effects of all parameters") as report:
+            for path, effect in effects.each(report):
+                if path in place:
+                    others[place[path]] = self._averaged(effect)
         return np.concatenate([found, others])
 
     def distance(self, one: Array, other: Array) -> float:

@@ -98,7 +98,7 @@ def diagnosis(
         Without causes where nothing is significant.
     """
     found = list(words.of_table(setup))
-    model = Model(setup, run.simulation, fit, Store(workspace))
+    model = Model(setup, run.simulation, fit, Store(workspace), progress)
     if np.isfinite(model.measured).sum(axis=0).max(initial=0) < _FEWEST:
         return Diagnosis(tuple(found), {}, 1.0)
     with reporting(progress, "diagnosis") as report:

@@ -53,12 +53,12 @@ class Effects:
         """Number of parameters."""
         return len(self._factors)
 
-    def each(self, progress: Callable[[int, int], object] | None = None) -> Iterator[tuple[str, Array]]:
+    def each(self, progress: Callable[[int, int], object]) -> Iterator[tuple[str, Array]]:
         """Change of the simulated series for a change of each parameter by its range.
 
         Parameters
         ----------
-        progress : callable, optional
+        progress : callable
             Called with the number of runs done and their total.
 
         Yields
@@ -77,8 +77,7 @@ class Effects:
                 if np.isfinite(effect).all() and np.abs(effect).max() > 0.0:
                     yield path, effect
             done += len(paths)
-            if progress is not None:
-                progress(done, len(self._factors))
+            progress(done, len(self._factors))
 
     def _chunks(self) -> Iterator[tuple[list[str], list[float], Array]]:
         """Paths, signed steps [ranges] and parameter vectors, in chunks."""
