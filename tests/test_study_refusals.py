@@ -371,6 +371,12 @@ CASES = {
     ),
     "step below zero": Refused("step: 30min", "step: -30min", "step: -30min", ("a length of time",)),
     "interval is no time": Refused("interval: 1h", "interval: fast", "fast", ("sensitivity.interval", "1h")),
+    "step of the sensitivity analysis that does not divide its interval": Refused(
+        "interval: 1h",
+        "interval: 1h, step: 25min",
+        "25min",
+        ("sensitivity.step", "whole part", "30min for 1h"),
+    ),
     "range of an unknown parameter": Refused(
         "interval: 1h",
         "interval: 1h, ranges: {materials.bric.density: [1, 2]}",

@@ -100,6 +100,11 @@ class SensitivityPlan(Part):
     )
     seed: int = Field(1, description="Seed of the random numbers")
     interval: Duration = Field("1h", description="Interval of the analyzed outputs")
+    step: Duration | None = Field(
+        None,
+        description="Time step of these runs, and of those that derive the effects of all parameters for the "
+        "analysis of the residuals; a whole part of the interval. By default that of the study",
+    )
     ranges: dict[str, tuple[float, float]] = Field(
         default_factory=dict, description="Ranges that replace those of the building"
     )

@@ -64,15 +64,16 @@ class ModelRuns:
             What is varied, and how often.
         """
         setup, key = self._setup, ("analysis", plan.model_dump_json())
+        simulation, lead = setup.varied()
         with reporting(self._progress, "sensitivity analysis") as report:
             return kept(
                 setup.workspace,
                 key,
                 lambda: analyze(
-                    setup.short(),
+                    simulation,
                     plan,
                     factors(setup.building, plan),
-                    setup.lead_seconds,
+                    lead,
                     setup.observation.names,
                     self._workspace,
                     report,

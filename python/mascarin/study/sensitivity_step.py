@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from mascarin.building.ties import expanded
+from mascarin.errors import InputError
 from mascarin.sensitivity.building_analysis import checked_range, factors_of, run_samples
 from mascarin.sensitivity.methods import collector
 from mascarin.sensitivity.methods import plan as design
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from mascarin.sensitivity.methods import Plan
     from mascarin.simulation.simulation import Simulation
     from mascarin.study.description import SensitivityPlan
+    from mascarin.study.field_types import Duration
     from mascarin.study.locations import Places
     from mascarin.study.storage import Workspace
 
@@ -41,8 +43,12 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
     Raises
     ------
     InputError
-        Unknown or structural path, a reversed range, or a range beyond the limits of the parameter.
+        Unknown or structural path, a reversed range, a range beyond the limits of the parameter, or an
+        interval that is no whole number of steps.
     """
+    if plan.step is not None:
+        with places.blame("sensitivity", "step"):
+            _require_whole(plan.interval, plan.step)
     for path, span in plan.ranges.items():
         with places.blame("sensitivity", "ranges", path):
             for one in expanded(building, [path]):
@@ -58,6 +64,15 @@ def check_plan(building: Building, plan: SensitivityPlan, places: Places) -> Non
             _require_known(building, getattr(plan, key) or ())
     with places.blame("sensitivity"):
         runs_of(plan, factors(building, plan))
+
+
+def _require_whole(interval: Duration, step: Duration) -> None:
+    steps = seconds_of(interval) / seconds_of(step)
+    if steps < 1.0 or abs(steps - round(steps)) > 1e-9:
+        raise InputError(
+            f"found {step}, expected a whole part of the interval of the analyzed outputs, {interval}: "
+            "for example 30min for 1h"
+        )
 
 
 def _require_known(building: Building, paths: Sequence[str]) -> None:

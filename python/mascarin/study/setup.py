@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from mascarin.simulation.options import TimeLike
     from mascarin.simulation.results import Results
     from mascarin.study.description import Free, StudyPlan, Variant
+    from mascarin.study.field_types import Duration
     from mascarin.study.locations import Places
     from mascarin.study.opening import Inputs
     from mascarin.study.storage import Workspace
@@ -188,11 +189,11 @@ class Setup:
             last = min(last, self.moment_of_end)
         return self.start + self._whole_steps((last - self.start).total_seconds())
 
-    def _whole_steps(self, seconds: float) -> pd.Timedelta:
-        """The longest whole number of steps in so much time."""
+    def _whole_steps(self, seconds: float, length: Duration | None = None) -> pd.Timedelta:
+        """The longest whole number of steps in so much time; steps of the study, or of another length."""
         import pandas as pd
 
-        step = seconds_of(self.plan.step)
+        step = seconds_of(length or self.plan.step)
         return pd.Timedelta(seconds=step * math.floor(seconds / step + 1e-9))
 
     @cached_property
@@ -216,13 +217,18 @@ class Setup:
         return found
 
     def _simulate(
-        self, building: Building, start: TimeLike, end: TimeLike, further: Sequence[str] = ()
+        self,
+        building: Building,
+        start: TimeLike,
+        end: TimeLike,
+        further: Sequence[str] = (),
+        step: Duration | None = None,
     ) -> Simulation:
         """A model that records the outputs of the sensors, then further outputs."""
         return Simulation(
             building,
             self.climate,
-            step=self.plan.step,
+            step=step or self.plan.step,
             start=start,
             end=end,
             outputs=[*(sensor.output for sensor in self.plan.sensors.values()), *further],
@@ -300,6 +306,34 @@ class Setup:
         start = first - pd.Timedelta(seconds=self.lead_seconds)
         end = start + self._whole_steps((min(last, self.end) - start).total_seconds())
         return self._once(("short", variant), lambda: self._simulate(building, start, end))
+
+    @property
+    def step_of_many(self) -> Duration:
+        """Time step of the runs in which all parameters vary."""
+        given = None if self.plan.sensitivity is None else self.plan.sensitivity.step
+        return given or self.plan.step
+
+    def varied(self) -> tuple[Simulation, float]:
+        """A model over warm-up and identification with the step of many runs; length of the warm-up. [s]"""
+        step, (first, last) = self.step_of_many, self.identification
+        lead = self._whole_steps(self.lead_seconds, step)
+        end = first + self._whole_steps((min(last, self.end) - first).total_seconds(), step)
+        if step == self.plan.step:
+            return self.short(), lead.total_seconds()
+        start = first - lead
+        made = self._once(("varied", None), lambda: self._simulate(self.building, start, end, step=step))
+        return made, lead.total_seconds()
+
+    def coarse(self, simulation: Simulation) -> Simulation:
+        """The model of a simulation over the whole record with the step of many runs."""
+        step = self.step_of_many
+        if step == self.plan.step:
+            return simulation
+        end = self.start + self._whole_steps((self.end - self.start).total_seconds(), step)
+        return self._once(
+            ("coarse", simulation.identity),
+            lambda: self._simulate(simulation.building, self.start, end, step=step),
+        )
 
     def _once(self, key: tuple[str, str | None], make: Callable[[], Simulation]) -> Simulation:
         if key not in self._simulations:

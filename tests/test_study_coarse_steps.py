@@ -1,0 +1,68 @@
+"""The runs in which all parameters vary may have a longer step than the study."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mascarin.study import Study
+from mascarin.study.kept import kept_series
+from mascarin.study.model_runs import ModelRuns
+from mascarin.study.parameter_effects import Effects
+from mascarin.study.storage import Workspace
+from study_support import BUILDING, STUDY, Bench, logger_table
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
+    folder = tmp_path_factory.mktemp("bench")
+    (folder / "building.yaml").write_text(BUILDING, "utf-8")
+    logger_table(folder / "building.yaml").to_csv(folder / "logger.csv", index_label="time")
+    (folder / "study.yaml").write_text(STUDY, "utf-8")
+    return Bench(folder)
+
+
+def opened(bench: Bench, step: str) -> Study:
+    """The study with a step of the sensitivity analysis."""
+    path = bench.folder / f"study-{step}.yaml"
+    path.write_text(STUDY.replace("interval: 1h", f"interval: 1h, step: {step}"), "utf-8")
+    return Study.from_yaml(path)
+
+
+def test_only_the_runs_with_all_parameters_take_the_long_step(bench: Bench) -> None:
+    study = opened(bench, "1h")
+    simulation, lead = study.varied()
+    assert (simulation.step_seconds, lead) == (3600.0, 86400.0)
+    assert simulation.index[0] == pd.Timestamp("2023-03-01 00:00", tz=simulation.index.tz)
+    assert study.short().step_seconds == study.whole().step_seconds == 1800.0
+    assert opened(bench, "30min").varied()[0] is not simulation
+
+
+def test_sensitivities_with_the_long_step_are_those_of_the_short_one(bench: Bench, tmp_path: Path) -> None:
+    found = []
+    for step in ("30min", "1h"):
+        study = opened(bench, step)
+        assert study.plan.sensitivity is not None
+        with Workspace(tmp_path / step, study.inputs()) as workspace:
+            found.append(ModelRuns(study, workspace).sensitivity(study.plan.sensitivity).table())
+    fine, coarse = (one.set_index(["output", "parameter"])["share"] for one in found)
+    assert np.abs(fine - coarse).max() < 0.02
+    assert fine.max() > 0.2
+
+
+def test_effects_with_the_long_step_are_those_of_the_short_one(bench: Bench) -> None:
+    effects = []
+    for step in ("30min", "1h"):
+        study = opened(bench, step)
+        simulation = study.simulation
+        values = simulation.vector({})
+        base = kept_series(study, simulation, values[None])[0]
+        effects.append(dict(Effects(study, simulation, base, values).each(lambda done, of: None)))
+    fine, coarse = effects
+    assert set(fine) == set(coarse)
+    largest = max(np.abs(one).max() for one in fine.values())
+    assert largest > 0.5
+    assert max(np.abs(fine[path] - coarse[path]).max() for path in fine) < 0.05 * largest
