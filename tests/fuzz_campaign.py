@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import fuzz_buildings
+import fuzz_interruptions
 import fuzz_kills
 import fuzz_parts
 import fuzz_processes
@@ -29,6 +30,7 @@ def main() -> int:
     parser.add_argument("--buildings", type=int, default=300, help="random buildings")
     parser.add_argument("--states", type=int, default=30, help="histories of buildings made step by step")
     parser.add_argument("--kills", type=int, default=20, help="kills, of sweep, optimize and study together")
+    parser.add_argument("--interruptions", type=int, default=14, help="of all commands together")
     parser.add_argument("--writers", type=int, default=5, help="pairs of writers of one file")
     parser.add_argument("--disks", type=int, default=5, help="full disks")
     parser.add_argument("--seed", type=int, default=0, help="the same seed gives the same inputs")
@@ -114,6 +116,14 @@ def _processes(folder: Path, asked: argparse.Namespace) -> list[str]:
             (f"sweeps with workers ended by {how.name}", 1, fuzz_processes.orphans(place, how))
             for how in ends
         ]
+    if asked.interruptions:
+        commands = list(fuzz_interruptions.commands())
+        for k, name in enumerate(commands):
+            count = (asked.interruptions + k) // len(commands)
+            longest, faults = fuzz_interruptions.interrupted(
+                name, folder / "interruptions", count, asked.seed
+            )
+            rows.append((f"interruptions of {name} (longest {longest:.2f} s)", count, faults))
     if asked.disks:
         rows.append(("full disks", asked.disks, fuzz_processes.full_disks(place, asked.disks)))
     if asked.writers:
