@@ -43,7 +43,7 @@ def commands() -> dict[str, Command]:
 
     def run(*more: str) -> Callable[[Path], list[str]]:
         return lambda folder: fuzz_processes.mascarin(
-            "run", str(folder / "room.yaml"), "--weather", str(folder / "site.epw"), "--step", "1min",
+            "run", str(folder / "room.yaml"), "--weather", str(folder / "site.epw"), "--step", "5min",
             *(word.replace("OUT", str(folder)) for word in more),
         )  # fmt: skip
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,26 @@ def test_summary(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert -15.0 < float(low) < float(mean) < float(high) < 25.0
     assert "start: first 24 h repeated" in out
     assert float(out.split("energy-balance residual")[1]) < 1e-10
+
+
+def test_a_given_start_saves_the_repetitions_of_a_heavy_building(
+    call: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    box = Path("box.yaml").read_text("utf-8")
+    thick = re.sub(r"thickness: [0-9.]+", "thickness: 2", box)
+    assert thick != box
+    Path("box.yaml").write_text(thick, encoding="utf-8")
+    assert cli.main(call) == 0
+    found = re.search(
+        r"repeated (\d+) times .*: (\d+)% of all steps of the run, which a given start",
+        capsys.readouterr().out,
+    )
+    assert found
+    times, share = map(int, found.groups())
+    assert share == round(100 * times / (times + 1))  # the run is as long as the first period
+    assert cli.main([*call, "--initial", "3"]) == 0
+    assert "start: 3 degC everywhere" in capsys.readouterr().out
+    assert cli.main([*call, "--initial", "nan"]) == 2
 
 
 def test_a_long_run_shows_its_steps_and_the_time_left(

@@ -58,6 +58,7 @@ def run(
     interval: str | None = None,
     outputs: Annotated[list[str] | None, Parameter(name="--output", negative="")] = None,
     scheme: Literal["sdirk2", "backward-euler", "apparent-capacity"] = "sdirk2",
+    initial: float | None = None,
     settings: Settings = None,
     allow_outside: Outside = False,
     as_json: AsJson = False,
@@ -88,6 +89,9 @@ def run(
         temperatures of air, surfaces, interfaces and sensors.
     scheme : str
         Time-stepping scheme.
+    initial : float
+        Temperature of the whole building at the start [degC]. Default: the first day is repeated until it is
+        periodic, which takes long in heavy buildings.
     """
     from mascarin.simulation.files import require_ending
 
@@ -107,7 +111,7 @@ def run(
         )
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
-            scheme=scheme, more=report is not None,
+            scheme=scheme, initial="repeat" if initial is None else initial, more=report is not None,
         )  # fmt: skip
         results = _simulated(simulation)
         if report is not None:

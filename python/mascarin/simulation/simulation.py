@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -37,6 +37,10 @@ if TYPE_CHECKING:
     from mascarin.weather import Climate, Measurements
 
     Array = npt.NDArray[np.float64]
+
+#: A first period that is repeated more often, and makes more than this part of all steps, is pointed out.
+_OFTEN: Final = 20
+_MOST: Final = 0.5
 
 
 class Simulation(VectorRuns):
@@ -368,10 +372,15 @@ class Simulation(VectorRuns):
             return self.initial.words
         settings = self.compiled.settings
         hours = settings["warmup_steps"] * self.step_seconds / 3600.0
-        return (
+        note = (
             f"first {hours:g} h repeated {raw['cycles']} times until nothing changed "
             f"by more than {settings['warmup_tolerance']:g} K (last change {raw['settled']:.4f} K)"
         )
+        repeated = raw["cycles"] * settings["warmup_steps"]
+        share = repeated / (repeated + len(self.compiled.forcing))
+        if raw["cycles"] < _OFTEN or share < _MOST:
+            return note
+        return f"{note}: {share:.0%} of all steps of the run, which a given start (initial) saves"
 
 
 described(Simulation)
