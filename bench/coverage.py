@@ -28,6 +28,7 @@ from scipy.signal import lfilter
 
 from mascarin.errors import InputError
 from mascarin.examples import STUDIES
+from mascarin.linear_algebra import one_thread
 from mascarin.sensitivity.building_analysis import factors_of
 from mascarin.study import Study
 from mascarin.study.combined import combined_intervals, estimates_of
@@ -119,6 +120,7 @@ def experiment(study: Study, seed: int) -> tuple[Study, dict[str, float], dict[s
     return study.with_measurements(measured), values, chosen, changed, noise
 
 
+@one_thread()
 def judge(
     study: Study, values: dict[str, float], chosen: dict[str, str], replaced: list[str]
 ) -> dict[str, Any]:
