@@ -160,6 +160,10 @@ class BuildingEntry(TypedDict, total=False):
     constructions: list[dict[str, Any]]
     """Each with ``name`` and ``layers`` (:class:`LayerEntry`, outside to inside)."""
     surfaces: list[SurfaceEntry]
+    windows: list[dict[str, str]]
+    """Each with ``name`` and the ``surface`` that it is in."""
+    doors: list[list[str]]
+    """Pairs of zones that a door joins."""
     probes: list[dict[str, Any]]
     """Thermometers in walls: ``name``, ``surface``, ``depth`` [m from outside]."""
     choices: list[list[str]]

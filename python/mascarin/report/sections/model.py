@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mascarin._io import units
-from mascarin.report import drawing, text
+from mascarin.report import drawing, rooms, text
 from mascarin.report.labels import label_of
 from mascarin.report.series import Series
 
@@ -26,6 +26,7 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
     return {
         "name": building.get("name", ""),
         "view": drawing.view(building),
+        "rooms": _rooms(study),
         "section": drawing.section(building, sensors),
         "sensors": numbered,
         "layers": [
@@ -48,6 +49,15 @@ def content(study: Mapping[str, Any], _series: Series) -> dict[str, Any] | None:
         ],
         "assumptions": _assumptions(study),
     }
+
+
+def _rooms(study: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The plan of the rooms, and what its caption says."""
+    found = rooms.drawn(study)
+    if found is None:
+        return None
+    drawing_of_rooms, plan, period = found
+    return {"drawing": drawing_of_rooms, "exact": plan.exact, "period": period}
 
 
 def _built_so(building: Mapping[str, Any], construction: str) -> list[str]:

@@ -27,6 +27,8 @@ def building_entry(building: Building) -> dict[str, Any]:
             for name, construction in building.constructions.items()
         ],
         "surfaces": [_surface(name, surface) for name, surface in building.surfaces.items()],
+        "windows": [{"name": name, "surface": window.surface} for name, window in building.windows.items()],
+        "doors": [list(path.between) for path in building.air_paths.values() if path.door is not None],
         "probes": [
             {"name": name, "surface": sensor.surface, "depth": float(sensor.depth)}
             for name, sensor in building.sensors.items()
