@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mascarin import load
+from mascarin.examples import FOLDER
 from mascarin.report import rooms
+from mascarin.study.document.building import building_entry
 
 
 def wall(inside: str, outside: str, azimuth: float, area: float = 10.0) -> dict[str, Any]:
@@ -98,3 +101,18 @@ def test_rooms_above_each_other_have_no_plan() -> None:
         "surfaces": [wall("room", "outdoors", 0.0), {**wall("room", "gap", 0.0), "tilt": 0.0}],
     }
     assert rooms.plan(building) is None
+
+
+def test_the_rooms_of_the_twin_house_stand_as_they_do_there() -> None:
+    building = building_entry(load(FOLDER / "twin_house" / "building.yaml"))
+    found = rooms.plan(building)
+    assert found is not None
+    x, y = (
+        {name: float(outline[:, axis].mean()) for name, outline in found.outlines.items()} for axis in (0, 1)
+    )
+    assert x["kitchen"] < x["doorway"] < x["bedroom"]
+    assert x["living"] < x["corridor"] < x["bath"]
+    assert y["child"] < y["bath"] < y["bedroom"]
+    assert y["living"] < min(y["kitchen"], y["doorway"])
+    # A side that faces the mean of two columns says so.
+    assert "mean of O5_attic_east_AT and O5_attic_west_AT" in {one["outside"] for one in building["surfaces"]}

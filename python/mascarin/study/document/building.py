@@ -85,7 +85,8 @@ def _facing(side: Any) -> str:
     if side.zone is not None:
         return str(side.zone)
     if side.measured is not None:
-        return str(side.measured)
+        columns = [side.measured] if isinstance(side.measured, str) else list(side.measured)
+        return columns[0] if len(columns) == 1 else f"mean of {' and '.join(columns)}"
     return "ground" if side.ground is not None else str(side.faces)
 
 
