@@ -66,7 +66,7 @@ def errors(results: Results, table: pd.DataFrame, first: str, last: str) -> dict
 
 
 def test_temperatures_of_rooms_with_given_powers(blind: Results, table: pd.DataFrame) -> None:
-    """Blind: 0.34 and 0.25 K in the mean of the rooms."""
+    """Blind: 0.33 and 0.25 K in the mean of the rooms."""
     driven = errors(blind, table, "2013-08-30 00:10", "2013-09-14 00:00")
     free = errors(blind, table, "2013-09-20 00:10", "2013-09-30 00:00")
     assert np.mean(list(driven.values())) < 0.35
@@ -77,7 +77,7 @@ def test_temperatures_of_rooms_with_given_powers(blind: Results, table: pd.DataF
 
 
 def test_power_of_rooms_that_are_held(blind: Results, table: pd.DataFrame) -> None:
-    """The house loses too much with shutters up and down: +6.9 % at 30 degC, +9.0 % at 25 degC.
+    """The house loses too much with shutters up and down: +7.2 % at 30 degC, +9.1 % at 25 degC.
 
     Asked are 5 %. Without the shutters the two errors would be 12 % apart.
     """
@@ -89,4 +89,4 @@ def test_power_of_rooms_that_are_held(blind: Results, table: pd.DataFrame) -> No
             simulated += float(power.mean())
             measured += float(table[f"O5_heat_elP_{name}"].reindex(power.index).mean())
         errors_of_phases.append(simulated / measured - 1)
-    assert errors_of_phases == pytest.approx([0.069, 0.090], abs=0.01)
+    assert errors_of_phases == pytest.approx([0.072, 0.091], abs=0.01)
