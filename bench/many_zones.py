@@ -3,10 +3,10 @@
     python bench/many_zones.py --energyplus PROGRAM --write docs/speed.md
 
 A row of N rooms, and an office of rooms on several storeys (no chain: a room touches up to five others), free
-and with ideal loads. Both programs get the same polygons, layers, laws of convection (TARP inside, DOE-2
-outside) and infrared radiation of the sky, 15 min steps and one thread. The time is that of the processor for
-the whole process, start included; beside it the parts of Mascarin. Leave the machine alone meanwhile.
-(`bench/energyplus.py` says where to get EnergyPlus.)
+and with ideal loads. Both programs get the same polygons, layers, panes, laws of convection (TARP inside, ISO
+15099 at panes, DOE-2 outside), mass of outdoor air and infrared radiation of the sky, 15 min steps and one
+thread. The time is that of the processor for the whole process, start included; beside it the parts of
+Mascarin. Leave the machine alone meanwhile. (`bench/energyplus.py` says where to get EnergyPlus.)
 """
 
 from __future__ import annotations
@@ -41,8 +41,20 @@ SOLIDS = {
 """Conductivity [W/(m K)], density [kg/m3], specific heat [J/(kg K)], thickness [m]."""
 CONSTRUCTIONS = {"shell": ("insulation", "concrete"), "partition": ("brick",), "slab": ("concrete",)}
 HEATING, COOLING = 20.0, 26.0
-WINDOW = (2.4, 0.6)
-"""U value [W/(m2 K)] and solar heat gain coefficient of the windows [-]."""
+PANE = {
+    "thickness": 0.003048,
+    "conductivity": 1.0,
+    "emissivity": 0.84,
+    "transmittance": 0.834,
+    "reflectance": 0.075,
+}
+"""Each of the two panes. By U value and solar heat gain alone each program makes another window."""
+GAP = 0.012
+"""Width of the air between the panes [m]."""
+AIR_CHANGES = 0.5
+"""Outdoor air of a room by volume at the density of the site, at 15 degC [1/h]."""
+STANDARD_AIR = 293.15 / 288.15
+"""Density of air at 15 degC over that at 20 degC, to which EnergyPlus is told to count its volumes."""
 
 Corner = tuple[float, float, float]
 Cell = tuple[int, int, int]
@@ -123,7 +135,7 @@ def _window(cell: Cell, end: int) -> list[Corner]:
 def description(grid: Grid, loads: bool) -> dict[str, Any]:
     """The building as Mascarin reads it."""
     room: dict[str, Any] = {
-        "infiltration": 0.5,
+        "infiltration": AIR_CHANGES,
         "sun": "geometry",
         "gains": {"use": {"power": 150, "schedule": "day"}},
     }
@@ -155,7 +167,9 @@ def description(grid: Grid, loads: bool) -> dict[str, Any]:
             name: {"layers": [{"material": m, "thickness": SOLIDS[m][3]} for m in layers]}
             for name, layers in CONSTRUCTIONS.items()
         },
-        "glazings": {"pane": {"kind": "simple", "u_value": WINDOW[0], "solar_heat_gain": WINDOW[1]}},
+        "glazings": {
+            "pane": {"kind": "panes", "panes": [PANE, PANE], "gaps": [{"gas": "air", "thickness": GAP}]}
+        },
         "schedules": {"day": {"kind": "fraction", "days": {"all": hours}}},
         "zones": dict.fromkeys(grid.rooms, room),
         "surfaces": {
@@ -173,7 +187,8 @@ def description(grid: Grid, loads: bool) -> dict[str, Any]:
                 "glazing": "pane",
                 "vertices": face.window,
                 "outside": {"convection": doe2 | {"roughness": "very_smooth"}},
-                "inside": {"convection": "tarp"},
+                # So does EnergyPlus at windows, whatever algorithm the zone has.
+                "inside": {"convection": "iso15099"},
             }
             for face in faces
             if face.window is not None
@@ -227,6 +242,8 @@ def model(grid: Grid, loads: bool, days: int) -> dict[str, Any]:
         },
         "SurfaceConvectionAlgorithm:Inside": {"i": {"algorithm": "TARP"}},
         "SurfaceConvectionAlgorithm:Outside": {"o": {"algorithm": "DOE-2"}},
+        # Sun and shadows of each day: by default those of one day hold for 20.
+        "ShadowCalculation": {"s": {"shading_calculation_update_frequency": 1}},
         "Timestep": {"t": {"number_of_timesteps_per_hour": 4}},
         "RunPeriod": {
             "p": {
@@ -279,12 +296,10 @@ def model(grid: Grid, loads: bool, days: int) -> dict[str, Any]:
             }
             for k, (c, d, h, t) in SOLIDS.items()
         },
-        "WindowMaterial:SimpleGlazingSystem": {
-            "unit": {"u_factor": WINDOW[0], "solar_heat_gain_coefficient": WINDOW[1]}
-        },
+        **_glass(),
         "Construction": {
             **{k: dict(zip(("outside_layer", "layer_2"), v, strict=False)) for k, v in CONSTRUCTIONS.items()},
-            "pane": {"outside_layer": "unit"},
+            "pane": {"outside_layer": "glass", "layer_2": "gap", "layer_3": "glass"},
         },
         "Output:Variable": {
             "air": {"variable_name": "Zone Mean Air Temperature", "reporting_frequency": "Hourly"}
@@ -295,8 +310,9 @@ def model(grid: Grid, loads: bool, days: int) -> dict[str, Any]:
                 "zone_or_zonelist_or_space_or_spacelist_name": room,
                 "schedule_name": "always",
                 "design_flow_rate_calculation_method": "AirChanges/Hour",
-                "air_changes_per_hour": 0.5,
+                "air_changes_per_hour": AIR_CHANGES * STANDARD_AIR,
                 "constant_term_coefficient": 1,
+                "density_basis": "Standard",
             }
             for room in grid.rooms
         },
@@ -322,6 +338,27 @@ def model(grid: Grid, loads: bool, days: int) -> dict[str, Any]:
         for room in grid.rooms:
             _add_loads(whole, room)
     return whole
+
+
+def _glass() -> dict[str, Any]:
+    """The two layers of the windows."""
+    optics = {
+        f"{side}_side_{kind}_reflectance_at_normal_incidence": PANE["reflectance"]
+        for side in ("front", "back")
+        for kind in ("solar", "visible")
+    }
+    optics |= {
+        f"{kind}_transmittance_at_normal_incidence": PANE["transmittance"] for kind in ("solar", "visible")
+    }
+    infrared = {
+        f"{side}_side_infrared_hemispherical_emissivity": PANE["emissivity"] for side in ("front", "back")
+    }
+    glass = {"optical_data_type": "SpectralAverage", "infrared_transmittance_at_normal_incidence": 0.0}
+    glass |= {"thickness": PANE["thickness"], "conductivity": PANE["conductivity"]}
+    return {
+        "WindowMaterial:Glazing": {"glass": glass | optics | infrared},
+        "WindowMaterial:Gas": {"gap": {"gas_type": "Air", "thickness": GAP}},
+    }
 
 
 def _add_face(whole: dict[str, Any], face: Face) -> None:
