@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mascarin.errors import InputError
 from mascarin.weather.channels import CHANNELS
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
 
     from mascarin.building import Building
@@ -36,9 +37,9 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
     """
     windy = [name for name, vent in building.vents.items() if vent.windy]
     directed = [name for name, vent in building.vents.items() if vent.directed]
-    speeds = climate.record.data.get("wind_speed")
+    speeds = climate.record.columns.get("wind_speed")
     calm = not forcing[..., list(CHANNELS).index("wind_speed")].any()
-    if windy and calm and (speeds is None or not speeds.any()):
+    if windy and calm and (speeds is None or not np.nan_to_num(speeds).any()):
         raise InputError(
             "climate: found no wind in the whole record (0 m/s, or 'absent: [wind_speed]'), expected a wind "
             f"speed: the wind drives air through {_some(windy)}. Give the column of the wind speed, a speed "
@@ -46,8 +47,8 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
             "alone then drives"
         )
     # A direction that is stated may be 360: the forcing does not tell it from one that is absent.
-    directions = climate.record.data.get("wind_direction")
-    if directed and (directions is None or not directions.any()):
+    directions = climate.record.columns.get("wind_direction")
+    if directed and (directions is None or not np.nan_to_num(directions).any()):
         raise InputError(
             "climate: found no direction of the wind in the whole record (0 deg, or 'absent: "
             "[wind_direction]'), expected one: the wind pressure on "
