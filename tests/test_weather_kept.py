@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -88,7 +89,7 @@ def test_a_folder_that_cannot_be_written_costs_nothing(folder: Path) -> None:
 
 def test_the_oldest_are_removed(folder: Path) -> None:
     for number in range(MOST + 3):
-        kept((number,), [readers], lambda number=number: Kept({"n": number}))
+        kept((number,), [readers], partial(Kept, {"n": number}))
     assert len(list(folder.iterdir())) == MOST
 
 

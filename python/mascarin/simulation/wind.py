@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
-    """Refuse a climate without wind where wind drives air through vents; calm days are none.
+    """Refuse a climate without wind where wind drives air through vents; a measured calm is no such climate.
 
     Parameters
     ----------
@@ -37,9 +37,13 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
     """
     windy = [name for name, vent in building.vents.items() if vent.windy]
     directed = [name for name, vent in building.vents.items() if vent.directed]
-    speeds = climate.record.columns.get("wind_speed")
+    record = climate.record
+    speeds = record.columns.get("wind_speed")
     calm = not forcing[..., list(CHANNELS).index("wind_speed")].any()
-    if windy and calm and (speeds is None or not np.nan_to_num(speeds).any()):
+    still = speeds is None or not np.nan_to_num(speeds).any()
+    if still and record.measured("wind_speed"):
+        return
+    if windy and calm and still:
         raise InputError(
             "climate: found no wind in the whole record (0 m/s, or 'absent: [wind_speed]'), expected a wind "
             f"speed: the wind drives air through {_some(windy)}. Give the column of the wind speed, a speed "
@@ -47,7 +51,7 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
             "alone then drives"
         )
     # A direction that is stated may be 360: the forcing does not tell it from one that is absent.
-    directions = climate.record.columns.get("wind_direction")
+    directions = record.columns.get("wind_direction")
     if directed and (directions is None or not np.nan_to_num(directions).any()):
         raise InputError(
             "climate: found no direction of the wind in the whole record (0 deg, or 'absent: "

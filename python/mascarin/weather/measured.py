@@ -190,7 +190,10 @@ def _with_neutral(record: WeatherRecord, stated: Mapping[str, float]) -> Weather
         closing[name] = value
         unit = "%" if name == "relative_humidity" else UNITS[name]
         notes.append(f"{record.file}: {name} was not measured; assumed {value:g} {unit} throughout.")
-    return replace(record, columns=columns, kinds=kinds, closing=closing, provenance=tuple(notes))
+    assumed = frozenset(stated)
+    return replace(
+        record, columns=columns, kinds=kinds, closing=closing, provenance=tuple(notes), assumed=assumed
+    )
 
 
 def _with_humidity(record: WeatherRecord) -> WeatherRecord:

@@ -97,12 +97,19 @@ class WeatherRecord(Record):
         May be used for a building at another place than where it was measured.
     basis : str or None
         The two irradiances from which a third was derived; None before anything was derived.
+    assumed : frozenset of str
+        Channels that were not measured, for which a value is assumed or was stated.
     """
 
     site: Place | None = None
     check_sun: bool = True
     elsewhere: bool = False
     basis: Basis | None = None
+    assumed: frozenset[str] = frozenset()
+
+    def measured(self, name: str) -> bool:
+        """Whether a channel of a measured table was measured; a weather file of a year fills it somehow."""
+        return name in self.columns and name not in self.assumed and not self.of_year
 
     @property
     def radiation_basis(self) -> Basis:
