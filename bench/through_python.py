@@ -30,7 +30,7 @@ from mascarin.examples import FOLDER
 
 HERE = Path(__file__).resolve().parent
 ASKED_DAYS = 92
-ASKED_RUN, ASKED_COMMAND = {"constant": 8.0}, 1.5  # ms, s
+ASKED_RUN, ASKED_COMMAND = {"constant": 8.0}, 0.7  # ms, s
 HEAD = ("model", "one run", "asked", "members/s", "asked", "Jacobian / run", "gradient", "gradient / run")
 
 

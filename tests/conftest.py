@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 
 os.environ["MPLBACKEND"] = "Agg"  # no window opens in a test
+os.environ["MASCARIN_CACHE"] = "off"  # weather files are read, not what an earlier test kept of them
 
 
 SEED = "MASCARIN_TEST_SEED"

@@ -65,6 +65,7 @@ def test_ranking_in_pairs() -> None:
     found = ranked(values, least=True)
     assert found.order.tolist() == [0, 2, 1]
     assert found.tied.tolist() == [True, False, True]
+    assert found.tied_before.tolist() == [False, True, True]  # the last two are within each other's noise
     # t with 3 degrees of freedom at 1 - 0.05/4, two comparisons: 4.1765.
     half = 4.176535 * np.std([1.0, 1.1, 1.0, 0.9], ddof=1) / 2.0
     assert found.high[1] == pytest.approx(1.0 + half, rel=1e-5)

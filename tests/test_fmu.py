@@ -20,6 +20,7 @@ from mascarin.fmu import export
 from mascarin.fmu.inputs import channels_of
 from mascarin.fmu.units import BaseUnit, base_unit
 from mascarin.simulation import Simulation
+from test_openings import controlled, weather
 
 LGI = FOLDER / "lgi"
 STEP = 900.0
@@ -75,6 +76,18 @@ def test_version_2_gives_the_same(room: Simulation, tmp_path: Path) -> None:
     with zipfile.ZipFile(file) as archive:
         library = next(name for name in archive.namelist() if name.startswith("binaries/"))
         assert not undefined_symbols(archive.read(library))
+
+
+def test_vents_and_their_controls_are_those_of_a_run_to_the_bit(tmp_path: Path) -> None:
+    """The network of pressures, the state of the controls, and the wind, which is an input of the unit."""
+    building = controlled()
+    names = ["a.air_temperature", "windward.inflow", "door.outflow", "night.open"]
+    simulation = Simulation(building, weather(), step="15min", outputs=names)
+    file = tmp_path / "vents.fmu"
+    export(simulation, file, inputs=["weather.wind_speed"])
+    expected = simulation.run().records
+    assert set(expected[:, -1]) == {0.0, 1.0}
+    assert np.array_equal(simulated(file, simulation), expected)
 
 
 def test_only_schedules_as_inputs_give_the_run_to_the_bit(room: Simulation, tmp_path: Path) -> None:

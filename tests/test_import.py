@@ -41,6 +41,14 @@ def test_command_line_starts_light(words: list[str]) -> None:
     assert loaded_after(f"import mascarin.cli; assert mascarin.cli.main({words!r}) == 0") == []
 
 
+def test_a_run_needs_no_tables(tmp_path: Path) -> None:
+    """They would take longer to import than the building to run."""
+    box = Path(mascarin.__file__).parent / "examples" / "box.yaml"
+    words = ["run", str(box), "--weather", "shipped:golden", "--start", "2001-07-01", "--end", "2001-07-02"]
+    code = f"import mascarin.cli; assert mascarin.cli.main({words!r}) == 0"
+    assert loaded_after(code) == ["numpy", "pydantic"]
+
+
 @pytest.mark.parametrize("name", sorted(set(mascarin.__all__) - {"__version__"}))
 def test_every_public_name_is_there_and_documented(name: str) -> None:
     value = getattr(mascarin, name)

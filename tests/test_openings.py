@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 import mascarin as mc
+from mascarin import examples
 from mascarin.building import Building
 from mascarin.building.air import density
 from mascarin.errors import InputError
@@ -216,8 +217,10 @@ def test_derivatives_of_a_controlled_network() -> None:
 @pytest.mark.parametrize(
     ("columns", "said"),
     [
-        ({"wind_speed": 0.0}, r"no wind in the whole record.*vents\.windward and 1 more.*pressure: none"),
-        ({"absent": {"wind_speed": 0.0}}, r"no wind in the whole record.*absent: \{wind_speed: 2\}"),
+        (
+            {"absent": {"wind_speed": 0.0}},
+            r"no wind in the whole record.*windward and 1 more.*absent: \{wind_speed: 2\}.*pressure: none",
+        ),
         ({"absent": {"wind_direction": 0.0}}, r"no direction of the wind.*wind_direction: 225"),
     ],
 )
@@ -228,6 +231,27 @@ def test_a_climate_without_wind_is_refused(columns: dict[str, Any], said: str) -
     for name in ("windward", "leeward"):
         sheltered["vents"][name]["pressure"] = "none"
     assert run(Building.from_dict(sheltered), weather(**columns), ["a.air_temperature"]).energy.closes
+
+
+def test_a_measured_calm_is_that_of_openings_without_wind() -> None:
+    high = rooms().replace({"vents.leeward.elevation": 3.5}).to_dict()
+    calm = run(Building.from_dict(high), weather(25, wind_speed=0.0))
+    sheltered = dict(high)
+    for name in ("windward", "leeward"):
+        sheltered["vents"][name]["pressure"] = "none"
+    stack = run(Building.from_dict(sheltered), weather(25, wind_speed=0.0))
+    assert np.array_equal(calm.records, stack.records)
+    assert abs(last(calm, "windward.inflow") - last(calm, "windward.outflow")) > 0.01
+
+
+def test_a_wall_with_corners_is_as_steep_as_they_say() -> None:
+    house = mc.load(examples.FOLDER / "reunion_house" / "building.yaml")
+    said = "zone 'living' and outdoors"
+    with pytest.raises(InputError, match=said):
+        house.replace({"vents.living_north_jalousie.surface": "bedroom_north"})
+    with pytest.raises(InputError, match=r"low_rise in 'roof_north' of tilt 27\.4"):
+        house.replace({"vents.living_north_jalousie.surface": "roof_north",
+                       "vents.living_north_jalousie.zone": "attic"})  # fmt: skip
 
 
 @pytest.mark.parametrize(

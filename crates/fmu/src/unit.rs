@@ -78,6 +78,8 @@ pub struct Unit {
     places: Vec<usize>,
     /// Channels and values of the inputs.
     driven: Vec<(usize, f64)>,
+    /// Columns of the records that each output is the mean of.
+    columns: Vec<Vec<usize>>,
     rows: Vec<f64>,
     records: Vec<f64>,
 }
@@ -97,7 +99,17 @@ impl Unit {
             Role::Parameter(parameter) => parameter,
         });
         let places = places.collect();
+        let driven = contents.variables.iter().filter_map(|variable| match variable.role {
+            Role::Input(channel) => Some((channel, variable.start)),
+            _ => None,
+        });
+        let columns = contents.variables.iter().filter_map(|variable| match &variable.role {
+            Role::Output(columns) => Some(columns.clone()),
+            _ => None,
+        });
         let mut unit = Self {
+            driven: driven.collect(),
+            columns: columns.collect(),
             contents: Arc::new(contents),
             mode: Mode::Instantiated,
             first: 0,
@@ -106,7 +118,6 @@ impl Unit {
             inputs: Vec::new(),
             outputs: vec![0.0; outputs],
             places,
-            driven: Vec::new(),
             rows: Vec::new(),
             records: Vec::new(),
         };
@@ -310,13 +321,9 @@ impl Unit {
 
     /// Notes the inputs, which hold until they are set again.
     fn note_inputs(&mut self) {
-        let Self { driven, inputs, contents, .. } = self;
-        driven.clear();
-        let channels = contents.variables.iter().filter_map(|variable| match variable.role {
-            Role::Input(channel) => Some(channel),
-            _ => None,
-        });
-        driven.extend(channels.zip(inputs.iter().copied()));
+        for ((_, driven), &input) in self.driven.iter_mut().zip(&self.inputs) {
+            *driven = input;
+        }
     }
 
     /// Weather of a step with the inputs.
@@ -349,14 +356,10 @@ impl Unit {
     }
 
     fn read_outputs(&mut self) {
-        let Self { running, records, outputs, contents, .. } = self;
+        let Self { running, records, outputs, columns, .. } = self;
         let Some(running) = running else { return };
         running.read(records);
-        let of_variables = contents.variables.iter().filter_map(|variable| match &variable.role {
-            Role::Output(columns) => Some(columns),
-            _ => None,
-        });
-        for (output, columns) in outputs.iter_mut().zip(of_variables) {
+        for (output, columns) in outputs.iter_mut().zip(columns) {
             *output = match columns[..] {
                 [column] => records[column],
                 // As Python calculates an operative temperature: with the same bits.

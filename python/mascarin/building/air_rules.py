@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
+from mascarin.building.derived import outlines
 from mascarin.building.part import fault
 from mascarin.building.vent import LowRise
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
     from mascarin.building.description import Description
     from mascarin.building.driven import Driven
+    from mascarin.building.surface import Surface
 
 #: Largest difference of what enters and what leaves a zone, over the larger of the two [-].
 BALANCED: Final = 1e-3
@@ -99,13 +101,20 @@ def vent_faults(building: Description) -> Iterator[InitErrorDetails]:
                 f"a surface between zone '{vent.zone}' and outdoors",
                 "Name another surface, or give 'azimuth:' in its place.",
             )
-        elif isinstance(vent.pressure, LowRise) and not STEEP[0] <= float(surface.tilt or 0.0) <= STEEP[1]:
+        elif isinstance(vent.pressure, LowRise) and not STEEP[0] <= _tilt(vent.surface, surface) <= STEEP[1]:
             yield fault(
                 ("vents", name, "pressure"),
-                f"low_rise in '{vent.surface}' of tilt {surface.tilt:g} deg",
+                f"low_rise in '{vent.surface}' of tilt {_tilt(vent.surface, surface):g} deg",
                 "a wall: the correlation holds for vertical surfaces",
                 "Write 'pressure: {kind: table, coefficients: [-0.6]}' with the coefficients of the roof.",
             )
+
+
+def _tilt(name: str, surface: Surface) -> float:
+    """Tilt of a surface, as given or of its vertices. [deg]"""
+    if surface.tilt is None and surface.vertices is not None:
+        return float(outlines({name: surface})[name].tilt)
+    return float(surface.tilt or 0.0)
 
 
 def _schedule(part: Driven) -> str | None:

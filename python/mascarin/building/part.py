@@ -43,7 +43,7 @@ class PartType(ModelMetaclass):
 class Part(BaseModel, metaclass=PartType):
     """A piece of a description: immutable, and without unknown keys."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, defer_build=True)
 
     #: Whether a file may leave out the kind, because no other kind is as usual.
     has_usual_kind: ClassVar[bool] = False

@@ -206,8 +206,8 @@ def _require_wind(climate: Climate, building: Building) -> None:
     ]
     driven += [f"vents.{name}" for name, vent in building.vents.items() if vent.windy]
     driven += [f"zones.{name}.infiltration" for name, zone in building.zones.items() if _by_wind(zone)]
-    columns = climate.record.data
-    wind = np.asarray(columns["wind_speed"], dtype=np.float64) if "wind_speed" in columns else np.zeros(1)
+    columns = climate.record.columns
+    wind = columns["wind_speed"] if "wind_speed" in columns else np.zeros(1)
     if driven and not np.nanmax(wind, initial=0.0) > 0.0:
         raise InputError(
             f"found no wind in the weather file, expected wind speeds, by which air flows through "

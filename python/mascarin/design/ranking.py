@@ -44,6 +44,9 @@ class Ranking:
         Mean of the value less that of the best design, with its interval, by design. [unit of the objective]
     tied : ndarray of bool, shape (K,)
         Whether a design cannot be told from the best one.
+    tied_before : ndarray of bool, shape (K,)
+        Whether a design cannot be told from the one before it in the order: with other samples the two may
+        change places.
     better : ndarray, shape (K,)
         Part of the samples in which a design is better than the best one. [-]
     samples : int
@@ -53,8 +56,8 @@ class Ranking:
     --------
     >>> values = np.array([[1.0, 2.0, 3.0, 4.0], [1.5, 2.4, 3.6, 4.5], [0.9, 2.1, 3.0, 4.0]])
     >>> found = ranked(values, least=True)
-    >>> found.order.tolist(), found.tied.tolist()
-    ([0, 2, 1], [True, False, True])
+    >>> found.order.tolist(), found.tied.tolist(), found.tied_before.tolist()
+    ([0, 2, 1], [True, False, True], [False, False, True])
     """
 
     order: npt.NDArray[np.int64]
@@ -64,6 +67,7 @@ class Ranking:
     low: Array
     high: Array
     tied: npt.NDArray[np.bool_]
+    tied_before: npt.NDArray[np.bool_]
     better: Array
     samples: int
 
@@ -71,7 +75,7 @@ class Ranking:
         """A row for each design, the best first."""
         import pandas as pd
 
-        columns = ("mean", "spread", "difference", "low", "high", "tied", "better")
+        columns = ("mean", "spread", "difference", "low", "high", "tied", "tied_before", "better")
         table = pd.DataFrame({name: getattr(self, name) for name in columns})
         return table.iloc[self.order].rename_axis("design").reset_index()
 
@@ -102,19 +106,28 @@ def ranked(values: Array, *, least: bool, negligible: float = 0.0) -> Ranking:
     if not count:
         empty = np.full(len(values), np.nan)
         none = np.zeros(len(values), dtype=bool)
-        return Ranking(np.arange(len(values)), empty, empty, empty, empty, empty, none, empty, 0)
+        return Ranking(np.arange(len(values)), empty, empty, empty, empty, empty, none, none, empty, 0)
     mean = used.mean(axis=1)
     order = np.argsort(mean if least else -mean, kind="stable")
     best = order[0]
     pairs = used - used[best]
     difference = pairs.mean(axis=1)
-    half = np.zeros(len(used))
-    if count > 1:
-        comparisons = max(len(used) - 1, 1)
-        quantile = stats.t.ppf(1.0 - (1.0 - CONFIDENCE) / (2.0 * comparisons), count - 1)
-        half = quantile * pairs.std(axis=1, ddof=1) / np.sqrt(count)
+    comparisons = max(len(used) - 1, 1)
+    quantile = stats.t.ppf(1.0 - (1.0 - CONFIDENCE) / (2.0 * comparisons), max(count - 1, 1))
+
+    def half_width(differences: Array) -> Array:
+        if count < 2:
+            return np.zeros(len(differences))
+        return np.asarray(quantile * differences.std(axis=1, ddof=1) / np.sqrt(count))
+
+    half = half_width(pairs)
     rounding = _ROUNDING * max(float(np.abs(used).max()), 1e-300)
+    least_difference = max(rounding, negligible * abs(float(mean[best])))
     worse = difference if least else -difference
+    # Each design less the one before it.
+    steps = np.diff(used[order], axis=0) * (1.0 if least else -1.0)
+    tied_before = np.zeros(len(used), dtype=bool)
+    tied_before[order[1:]] = steps.mean(axis=1) - half_width(steps) <= least_difference
     better = ((pairs < -rounding) if least else (pairs > rounding)).mean(axis=1)
     return Ranking(
         order=order,
@@ -123,7 +136,8 @@ def ranked(values: Array, *, least: bool, negligible: float = 0.0) -> Ranking:
         difference=difference,
         low=difference - half,
         high=difference + half,
-        tied=worse - half <= max(rounding, negligible * abs(float(mean[best]))),
+        tied=worse - half <= least_difference,
+        tied_before=tied_before,
         better=better,
         samples=count,
     )

@@ -83,11 +83,13 @@ class DesignResults:
         return values if self.inputs.objective(objective).least else -values
 
     def verdict(self, ranking: Ranking, k: int) -> str:
-        """Whether a compared design differs from the best one, in words."""
+        """Whether a compared design differs from the best one and the one before it, in words."""
         if k == ranking.order[0]:
             return "best"
         if ranking.tied[k]:
             return "tied with the best"
+        if ranking.tied_before[k]:
+            return f"tied with rank {list(ranking.order).index(k)}"
         return "different" if ranking.samples > 1 else "different as described"
 
     def winners(self, climate: str = ALL) -> list[int]:
@@ -147,6 +149,7 @@ class DesignResults:
                     "low": float(ranking.low[k]),
                     "high": float(ranking.high[k]),
                     "tied": bool(ranking.tied[k]),
+                    "tied_before": bool(ranking.tied_before[k]),
                     "verdict": self.verdict(ranking, int(k)),
                 }
                 for k in ranking.order

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -18,6 +19,7 @@ from mascarin.simulation.flow_balance import require_balanced_flows
 from mascarin.simulation.initial import MeasuredStart, resolved
 from mascarin.simulation.initial import read as read_initial
 from mascarin.simulation.sky import with_sky_of
+from mascarin.simulation.times import Times
 from mascarin.simulation.wind import require_wind
 from mascarin.weather import (
     CHANNELS,
@@ -30,7 +32,7 @@ from mascarin.weather import (
     scheduled,
 )
 from mascarin.weather.times import stamps_of
-from mascarin.weather.timezones import moment
+from mascarin.weather.timezones import seconds_at
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -53,6 +55,7 @@ __all__ = [
     "read_initial",
     "require_inputs",
     "settings_of",
+    "span",
     "start_of",
 ]
 
@@ -161,13 +164,19 @@ def period(
     climate: Climate, start: TimeLike | None, end: TimeLike | None
 ) -> tuple[pd.Timestamp, pd.Timestamp]:
     """Start and end in local time; by default those of the climate."""
+    first, last = stamps_of(np.array(span(climate, start, end)), climate.grid.zone)
+    return first, last
+
+
+def span(climate: Climate, start: TimeLike | None, end: TimeLike | None) -> tuple[float, float]:
+    """Start and end, by default those of the climate, in seconds since 1970-01-01 UTC. [s]"""
     grid = climate.grid
-    first, last = stamps_of(np.array([grid.start, grid.end]), grid.zone)
-    begin = first if start is None else moment(start, grid.zone, "start")
-    finish = last if end is None else moment(end, grid.zone, "end")
-    if finish <= begin:
+    first = grid.start if start is None else seconds_at(start, grid.zone, "start")
+    last = grid.end if end is None else seconds_at(end, grid.zone, "end")
+    if last <= first:
+        begin, finish = stamps_of(np.array([first, last]), grid.zone)
         raise InputError(f"period: found start {begin} and end {finish}, expected the end after the start")
-    return begin, finish
+    return first, last
 
 
 def chosen_outputs(building: Building, names: Sequence[str] | None) -> list[Output]:
@@ -182,9 +191,7 @@ def forcing_of(
     climate: Climate,
     description: EngineDescription,
     *,
-    start: pd.Timestamp,
-    end: pd.Timestamp,
-    step_seconds: float,
+    times: Times,
     scheme: Scheme,
     measurements: Measurements | None,
 ) -> Array:
@@ -199,9 +206,9 @@ def forcing_of(
     columns = description.channels[: len(description.channels) - len(names)]
     weather = climate.forcing(
         building.site,
-        start,
-        end,
-        step_seconds,
+        times.start,
+        times.end,
+        times.step,
         scheme,
         columns,
         measurements,
@@ -212,9 +219,9 @@ def forcing_of(
             climate,
             courses(building),
             parse_timezone(building.site.timezone),
-            start,
-            end,
-            step_seconds,
+            times.start,
+            times.end,
+            times.step,
             scheme,
             measurements,
         )
@@ -222,7 +229,7 @@ def forcing_of(
     else:
         forcing = np.ascontiguousarray(weather, dtype=np.float64)
     _require_numbers(forcing, description.channels, building)
-    require_balanced_flows(building, forcing, description.channels, (start, step_seconds))
+    require_balanced_flows(building, forcing, description.channels, (times.start, times.step))
     require_wind(building, climate, forcing)
     return forcing
 
@@ -232,7 +239,7 @@ def start_of(
     building: Building,
     description: EngineDescription,
     forcing: Array,
-    start: pd.Timestamp,
+    start: datetime,
 ) -> float | Profile | None:
     """Temperature or temperatures at the start; None to repeat the first period."""
     if wanted is None or isinstance(wanted, float):

@@ -12,8 +12,9 @@ from mascarin.errors import InputError
 from mascarin.weather.channels import CHANNELS
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     import numpy.typing as npt
-    import pandas as pd
 
     from mascarin.building import Building
     from mascarin.building.driven import Driven
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def require_balanced_flows(
-    building: Building, forcing: Array, channels: Sequence[str], period: tuple[pd.Timestamp, float]
+    building: Building, forcing: Array, channels: Sequence[str], period: tuple[datetime, float]
 ) -> None:
     """Refuse flows that do not balance in a zone without make-up air.
 
@@ -34,7 +35,7 @@ def require_balanced_flows(
         What acts on the building, schedules and columns included. [unit of each]
     channels : sequence of str
         Channels of the forcing after those of the climate.
-    period : tuple of (pandas.Timestamp, float)
+    period : tuple of (datetime, float)
         Start of the run, and its step [s].
 
     Raises
@@ -62,7 +63,7 @@ def require_balanced_flows(
         if wrong is not None:
             import pandas as pd
 
-            when = period[0] + pd.Timedelta(seconds=worst * period[1])
+            when = pd.Timestamp(period[0]) + pd.Timedelta(seconds=worst * period[1])
             raise InputError(
                 f"zones.{zone}: found that {wrong} in the step from {when:%Y-%m-%d %H:%M}; expected as much "
                 f"air in as out. {REMEDY}"

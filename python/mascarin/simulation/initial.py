@@ -24,7 +24,7 @@ from mascarin.building.initial_state import (
 from mascarin.errors import InputError
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from datetime import datetime
 
     from mascarin.building import Building
     from mascarin.weather import Measurements
@@ -62,7 +62,7 @@ class MeasuredStart:
     measurements: Measurements
     sensors: Mapping[str, str | Sequence[str]]
 
-    def known(self, building: Building, found: Sequence[Wall], start: pd.Timestamp) -> Known:
+    def known(self, building: Building, found: Sequence[Wall], start: datetime) -> Known:
         """The first value of each sensor.
 
         Parameters
@@ -71,7 +71,7 @@ class MeasuredStart:
             The building.
         found : sequence of Wall
             Its walls.
-        start : pandas.Timestamp
+        start : datetime
             Start of the run.
 
         Raises
@@ -100,7 +100,7 @@ class MeasuredStart:
             )
         return Known(zones, points, None, f"measured from {start:%Y-%m-%d %H:%M}: {', '.join(notes)} degC")
 
-    def _first(self, name: str, columns: Sequence[str], start: pd.Timestamp) -> float:
+    def _first(self, name: str, columns: Sequence[str], start: datetime) -> float:
         """First value within an hour of the start, the mean of the columns that have one. [degC]"""
         import numpy as np
         import pandas as pd
@@ -165,7 +165,7 @@ def resolved(
     building: Building,
     nodes: Mapping[tuple[str, str], int],
     ambient: Ambient,
-    start: pd.Timestamp,
+    start: datetime,
 ) -> Profile:
     """Temperatures everywhere in a building.
 
@@ -179,7 +179,7 @@ def resolved(
         Finite volumes by construction and layer.
     ambient : Ambient
         Temperatures around it at the start.
-    start : pandas.Timestamp
+    start : datetime
         Start of the run.
 
     Raises

@@ -12,9 +12,9 @@ from mascarin.weather.channels import CHANNELS
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-    import pandas as pd
 
     from mascarin.building import Building, Parameter
+    from mascarin.simulation.times import Times
 
     Array = npt.NDArray[np.float64]
 
@@ -73,7 +73,7 @@ def require_set_points_apart(
     *,
     positions: Mapping[str, int],
     channels: Sequence[str],
-    times: pd.DatetimeIndex,
+    times: Times,
 ) -> None:
     """Refuse heating above cooling.
 
@@ -89,7 +89,7 @@ def require_set_points_apart(
         Position of each parameter in a vector.
     channels : sequence of str
         Channels of the forcing after those of the climate.
-    times : pandas.DatetimeIndex, shape (rows,)
+    times : Times
         Times of the records.
 
     Raises
@@ -119,7 +119,7 @@ def require_set_points_apart(
         )
         raise InputError(
             f"zones.{name}: found heating to {warm:g} degC above cooling to {cold:g} degC at the end "
-            f"of the step from {times[step]:%Y-%m-%d %H:%M}"
+            f"of the step from {times.index[step]:%Y-%m-%d %H:%M}"
             f"{f' (member {member})' if len(vectors) > 1 else ''}; expected a heating set point at or "
             "below the cooling set point at all times: lower the one or raise the other"
         )

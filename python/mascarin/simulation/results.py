@@ -8,17 +8,19 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
+import numpy as np
+
 from mascarin._io import display
 from mascarin.errors import InputError, did_you_mean
 from mascarin.simulation import files, labels
 from mascarin.simulation.energy import EnergyLedger
 from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.spacing import means, state_means
+from mascarin.simulation.times import Times
 from mascarin.simulation.vapour import VapourLedger
 from mascarin.weather.times import seconds_of
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
     import pandas as pd
     import xarray as xr
@@ -51,8 +53,8 @@ class Results(Mapping[str, "xr.DataArray"]):
     ----------
     outputs : sequence of Output
         What was recorded.
-    index : pandas.DatetimeIndex
-        Local times with their zone, shape (rows,): the state at the start, then at the end of every step.
+    times : Times
+        Times of the records: the state at the start, then at the end of every step.
     records : ndarray, shape (rows, outputs)
         Values. [unit of each output]
     energy : EnergyLedger
@@ -77,12 +79,17 @@ class Results(Mapping[str, "xr.DataArray"]):
     """
 
     outputs: Sequence[Output]
-    index: pd.DatetimeIndex
+    times: Times
     records: Array
     energy: EnergyLedger
     provenance: Provenance
     warnings: tuple[str, ...] = ()
     vapour: VapourLedger | None = None
+
+    @property
+    def index(self) -> pd.DatetimeIndex:
+        """Local times with their zone, shape (rows,)."""
+        return self.times.index
 
     def __getitem__(self, name: str) -> xr.DataArray:
         """One series by the name or alias of its output.
@@ -165,11 +172,10 @@ class Results(Mapping[str, "xr.DataArray"]):
         InputError
             The interval is no positive time or longer than the run.
         """
-        import numpy as np
         import pandas as pd
 
         seconds = seconds_of(interval, "interval")
-        place = np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64)
+        place = self.times.since_start
         times = np.arange(0.0, place[-1] + 1e-6, seconds)
         if len(times) < 2:
             raise InputError(f"interval: found {interval!r}; expected a time shorter than the run")
@@ -179,8 +185,8 @@ class Results(Mapping[str, "xr.DataArray"]):
             else np.interp(times, place, self.records[:, k])
             for k, output in enumerate(self.outputs)
         ]
-        index = self.index[0] + pd.to_timedelta(times, unit="s")
-        return replace(self, index=index, records=np.stack(columns, axis=-1))
+        index = Times.of(self.index[0] + pd.to_timedelta(times, unit="s"))
+        return replace(self, times=index, records=np.stack(columns, axis=-1))
 
     def hourly(self, name: str) -> pd.Series[float]:
         """Means of one series over whole hours.
@@ -202,12 +208,11 @@ class Results(Mapping[str, "xr.DataArray"]):
         InputError
             It was not recorded, or the run covers no whole hour.
         """
-        import numpy as np
         import pandas as pd
 
         position = self._position(name)
         output, values = self.outputs[position], self.records[:, position]
-        place = np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64)
+        place = self.times.since_start
         first = self.index[0].ceil("h", ambiguous=True, nonexistent="shift_forward")
         early = (first - self.index[0]).total_seconds()
         times = np.arange(early, place[-1] + 1e-6, 3600.0)
@@ -216,8 +221,7 @@ class Results(Mapping[str, "xr.DataArray"]):
                 f"{name}: the run covers no whole hour; expected one from full hour to full hour"
             )
         found = (means(place, values, times) if output.mean else state_means(place, values, times))[1:]
-        index = first + pd.to_timedelta(times[:-1] - early, unit="s")
-        return pd.Series(found, index=index, name=output.name)
+        return pd.Series(found, first + pd.to_timedelta(times[:-1] - early, unit="s"), name=output.name)
 
     def heat(self, name: str) -> float:
         """Heat of a load over the run. [J]
@@ -232,16 +236,13 @@ class Results(Mapping[str, "xr.DataArray"]):
         InputError
             It was not recorded, or is no load in W.
         """
-        import numpy as np
-
         position = self._position(name)
         if self.outputs[position].unit != "W":
             raise InputError(
                 f"{name}: found a quantity in {self.outputs[position].unit}; expected a load in W, such as "
                 "a zone's heating_load"
             )
-        seconds = np.diff(np.asarray((self.index - self.index[0]).total_seconds(), dtype=np.float64))
-        return float(np.sum(self.records[1:, position] * seconds))
+        return float(np.sum(self.records[1:, position] * np.diff(self.times.since_start)))
 
     def to_dataframe(self) -> pd.DataFrame:
         """All series as a table over local time, one column an output.
@@ -255,8 +256,8 @@ class Results(Mapping[str, "xr.DataArray"]):
         """
         import pandas as pd
 
-        index = self.index.rename("time")
-        return pd.DataFrame(self.records, index=index, columns=[output.name for output in self.outputs])
+        names = [output.name for output in self.outputs]
+        return pd.DataFrame(self.records, index=self.index.rename("time"), columns=names)
 
     def to_xarray(self) -> xr.Dataset:
         """All series as an xarray data set, with provenance and energy balance among its attributes.
@@ -370,7 +371,7 @@ class Results(Mapping[str, "xr.DataArray"]):
         records, index, attributes = files.read(Path(path))
         return cls(
             outputs=[_output(fields) for fields in json.loads(attributes["outputs"])],
-            index=index,
+            times=Times.of(index),
             records=records,
             energy=EnergyLedger.from_dict(json.loads(attributes["energy"])),
             provenance=Provenance.from_dict(json.loads(attributes["provenance"])),

@@ -19,10 +19,11 @@ from mascarin.simulation.provenance import Provenance
 from mascarin.simulation.readings import Readings
 from mascarin.simulation.results import Results
 from mascarin.simulation.slopes import gradient_of, labelled_slopes
+from mascarin.simulation.times import Times
 from mascarin.simulation.vapour import VapourLedger
 from mascarin.simulation.vectors import VectorRuns
 from mascarin.weather import CHANNELS, summary, summary_of_measurements
-from mascarin.weather.times import epoch_seconds, seconds_of
+from mascarin.weather.times import seconds_of
 from mascarin.weather.timezones import zone_name
 
 if TYPE_CHECKING:
@@ -124,7 +125,8 @@ class Simulation(VectorRuns):
         self.measured = None if measurements is None else summary_of_measurements(measurements)
         self.scheme: Scheme = scheme
         self.step_seconds = seconds_of(step)
-        self.start, self.end = compiling.period(climate, start, end)
+        first, last = compiling.span(climate, start, end)
+        self.times = Times(first, last, self.step_seconds, climate.grid.zone)
         self.outputs = compiling.chosen_outputs(self.building, outputs)
         self._replaced = compiling.changed_parameters(building, self.building, options.parameters)
         wanted = compiling.read_initial(initial)
@@ -132,11 +134,10 @@ class Simulation(VectorRuns):
         description = self.building.to_engine(self.step_seconds, dict(ranges or {}))
         self.notes = description.notes
         forcing = compiling.forcing_of(
-            self.building, climate, description, start=self.start, end=self.end,
-            step_seconds=self.step_seconds, scheme=scheme, measurements=measurements,
+            self.building, climate, description, times=self.times, scheme=scheme, measurements=measurements
         )  # fmt: skip
         self.channels = tuple(description.channels)
-        self.initial = compiling.start_of(wanted, self.building, description, forcing, self.start)
+        self.initial = compiling.start_of(wanted, self.building, description, forcing, self.times.start)
         self.compiled = CompiledRun(
             description=description.json,
             forcing=forcing,
@@ -147,7 +148,7 @@ class Simulation(VectorRuns):
                 first_period=self._first_period,
             ),
             readings=Readings.of(self.outputs),
-            start=float(epoch_seconds(self.index[:1])[0]),
+            start=first,
             timezone=zone_name(climate.grid.zone),
         )  # fmt: skip
         _ = self.compiled.plan  # the engine's own checks
@@ -305,7 +306,7 @@ class Simulation(VectorRuns):
             warnings += coarse.warnings(self.building, self.outputs, records, self.step_seconds)
         return Results(
             outputs=self.outputs,
-            index=self.index,
+            times=self.times,
             records=np.ascontiguousarray(records),
             energy=energy,
             provenance=Provenance(

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from mascarin.building import Building
     from mascarin.progress import Report
+    from mascarin.simulation.times import Times
 
     Array = npt.NDArray[np.float64]
 
@@ -33,8 +34,8 @@ class VectorRuns:
         What the engine gets.
     channels : tuple of str
         Channels of the forcing after those of the climate.
-    start, end : pandas.Timestamp
-        The period, in local time of the climate.
+    times : Times
+        Times of the records: the start, then the end of every step.
     step_seconds : float
         Time step. [s]
     """
@@ -42,17 +43,23 @@ class VectorRuns:
     building: Building
     compiled: CompiledRun
     channels: tuple[str, ...]
-    start: pd.Timestamp
-    end: pd.Timestamp
+    times: Times
     step_seconds: float
 
-    @cached_property
+    @property
     def index(self) -> pd.DatetimeIndex:
         """Times of the records in local time, shape (rows,): the start, then the end of every step."""
-        import pandas as pd
+        return self.times.index
 
-        step = pd.Timedelta(seconds=self.step_seconds)
-        return pd.date_range(self.start, periods=round((self.end - self.start) / step) + 1, freq=step)
+    @property
+    def start(self) -> pd.Timestamp:
+        """Start of the period, in local time of the climate."""
+        return self.index[0]
+
+    @property
+    def end(self) -> pd.Timestamp:
+        """End of the period, in local time of the climate."""
+        return self.index[-1]
 
     @property
     def paths(self) -> list[str]:
@@ -282,7 +289,7 @@ class VectorRuns:
         self._limits.require(vectors)
         require_set_points_apart(
             self.building, vectors, self.compiled.forcing, positions=self._positions,
-            channels=self.channels, times=self.index,
+            channels=self.channels, times=self.times,
         )  # fmt: skip
 
     @cached_property

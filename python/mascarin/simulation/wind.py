@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mascarin.errors import InputError
 from mascarin.weather.channels import CHANNELS
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
 
     from mascarin.building import Building
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
-    """Refuse a climate without wind where wind drives air through vents; calm days are none.
+    """Refuse a climate without wind where wind drives air through vents; a measured calm is no such climate.
 
     Parameters
     ----------
@@ -36,9 +37,13 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
     """
     windy = [name for name, vent in building.vents.items() if vent.windy]
     directed = [name for name, vent in building.vents.items() if vent.directed]
-    speeds = climate.record.data.get("wind_speed")
+    record = climate.record
+    speeds = record.columns.get("wind_speed")
     calm = not forcing[..., list(CHANNELS).index("wind_speed")].any()
-    if windy and calm and (speeds is None or not speeds.any()):
+    still = speeds is None or not np.nan_to_num(speeds).any()
+    if still and record.measured("wind_speed"):
+        return
+    if windy and calm and still:
         raise InputError(
             "climate: found no wind in the whole record (0 m/s, or 'absent: [wind_speed]'), expected a wind "
             f"speed: the wind drives air through {_some(windy)}. Give the column of the wind speed, a speed "
@@ -46,8 +51,8 @@ def require_wind(building: Building, climate: Climate, forcing: Array) -> None:
             "alone then drives"
         )
     # A direction that is stated may be 360: the forcing does not tell it from one that is absent.
-    directions = climate.record.data.get("wind_direction")
-    if directed and (directions is None or not directions.any()):
+    directions = record.columns.get("wind_direction")
+    if directed and (directions is None or not np.nan_to_num(directions).any()):
         raise InputError(
             "climate: found no direction of the wind in the whole record (0 deg, or 'absent: "
             "[wind_direction]'), expected one: the wind pressure on "

@@ -87,7 +87,7 @@ def require_range(record: Record, name: str, limits: tuple[float, float], first:
     low, high = limits
     slack = 1e-9 * (high - low)
     start, rows = record.grid.rows(first, last)
-    data = record.data[name].to_numpy(dtype=np.float64)
+    data = record.columns[name]
     values = values_in(data, record.closing.get(name, np.nan), rows, kind)
     # Comparisons with NaN are False: missing values are refused by `require_values`.
     outside = (values < low - slack) | (values > high + slack)

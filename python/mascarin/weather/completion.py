@@ -9,7 +9,7 @@ import numpy as np
 from mascarin.weather import derive
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import RADIATION, Basis, Kind
-from mascarin.weather.grid import Grid, frame_of
+from mascarin.weather.grid import Grid
 from mascarin.weather.profile import node_times, pieces_for, trapezoid_weights
 from mascarin.weather.radiation import clear_beam, direct_by_closure
 from mascarin.weather.record import WeatherRecord
@@ -31,14 +31,14 @@ def complete(record: WeatherRecord, latitude: float, longitude: float) -> Weathe
     WeatherRecord
         With all irradiances and cloud cover; the provenance states how they were derived.
     """
-    missing = [name for name in (*RADIATION, "cloud_cover") if name not in record.data.columns]
+    missing = [name for name in (*RADIATION, "cloud_cover") if name not in record.columns]
     if not missing:
         return record
     grid = record.grid
     kind: Kind = next((record.kinds[name] for name in RADIATION if name in record.kinds), "mean")
     sun = SunPath.over(latitude, longitude, grid.start, grid.end)
     up, extra, clear = _sun_means(sun, grid, kind)
-    columns = {str(name): record.data[name].to_numpy(dtype=np.float64) for name in record.data.columns}
+    columns = dict(record.columns)
     notes: list[str] = []
     basis = _fill_radiation(columns, up, extra, clear, record.file, notes)
     if "cloud_cover" not in columns:
@@ -60,7 +60,7 @@ def complete(record: WeatherRecord, latitude: float, longitude: float) -> Weathe
         if kinds[name] == "instant":
             closing.setdefault(name, float(columns[name][-1]))
     return replace(
-        record, data=frame_of(columns, grid), kinds=kinds, closing=closing,
+        record, columns=columns, kinds=kinds, closing=closing,
         provenance=(*record.provenance, *notes), basis=basis,
     )  # fmt: skip
 

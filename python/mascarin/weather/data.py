@@ -158,9 +158,9 @@ def registry() -> pooch.Pooch:
 
 def cache_folder() -> Path:
     """Cache folder of the user: where the platform puts files that can be downloaded again."""
-    import pooch
+    import platformdirs
 
-    return Path(pooch.os_cache("mascarin"))
+    return Path(platformdirs.user_cache_dir("mascarin"))
 
 
 def _known(name: str) -> DataFile:

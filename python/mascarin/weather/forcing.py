@@ -17,7 +17,7 @@ from mascarin.weather.record import Record, WeatherRecord
 from mascarin.weather.site import SiteLike
 from mascarin.weather.steps import Steps
 from mascarin.weather.sun import SunPath
-from mascarin.weather.times import stamps_of
+from mascarin.weather.times import clock
 
 
 def require_period(record: WeatherRecord, steps: Steps) -> None:
@@ -38,7 +38,7 @@ def require_period(record: WeatherRecord, steps: Steps) -> None:
     hint = " (in Python, if it is a typical year: typical=True)" if record.of_year else ""
     record.grid.require(steps.first, steps.last, record.file, hint)
     for name in SOURCE_CHANNELS:
-        if name in record.data.columns:
+        if name in record.columns:
             require_range(record, name, (BY_NAME[name].low, BY_NAME[name].high), steps.first, steps.last)
 
 
@@ -111,13 +111,13 @@ def _fill_sun(out: Array, sun: SunPath, stage: Array, origin: float, grid: Grid)
 
 
 def _day_of_year(stage: Array, grid: Grid) -> Array:
-    local = stamps_of(stage.ravel(), grid.zone).tz_localize(None).to_numpy()
+    local = clock(stage.ravel(), grid.zone)
     year = local.astype("datetime64[Y]").astype(local.dtype)
     return np.asarray((local - year) / np.timedelta64(1, "D"), dtype=np.float64).reshape(stage.shape)
 
 
 def _weather(record: WeatherRecord, name: str, steps: Steps) -> Array:
-    if name in record.data.columns:
+    if name in record.columns:
         return column_values(record, name, steps)
     if name in ("infrared", "pressure"):
         return np.full(steps.stage.shape, np.nan)
@@ -183,7 +183,7 @@ def column_values(record: Record, name: str, steps: Steps) -> Array:
         if name == "wind_direction":
             return np.asarray(np.interp(stage, knots, np.unwrap(values, period=360.0)) % 360.0)
         return np.asarray(np.interp(stage, knots, values))
-    positive = bool(record.data[name].min() >= 0.0)
+    positive = not (record.columns[name] < 0.0).any()
     if name == "wind_direction":
         values, positive = np.unwrap(values, period=360.0), False
     nodes = steady(values, pieces_for(interval), positive=positive)
@@ -219,9 +219,7 @@ def window(record: Record, name: str, first: float, last: float) -> tuple[float,
     """
     kind = record.kinds[name]
     start, rows = record.grid.rows(first, last)
-    values = values_in(
-        record.data[name].to_numpy(dtype=np.float64), record.closing.get(name, np.nan), rows, kind
-    )
+    values = values_in(record.columns[name], record.closing.get(name, np.nan), rows, kind)
     gaps = np.isnan(values)
     if gaps.any():
         require_values(record, name, start, rows, gaps, first, last)
@@ -304,12 +302,12 @@ def record_of(weather: WeatherRecord, measured: Record | None, name: str) -> Rec
     InputError
         Neither holds it; the text names the nearest columns.
     """
-    if name in weather.data.columns and name not in CHANNELS:
+    if name in weather.columns and name not in CHANNELS:
         return weather
-    if measured is not None and name in measured.data.columns:
+    if measured is not None and name in measured.columns:
         return measured
-    known = [str(column) for column in weather.data.columns if column not in CHANNELS]
-    known += [] if measured is None else [str(column) for column in measured.data.columns]
+    known = [str(column) for column in weather.columns if column not in CHANNELS]
+    known += [] if measured is None else [str(column) for column in measured.columns]
     where = weather.file if measured is None else f"{weather.file}, {measured.file}"
     hint = did_you_mean(name, known) if known else "No measured columns were read: name them under extra."
     raise InputError(f"{where}: no measured column {name!r}, which the building needs. {hint}".rstrip())

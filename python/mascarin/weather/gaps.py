@@ -42,22 +42,22 @@ def filled(record: R, longest: str | float, columns: Iterable[str] | None, *, ho
         There is no such column, or no length can be read.
     """
     limit = seconds_of(longest, "fill_gaps") / record.grid.interval
-    known = [str(name) for name in record.data.columns]
+    known = list(record.columns)
     names = known if columns is None else list(columns)
-    data, closing, notes = record.data.copy(), dict(record.closing), list(record.provenance)
+    values_of, closing, notes = dict(record.columns), dict(record.closing), list(record.provenance)
     for name in names:
         if name not in known:
             raise InputError(
                 f"{record.file}: no column {name!r} to fill. {did_you_mean(name, known)}".rstrip()
             )
-        values = data[name].to_numpy(dtype=np.float64).copy()
+        values = values_of[name].copy()
         count = fill_linearly(values, limit, circular=name == "wind_direction")
         if count:
-            data[name] = values
+            values_of[name] = values
             notes.append(f"{record.file}: {count} missing values of {name} filled linearly on request.")
         if hold_end and name in closing and np.isnan(closing[name]):
             closing[name] = float(values[-1])
-    return replace(record, data=data, closing=closing, provenance=tuple(notes))
+    return replace(record, columns=values_of, closing=closing, provenance=tuple(notes))
 
 
 def fill_linearly(values: Array, limit: float, *, circular: bool = False) -> int:

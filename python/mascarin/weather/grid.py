@@ -12,7 +12,7 @@ import numpy as np
 
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Lines
-from mascarin.weather.times import stamps_of
+from mascarin.weather.times import local_time, stamps_of
 from mascarin.weather.timezones import zone_name
 
 Rows = Lines
@@ -67,7 +67,7 @@ class Grid:
         """
         if self.periodic or (start >= self.start - 1e-6 and end <= self.end + 1e-6):
             return
-        first, last = stamps_of(np.array([start, end]), self.zone)
+        first, last = (local_time(seconds, self.zone) for seconds in (start, end))
         raise InputError(
             f"{where}: the period {first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M} is outside the data, "
             f"which cover {self.span()}; choose a period inside{hint}."
@@ -146,5 +146,5 @@ def frame_of(columns: Mapping[str, Array], grid: Grid) -> pd.DataFrame:
 
 @lru_cache(maxsize=64)  # every run of a study names the period of its climate
 def _span(start: float, end: float, zone: tzinfo) -> str:
-    first, last = stamps_of(np.array([start, end]), zone)
+    first, last = (local_time(seconds, zone) for seconds in (start, end))
     return f"{first:%Y-%m-%d %H:%M} .. {last:%Y-%m-%d %H:%M} ({zone_name(zone)})"

@@ -14,7 +14,6 @@ from mascarin.weather import derive
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import BY_NAME, RADIATION, SOURCE_CHANNELS, UNITS, Kind
 from mascarin.weather.columns import Column
-from mascarin.weather.grid import frame_of
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.starts import knot_lines, to_starts
 from mascarin.weather.table import Table
@@ -169,14 +168,14 @@ def _on_grid(
 ) -> WeatherRecord:
     columns, closing, grid, note = to_starts(table, values, kinds, stamps)
     return WeatherRecord(
-        data=frame_of(columns, grid), kinds=kinds, grid=grid, closing=closing, file=table.where,
+        columns=columns, kinds=kinds, grid=grid, closing=closing, file=table.where,
         sha256=table.sha256, provenance=(*table.notes, note, *notes), lines=table.lines,
         knots=knot_lines(table.lines, stamps),
     )  # fmt: skip
 
 
 def _with_neutral(record: WeatherRecord, stated: Mapping[str, float]) -> WeatherRecord:
-    data, kinds, closing = record.data.copy(), dict(record.kinds), dict(record.closing)
+    columns, kinds, closing = dict(record.columns), dict(record.kinds), dict(record.closing)
     notes = list(record.provenance)
     for name, value in stated.items():
         if name == "dew_point" and np.isnan(value):
@@ -187,19 +186,22 @@ def _with_neutral(record: WeatherRecord, stated: Mapping[str, float]) -> Weather
         kinds[name] = next(
             (kinds[other] for other in RADIATION if name in RADIATION and other in kinds), "instant"
         )
-        data[name] = value
+        columns[name] = np.full(record.grid.count, value)
         closing[name] = value
         unit = "%" if name == "relative_humidity" else UNITS[name]
         notes.append(f"{record.file}: {name} was not measured; assumed {value:g} {unit} throughout.")
-    return replace(record, data=data, kinds=kinds, closing=closing, provenance=tuple(notes))
+    assumed = frozenset(stated)
+    return replace(
+        record, columns=columns, kinds=kinds, closing=closing, provenance=tuple(notes), assumed=assumed
+    )
 
 
 def _with_humidity(record: WeatherRecord) -> WeatherRecord:
-    if "relative_humidity" not in record.data.columns:
+    if "relative_humidity" not in record.columns:
         return record
-    data, kinds, closing = record.data.copy(), dict(record.kinds), dict(record.closing)
-    humidity = data.pop("relative_humidity").to_numpy(dtype=np.float64)
-    air = data["air_temperature"].to_numpy(dtype=np.float64)
+    columns, kinds, closing = dict(record.columns), dict(record.kinds), dict(record.closing)
+    humidity = columns.pop("relative_humidity")
+    air = columns["air_temperature"]
     bad = np.flatnonzero((humidity < 0.0) | (humidity > 110.0))
     if len(bad):
         line = record.line("relative_humidity", int(bad[0]))
@@ -208,10 +210,11 @@ def _with_humidity(record: WeatherRecord) -> WeatherRecord:
             "between 0 and 1 has unit: '1'."
         )
     kind = kinds.pop("relative_humidity")
-    data["dew_point"] = derive.dew_point(air, humidity)
+    columns["dew_point"] = derive.dew_point(air, humidity)
     kinds["dew_point"] = kind
     if "relative_humidity" in closing:
         pair = (record.closing.get("air_temperature", float(air[-1])), closing.pop("relative_humidity"))
         closing["dew_point"] = float(derive.dew_point(np.array([pair[0]]), np.array([pair[1]]))[0])
     note = f"{record.file}: dew point from air temperature and relative humidity (Alduchov & Eskridge 1996)."
-    return replace(record, data=data, kinds=kinds, closing=closing, provenance=(*record.provenance, note))
+    notes = (*record.provenance, note)
+    return replace(record, columns=columns, kinds=kinds, closing=closing, provenance=notes)

@@ -14,7 +14,7 @@ from mascarin.weather.arrays import Array
 from mascarin.weather.channels import Kind
 from mascarin.weather.columns import Column
 from mascarin.weather.gaps import filled
-from mascarin.weather.grid import Grid, frame_of
+from mascarin.weather.grid import Grid
 from mascarin.weather.quality import Stretch, find
 from mascarin.weather.record import Record
 from mascarin.weather.starts import knot_lines, to_starts
@@ -240,12 +240,14 @@ class Measurements(RecordView[Record]):
         aligned = mask.reindex(index=self.data.index, columns=self.data.columns, fill_value=False).astype(
             bool
         )
+        columns = {
+            name: np.where(aligned[name].to_numpy(), np.nan, values)
+            for name, values in self.record.columns.items()
+        }
         counts = aligned.sum()
         parts = [f"{name} {int(count)}" for name, count in counts.items() if count]
         note = f"{self.file}: values masked on request: {', '.join(parts) if parts else 'none'}."
-        return Measurements(
-            replace(self.record, data=self.data.mask(aligned), provenance=(*self.provenance, note))
-        )
+        return Measurements(replace(self.record, columns=columns, provenance=(*self.provenance, note)))
 
 
 def _record_of(
@@ -268,10 +270,10 @@ def _record_of(
         raw = table.numbers(column.column, name)
         values[name] = column.convert(raw, "", table.interval, f"{table.where}: {name}")
         notes.append(column.sentence(name, ""))
-    data, closing, grid, note = to_starts(table, values, kinds, stamps)
+    kept, closing, grid, note = to_starts(table, values, kinds, stamps)
     said = (*table.notes, note, *(f"{table.where}: {text}" for text in notes if text))
     return Record(
-        frame_of(data, grid), kinds, grid, closing, table.where, table.sha256, said, table.lines,
+        kept, kinds, grid, closing, table.where, table.sha256, said, table.lines,
         knot_lines(table.lines, stamps),
     )  # fmt: skip
 

@@ -209,7 +209,7 @@ def morphed(climate: Climate, changes: MonthlyChanges | Mapping[str, Monthly]) -
         if wrong:
             raise InputError(f"changes: found '{wrong[0]}'; {did_you_mean(str(wrong[0]), _LIMITS)}".rstrip())
         changes = MonthlyChanges(**changes)
-    record, data = climate.record, climate.data.copy()
+    record, data = climate.record, climate.data
     month = np.asarray(data.index.month) - 1  # type: ignore[attr-defined]
     closing = dict(record.closing)
     before = data["air_temperature"].to_numpy(dtype=np.float64)
@@ -234,11 +234,9 @@ def morphed(climate: Climate, changes: MonthlyChanges | Mapping[str, Monthly]) -
             # A typical year ends with the value that it starts with.
             last = _closed(name, closing[name], data, values)
             closing[name] = float(values[0]) if record.grid.periodic else last
-        data[name] = values
     note = f"{record.file}: changed by months (Belcher et al. 2005): {_in_words(changes)}."
-    return Climate(
-        replace(record, data=data, closing=closing, provenance=(*record.provenance, note), sha256=None)
-    )
+    columns, notes = {**record.columns, **warmed}, (*record.provenance, note)
+    return Climate(replace(record, columns=columns, closing=closing, provenance=notes, sha256=None))
 
 
 def _temperature(

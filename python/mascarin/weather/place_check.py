@@ -5,12 +5,10 @@ from __future__ import annotations
 from datetime import timedelta, timezone, tzinfo
 from typing import Final
 
-import numpy as np
-
 from mascarin.errors import InputError
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.site import SiteLike
-from mascarin.weather.times import stamps_of
+from mascarin.weather.times import local_time
 from mascarin.weather.timezones import parse_timezone, standard_offset, zone_name
 
 _FAR: Final = 2.0
@@ -75,7 +73,7 @@ def _require_near(record: WeatherRecord, site: SiteLike) -> None:
 
 def _require_zone(record: WeatherRecord, text: str) -> None:
     zone = parse_timezone(text, "site.timezone")
-    label = int(stamps_of(np.array([record.grid.start + 86400.0]), record.grid.zone)[0].year)
+    label = local_time(record.grid.start + 86400.0, record.grid.zone).year
     years = (label, _TODAY)
     if _offsets(zone, years) & _offsets(record.grid.zone, years):
         return

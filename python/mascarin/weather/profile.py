@@ -74,7 +74,9 @@ class Profile:
         width = self.interval / pieces
         inside = self.start + width * np.arange(count * pieces + 1)
         inside = inside[(inside > edges[0]) & (inside < edges[-1])]
-        cuts = np.union1d(edges, inside)
+        cuts = np.sort(np.concatenate([edges, inside]))
+        # Each once; `numpy.unique` would import masked arrays.
+        cuts = cuts[np.concatenate([[True], np.diff(cuts) > 0.0])]
         # On a piece without a node inside, the mean of a linear function is its value in the middle.
         # The middle is never an edge, so the one-sided choice in `at` does not matter.
         integral = self.at(0.5 * (cuts[1:] + cuts[:-1])) * np.diff(cuts)

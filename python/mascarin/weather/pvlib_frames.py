@@ -355,20 +355,20 @@ def _ordered(columns: pd.DataFrame, marked: PvlibStamps, zone: tzinfo) -> pd.Dat
 
 def _periodic(record: WeatherRecord, *, late: bool) -> WeatherRecord:
     """The record as a year that is repeated at its end."""
-    data, closing = record.data.copy(), dict(record.closing)
+    columns, closing = dict(record.columns), dict(record.closing)
     for name in closing:
-        values = data[name].to_numpy(dtype=np.float64).copy()
+        values = columns[name].copy()
         if late:
             # The value at the end of the year is the one at its start.
             values[0] = closing[name]
         closing[name] = float(values[0])
-        data[name] = values
+        columns[name] = values
     note = (
         f"{_WHERE}: one typical year of 365 days; it represents any year, is repeated at its end, and 29 "
         "February takes the values of 28 February."
     )
     grid = replace(record.grid, periodic=True)
-    return replace(record, data=data, closing=closing, grid=grid, provenance=(*record.provenance, note))
+    return replace(record, columns=columns, closing=closing, grid=grid, provenance=(*record.provenance, note))
 
 
 def _seconds(count: float) -> pd.Timedelta:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date, tzinfo
@@ -16,6 +17,7 @@ import numpy as np
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.files import file_hash
+from mascarin.weather.kept import Kept, kept
 from mascarin.weather.shipped import COMPRESSED, content
 from mascarin.weather.timezones import fixed_zone, zone_name
 
@@ -113,10 +115,15 @@ def read_epw(path: Path) -> Year:
     InputError
         Header or rows are broken; the line is named.
     """
-    file_hash(path)  # refuses what is no file
+    found = file_hash(path)  # refuses what is no file
+    where = path.name.removesuffix(COMPRESSED)
+    kept_year = kept((found, where), [sys.modules[__name__]], lambda: _packed(_parsed_epw(path, where)))
+    return _unpacked(kept_year, where)
+
+
+def _parsed_epw(path: Path, where: str) -> Year:
     raw = content(path)
     digest = hashlib.sha256(raw).hexdigest()
-    where = path.name.removesuffix(COMPRESSED)
     lines = raw.decode("utf-8-sig", errors="replace").splitlines()
     years, table = _read_epw_rows(lines, where)
     values = {}
@@ -136,6 +143,27 @@ def read_epw(path: Path) -> Year:
     numbers = np.arange(len(table), dtype=np.int64) + _HEADER + 1
     place = (latitude, longitude, altitude, name)
     return Year(years[0], len(set(years)) > 1, zone, values, place, where, digest, numbers, notes)
+
+
+def _packed(read: Year) -> Kept:
+    """A year as the cache keeps it."""
+    offset = read.zone.utcoffset(None)
+    hours = offset.total_seconds() / 3600.0 if offset is not None else 0.0
+    notes = {
+        "year": read.year, "mixed": read.mixed, "hours": hours, "place": read.place, "sha256": read.sha256,
+        "first": int(read.lines[0]), "notes": read.notes,
+    }  # fmt: skip
+    return Kept(notes, read.values)
+
+
+def _unpacked(found: Kept, where: str) -> Year:
+    """The year of `_packed`; its rows are lines without a gap."""
+    notes, values = found.notes, found.columns
+    latitude, longitude, altitude, name = notes["place"]
+    lines = np.arange(len(values["air_temperature"]), dtype=np.int64) + int(notes["first"])
+    place, zone = (latitude, longitude, altitude, name), fixed_zone(notes["hours"])
+    said = tuple(notes["notes"])
+    return Year(notes["year"], notes["mixed"], zone, values, place, where, notes["sha256"], lines, said)
 
 
 def read_tmy3(path: Path) -> Year:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
-from mascarin.weather.arrays import Lines
+from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.channels import RADIATION, Basis, Kind
-from mascarin.weather.grid import Grid
+from mascarin.weather.grid import Grid, frame_of
 from mascarin.weather.site import Place
 
 if TYPE_CHECKING:
@@ -21,9 +22,9 @@ class Record:
 
     Attributes
     ----------
-    data : pandas.DataFrame
-        One row for each interval, labelled by its start in the time zone of the grid; NaN where missing. An
-        `instant` column holds the value at the label, a `mean` column the mean over the interval.
+    columns : mapping of str to ndarray, shape (n,)
+        A value for each interval; NaN where missing. An `instant` column holds the value at its start, a
+        `mean` column the mean over it.
     kinds : mapping of str to str
         `instant` or `mean` for each column.
     grid : Grid
@@ -45,7 +46,7 @@ class Record:
         Read from a weather file of a year, whose clock is the one of its place.
     """
 
-    data: pd.DataFrame
+    columns: Mapping[str, Array]
     kinds: Mapping[str, Kind]
     grid: Grid
     closing: Mapping[str, float]
@@ -55,6 +56,18 @@ class Record:
     lines: Lines
     knots: Lines | None = None
     of_year: bool = False
+
+    @cached_property
+    def data(self) -> pd.DataFrame:
+        """The columns as a frame, labelled by the start of each interval in the time zone of the grid.
+
+        It is made when it is first asked for: a run needs the columns alone, and no pandas.
+        """
+        return frame_of(self.columns, self.grid)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is sent to another process: the frame is made again there."""
+        return {name: value for name, value in vars(self).items() if name != "data"}
 
     def line(self, name: str, row: int) -> int:
         """Line of the file that holds a value; 0 where the row was missing.
@@ -84,18 +97,25 @@ class WeatherRecord(Record):
         May be used for a building at another place than where it was measured.
     basis : str or None
         The two irradiances from which a third was derived; None before anything was derived.
+    assumed : frozenset of str
+        Channels that were not measured, for which a value is assumed or was stated.
     """
 
     site: Place | None = None
     check_sun: bool = True
     elsewhere: bool = False
     basis: Basis | None = None
+    assumed: frozenset[str] = frozenset()
+
+    def measured(self, name: str) -> bool:
+        """Whether a channel of a measured table was measured; a weather file of a year fills it somehow."""
+        return name in self.columns and name not in self.assumed and not self.of_year
 
     @property
     def radiation_basis(self) -> Basis:
         """The irradiances whose means are kept; one that is not given follows from two and the sun."""
         if self.basis is not None:
             return self.basis
-        if all(name in self.data.columns for name in RADIATION):
+        if all(name in self.columns for name in RADIATION):
             return "all"
-        return "direct+diffuse" if "direct_normal" in self.data.columns else "global+diffuse"
+        return "direct+diffuse" if "direct_normal" in self.columns else "global+diffuse"

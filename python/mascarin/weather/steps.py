@@ -11,7 +11,7 @@ import numpy as np
 from mascarin._io import memory
 from mascarin.errors import InputError, did_you_mean
 from mascarin.weather.arrays import Array
-from mascarin.weather.timezones import moment
+from mascarin.weather.timezones import seconds_at
 
 #: Most steps of a run: a year in steps of 1.6 s. More are a mistake in the unit, and take hours.
 MOST_STEPS: Final = 20_000_000
@@ -76,8 +76,8 @@ class Steps:
         if scheme not in STAGES:
             raise InputError(f"scheme: no scheme {scheme!r}. {did_you_mean(scheme, STAGES)}")
         nodes, weights = STAGES[scheme]
-        first = moment(start, zone, "start").timestamp()
-        last = moment(end, zone, "end").timestamp()
+        first = seconds_at(start, zone, "start")
+        last = seconds_at(end, zone, "end")
         count = _count(first, last, step_seconds, len(nodes))
         edges = step_seconds * np.arange(count + 1)
         return cls(first, last, edges, edges[:-1, None] + step_seconds * np.array(nodes), weights)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
+import sys
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mascarin.errors import InputError
+from mascarin.weather import sun as sun_module
 from mascarin.weather.arrays import Array
 from mascarin.weather.channels import RADIATION
+from mascarin.weather.kept import Kept, kept
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.sun import SunPath
 from mascarin.weather.times import stamps_of
@@ -61,6 +65,23 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> Non
     grid = record.grid
     if values is None or grid.count * grid.interval < _SHORTEST or np.ptp(values) == 0.0:
         return
+    if not record.of_year:
+        _refuse(record, values, latitude, longitude)
+        return
+    # The sun over a year takes half as long as a run over three months: what has passed once is remembered.
+    digest, kind = hashlib.sha256(values.tobytes()).hexdigest(), record.kinds[_name(record)]
+    key = ("clock", digest, kind, grid.start, grid.interval, zone_name(grid.zone), latitude, longitude)
+
+    def passed() -> Kept:
+        _refuse(record, values, latitude, longitude)
+        return Kept()
+
+    kept(key, [sys.modules[__name__], sun_module], passed)
+
+
+def _refuse(record: WeatherRecord, values: Array, latitude: float, longitude: float) -> None:
+    """Refuse radiation [W/m2] that does not follow the sun."""
+    grid = record.grid
     shift = 0.0 if record.kinds[_name(record)] == "instant" else 0.5
     middle = grid.start + grid.interval * (np.arange(grid.count) + shift)
     sun = SunPath.over(latitude, longitude, grid.start - grid.interval, grid.end + grid.interval)
@@ -82,13 +103,13 @@ def check_clock(record: WeatherRecord, latitude: float, longitude: float) -> Non
 
 
 def _name(record: WeatherRecord) -> str:
-    return next(name for name in reversed(RADIATION) if name in record.data.columns)
+    return next(name for name in reversed(RADIATION) if name in record.columns)
 
 
 def _radiation(record: WeatherRecord) -> Array | None:
-    if not any(name in record.data.columns for name in RADIATION):
+    if not any(name in record.columns for name in RADIATION):
         return None
-    values = record.data[_name(record)].to_numpy(dtype=np.float64)
+    values = record.columns[_name(record)]
     values = np.maximum(np.nan_to_num(values), 0.0)
     return values if values.sum() > 0.0 else None
 

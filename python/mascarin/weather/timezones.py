@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from datetime import UTC, datetime, timedelta, timezone, tzinfo
 from typing import TYPE_CHECKING, Final
@@ -24,6 +25,10 @@ YEARS: Final = (1800, 2200)
 
 _ISO_DATE: Final = re.compile(r"\d{4}-\d{2}-\d{2}(?:[T ]|$)|\d{8}T")
 """How a date begins in ISO 8601: year, month, day."""
+
+
+_ISO_PLAIN: Final = re.compile(r"\d{4}-\d{2}-\d{2}(?:[T ]\d{2}:\d{2}(?::\d{2})?)?")
+"""A whole date in ISO 8601, with or without a time of the day."""
 
 
 def parse_timezone(text: object, where: str = "timezone") -> tzinfo:
@@ -193,6 +198,31 @@ def standard_offset(zone: tzinfo, year: int) -> timedelta:
     """
     offsets = [datetime(year, month, 1, tzinfo=zone).utcoffset() or timedelta() for month in (1, 7)]
     return min(offsets)
+
+
+def seconds_at(value: object, zone: tzinfo, what: str) -> float:
+    """A point in time given by the user, in seconds since 1970-01-01 UTC; the same as `moment`. [s]
+
+    A plain date whose local time exists once is read without pandas, whose import takes longer than a run.
+    """
+    given = _plain(value)
+    if given is not None and YEARS[0] <= given.year <= YEARS[1]:
+        if given.tzinfo is not None:
+            return given.timestamp()
+        early, late = (given.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
+        if early.utcoffset() == late.utcoffset():
+            return early.timestamp()
+    return moment(value, zone, what).timestamp()
+
+
+def _plain(value: object) -> datetime | None:
+    """A date of the standard library, or one from ISO text without an offset; None for all else."""
+    if type(value) is datetime:  # a pandas.Timestamp is one as well, and has nanoseconds
+        return value
+    if isinstance(value, str) and _ISO_PLAIN.fullmatch(value.strip()):
+        with contextlib.suppress(ValueError):
+            return datetime.fromisoformat(value.strip())
+    return None
 
 
 def moment(value: object, zone: tzinfo, what: str) -> pd.Timestamp:

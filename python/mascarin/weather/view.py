@@ -160,7 +160,7 @@ class RecordView(Generic[R]):
         record = self._record
         curves = []
         for name in names:
-            values = record.data[name].to_numpy(dtype=np.float64)
+            values = record.columns[name]
             mean = record.kinds[name] == "mean"
             last = values[-1:] if mean else [record.closing.get(name, np.nan)]
             curves.append(Curve(name, np.append(values, last), mean))

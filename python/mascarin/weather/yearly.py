@@ -11,7 +11,7 @@ import numpy as np
 from mascarin.errors import InputError
 from mascarin.weather.arrays import Array, Lines
 from mascarin.weather.channels import Kind
-from mascarin.weather.grid import Grid, frame_of
+from mascarin.weather.grid import Grid
 from mascarin.weather.readers import Year, kind_of
 from mascarin.weather.record import WeatherRecord
 from mascarin.weather.site import Place
@@ -97,7 +97,7 @@ def _of_year(
         columns[name] = np.concatenate([[opening], column[:-1]])
         closing[name] = float(column[-1])
     return WeatherRecord(
-        data=frame_of(columns, grid), kinds=kinds, grid=grid, closing=closing, site=Place(*read.place),
+        columns=columns, kinds=kinds, grid=grid, closing=closing, site=Place(*read.place),
         file=read.where, sha256=read.sha256, provenance=tuple(notes), lines=lines,
         knots=np.concatenate([lines[-1:] if grid.periodic else lines[:1], lines]), of_year=True,
         elsewhere=elsewhere,

@@ -91,6 +91,11 @@ impl<'a> Forcing<'a> {
         Ok(Self { values, stages, channels })
     }
 
+    /// No steps.
+    pub(crate) fn none() -> Self {
+        Self { values: &[], stages: 1, channels: 1 }
+    }
+
     /// Number of steps.
     #[must_use]
     pub fn steps(&self) -> usize {

@@ -1,7 +1,7 @@
 //! Ensembles: members in lanes, packs of members on threads.
 //!
 //! A member's bits do not depend on its neighbours, the lane width or the number of threads. A pack takes as long as some four
-//! members one after the other (`docs/speed.md`): fewer members than that run by themselves.
+//! members one after the other (`docs/speed.md`): fewer members than that run by themselves, as all do on machines without registers for lanes.
 
 use rayon::prelude::*;
 
@@ -112,6 +112,10 @@ impl LaneTask for Pack<'_, '_> {
         let closure = run.ledger.worst_closure();
         let of = |member| (run.records.iter().map(|r| r.lane(member)).collect(), closure.lane(member));
         Ok((0..self.members).map(|member| (!run.failed.lane(member)).then(|| of(member))).collect())
+    }
+
+    fn without_lanes(self) -> Self::Output {
+        Ok(vec![None; self.members])
     }
 }
 

@@ -21,6 +21,8 @@ pub struct StepByStep<'a> {
     plan: &'a Plan,
     options: &'a Options,
     stepper: Stepper<'a, f64>,
+    /// Weather of nothing, from which that of each step is made.
+    weather: Weather<'a>,
     state: State<f64>,
     ledger: Ledger<f64>,
     /// Steps made since the start.
@@ -53,9 +55,9 @@ impl<'a> StepByStep<'a> {
         let control = RunControl::default();
         warm_up(&mut stepper, &mut state, &weather, options, &control, &mut |_, _, _| Ok(()))?;
         let mut ledger = Ledger::new();
-        let now = Weather::for_single_run(plan, first_step, 0);
-        Action::Balance.take(&mut stepper, &mut state, &now, options.dt, &mut ledger)?;
-        Ok(Self { plan, options, stepper, state, ledger, steps: 0 })
+        Action::Balance.take(&mut stepper, &mut state, &weather.of(first_step), options.dt, &mut ledger)?;
+        let weather = Weather::for_single_run(plan, &Forcing::none(), 0);
+        Ok(Self { plan, options, stepper, weather, state, ledger, steps: 0 })
     }
 
     /// Makes a step in its weather. The state stays as it was where it fails.
@@ -66,7 +68,7 @@ impl<'a> StepByStep<'a> {
         self.options.check_forcing(self.plan, forcing)?;
         // The forcing holds one step.
         let action = if self.steps == 0 { Action::first(self.options) } else { Action::Step(0) };
-        let weather = Weather::for_single_run(self.plan, forcing, 0);
+        let weather = self.weather.of(forcing);
         let Self { stepper, state, ledger, .. } = self;
         action.take(stepper, state, &weather, self.options.dt, ledger).map_err(|error| match error {
             EngineError::NotConverged { stage, place, residual, iterations, .. } => {

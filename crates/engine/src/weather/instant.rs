@@ -91,6 +91,16 @@ impl<'a> Weather<'a> {
         Self::keeping(plan, forcing, kept)
     }
 
+    /// The weather of another forcing for the same plan, of which no stage is kept.
+    #[must_use]
+    pub(crate) fn of<'f>(&self, forcing: &Forcing<'f>) -> Weather<'f>
+    where
+        'a: 'f,
+    {
+        let Self { plan, terms, ground, .. } = *self;
+        Weather { plan, forcing: *forcing, terms, ground, stages: Vec::new() }
+    }
+
     fn keeping(plan: &'a Plan, forcing: &Forcing<'a>, steps: usize) -> Self {
         let sides = || plan.surfaces.ids().map(|surface| plan.side(surface));
         let terms = WindTerms::of(sides().filter_map(|side| side.convection.as_ref()));

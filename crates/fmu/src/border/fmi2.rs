@@ -3,9 +3,8 @@
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::ptr;
 
-use super::calls::{
-    self, ERROR, Instance, Listener, Status, answer, call, contents_at, free, no_variables, say, text,
-};
+use super::alike::{both, of_another_type, without};
+use super::calls::{self, ERROR, Instance, Listener, Status, answer, call, contents_at, say, text};
 use crate::unit::Refusal;
 
 /// `fmi2CallbackFunctions`, as far as it is used.
@@ -115,12 +114,6 @@ fn path_of(address: &str) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|_| wrong())
 }
 
-/// Gives an instance back.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2FreeInstance(instance: *mut c_void) {
-    free::<Log>(instance);
-}
-
 /// Notes start and stop.
 #[unsafe(no_mangle)]
 extern "C" fn fmi2SetupExperiment(
@@ -141,28 +134,6 @@ extern "C" fn fmi2SetupExperiment(
 #[unsafe(no_mangle)]
 extern "C" fn fmi2EnterInitializationMode(instance: *mut c_void) -> Status {
     call::<Log>(instance, |instance| instance.unit.enter_initialization(instance.period.0, instance.period.1))
-}
-
-/// The start is set.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2ExitInitializationMode(instance: *mut c_void) -> Status {
-    call::<Log>(instance, |instance| instance.unit.exit_initialization())
-}
-
-/// Ends a run.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2Terminate(instance: *mut c_void) -> Status {
-    calls::terminate::<Log>(instance)
-}
-
-/// Back to the start values.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2Reset(instance: *mut c_void) -> Status {
-    call::<Log>(instance, |instance| {
-        instance.unit.reset();
-        instance.period = (0.0, None);
-        Ok(())
-    })
 }
 
 /// Reads variables.
@@ -217,66 +188,10 @@ extern "C" fn fmi2GetBooleanStatus(instance: *mut c_void, _kind: c_int, value: *
     })
 }
 
-/// Keeps the present state.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2GetFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> Status {
-    calls::keep_state::<Log>(instance, state)
-}
-
-/// Goes back to a state.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SetFMUstate(instance: *mut c_void, state: *mut c_void) -> Status {
-    calls::restore_state::<Log>(instance, state)
-}
-
-/// Forgets a state.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2FreeFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> Status {
-    calls::free_state::<Log>(instance, state)
-}
-
-/// Says how many bytes a state has.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SerializedFMUstateSize(
-    instance: *mut c_void,
-    state: *mut c_void,
-    size: *mut usize,
-) -> Status {
-    calls::state_size::<Log>(instance, state, size)
-}
-
-/// Writes a state as bytes.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SerializeFMUstate(
-    instance: *mut c_void,
-    state: *mut c_void,
-    bytes: *mut u8,
-    size: usize,
-) -> Status {
-    calls::write_state::<Log>(instance, state, bytes, size)
-}
-
-/// Reads a state from bytes.
-#[unsafe(no_mangle)]
-extern "C" fn fmi2DeSerializeFMUstate(
-    instance: *mut c_void,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut c_void,
-) -> Status {
-    calls::read_state::<Log>(instance, (bytes, size), state)
-}
-
-/// Functions for variables of types that this unit does not have: no variable is no mistake.
-macro_rules! of_another_type {
-    ($($name:ident($argument:ty);)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            extern "C" fn $name(instance: *mut c_void, _: *const c_uint, count: usize, _: $argument) -> Status {
-                no_variables::<Log>(instance, stringify!($name), count)
-            }
-        )*
-    };
+both! {
+    fmi2FreeInstance, fmi2ExitInitializationMode, fmi2Terminate, fmi2Reset,
+    fmi2GetFMUstate, fmi2SetFMUstate, fmi2FreeFMUstate,
+    fmi2SerializedFMUstateSize, fmi2SerializeFMUstate, fmi2DeSerializeFMUstate
 }
 
 of_another_type! {
@@ -286,18 +201,6 @@ of_another_type! {
     fmi2SetInteger(*const c_void);
     fmi2SetBoolean(*const c_void);
     fmi2SetString(*const c_void);
-}
-
-/// Functions of the standard that this unit does not have.
-macro_rules! without {
-    ($($name:ident($($argument:ty),*);)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            extern "C" fn $name(instance: *mut c_void, $(_: $argument),*) -> Status {
-                calls::unsupported::<Log>(instance, stringify!($name))
-            }
-        )*
-    };
 }
 
 without! {

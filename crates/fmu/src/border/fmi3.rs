@@ -3,9 +3,8 @@
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::ptr;
 
-use super::calls::{
-    self, ERROR, Instance, Listener, Status, answer, call, contents_at, free, no_variables, say, text,
-};
+use super::alike::{both, of_another_type, without};
+use super::calls::{self, ERROR, Instance, Listener, Status, answer, call, contents_at, say, text};
 
 /// `fmi3LogMessageCallback`.
 type LogMessage = Option<unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char)>;
@@ -69,12 +68,6 @@ extern "C" fn fmi3InstantiateCoSimulation(
     Instance::make(log, logging, &text(token), || contents_at(&text(resources)))
 }
 
-/// Gives an instance back.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3FreeInstance(instance: *mut c_void) {
-    free::<Log>(instance);
-}
-
 /// The start is being set from now on.
 #[unsafe(no_mangle)]
 extern "C" fn fmi3EnterInitializationMode(
@@ -86,27 +79,6 @@ extern "C" fn fmi3EnterInitializationMode(
     stop: f64,
 ) -> Status {
     call::<Log>(instance, |instance| instance.unit.enter_initialization(start, stop_defined.then_some(stop)))
-}
-
-/// The start is set.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3ExitInitializationMode(instance: *mut c_void) -> Status {
-    call::<Log>(instance, |instance| instance.unit.exit_initialization())
-}
-
-/// Ends a run.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3Terminate(instance: *mut c_void) -> Status {
-    calls::terminate::<Log>(instance)
-}
-
-/// Back to the start values.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3Reset(instance: *mut c_void) -> Status {
-    call::<Log>(instance, |instance| {
-        instance.unit.reset();
-        Ok(())
-    })
 }
 
 /// Reads variables.
@@ -155,56 +127,6 @@ extern "C" fn fmi3DoStep(
     })
 }
 
-/// Keeps the present state.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3GetFMUState(instance: *mut c_void, state: *mut *mut c_void) -> Status {
-    calls::keep_state::<Log>(instance, state)
-}
-
-/// Goes back to a state.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SetFMUState(instance: *mut c_void, state: *mut c_void) -> Status {
-    calls::restore_state::<Log>(instance, state)
-}
-
-/// Forgets a state.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3FreeFMUState(instance: *mut c_void, state: *mut *mut c_void) -> Status {
-    calls::free_state::<Log>(instance, state)
-}
-
-/// Says how many bytes a state has.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SerializedFMUStateSize(
-    instance: *mut c_void,
-    state: *mut c_void,
-    size: *mut usize,
-) -> Status {
-    calls::state_size::<Log>(instance, state, size)
-}
-
-/// Writes a state as bytes.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SerializeFMUState(
-    instance: *mut c_void,
-    state: *mut c_void,
-    bytes: *mut u8,
-    size: usize,
-) -> Status {
-    calls::write_state::<Log>(instance, state, bytes, size)
-}
-
-/// Reads a state from bytes.
-#[unsafe(no_mangle)]
-extern "C" fn fmi3DeserializeFMUState(
-    instance: *mut c_void,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut c_void,
-) -> Status {
-    calls::read_state::<Log>(instance, (bytes, size), state)
-}
-
 /// Refused: this unit is for co-simulation.
 #[unsafe(no_mangle)]
 extern "C" fn fmi3InstantiateModelExchange(
@@ -242,16 +164,10 @@ extern "C" fn fmi3InstantiateScheduledExecution(
     ptr::null_mut()
 }
 
-/// Functions for variables of types that this unit does not have: no variable is no mistake.
-macro_rules! of_another_type {
-    ($($name:ident($($argument:ty),*);)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            extern "C" fn $name(instance: *mut c_void, _: *const u32, count: usize, $(_: $argument),*) -> Status {
-                no_variables::<Log>(instance, stringify!($name), count)
-            }
-        )*
-    };
+both! {
+    fmi3FreeInstance, fmi3ExitInitializationMode, fmi3Terminate, fmi3Reset,
+    fmi3GetFMUState, fmi3SetFMUState, fmi3FreeFMUState,
+    fmi3SerializedFMUStateSize, fmi3SerializeFMUState, fmi3DeserializeFMUState
 }
 
 of_another_type! {
@@ -289,18 +205,6 @@ of_another_type! {
     fmi3SetIntervalFraction(*const u64, *const u64);
     fmi3SetShiftDecimal(*const f64);
     fmi3SetShiftFraction(*const u64, *const u64);
-}
-
-/// Functions of the standard that this unit does not have: it has no events, no derivatives and no structural parameters.
-macro_rules! without {
-    ($($name:ident($($argument:ty),*);)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            extern "C" fn $name(instance: *mut c_void, $(_: $argument),*) -> Status {
-                calls::unsupported::<Log>(instance, stringify!($name))
-            }
-        )*
-    };
 }
 
 without! {

@@ -7,6 +7,7 @@
 #![allow(unsafe_code, reason = "C functions are given pointers")]
 #![allow(non_snake_case, reason = "the names of the standard")]
 
+mod alike;
 mod calls;
 mod fmi2;
 mod fmi3;

@@ -14,6 +14,7 @@ use crate::linear::surface_balance::SurfaceLaws;
 use crate::linear::testing::{Numbers, adjoint, close, dense_solution};
 use crate::linear::wall::Response;
 use crate::number::dual::Dual;
+use crate::number::lanes::Lanes;
 use crate::number::line::Line;
 use crate::number::real::{Chunk, ChunkTask, Real};
 use crate::number::simd::{LaneTask, Level, WIDTH, run};
@@ -284,6 +285,9 @@ impl LaneTask for AllFronts {
     type Output = Vec<u64>;
     fn run<S: Real>(self, _: impl Fn([f64; WIDTH]) -> S + Copy) -> Vec<u64> {
         S::vectorised(all_fronts::<S>).iter().map(|value| value.lane(WIDTH - 1).to_bits()).collect()
+    }
+    fn without_lanes(self) -> Vec<u64> {
+        self.run(Lanes)
     }
 }
 

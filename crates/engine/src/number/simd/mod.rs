@@ -36,6 +36,8 @@ pub trait LaneTask {
     type Output;
     /// Does the work with one kind of lanes, which `pack` makes.
     fn run<S: Real>(self, pack: impl Fn([f64; WIDTH]) -> S + Copy) -> Self::Output;
+    /// What is given where the machine has no registers for lanes, so that each member must be computed by itself.
+    fn without_lanes(self) -> Self::Output;
 }
 
 /// Does a task on eight members with the registers of a level.
@@ -47,7 +49,8 @@ pub fn run<T: LaneTask>(level: Level, task: T) -> T::Output {
         Level::Avx2(token) => task.run(move |numbers| avx2::Eight::new(token, numbers)),
         #[cfg(target_arch = "aarch64")]
         Level::Neon(token) => task.run(move |numbers| neon::Eight::new(token, numbers)),
-        _ => task.run(Lanes),
+        // Compiled for arrays, all laws and solvers once more would be a seventh of the library, for machines without AVX2.
+        _ => task.without_lanes(),
     }
 }
 

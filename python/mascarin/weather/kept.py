@@ -1,0 +1,124 @@
+"""What reading and checking a weather file gave, kept in the cache folder of the user.
+
+A file of the cache is named by a hash of everything that its content depends on: the weather file, the
+version of Mascarin, and the code that made it. It holds JSON and plain numbers, after a hash of both: a file
+that is cut, damaged or of another program is read as if it were not there, and written again. The folder may
+be deleted at any time. With ``MASCARIN_CACHE=off`` nothing is read from it or written to it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Final
+
+import numpy as np
+
+from mascarin import __version__
+from mascarin._io import atomic
+from mascarin.errors import InputError
+from mascarin.weather.arrays import Array
+from mascarin.weather.data import cache_folder
+
+FOLDER: Final = "weather"
+VARIABLE: Final = "MASCARIN_CACHE"
+"""Environment variable that turns the cache off."""
+#: Files that are kept; the oldest ones are removed. A year of weather has 0.7 MB.
+MOST: Final = 64
+_MAGIC: Final = b"mascarin weather 1\n"
+_HASH: Final = 32
+_WORD: Final = 8
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What is kept.
+
+    Attributes
+    ----------
+    notes : mapping of str to object
+        Values that JSON can hold.
+    columns : mapping of str to ndarray, shape (n,)
+        Columns of numbers, all of one length.
+    """
+
+    notes: Mapping[str, Any] = field(default_factory=dict)
+    columns: Mapping[str, Array] = field(default_factory=dict)
+
+
+def kept(key: Sequence[object], code: Sequence[ModuleType], make: Callable[[], Kept]) -> Kept:
+    """Read what was kept for a key, or make and keep it.
+
+    Parameters
+    ----------
+    key : sequence of object
+        All that the content depends on, as texts and numbers.
+    code : sequence of module
+        The modules that make it: after a change of one of them it is made again.
+    make : callable
+        Makes it; what it raises is passed on, and nothing is kept.
+
+    Returns
+    -------
+    Kept
+        The same, whether it was kept or made.
+    """
+    if os.environ.get(VARIABLE, "").lower() == "off":
+        return make()
+    with contextlib.suppress(OSError):
+        file = _file(key, code)
+        found = _read(file)
+        if found is not None:
+            return found
+    made = make()
+    # A folder that cannot be written, or a full disk, costs time and nothing else.
+    with contextlib.suppress(OSError, InputError):
+        file = _file(key, code)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        atomic.write(file, _packed(made))
+        _remove_oldest(file.parent)
+    return made
+
+
+def _file(key: Sequence[object], code: Sequence[ModuleType]) -> Path:
+    made_by = [hashlib.sha256(Path(str(module.__file__)).read_bytes()).hexdigest() for module in code]
+    name = hashlib.sha256(repr((__version__, made_by, *key)).encode()).hexdigest()
+    return cache_folder() / FOLDER / f"{name[:40]}.bin"
+
+
+def _packed(made: Kept) -> bytes:
+    head = json.dumps({"notes": made.notes, "columns": list(made.columns)}).encode()
+    numbers = b"".join(np.asarray(one, dtype="<f8").tobytes() for one in made.columns.values())
+    content = len(head).to_bytes(_WORD, "little") + head + numbers
+    return _MAGIC + hashlib.sha256(content).digest() + content
+
+
+def _read(file: Path) -> Kept | None:
+    """The content of a file; None where there is none, or another one than was written."""
+    try:
+        whole = file.read_bytes()
+    except FileNotFoundError:
+        return None
+    start = len(_MAGIC) + _HASH
+    content = whole[start:]
+    if not whole.startswith(_MAGIC) or hashlib.sha256(content).digest() != whole[len(_MAGIC) : start]:
+        return None
+    first = _WORD + int.from_bytes(content[:_WORD], "little")
+    head = json.loads(content[_WORD:first])
+    names = head["columns"]
+    # A copy: arrays on bytes cannot be written, as those that are read from a weather file can.
+    numbers = np.frombuffer(content, dtype="<f8", offset=first).astype(np.float64)
+    rows = numbers.reshape(len(names), -1) if names else numbers
+    return Kept(head["notes"], dict(zip(names, rows, strict=True)))
+
+
+def _remove_oldest(folder: Path) -> None:
+    files = sorted(folder.glob("*.bin"), key=lambda one: one.stat().st_mtime)
+    for old in files[:-MOST]:
+        old.unlink(missing_ok=True)
