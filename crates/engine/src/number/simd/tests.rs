@@ -108,6 +108,9 @@ impl<F: Of> LaneTask for Bits<F> {
             .map(|value| core::array::from_fn(|lane| bits(value.lane(lane))))
             .collect()
     }
+    fn without_lanes(self) -> Self::Output {
+        self.run(Lanes)
+    }
 }
 
 /// Bits of a number; of what is no number it is not defined which ones it has.
@@ -168,6 +171,9 @@ impl LaneTask for Marks {
             }
         }
         assert!(!S::constant(f64::NAN).lt(S::one()).any() && !S::one().lt(S::constant(f64::NAN)).any());
+    }
+    fn without_lanes(self) {
+        self.run(Lanes);
     }
 }
 
