@@ -180,7 +180,7 @@ mod tests {
         }
         // The walls between zones couple their air: the two surfaces of a wall have two later neighbours each, the air of a zone
         // that of the next.
-        let later: Vec<usize> = (0..7).map(|row| plan.pattern.later(row).len()).collect();
+        let later: Vec<usize> = plan.pattern.rows(0..7).iter().map(|row| row.later.len()).collect();
         assert_eq!(later, [2, 2, 2, 2, 1, 1, 0]);
     }
 

@@ -10,7 +10,7 @@
 
 use core::ops::Range;
 
-use crate::building::pattern::Pattern;
+use crate::building::pattern::{Pattern, RowPattern};
 use crate::linear::product::{PlainMatrix, Product, SameKind};
 use crate::number::real::Real;
 
@@ -54,7 +54,7 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
     /// Adds to the diagonal of the matrix.
     #[inline(always)]
     pub(crate) fn add_diagonal(&mut self, row: usize, value: S) {
-        self.matrix[self.pattern.row(row - self.before).diagonal()] += value;
+        self.matrix[self.pattern.row(row - self.before).diagonal] += value;
     }
 
     /// Adds to an entry of the matrix; the rows must meet.
@@ -126,7 +126,7 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
     /// The inverse pivot of a row of the rest: how its unknown responds to its own right-hand side, unknowns eliminated later held.
     #[inline(always)]
     pub(crate) fn inverse_pivot(&self, row: usize) -> S {
-        self.matrix[self.pattern.row(row - self.before).diagonal()]
+        self.matrix[self.pattern.row(row - self.before).diagonal]
     }
 
     /// The solution for another right-hand side, with the factors already computed.
@@ -145,18 +145,16 @@ impl<'a, S: Real> CoupledSystem<'a, S> {
     /// Gaussian elimination of what is not zero. Pivots are left inverted; what is below them stays.
     #[inline(always)]
     fn eliminate(&mut self, rows: Range<usize>) {
-        for k in rows {
-            let (diagonal, end) = (self.pattern.row(k).diagonal(), self.pattern.row(k).end());
-            let (upper, lower) = self.matrix.split_at_mut(end);
-            let inverse = S::one() / upper[diagonal];
-            upper[diagonal] = inverse;
+        for RowPattern { entries, diagonal, later, .. } in self.pattern.rows(rows) {
+            let (upper, lower) = self.matrix.split_at_mut(entries.end);
+            let inverse = S::one() / upper[*diagonal];
+            upper[*diagonal] = inverse;
             let pivot = &upper[diagonal + 1..];
-            for (row, segments) in self.pattern.changes(k) {
-                let factor = lower[row.entry() - end] * inverse;
-                for segment in segments {
-                    let of_pivot = &pivot[segment.of_pivot()];
-                    let changed = &mut lower[segment.place() - end..][..of_pivot.len()];
-                    for (a, &p) in changed.iter_mut().zip(of_pivot) {
+            for row in later {
+                let factor = lower[row.entry - entries.end] * inverse;
+                for segment in &row.segments {
+                    let changed = &mut lower[segment.place - entries.end..][..segment.of_pivot.len()];
+                    for (a, &p) in changed.iter_mut().zip(&pivot[segment.of_pivot.clone()]) {
                         *a = *a - factor * p;
                     }
                 }
@@ -175,20 +173,19 @@ impl CoupledSystem<'_, f64> {
     /// The solution of the transposed system, with the factors already computed.
     #[inline(always)]
     pub(crate) fn solve_transposed(&self, right: &mut [f64]) {
-        let (right, pattern) = (&mut right[self.before..], self.pattern);
-        for k in 0..pattern.size() {
-            let row = pattern.row(k);
-            let weight = right[k] * self.matrix[row.diagonal()];
+        let (right, rows) = (&mut right[self.before..], self.pattern.rows(0..self.pattern.size()));
+        for (k, row) in rows.iter().enumerate() {
+            let weight = right[k] * self.matrix[row.diagonal];
             right[k] = weight;
-            let factors = &self.matrix[row.diagonal() + 1..row.end()];
-            for (later, &factor) in pattern.later(k).iter().zip(factors) {
-                right[later.row()] -= factor * weight;
+            let factors = &self.matrix[row.diagonal + 1..row.entries.end];
+            for (later, &factor) in row.later.iter().zip(factors) {
+                right[later.row] -= factor * weight;
             }
         }
-        for k in (0..pattern.size()).rev() {
-            let below = pattern.later(k).iter().map(|later| self.matrix[later.entry()] * right[later.row()]);
+        for (k, row) in rows.iter().enumerate().rev() {
+            let below = row.later.iter().map(|later| self.matrix[later.entry] * right[later.row]);
             let sum = below.fold(0.0, |sum, term| sum + term);
-            right[k] -= self.matrix[pattern.row(k).diagonal()] * sum;
+            right[k] -= self.matrix[row.diagonal] * sum;
         }
     }
 }
@@ -201,10 +198,10 @@ fn forward<S: Real, P: Product<S, R>, R: Real>(
     right: &mut [R],
     rows: Range<usize>,
 ) {
-    for k in rows {
-        let known = P::of(matrix[pattern.row(k).diagonal()], right[k]);
-        for later in pattern.later(k) {
-            right[later.row()] = right[later.row()] - P::of(matrix[later.entry()], known);
+    for (k, row) in rows.clone().zip(pattern.rows(rows)) {
+        let known = P::of(matrix[row.diagonal], right[k]);
+        for later in &row.later {
+            right[later.row] = right[later.row] - P::of(matrix[later.entry], known);
         }
     }
 }
@@ -217,18 +214,17 @@ fn back<S: Real, P: Product<S, R>, R: Real>(
     right: &mut [R],
     rows: Range<usize>,
 ) {
-    for k in rows.rev() {
-        let (diagonal, end) = (pattern.row(k).diagonal(), pattern.row(k).end());
-        let mut factors = &matrix[diagonal + 1..end];
+    for (k, row) in rows.clone().zip(pattern.rows(rows)).rev() {
+        let mut factors = &matrix[row.diagonal + 1..row.entries.end];
         let mut sum = right[k];
-        for run in pattern.reach(k) {
+        for run in &row.reach {
             let (of_run, rest) = factors.split_at(run.len());
-            for (&a, &x) in of_run.iter().zip(&right[run]) {
+            for (&a, &x) in of_run.iter().zip(&right[run.clone()]) {
                 sum = sum - P::of(a, x);
             }
             factors = rest;
         }
-        right[k] = P::of(matrix[diagonal], sum);
+        right[k] = P::of(matrix[row.diagonal], sum);
     }
 }
 

@@ -147,13 +147,17 @@ impl<S: Real> ZoneFront<S> {
         sources: &[[S; 2]],
     ) {
         self.laws.set_wind(conditions);
-        for (lane, &zone) in self.layout.zones.iter().enumerate() {
-            let (radiant, step) = (radiant(zone), self.layout.zones.len());
-            let mut place = lane;
-            while place < self.laws.count {
+        if self.side_by_side() {
+            for place in 0..self.laws.count {
                 let solar = conditions.surfaces[self.laws.surface(place)].solar;
+                let radiant = radiant(self.layout.zones[place % S::CHUNK]);
                 self.heat[place] = self.area[place] * solar + radiant * self.radiant_share[place];
-                place += step;
+            }
+        } else {
+            let radiant = radiant(self.layout.zones[0]);
+            let surfaces = self.laws.surfaces().zip(&self.area).zip(&self.radiant_share);
+            for (heat, ((surface, &area), &share)) in self.heat.iter_mut().zip(surfaces) {
+                *heat = area * conditions.surfaces[surface].solar + radiant * share;
             }
         }
         self.exterior.begin(&self.layout, conditions, sources, &mut self.heat);

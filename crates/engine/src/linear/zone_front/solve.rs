@@ -93,13 +93,13 @@ impl<S: Real> ZoneFront<S> {
         let (layout, emission) = (&self.layout, &self.laws.emission);
         let [surfaces, eliminated] = [layout.surfaces / step, layout.eliminated / step];
         let entry = |i: usize, j: usize| self.factors.rows[i * layout.stride + j * step + lane];
-        let retained_rows = layout.retained_rows[lane..].iter().step_by(step);
         let count = surfaces - eliminated + 1;
         let places = layout.places[lane * count * count..].chunks_exact(count);
         let air_places = &layout.air_places[lane * count..][..count];
         let air_diagonal = air_places[count - 1][0];
-        let rows = retained_rows.zip(places).zip(air_places);
-        for (i, ((&row, places), &[diagonal, to_air_place, from_air_place])) in (eliminated..).zip(rows) {
+        let rows = places.zip(air_places);
+        for (i, (places, &[diagonal, to_air_place, from_air_place])) in (eliminated..).zip(rows) {
+            let row = layout.retained_rows[(i - eliminated) * step + lane];
             let mut right = entry(i, surfaces + 1);
             for (j, place) in (eliminated..surfaces).zip(places) {
                 // Between surfaces only the upper triangle is stored.
@@ -141,13 +141,17 @@ impl<S: Real> ZoneFront<S> {
         } else {
             self.solve_by_factors::<V>(unknowns);
         }
-        let Layout { eliminated, first_rows, members, .. } = &self.layout;
-        let (rows, step) = (eliminated / first_rows.len(), first_rows.len());
-        for (lane, &row) in first_rows.iter().enumerate().take(*members) {
-            let values = self.equations.right[lane..].iter().step_by(step);
-            for (unknown, &value) in unknowns[row..row + rows].iter_mut().zip(values) {
-                *unknown = value;
+        let Layout { eliminated, ref first_rows, members, .. } = self.layout;
+        if self.side_by_side() {
+            for (lane, &row) in first_rows.iter().enumerate().take(members) {
+                let values = self.equations.right[lane..eliminated].iter().step_by(S::CHUNK);
+                for (unknown, &value) in unknowns[row..row + eliminated / S::CHUNK].iter_mut().zip(values) {
+                    *unknown = value;
+                }
             }
+        } else {
+            let row = first_rows[0];
+            unknowns[row..row + eliminated].copy_from_slice(&self.equations.right[..eliminated]);
         }
         self.write_surfaces::<V>(surfaces);
     }
@@ -195,13 +199,17 @@ impl<S: Real> ZoneFront<S> {
     /// Takes the eliminated surfaces from a solution of all unknowns.
     #[inline(always)]
     pub(super) fn write<V: Chunk<S>>(&mut self, unknowns: &[S], surfaces: &mut [S]) {
-        let Layout { eliminated, first_rows, .. } = &self.layout;
-        let (rows, step) = (eliminated / first_rows.len(), first_rows.len());
-        for (lane, &row) in first_rows.iter().enumerate() {
-            let values = self.equations.right[lane..].iter_mut().step_by(step);
-            for (value, &unknown) in values.zip(&unknowns[row..row + rows]) {
-                *value = unknown;
+        let Layout { eliminated, ref first_rows, .. } = self.layout;
+        if self.side_by_side() {
+            for (lane, &row) in first_rows.iter().enumerate() {
+                let values = self.equations.right[lane..eliminated].iter_mut().step_by(S::CHUNK);
+                for (value, &unknown) in values.zip(&unknowns[row..row + eliminated / S::CHUNK]) {
+                    *value = unknown;
+                }
             }
+        } else {
+            let row = first_rows[0];
+            self.equations.right[..eliminated].copy_from_slice(&unknowns[row..row + eliminated]);
         }
         self.write_surfaces::<V>(surfaces);
     }
