@@ -43,8 +43,9 @@ pub(crate) struct BuildingSystem<'a, S> {
 }
 
 impl<'a, S: Real> BuildingSystem<'a, S> {
-    /// The system of a building with its constant laws, for a scheme's diagonal coefficient.
-    pub(crate) fn new(model: &Model<'a, S>, laws: &LinearisedLaws<S>, diagonal: f64) -> Self {
+    /// The system of a building with its constant laws, for a scheme's diagonal coefficient. `together`: zones of one shape are
+    /// computed side by side; derivatives need them one by one.
+    pub(crate) fn new(model: &Model<'a, S>, laws: &LinearisedLaws<S>, diagonal: f64, together: bool) -> Self {
         let (plan, coefficients) = (model.plan, &model.coefficients);
         let walls: Vec<_> = coefficients.walls.iter().map(WallSystem::new).collect();
         let count = plan.walls.len();
@@ -57,7 +58,7 @@ impl<'a, S: Real> BuildingSystem<'a, S> {
             exterior: vec![ExteriorSurfaces::None; count],
             inverses: vec![S::zero(); count],
             coupled: CoupledSystem::new(&plan.pattern, plan.own_rows, plan.constant_rows),
-            zone_fronts: ZoneFronts::new(plan, coefficients, &laws.surfaces),
+            zone_fronts: ZoneFronts::new(plan, coefficients, &laws.surfaces, together),
             thick_walls: ThickWalls::new(model),
         }
     }

@@ -43,7 +43,7 @@ impl<'a> StageMatrix<'a> {
         Self {
             conditions: Conditions::new(plan, &model.coefficients, &index),
             zeros: vec![0.0; plan.zones.len()],
-            system: BuildingSystem::new(&model, &laws, diagonal),
+            system: BuildingSystem::new(&model, &laws, diagonal, false),
             laws,
             model,
         }

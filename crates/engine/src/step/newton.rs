@@ -77,7 +77,12 @@ impl<'a, S: Real> StageSolver<'a, S> {
         let linearisation = Linearisation::new(model, tableau.weights.len());
         let unknowns = Unknowns::zero(plan.n_cells, plan.surfaces.len(), plan.zones.len());
         Self {
-            system: BuildingSystem::new(model, &linearisation.laws, tableau.diagonal),
+            system: BuildingSystem::new(
+                model,
+                &linearisation.laws,
+                tableau.diagonal,
+                !model.parts.balances_stay(),
+            ),
             linearisation,
             start: StageStart::new(model),
             iterate: unknowns.clone(),

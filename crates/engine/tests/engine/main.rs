@@ -24,6 +24,7 @@ mod marching;
 mod nested_iteration;
 mod order_with_windows;
 mod properties;
+mod rooms_side_by_side;
 mod slopes_of_stages;
 mod stepwise;
 mod tape_memory;

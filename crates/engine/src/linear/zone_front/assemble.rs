@@ -20,6 +20,9 @@ impl<S: Real> ZoneFront<S> {
             }
             self.assemble_register(elimination, start, gain, right);
         }
+        if self.side_by_side() {
+            return self.sum_airs::<V>(elimination == Elimination::Full);
+        }
         let equations = &mut self.equations;
         equations.right[surfaces] = sum(&equations.air_heat[..surfaces]);
         if elimination == Elimination::Full {

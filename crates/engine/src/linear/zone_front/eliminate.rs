@@ -30,9 +30,13 @@ pub(super) struct Factors<S> {
 }
 
 impl<S: Real> Factors<S> {
-    pub(super) fn new(stride: usize) -> Self {
+    pub(super) fn new(layout: &Layout) -> Self {
         let zeros = |count| vec![S::zero(); count];
-        Self { rows: zeros(stride * stride), inverse_pivots: zeros(stride), below: zeros(stride) }
+        Self {
+            rows: zeros(layout.matrix()),
+            inverse_pivots: zeros(layout.stride),
+            below: zeros(layout.stride),
+        }
     }
 
     /// Assembles a front and eliminates its surfaces.

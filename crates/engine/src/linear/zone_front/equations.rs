@@ -32,7 +32,7 @@ impl<S: Real> Equations<S> {
         eliminated[..layout.eliminated].fill(S::one());
         let slopes = eliminated.iter().zip(&laws.emission[1]);
         Self {
-            exchange: vec![S::zero(); layout.stride * layout.stride],
+            exchange: vec![S::zero(); layout.matrix()],
             inverse_slope: slopes.map(|(&flag, &slope)| flag / slope).collect(),
             eliminated,
             to_air: zeros(),

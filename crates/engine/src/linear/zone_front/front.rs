@@ -1,20 +1,20 @@
-//! The front of one zone: all that its equations are made of.
+//! The front of one zone, or of several side by side: all that its equations are made of.
 
 use crate::building::coefficients::Coefficients;
 use crate::building::ids::{BySurface, SurfaceId};
 use crate::building::plan::Plan;
 use crate::linear::surface_balance::SurfaceLaws;
 use crate::number::real::Real;
-use crate::physics::longwave::Emission;
 use crate::weather::conditions::Conditions;
 
 use super::eliminate::Factors;
 use super::equations::Equations;
 use super::exterior::Exterior;
 use super::laws::Laws;
-use super::layout::{Layout, air_places, places};
+use super::layout::Layout;
+use super::shape::{Shape, ZoneShape};
 
-/// The front of a zone.
+/// The front of a zone, or of several zones of one shape.
 #[derive(Debug, Clone)]
 pub(super) struct ZoneFront<S> {
     pub(super) layout: Layout,
@@ -44,63 +44,76 @@ pub(super) struct Influence<S> {
     pub(super) applied: Vec<S>,
 }
 
+/// The laws of the surfaces of a front in its zones.
+fn interior_laws<S: Real>(
+    numbers: &Coefficients<S>,
+    laws: &BySurface<SurfaceLaws<S>>,
+    surfaces: &[SurfaceId],
+    (stride, shape): (usize, &Shape),
+) -> Laws<S> {
+    let mut interior = Laws::new(surfaces, stride, laws);
+    interior.sort(numbers, |_| true, |_| shape.exact);
+    // Along straight lines all surfaces emit alike: their offset cancels.
+    interior.emission[0].fill(S::zero());
+    if !shape.exchange {
+        interior.emission[1].fill(S::one());
+    }
+    interior.emission[1][surfaces.len()..].fill(S::one());
+    interior
+}
+
 impl<S: Real> Influence<S> {
-    fn new(stride: usize) -> Self {
-        let zeros = |count| vec![S::zero(); count];
-        Self { of_right: zeros(stride * stride), of_retained: zeros(stride * stride), applied: zeros(stride) }
+    /// None is known yet: most buildings never need it.
+    fn unknown() -> Self {
+        Self { of_right: Vec::new(), of_retained: Vec::new(), applied: Vec::new() }
+    }
+
+    /// As many zeros as there are coefficients, where there are none yet.
+    pub(super) fn begin(&mut self, stride: usize) {
+        self.of_right.resize(stride * stride, S::zero());
+        self.of_retained.resize(stride * stride, S::zero());
+        self.applied.resize(stride, S::zero());
     }
 }
 
 impl<S: Real> ZoneFront<S> {
+    /// The front of some zones of one shape, of which the first `members` differ.
     pub(super) fn new(
         plan: &Plan,
         numbers: &Coefficients<S>,
         laws: &BySurface<SurfaceLaws<S>>,
-        zone: usize,
+        (zones, members): (&[usize], usize),
     ) -> Self {
-        let (of_plan, of_zone) = (&plan.zones[zone], &numbers.zones[zone]);
-        let mut order: Vec<usize> = (0..of_plan.surfaces.len()).collect();
-        order.sort_by_key(|&i| of_plan.surface_rows[i]);
-        let eliminated = order.iter().filter(|&&i| of_plan.surface_rows[i] < plan.own_rows).count();
-        let surfaces: Vec<SurfaceId> = order.iter().map(|&i| of_plan.surfaces[i]).collect();
-        let retained = order[eliminated..].iter().map(|&i| of_plan.surface_rows[i]);
-        let retained_rows: Vec<usize> = retained.chain([of_plan.air_row]).collect();
-        let places = places(&plan.pattern, plan.own_rows, &retained_rows);
-        let layout = Layout {
-            surfaces: surfaces.len(),
-            eliminated,
-            stride: (surfaces.len() + 2).next_multiple_of(S::CHUNK),
-            first_row: order.first().map_or(0, |&i| of_plan.surface_rows[i]),
-            air_places: air_places(&places, retained_rows.len()),
-            places,
-            retained_rows,
-            exterior: surfaces[..eliminated].iter().filter(|s| !plan.walls[s.wall()].thick).count(),
-            walls: surfaces[..eliminated].to_vec(),
-        };
+        let shapes: Vec<_> = zones.iter().map(|&zone| ZoneShape::new(plan, numbers, zone)).collect();
+        let (shape, step) = (&shapes[0], shapes.len());
+        // Surfaces of the same number are neighbours.
+        let places = || (0..shape.order.len() * step).map(|place| (place, place % step, place / step));
+        let of_plan = |lane: usize| &plan.zones[zones[lane]];
+        let surfaces: Vec<SurfaceId> =
+            places().map(|(_, lane, i)| of_plan(lane).surfaces[shapes[lane].order[i]]).collect();
+        let layout = Layout::new(plan, &shapes, (zones, members), &surfaces, S::CHUNK);
         let exterior = Exterior::new(numbers, laws, &layout);
-        let mut interior = Laws::new(&surfaces, layout.stride, laws);
-        let exact = matches!(of_zone.emission, Emission::Exact) && !of_zone.exchange.is_empty();
-        interior.sort(numbers, |_| true, |_| exact);
-        // Along straight lines all surfaces emit alike: their offset cancels.
-        interior.emission[0].fill(S::zero());
-        if of_zone.exchange.is_empty() {
-            interior.emission[1].fill(S::one());
-        }
-        interior.emission[1][surfaces.len()..].fill(S::one());
+        let interior = interior_laws(numbers, laws, &surfaces, (layout.stride, &shape.key));
+        let (exact, exchange) = (shape.key.exact, shape.key.exchange);
         let mut front = Self::blank(layout, interior, exterior);
-        for (i, &k) in order.iter().enumerate() {
-            (front.area[i], front.radiant_share[i]) = (of_zone.areas[k], of_zone.radiant_shares[k]);
+        let of_zone = |lane: usize| &numbers.zones[zones[lane]];
+        for (place, lane, i) in places() {
+            let k = shapes[lane].order[i];
+            (front.area[place], front.radiant_share[place]) =
+                (of_zone(lane).areas[k], of_zone(lane).radiant_shares[k]);
         }
         if exact {
             // A nonlinear emission has no slope yet.
             front.equations.inverse_slope.fill(S::zero());
         }
-        if !of_zone.exchange.is_empty() {
-            let (n, stride) = (surfaces.len(), front.layout.stride);
-            for (i, &a) in order.iter().enumerate() {
-                for (j, &b) in order.iter().enumerate() {
-                    let area = if a == b { of_zone.exchange_sums[a] } else { -of_zone.exchange[a * n + b] };
-                    front.equations.exchange[i * stride + j] = area;
+        if exchange {
+            let (n, stride) = (shape.order.len(), front.layout.stride);
+            for (place, lane, i) in places() {
+                for j in 0..n {
+                    let [a, b] = [i, j].map(|place| shapes[lane].order[place]);
+                    let zone = of_zone(lane);
+                    let area = if a == b { zone.exchange_sums[a] } else { -zone.exchange[a * n + b] };
+                    front.equations.exchange[i * stride + j * step + place % step] = area;
                 }
             }
         }
@@ -116,8 +129,8 @@ impl<S: Real> ZoneFront<S> {
             radiant_share: zeros(),
             heat: zeros(),
             equations: Equations::new(&layout, &laws),
-            factors: Factors::new(stride),
-            influence: Influence::new(stride),
+            factors: Factors::new(&layout),
+            influence: Influence::unknown(),
             scratch: zeros(),
             layout,
             laws,
@@ -125,14 +138,47 @@ impl<S: Real> ZoneFront<S> {
         }
     }
 
-    /// Reads what drives a stage.
+    /// Reads what drives a stage; `radiant`: heat that is released at the surfaces of each zone [W].
     #[inline(always)]
-    pub(super) fn begin(&mut self, conditions: &Conditions<S>, radiant: S, sources: &[[S; 2]]) {
+    pub(super) fn begin(
+        &mut self,
+        conditions: &Conditions<S>,
+        radiant: impl Fn(usize) -> S,
+        sources: &[[S; 2]],
+    ) {
         self.laws.set_wind(conditions);
-        let surfaces = self.laws.surfaces().zip(&self.area).zip(&self.radiant_share);
-        for (heat, ((surface, &area), &share)) in self.heat.iter_mut().zip(surfaces) {
-            *heat = area * conditions.surfaces[surface].solar + radiant * share;
+        if self.side_by_side() {
+            for place in 0..self.laws.count {
+                let solar = conditions.surfaces[self.laws.surface(place)].solar;
+                let radiant = radiant(self.layout.zones[place % S::CHUNK]);
+                self.heat[place] = self.area[place] * solar + radiant * self.radiant_share[place];
+            }
+        } else {
+            let radiant = radiant(self.layout.zones[0]);
+            let surfaces = self.laws.surfaces().zip(&self.area).zip(&self.radiant_share);
+            for (heat, ((surface, &area), &share)) in self.heat.iter_mut().zip(surfaces) {
+                *heat = area * conditions.surfaces[surface].solar + radiant * share;
+            }
         }
         self.exterior.begin(&self.layout, conditions, sources, &mut self.heat);
+    }
+
+    /// Whether it holds several zones. Only of plain numbers, of which some fill a register.
+    #[inline(always)]
+    pub(super) fn side_by_side(&self) -> bool {
+        S::CHUNK > 1 && self.layout.step() > 1
+    }
+
+    /// Sets the temperatures of the airs in front of the surfaces.
+    #[inline(always)]
+    pub(super) fn set_airs(&mut self, airs: &[S]) {
+        if !self.side_by_side() {
+            return self.laws.air.fill(airs[self.layout.zones[0]]);
+        }
+        for airs_of_places in self.laws.air.chunks_exact_mut(S::CHUNK) {
+            for (air, &zone) in airs_of_places.iter_mut().zip(&self.layout.zones) {
+                *air = airs[zone];
+            }
+        }
     }
 }

@@ -12,6 +12,7 @@ use crate::number::real::{Chunk, ChunkTask, Real};
 
 use super::front::ZoneFront;
 use super::layout::Elimination;
+use super::shape::group_zones;
 
 /// The fronts of all zones.
 #[derive(Debug, Clone)]
@@ -32,11 +33,11 @@ impl<S: Real> ChunkTask<S> for Eliminate<'_, S> {
     type Output = ();
     #[inline(always)]
     fn run<V: Chunk<S>>(self) {
-        for (zone, front) in self.zone_fronts.iter_mut().enumerate() {
+        for front in self.zone_fronts.iter_mut() {
             if let Some(iterate) = self.iterate {
                 front.exterior.hold_thick(&front.layout, &iterate.surfaces);
                 if front.laws.convection_is_nonlinear() {
-                    front.laws.air.fill(iterate.air[zone]);
+                    front.set_airs(&iterate.air);
                 }
                 // A loop: one copy of all correlations only, inlining multiplies compile time.
                 for laws in [&mut front.laws, &mut front.exterior.laws] {
@@ -46,6 +47,10 @@ impl<S: Real> ChunkTask<S> for Eliminate<'_, S> {
             front.assemble::<V>(self.elimination);
         }
         for front in self.zone_fronts {
+            if front.side_by_side() {
+                front.eliminate_side_by_side::<V>();
+                continue;
+            }
             if self.elimination == Elimination::Full {
                 front.factors.eliminate::<V>(&front.equations, &front.layout);
                 if self.constant {
@@ -96,9 +101,17 @@ impl<S: Real> ChunkTask<S> for Write<'_, S> {
 
 // Large functions, not inlined: one copy only, inlining multiplies compile time.
 impl<S: Real> ZoneFronts<S> {
-    pub(crate) fn new(plan: &Plan, numbers: &Coefficients<S>, laws: &BySurface<SurfaceLaws<S>>) -> Self {
-        let zones = 0..plan.zones.len();
-        Self { zone_fronts: zones.map(|zone| ZoneFront::new(plan, numbers, laws, zone)).collect() }
+    /// The fronts of all zones; zones of one shape `together` side by side, or each alone.
+    pub(crate) fn new(
+        plan: &Plan,
+        numbers: &Coefficients<S>,
+        laws: &BySurface<SurfaceLaws<S>>,
+        together: bool,
+    ) -> Self {
+        let groups = group_zones(plan, numbers, together);
+        let front =
+            |(zones, members): &(Vec<usize>, usize)| ZoneFront::new(plan, numbers, laws, (zones, *members));
+        Self { zone_fronts: groups.iter().map(front).collect() }
     }
 
     /// Sets how the heat from the walls follows their surfaces.
@@ -115,11 +128,14 @@ impl<S: Real> ZoneFronts<S> {
         S::vectorised(
             #[inline(always)]
             || {
-                for (z, front) in self.zone_fronts.iter_mut().enumerate() {
-                    let mut radiant = conditions.zones[z].radiant;
+                let radiant = |z: usize| {
+                    let radiant = conditions.zones[z].radiant;
                     if zones[z].radiated_loads.is_some() {
-                        radiant += zones[z].load_parts(inputs.load[z])[1];
+                        return radiant + zones[z].load_parts(inputs.load[z])[1];
                     }
+                    radiant
+                };
+                for front in &mut self.zone_fronts {
                     front.begin(conditions, radiant, sources);
                 }
             },

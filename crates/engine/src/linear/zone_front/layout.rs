@@ -1,24 +1,35 @@
 //! The unknowns of a front: which are eliminated, which are retained, and their rows.
+//!
+//! A front of several zones ([`side_by_side`](super::side_by_side)) has the unknowns of all of them: those of the same
+//! number in their zones are neighbours.
 
 use crate::building::ids::SurfaceId;
 use crate::building::pattern::Pattern;
+use crate::building::plan::Plan;
+
+use super::shape::ZoneShape;
 
 /// The unknowns of a front and their rows.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
+    /// The zones; where there are fewer than fill a register, the first one again.
+    pub(super) zones: Vec<usize>,
+    /// Number of different zones.
+    pub(super) members: usize,
     /// Number of surfaces, the eliminated ones first. The air comes after them, then the right-hand side.
     pub(super) surfaces: usize,
     /// Number of eliminated surfaces.
     pub(super) eliminated: usize,
     /// Numbers in a row: all unknowns and the right-hand side, and as many more as fill the last register.
     pub(super) stride: usize,
-    /// Row of the first eliminated surface among the unknowns of the building, and rows of the retained unknowns.
-    pub(super) first_row: usize,
+    /// Rows among the unknowns of the building: of the first eliminated surface of each zone, and of the retained unknowns.
+    pub(super) first_rows: Vec<usize>,
     pub(super) retained_rows: Vec<usize>,
-    /// Places of their entries in the coupled matrix, row by row; none where two of them do not meet.
+    /// Places of their entries in the coupled matrix, zone by zone and row by row; none where two of them do not meet.
     pub(super) places: Vec<Option<usize>>,
-    /// Places of the entries of each retained row in the column of the air, and of the air in its column.
-    pub(super) air_places: Vec<[usize; 2]>,
+    /// Places of the diagonal of each retained row, of its entry in the column of the air, and of that of the air in its column;
+    /// zone by zone.
+    pub(super) air_places: Vec<[usize; 3]>,
     /// The eliminated surfaces, those of thick walls last.
     pub(super) walls: Vec<SurfaceId>,
     /// Number of eliminated surfaces whose wall is not thick: its other surface is exterior.
@@ -26,10 +37,63 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Row of an unknown of the front among the unknowns of the building.
+    /// The unknowns of some zones of one shape, of which the first `members` differ; `surfaces` are those of all of them.
+    pub(super) fn new(
+        plan: &Plan,
+        shapes: &[ZoneShape],
+        (zones, members): (&[usize], usize),
+        surfaces: &[SurfaceId],
+        chunk: usize,
+    ) -> Self {
+        let (step, key) = (zones.len(), shapes[0].key);
+        let row = |lane: usize, i: usize| {
+            let zone = &plan.zones[zones[lane]];
+            shapes[lane].order.get(i).map_or(zone.air_row, |&k| zone.surface_rows[k])
+        };
+        let count = key.surfaces - key.eliminated + 1;
+        let of_zones = |lane: usize| -> Vec<Option<usize>> {
+            let rows: Vec<usize> = (0..count).map(|i| row(lane, key.eliminated + i)).collect();
+            places(&plan.pattern, plan.own_rows, &rows)
+        };
+        let by_zone: Vec<_> = (0..step).map(of_zones).collect();
+        let retained =
+            (key.eliminated * step..(key.surfaces + 1) * step).map(|place| row(place % step, place / step));
+        let eliminated = &surfaces[..key.eliminated * step];
+        Self {
+            zones: zones.to_vec(),
+            members,
+            surfaces: surfaces.len(),
+            eliminated: eliminated.len(),
+            stride: if step > 1 {
+                (key.surfaces + 2) * step
+            } else {
+                (key.surfaces + 2).next_multiple_of(chunk)
+            },
+            first_rows: (0..step).map(|lane| if key.surfaces == 0 { 0 } else { row(lane, 0) }).collect(),
+            retained_rows: retained.collect(),
+            air_places: by_zone.iter().flat_map(|places| air_places(places, count)).collect(),
+            places: by_zone.concat(),
+            exterior: key.exterior * step,
+            walls: eliminated.to_vec(),
+        }
+    }
+
+    /// Number of zones side by side: the distance between neighbouring unknowns of one of them.
+    #[inline(always)]
+    pub(super) fn step(&self) -> usize {
+        self.zones.len()
+    }
+
+    /// Numbers in a matrix.
+    pub(super) fn matrix(&self) -> usize {
+        let rows = if self.step() > 1 { self.surfaces / self.step() + 1 } else { self.stride };
+        rows * self.stride
+    }
+
+    /// Row of an unknown of the front of one zone among the unknowns of the building.
     #[inline(always)]
     pub(super) fn row(&self, i: usize) -> usize {
-        if i < self.eliminated { self.first_row + i } else { self.retained_rows[i - self.eliminated] }
+        if i < self.eliminated { self.first_rows[0] + i } else { self.retained_rows[i - self.eliminated] }
     }
 }
 
@@ -40,11 +104,12 @@ pub(super) fn places(pattern: &Pattern, own_rows: usize, rows: &[usize]) -> Vec<
     entries.map(|(row, column)| pattern.place(row - own_rows, column - own_rows)).collect()
 }
 
-/// Places of the entries between each of some retained rows and the last of them, from [`places`]: they all meet the air.
-pub(super) fn air_places(places: &[Option<usize>], count: usize) -> Vec<[usize; 2]> {
+/// Places of the diagonal of each of some retained rows, and of the entries between it and the last of them, from [`places`]:
+/// they all meet the air.
+pub(super) fn air_places(places: &[Option<usize>], count: usize) -> Vec<[usize; 3]> {
     let air = count - 1;
-    let pair = |i: usize| Some([places[i * count + air]?, places[air * count + i]?]);
-    (0..count).filter_map(pair).collect()
+    let of = |i: usize| Some([places[i * count + i]?, places[i * count + air]?, places[air * count + i]?]);
+    (0..count).filter_map(of).collect()
 }
 
 /// What is to be eliminated.

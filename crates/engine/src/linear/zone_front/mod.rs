@@ -10,6 +10,8 @@
 //! and the temperature of its air. Surfaces are then coupled by exchange areas, which never change and are symmetric: only
 //! the diagonal is assembled, and half of the elimination is saved. A zone without long-wave exchange has `E = T`.
 //!
+//! Zones of one shape are computed side by side in one front ([`side_by_side`]).
+//!
 //! All arrays are in the order of the front, so that neighbours are computed together ([`Chunk`](crate::number::real::Chunk)).
 
 /// The numbers from a place on that fill a register.
@@ -27,6 +29,8 @@ mod front;
 mod fronts;
 mod laws;
 mod layout;
+mod shape;
+mod side_by_side;
 mod solve;
 
 pub(crate) use fronts::ZoneFronts;

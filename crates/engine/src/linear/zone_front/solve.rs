@@ -16,6 +16,7 @@ impl<S: Real> ZoneFront<S> {
     #[inline(never)]
     pub(super) fn compute_influence(&mut self) {
         let Layout { surfaces, eliminated, stride, .. } = self.layout;
+        self.influence.begin(stride);
         for j in 0..eliminated {
             let mut values = vec![S::zero(); surfaces + 1];
             values[j] = S::one();
@@ -61,37 +62,61 @@ impl<S: Real> ZoneFront<S> {
         constant: bool,
         coupled: &mut CoupledSystem<'_, S>,
     ) {
-        let Layout { surfaces, eliminated, retained_rows, places, .. } = &self.layout;
-        let (surfaces, eliminated, emission) = (*surfaces, *eliminated, &self.laws.emission);
         if constant {
-            for (i, &row) in (eliminated..).zip(retained_rows) {
+            let Layout { eliminated, retained_rows, .. } = &self.layout;
+            for (i, &row) in (*eliminated..).zip(retained_rows) {
                 coupled.right[row] += self.equations.right[i] + self.influence.applied[i];
             }
         }
         if elimination == Elimination::RightHandSide {
             return;
         }
-        let (count, air_row) = (retained_rows.len(), retained_rows[surfaces - eliminated]);
-        let rows = retained_rows.iter().zip(places.chunks_exact(count));
-        for (i, (&row, places)) in (eliminated..).zip(rows) {
-            let mut right = self.entry(i, surfaces + 1);
+        if self.side_by_side() {
+            for lane in 0..self.layout.members {
+                self.add_schur_complement_of(lane, S::CHUNK, constant, coupled);
+            }
+        } else {
+            self.add_schur_complement_of(0, 1, constant, coupled);
+        }
+    }
+
+    /// The same of one of `step` zones side by side.
+    // Inlined: for a single zone the number of zones is then a constant.
+    #[inline(always)]
+    fn add_schur_complement_of(
+        &self,
+        lane: usize,
+        step: usize,
+        constant: bool,
+        coupled: &mut CoupledSystem<'_, S>,
+    ) {
+        let (layout, emission) = (&self.layout, &self.laws.emission);
+        let [surfaces, eliminated] = [layout.surfaces / step, layout.eliminated / step];
+        let entry = |i: usize, j: usize| self.factors.rows[i * layout.stride + j * step + lane];
+        let count = surfaces - eliminated + 1;
+        let places = layout.places[lane * count * count..].chunks_exact(count);
+        let air_places = &layout.air_places[lane * count..][..count];
+        let air_diagonal = air_places[count - 1][0];
+        let rows = places.zip(air_places);
+        for (i, (places, &[diagonal, to_air_place, from_air_place])) in (eliminated..).zip(rows) {
+            let row = layout.retained_rows[(i - eliminated) * step + lane];
+            let mut right = entry(i, surfaces + 1);
             for (j, place) in (eliminated..surfaces).zip(places) {
                 // Between surfaces only the upper triangle is stored.
-                let entry = if i <= j || i == surfaces { self.entry(i, j) } else { self.entry(j, i) };
+                let entry = if i <= j || i == surfaces { entry(i, j) } else { entry(j, i) };
                 if let Some(place) = *place {
-                    coupled.add_at(place, entry * emission[1][j]);
+                    coupled.add_at(place, entry * emission[1][j * step + lane]);
                 }
-                right = right - entry * emission[0][j];
+                right = right - entry * emission[0][j * step + lane];
             }
-            let [to_air_place, from_air_place] = self.layout.air_places[i - eliminated];
-            coupled.add_at(to_air_place, self.entry(i, surfaces));
+            coupled.add_at(to_air_place, entry(i, surfaces));
             if i < surfaces {
-                let to_air = self.equations.to_air[i];
-                coupled.add_diagonal(row, to_air);
-                coupled.add_diagonal(air_row, to_air);
+                let to_air = self.equations.to_air[i * step + lane];
+                coupled.add_at(diagonal, to_air);
+                coupled.add_at(air_diagonal, to_air);
                 coupled.add_at(to_air_place, -to_air);
                 coupled.add_at(from_air_place, -to_air);
-                right += self.equations.right[i];
+                right += self.equations.right[i * step + lane];
             }
             if !constant {
                 coupled.right[row] += right;
@@ -109,13 +134,25 @@ impl<S: Real> ZoneFront<S> {
     /// known.
     #[inline(always)]
     pub(super) fn solve<V: Chunk<S>>(&mut self, constant: bool, unknowns: &mut [S], surfaces: &mut [S]) {
-        if constant {
+        if self.side_by_side() {
+            self.solve_side_by_side::<V>(unknowns);
+        } else if constant {
             self.solve_by_influence::<V>(unknowns);
         } else {
             self.solve_by_factors::<V>(unknowns);
         }
-        let Layout { eliminated, first_row, .. } = self.layout;
-        unknowns[first_row..first_row + eliminated].copy_from_slice(&self.equations.right[..eliminated]);
+        let Layout { eliminated, ref first_rows, members, .. } = self.layout;
+        if self.side_by_side() {
+            for (lane, &row) in first_rows.iter().enumerate().take(members) {
+                let values = self.equations.right[lane..eliminated].iter().step_by(S::CHUNK);
+                for (unknown, &value) in unknowns[row..row + eliminated / S::CHUNK].iter_mut().zip(values) {
+                    *unknown = value;
+                }
+            }
+        } else {
+            let row = first_rows[0];
+            unknowns[row..row + eliminated].copy_from_slice(&self.equations.right[..eliminated]);
+        }
         self.write_surfaces::<V>(surfaces);
     }
 
@@ -162,8 +199,18 @@ impl<S: Real> ZoneFront<S> {
     /// Takes the eliminated surfaces from a solution of all unknowns.
     #[inline(always)]
     pub(super) fn write<V: Chunk<S>>(&mut self, unknowns: &[S], surfaces: &mut [S]) {
-        let Layout { eliminated, first_row, .. } = self.layout;
-        self.equations.right[..eliminated].copy_from_slice(&unknowns[first_row..first_row + eliminated]);
+        let Layout { eliminated, ref first_rows, .. } = self.layout;
+        if self.side_by_side() {
+            for (lane, &row) in first_rows.iter().enumerate() {
+                let values = self.equations.right[lane..eliminated].iter_mut().step_by(S::CHUNK);
+                for (value, &unknown) in values.zip(&unknowns[row..row + eliminated / S::CHUNK]) {
+                    *value = unknown;
+                }
+            }
+        } else {
+            let row = first_rows[0];
+            self.equations.right[..eliminated].copy_from_slice(&unknowns[row..row + eliminated]);
+        }
         self.write_surfaces::<V>(surfaces);
     }
 
@@ -223,6 +270,9 @@ impl<S: Real> ZoneFront<S> {
     /// [`Self::forward`] of a right-hand side of the building.
     #[inline(always)]
     pub(super) fn forward_in_building(&self, right: &mut [S]) {
+        if self.side_by_side() {
+            return (0..self.layout.members).for_each(|lane| self.forward_of(lane, right));
+        }
         self.forward::<SameKind, S>(
             right,
             #[inline(always)]
@@ -233,6 +283,9 @@ impl<S: Real> ZoneFront<S> {
     /// [`Self::back`] of a right-hand side of the building.
     #[inline(always)]
     pub(super) fn back_in_building(&self, right: &mut [S]) {
+        if self.side_by_side() {
+            return (0..self.layout.members).for_each(|lane| self.back_of(lane, right));
+        }
         self.back::<SameKind, S>(
             right,
             #[inline(always)]

@@ -30,10 +30,12 @@ fn front<S: Real>(surfaces: usize, eliminated: usize, nonlinear: bool) -> ZoneFr
     let retained_rows: Vec<usize> = (eliminated..=surfaces).collect();
     let places = places(&pattern(retained_rows.len()), eliminated, &retained_rows);
     let layout = Layout {
+        zones: vec![0],
+        members: 1,
         surfaces,
         eliminated,
         stride: (surfaces + 2).next_multiple_of(S::CHUNK),
-        first_row: 0,
+        first_rows: vec![0],
         air_places: air_places(&places, retained_rows.len()),
         places,
         retained_rows,
@@ -216,7 +218,7 @@ impl<S: Real> ChunkTask<S> for EliminateBoth<'_, S> {
     type Output = [Factors<S>; 2];
     fn run<V: Chunk<S>>(self) -> [Factors<S>; 2] {
         let ZoneFront { equations, layout, .. } = self.front;
-        let [mut fixed, mut any] = [(); 2].map(|()| Factors::new(layout.stride));
+        let [mut fixed, mut any] = [(); 2].map(|()| Factors::new(layout));
         fixed.eliminate::<V>(equations, layout);
         any.eliminate_any(equations, layout);
         [fixed, any]

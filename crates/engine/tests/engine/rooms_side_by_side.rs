@@ -1,0 +1,83 @@
+//! Rooms of one shape, which a single run computes side by side and a pack of members one by one: the same bits.
+
+use crate::common::conditioned::ideal_load;
+use crate::common::{Builder, SCHEMES, facing, forcing, options, run, values, weather};
+use mascarin_engine::batch::ensemble;
+use mascarin_engine::description::{Convection, Facing, ParamId, ZoneLongwave};
+use mascarin_engine::forcing::Forcing;
+use mascarin_engine::ledger::Flow;
+use mascarin_engine::march::Watch;
+use mascarin_engine::plan::Plan;
+use mascarin_engine::probe::Probe;
+
+/// Of one shape: a front of eight and one of seven, beside the rooms at the ends.
+const ROOMS: usize = 17;
+const STEP: f64 = 900.0;
+
+/// A row of rooms with walls between them. Most have the same surfaces, whose areas and laws differ; those at the ends have
+/// one wall less between rooms, and the last one has a second wall to outdoors.
+fn row(loads: bool) -> Plan {
+    let mut b = Builder::new();
+    let concrete = b.solid("concrete", 1.4, 2200.0, 900.0);
+    let board = b.solid("board", 0.2, 500.0, 1000.0);
+    let heavy = b.construction("heavy", &[(board, 0.04, 2), (concrete, 0.15, 4)]);
+    let light = b.construction("light", &[(board, 0.02, 2)]);
+    let factor = b.number("factor", 1.0);
+    let natural = |factor: ParamId| Convection::Tarp { factor, roughness: None, perimeter: None };
+    let roughness = b.number("roughness", 1.67);
+    let mut between = None;
+    for room in 0..ROOMS {
+        let x = room as f64;
+        let zone = b.zone(&format!("room{room}"), 30.0 + x, 0.5, ZoneLongwave::Radiosity);
+        let mut walls = vec![("wall", 90.0), ("roof", 0.0)];
+        walls.extend((room + 1 == ROOMS).then_some(("second", 90.0)));
+        for (name, tilt) in walls {
+            let outside = b.outdoors(Convection::Doe2 { factor, roughness }, 0.9, 0.6);
+            // Rooms of one shape have different correlations at the same place.
+            let law = if room % 3 == 1 { b.convection(3.0 + 0.1 * x) } else { natural(factor) };
+            let inside = b.inside(zone, law, 0.9);
+            b.surface(&format!("{name}{room}"), heavy, [10.0 + 0.5 * x, tilt, 20.0 * x], outside, inside);
+        }
+        let floor = b.inside(zone, natural(factor), 0.8);
+        b.surface(&format!("floor{room}"), heavy, [12.0, 180.0, 0.0], facing(Facing::Adiabatic, None), floor);
+        if let Some(before) = between {
+            let [outer, inner] = [before, zone].map(|zone| b.inside(zone, natural(factor), 0.9));
+            b.surface(&format!("between{room}"), light, [9.0, 90.0, 90.0], outer, inner);
+        }
+        between = Some(zone);
+    }
+    let mut d = b.describe();
+    for room in 0..if loads { ROOMS } else { 0 } {
+        d.zones[room].heating = Some(ideal_load(&mut d, &format!("heating{room}"), 21.0, 400.0));
+        d.zones[room].cooling = Some(ideal_load(&mut d, &format!("cooling{room}"), 24.0, 9000.0));
+    }
+    Plan::new(d).unwrap()
+}
+
+/// The bits of a run are those of a member of an ensemble, and its energy balance closes.
+#[test]
+fn rooms_side_by_side_have_the_bits_of_rooms_alone() {
+    for loads in [false, true] {
+        let plan = row(loads);
+        for scheme in SCHEMES {
+            let rows = forcing(&plan, scheme, 96, STEP, weather);
+            let probes =
+                (0..ROOMS).flat_map(|zone| [Probe::AirTemperature { zone }, Probe::NetLoad { zone }]);
+            let surfaces = (0..plan.description.surfaces.len())
+                .flat_map(|surface| [0, 1].map(|side| Probe::FaceTemperature { surface, side }));
+            let options = options(scheme, STEP, probes.chain(surfaces).collect());
+            let alone = run(&plan, &rows, &options);
+            assert!(alone.ledger.closure() < 1e-12, "{}", alone.ledger.closure());
+            let heat = [Flow::Heating, Flow::Cooling].map(|flow| alone.ledger.into[flow as usize]);
+            assert_eq!(heat.map(|heat| heat != 0.0), [loads; 2], "{heat:?} J");
+            let drive = Forcing::new(&rows, scheme.weights().len(), plan.n_channels()).unwrap();
+            let members = values(&plan).repeat(8);
+            let pack = ensemble(&plan, &members, &drive, &options, &Watch::default()).unwrap();
+            assert!(pack.failures.is_empty(), "{:?}", pack.failures);
+            for (i, (a, b)) in alone.records.iter().zip(&pack.records).enumerate() {
+                assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}: number {i}, {scheme:?}");
+            }
+            assert_eq!(alone.ledger.closure().to_bits(), pack.closure[0].to_bits());
+        }
+    }
+}
