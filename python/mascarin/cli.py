@@ -192,6 +192,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = _take_debug(words)
     out, err = (cast("TextIO", _Output(stream)) for stream in (sys.stdout, sys.stderr))
+    try:
+        return _run(words, debug, out, err)
+    finally:
+        if arguments is None:
+            # The process is about to end: looking for garbage among all modules would take half a second.
+            gc.freeze()
+
+
+def _run(words: list[str], debug: bool, out: TextIO, err: TextIO) -> int:
+    """Run a command; its exit code."""
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings():
         if not debug:
             warnings.showwarning = _show_warning

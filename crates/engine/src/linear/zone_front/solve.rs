@@ -144,7 +144,7 @@ impl<S: Real> ZoneFront<S> {
         let Layout { eliminated, ref first_rows, members, .. } = self.layout;
         if self.side_by_side() {
             for (lane, &row) in first_rows.iter().enumerate().take(members) {
-                let values = self.equations.right[lane..eliminated].iter().step_by(S::CHUNK);
+                let values = self.equations.right[..eliminated].iter().skip(lane).step_by(S::CHUNK);
                 for (unknown, &value) in unknowns[row..row + eliminated / S::CHUNK].iter_mut().zip(values) {
                     *unknown = value;
                 }
@@ -202,7 +202,7 @@ impl<S: Real> ZoneFront<S> {
         let Layout { eliminated, ref first_rows, .. } = self.layout;
         if self.side_by_side() {
             for (lane, &row) in first_rows.iter().enumerate() {
-                let values = self.equations.right[lane..eliminated].iter_mut().step_by(S::CHUNK);
+                let values = self.equations.right[..eliminated].iter_mut().skip(lane).step_by(S::CHUNK);
                 for (value, &unknown) in values.zip(&unknowns[row..row + eliminated / S::CHUNK]) {
                     *value = unknown;
                 }
