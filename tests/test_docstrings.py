@@ -16,6 +16,7 @@ import pytest
 from numpydoc.validate import validate
 
 import mascarin
+from mascarin.building.part import Part
 
 PACKAGES = [
     "building", "calibration", "comfort", "ensemble", "materials", "optimization", "sensitivity",
@@ -109,3 +110,14 @@ def test_examples_run(module: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_p
     monkeypatch.chdir(tmp_path)
     options = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
     assert doctest.testmod(module, optionflags=options).failed == 0
+
+
+def test_a_part_keeps_its_signature_when_it_is_first_used() -> None:
+    """Pydantic makes validators, and a signature with the kind, only then."""
+    parts = [value for value in PUBLIC.values() if isinstance(value, type) and issubclass(value, Part)]
+    assert len(parts) > 50
+    for part in parts:
+        before = inspect.signature(part)
+        part.model_rebuild()
+        assert inspect.signature(part) == before
+        assert "kind" not in before.parameters

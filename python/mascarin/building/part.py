@@ -16,6 +16,8 @@ from mascarin.building.number import CHECK_SIGN, Number, noted_form, problem, qu
 from mascarin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
+    from inspect import Signature
+
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ModelWrapValidatorHandler
     from pydantic._internal._model_construction import ModelMetaclass
     from pydantic.json_schema import JsonSchemaValue
@@ -38,6 +40,15 @@ class PartType(ModelMetaclass):
         own = {name for kind in self.__mro__ if isinstance(kind, PartType) for name in vars(kind)}
         names = {*own, *getattr(self, "model_fields", ())} - _INTERNALS
         return sorted(name for name in names if not name.startswith("_"))
+
+    @property
+    def __signature__(self) -> Signature:
+        """Signature made from the fields, without the kind."""
+        return signature_of(getattr(self, "model_fields", {}))
+
+    @__signature__.setter
+    def __signature__(self, value: object) -> None:
+        """Pydantic gives a class a signature of its own when it is first used: ours stays."""
 
 
 class Part(BaseModel, metaclass=PartType):
@@ -70,8 +81,7 @@ class Part(BaseModel, metaclass=PartType):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        """Give the class a signature and a docstring made from its fields."""
-        cls.__signature__ = signature_of(cls.model_fields)
+        """Give the class a docstring made from its fields."""
         cls.__doc__ = documented(cls.__doc__ or "", cls.model_fields)
 
     def to_dict(self) -> dict[str, Any]:
