@@ -64,21 +64,15 @@ class ModelRuns:
             What is varied, and how often.
         """
         setup, key = self._setup, ("analysis", plan.model_dump_json())
-        simulation, lead = setup.varied()
         with reporting(self._progress, "sensitivity analysis") as report:
-            return kept(
-                setup.workspace,
-                key,
-                lambda: analyze(
-                    simulation,
-                    plan,
-                    factors(setup.building, plan),
-                    lead,
-                    setup.observation.names,
-                    self._workspace,
-                    report,
-                ),
-            )
+
+            def make() -> Sensitivity:
+                simulation, lead = setup.varied()
+                chosen = factors(setup.building, plan)
+                names = setup.observation.names
+                return analyze(simulation, plan, chosen, lead, names, self._workspace, report)
+
+            return kept(setup.workspace, key, make)
 
     def fitted(self) -> tuple[ModelRun, Calibration]:
         """The calibrated model and its calibration.
