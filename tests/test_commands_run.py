@@ -64,7 +64,9 @@ def test_a_given_start_saves_the_repetitions_of_a_heavy_building(
     assert share == round(100 * times / (times + 1))  # the run is as long as the first period
     assert cli.main([*call, "--initial", "3"]) == 0
     assert "start: 3 degC everywhere" in capsys.readouterr().out
-    assert cli.main([*call, "--initial", "nan"]) == 2
+    for impossible in ("nan", "500"):
+        assert cli.main([*call, "--initial", impossible]) == 2
+        assert "between -100 and 200 degC: such as --initial 20" in capsys.readouterr().err
 
 
 def test_a_long_run_shows_its_steps_and_the_time_left(

@@ -29,6 +29,7 @@ from mascarin.commands.output import print_json, print_table
 from mascarin.commands.places import lines_named
 from mascarin.commands.tables import run_inputs
 from mascarin.commands.view import require_html
+from mascarin.errors import InputError
 
 if TYPE_CHECKING:
     from mascarin.building import Building
@@ -111,7 +112,7 @@ def run(
         )
         simulation = _compiled(
             described, climate, measurements=measured, step=step, start=start, end=end, outputs=outputs,
-            scheme=scheme, initial="repeat" if initial is None else initial, more=report is not None,
+            scheme=scheme, initial=_start(initial), more=report is not None,
         )  # fmt: skip
         results = _simulated(simulation)
         if report is not None:
@@ -126,6 +127,26 @@ def run(
     elif out is None:
         _print(results)
     return 0 if results.energy.closes else 1
+
+
+def _start(temperature: float | None) -> float | Literal["repeat"]:
+    """The start as a simulation takes it.
+
+    Raises
+    ------
+    InputError
+        The temperature is not possible; the text is about the option, not about the forms of Python.
+    """
+    from mascarin.building.initial_state import LIMITS
+
+    if temperature is None:
+        return "repeat"
+    if not LIMITS[0] <= temperature <= LIMITS[1]:
+        raise InputError(
+            f"--initial: found {temperature:g}, expected one temperature between {LIMITS[0]:g} and "
+            f"{LIMITS[1]:g} degC: such as --initial 20, or leave the option out"
+        )
+    return temperature
 
 
 def _compiled(
